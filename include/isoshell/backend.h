@@ -1,0 +1,24 @@
+// Where a stage runs, with how much memory, and how it is watched and stopped.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+namespace isoshell {
+
+enum class Backend { best, cpu, cuda };
+
+/// Passed to every stage. Not copied; outlives the call.
+struct Context {
+  Backend backend = Backend::best;
+  int device = 0;                  ///< CUDA device number
+  int threads = 0;                 ///< CPU threads; 0 means all
+  int64_t memory_limit_bytes = 0;  ///< 0 means no limit
+  /// Called from the calling thread with the stage's name and the fraction of the stage that is done.
+  std::function<void(const char* stage, double fraction)> progress;
+  /// Set from any thread or a signal handler; the stage throws Error{interrupted} soon after.
+  std::atomic<bool> cancel{false};
+};
+
+}  // namespace isoshell

@@ -1,0 +1,28 @@
+// Mesh files: OBJ, PLY, STL and OFF in and out. Parallel, memory-mapped; no count in a file is trusted.
+#pragma once
+
+#include <string>
+
+#include "isoshell/surface_source.h"
+#include "isoshell/triangle_mesh.h"
+
+namespace isoshell {
+
+enum class MeshFormat { from_name, ply, obj, stl, off };
+
+/// Reads a mesh. `path` "-" reads standard input and needs a format. Polygons are split by ear clipping, triangle strips
+/// unrolled; dirty geometry is dropped and counted in the result, a file that lies throws.
+/// Throws: unreadable_input (names file and line, element or byte, the value and the remedy), nothing_to_mesh when the
+/// file is sound but holds no usable triangle.
+TriangleSoup read_mesh(const std::string& path, MeshFormat format = MeshFormat::from_name);
+
+struct MeshWriteOptions {
+  MeshFormat format = MeshFormat::from_name;
+  bool overwrite = false;
+};
+/// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
+/// thousandth of the shortest edge, else float), OBJ, binary STL, OFF. Written under a temporary name in the same
+/// folder and renamed. `path` "-" writes standard output. Throws: unwritable_output.
+void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
+
+}  // namespace isoshell

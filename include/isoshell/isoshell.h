@@ -1,0 +1,8 @@
+// Umbrella header.
+#pragma once
+
+#include "isoshell/digest.h"
+#include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/remesh.h"
+#include "isoshell/stages.h"

@@ -1,0 +1,33 @@
+// The sheet: the closed 2-manifold that bounds the solid inside the shell, laid onto the surface.
+#pragma once
+
+#include "isoshell/lattice_surface.h"
+#include "isoshell/voxel_set.h"
+
+namespace isoshell {
+
+/// Topology of the sheet, which is a closed orientable 2-manifold by construction.
+struct SheetTopology {
+  int64_t components = 0;
+  int64_t genus = 0;              ///< sum over the components
+  int64_t dropped_components = 0; ///< smaller than the area limit
+  int64_t bridged_vertices = 0;   ///< farther than two voxels from the surface
+};
+
+/// Result: vertex i is lattice corner i of `corners` in canonical order. Triangles come from the boundary faces of the
+/// solid, two a face, in the order of (solid voxel, face), oriented outward.
+struct Sheet {
+  LatticeFrame frame;
+  VoxelSet corners;
+  Buffer<PointQ8> position;          ///< on the input surface, or a smooth bridge over a gap
+  Buffer<Normal8> normal;            ///< outward, per vertex
+  Buffer<uint32_t> source_triangle;  ///< of the surface, nearest to the vertex; kNone on a bridge
+  Buffer<TriangleIndices> triangles;
+  Buffer<int64_t> vertex_first;      ///< vertex_count + 1 offsets into vertex_triangles
+  Buffer<uint32_t> vertex_triangles; ///< ascending per vertex
+  SheetTopology topology;
+
+  int64_t vertex_count() const { return position.size(); }
+};
+
+}  // namespace isoshell

@@ -1,0 +1,97 @@
+// The stages, each a pure function from products to the next product. Their order is the order of this file.
+#pragma once
+
+#include <vector>
+
+#include "isoshell/backend.h"
+#include "isoshell/lattice_surface.h"
+#include "isoshell/seed_set.h"
+#include "isoshell/sheet.h"
+#include "isoshell/shell.h"
+#include "isoshell/site_set.h"
+#include "isoshell/surface_source.h"
+#include "isoshell/triangle_mesh.h"
+#include "isoshell/voronoi_labels.h"
+
+namespace isoshell {
+
+/// Welds, measures and counts dirt of a soup; independent of any lattice. Cost: sorts of the vertices and edges.
+InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context);
+
+/// Snaps the soup to the lattice (see LatticeSurface). Throws: nothing_to_mesh when no triangle is left.
+LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context);
+
+/// Voxelization(O, res) of the paper: sites of a snapped surface. Cost: proportional to the voxels tested; 64 B a leaf.
+SiteSet voxelize(const LatticeSurface& surface, Context& context);
+
+/// Which triangles each site sees, and its sample.
+SiteSamples sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context);
+
+struct ShellOptions {
+  int32_t band_vox = 2;  ///< d, 1 to kMaxBandVox
+};
+/// ShellSpaceConstruction(M, res, d) of the paper, section 3.1. Cost: O(leaves * d); 6 bytes an active voxel.
+Shell build_shell(const SiteSet& sites, const ShellOptions& options, Context& context);
+
+struct SheetOptions {
+  int32_t closing_vox = 0;             ///< r: gaps up to 2 r voxels are bridged; 0 to kMaxClosingVox
+  int64_t min_component_area_q16 = 0;  ///< smaller sheet components are dropped; voxel^2 / 65536
+};
+/// Closes the sites by r, floods from outside, repairs the solid until it is well-composed, and lays its boundary onto
+/// the surface. Throws: nothing_to_mesh when no component is left.
+Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                  const SheetOptions& options, Context& context);
+
+struct SeedOptions {
+  int64_t count = 0;   ///< k
+  uint64_t seed = 0;   ///< start of the counter-based generator
+};
+/// k seeds spread over the sheet, one at random in each of k strata of equal area along the canonical order.
+/// Throws: usage when k is below 4 a component or above half the sheet's vertices (names the resolution that would do).
+SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& context);
+/// The same for method shell: one site at random in each of k strata of equal count.
+SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options, Context& context);
+
+struct RelaxOptions {
+  int32_t max_passes = 100;
+  int32_t tolerance_ppb = 10000;   ///< stop when the energy falls by less than this part in 10^9 a pass, over 5 passes
+  int32_t max_step_q8 = 0;         ///< u, bound of a seed's move in a pass; 0 chooses (sheet: 0.4 h; shell: 1 voxel)
+};
+/// Energy of every pass: integer units of that method, comparable within one run.
+struct RelaxReport {
+  std::vector<double> energy;
+  int32_t passes = 0;
+  bool converged = false;
+};
+/// Centroidal Voronoi tessellation of the sheet with clipped cells and momentum.
+RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context);
+/// The paper's Lloyd loop over the active voxels of the shell, sections 3.2 and 3.3.
+RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
+                           const RelaxOptions& options, Context& context);
+
+/// ShellFlooding(P, S) of the paper, section 3.4.
+VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, Context& context);
+
+/// Connectivity of the result while positions are still on the lattice.
+struct DualMesh {
+  Buffer<PointQ8> position;              ///< per seed
+  Buffer<TriangleIndices> triangles;     ///< smallest index first, sorted, outward
+};
+struct DualReport {
+  int64_t inserted_seeds = 0;
+  int64_t relabelled_vertices = 0;
+  int64_t repair_rounds = 0;
+  int64_t failed_cells = 0;     ///< left after the last round; 0 means the guarantee holds
+};
+struct DualOptions {
+  int32_t max_repair_rounds = 64;   ///< 0 only checks
+};
+/// DualTriangulation(V_k) on the sheet, with the four checks; cells that fail are split, which appends seeds.
+/// When report.failed_cells is 0, the result is a closed orientable 2-manifold homeomorphic to the sheet.
+DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
+                          Context& context);
+
+/// Final positions in the world.
+TriangleMesh to_world(const DualMesh& mesh, const LatticeFrame& frame);
+
+}  // namespace isoshell

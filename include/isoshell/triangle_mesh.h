@@ -1,0 +1,19 @@
+// The result: triangles in world units.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "isoshell/lattice.h"
+
+namespace isoshell {
+
+/// Result: vertices in seed id order; each triangle starts at its smallest index, triangles are sorted; orientation
+/// outward (counter-clockwise seen from outside).
+struct TriangleMesh {
+  std::vector<WorldPoint> vertices;
+  std::vector<std::array<uint32_t, 3>> triangles;
+};
+
+}  // namespace isoshell

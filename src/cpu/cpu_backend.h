@@ -1,0 +1,19 @@
+// What the CPU backend provides; one file cpu_<stage>.cpp instantiates each body.
+#pragma once
+
+#include "stages/backend_table.h"
+
+namespace isoshell {
+
+SiteSet cpu_voxelize(const LatticeSurface&, Context&);
+SiteSamples cpu_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
+Shell cpu_build_shell(const SiteSet&, const ShellOptions&, Context&);
+Sheet cpu_build_sheet(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+RelaxReport cpu_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
+RelaxReport cpu_relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&, Context&);
+VoronoiLabels cpu_flood_shell(const Shell&, const SeedSet&, Context&);
+DualMesh cpu_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
+SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
+SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
+
+}  // namespace isoshell

@@ -1,0 +1,13 @@
+// The CPU's triangulate_dual.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/dual_body.h"
+
+namespace isoshell {
+
+DualMesh cpu_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report, Context& context) {
+  TbbExecutor exec(context, "dual");
+  return run_with_threads(context, [&] { return triangulate_dual_body(exec, sheet, seeds, options, report); });
+}
+
+}  // namespace isoshell

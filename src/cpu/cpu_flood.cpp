@@ -1,0 +1,13 @@
+// The CPU's flood_shell.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/flood_body.h"
+
+namespace isoshell {
+
+VoronoiLabels cpu_flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) {
+  TbbExecutor exec(context, "flood");
+  return run_with_threads(context, [&] { return flood_shell_body(exec, shell, seeds); });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,13 @@
+// The CPU's relax_on_sheet.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/relax_sheet_body.h"
+
+namespace isoshell {
+
+RelaxReport cpu_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
+  TbbExecutor exec(context, "relax_sheet");
+  return run_with_threads(context, [&] { return relax_on_sheet_body(exec, sheet, seeds, options); });
+}
+
+}  // namespace isoshell

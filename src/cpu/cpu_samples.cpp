@@ -1,0 +1,13 @@
+// The CPU's sample_sites.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/samples_body.h"
+
+namespace isoshell {
+
+SiteSamples cpu_sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) {
+  TbbExecutor exec(context, "samples");
+  return run_with_threads(context, [&] { return sample_sites_body(exec, surface, sites); });
+}
+
+}  // namespace isoshell

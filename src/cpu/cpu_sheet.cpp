@@ -1,0 +1,13 @@
+// The CPU's build_sheet.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/sheet_body.h"
+
+namespace isoshell {
+
+Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples, const SheetOptions& options, Context& context) {
+  TbbExecutor exec(context, "sheet");
+  return run_with_threads(context, [&] { return build_sheet_body(exec, surface, sites, samples, options); });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,13 @@
+// The CPU's voxelize.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/sites_body.h"
+
+namespace isoshell {
+
+SiteSet cpu_voxelize(const LatticeSurface& surface, Context& context) {
+  TbbExecutor exec(context, "sites");
+  return run_with_threads(context, [&] { return voxelize_body(exec, surface); });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,115 @@
+// The CPU executor: exec/executor.h over TBB.
+#pragma once
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "isoshell/backend.h"
+#include "isoshell/buffer.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+
+/// Throws Error{interrupted} when the context was cancelled.
+inline void check_cancel(const Context& context, const char* stage) {
+  if (context.cancel.load(std::memory_order_relaxed))
+    throw Error(ErrorCode::interrupted, stage, "interrupted; nothing was written");
+}
+
+/// Runs under the context's thread limit. One executor per stage call.
+class TbbExecutor {
+ public:
+  explicit TbbExecutor(Context& context, const char* stage) : context_(context), stage_(stage) {}
+
+  Context& context() { return context_; }
+
+  template <class T>
+  Buffer<T> make(int64_t count) {
+    return Buffer<T>(count);
+  }
+
+  template <class T>
+  void fill(View<T> out, T value) {
+    for_each("fill", out.size, [=](int64_t i) { out[i] = value; });
+  }
+
+  template <class Step>
+  void for_each(const char*, int64_t count, Step step) {
+    check_cancel(context_, stage_);
+    tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, grain(count)), [&](const tbb::blocked_range<int64_t>& r) {
+      if (context_.cancel.load(std::memory_order_relaxed)) return;
+      for (int64_t i = r.begin(); i < r.end(); ++i) step(i);
+    });
+    check_cancel(context_, stage_);
+  }
+
+  template <class T>
+  T exclusive_scan(View<T> counts) {
+    T total = 0;
+    for (T& c : counts) {
+      const T here = c;
+      c = total;
+      total += here;
+    }
+    return total;
+  }
+
+  template <class T, class Less = std::less<T>>
+  void sort(View<T> keys, Less less = {}) {
+    check_cancel(context_, stage_);
+    tbb::parallel_sort(keys.begin(), keys.end(), less);
+  }
+
+  template <class Term>
+  int64_t sum(int64_t count, Term term) {
+    check_cancel(context_, stage_);
+    return tbb::parallel_reduce(
+        tbb::blocked_range<int64_t>(0, count, grain(count)), int64_t(0),
+        [&](const tbb::blocked_range<int64_t>& r, int64_t part) {
+          for (int64_t i = r.begin(); i < r.end(); ++i) part += term(i);
+          return part;
+        },
+        std::plus<int64_t>());
+  }
+
+  template <class Keep>
+  Buffer<uint32_t> select(int64_t count, Keep keep) {
+    constexpr int64_t kChunk = 4096;
+    const int64_t chunks = (count + kChunk - 1) / kChunk;
+    Buffer<int64_t> start(chunks);
+    for_each("count kept", chunks, [&](int64_t c) {
+      int64_t kept = 0;
+      for (int64_t i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) kept += keep(i) ? 1 : 0;
+      start[c] = kept;
+    });
+    Buffer<uint32_t> out(exclusive_scan(start.view()));
+    for_each("compact kept", chunks, [&](int64_t c) {
+      int64_t at = start[c];
+      for (int64_t i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i)
+        if (keep(i)) out[at++] = uint32_t(i);
+    });
+    return out;
+  }
+
+ private:
+  // Enough pieces for balance, few enough that small steps are not all overhead.
+  static int64_t grain(int64_t count) { return std::clamp<int64_t>(count / 64, 1, 1024); }
+
+  Context& context_;
+  const char* stage_;
+};
+
+/// Runs `work` with at most context.threads threads.
+template <class Work>
+auto run_with_threads(const Context& context, Work work) {
+  if (context.threads <= 0) return work();
+  tbb::task_arena arena(context.threads);
+  return arena.execute(work);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,30 @@
+// The seam between backends: the few functions each one provides. Everything else in src/ is written once.
+#pragma once
+
+#include "isoshell/stages.h"
+
+namespace isoshell {
+
+/// Same inputs, same definition, same bytes, whichever backend fills it. See stages.h for what each function computes.
+struct BackendTable {
+  const char* name;
+  SiteSet (*voxelize)(const LatticeSurface&, Context&);
+  SiteSamples (*sample_sites)(const LatticeSurface&, const SiteSet&, Context&);
+  Shell (*build_shell)(const SiteSet&, const ShellOptions&, Context&);
+  Sheet (*build_sheet)(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+  SeedSet (*place_seeds_on_sheet)(const Sheet&, const SeedOptions&, Context&);
+  SeedSet (*place_seeds_on_sites)(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
+  RelaxReport (*relax_on_sheet)(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
+  RelaxReport (*relax_in_shell)(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&, Context&);
+  VoronoiLabels (*flood_shell)(const Shell&, const SeedSet&, Context&);
+  DualMesh (*triangulate_dual)(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
+};
+
+/// Always there.
+const BackendTable& cpu_backend();
+/// Null when CUDA was not built in or no device is present.
+const BackendTable* cuda_backend();
+/// The table the context asks for. Throws Error{no_device} when it asks for CUDA and there is none.
+const BackendTable& backend_for(const Context& context);
+
+}  // namespace isoshell

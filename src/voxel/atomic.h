@@ -1,0 +1,57 @@
+// Integer atomics for steps: results do not depend on the order in which they happen.
+#pragma once
+
+#include <cstdint>
+
+#include "isoshell/host_device.h"
+
+namespace isoshell {
+
+template <class T>
+ISOSHELL_HD inline void atomic_add(T& target, T value) {
+#if defined(__CUDA_ARCH__)
+  using Word = unsigned long long;
+  if constexpr (sizeof(T) == 8) atomicAdd(reinterpret_cast<Word*>(&target), Word(value));
+  else atomicAdd(&target, value);
+#else
+  __atomic_fetch_add(&target, value, __ATOMIC_RELAXED);
+#endif
+}
+
+template <class T>
+ISOSHELL_HD inline void atomic_or(T& target, T value) {
+#if defined(__CUDA_ARCH__)
+  using Word = unsigned long long;
+  if constexpr (sizeof(T) == 8) atomicOr(reinterpret_cast<Word*>(&target), Word(value));
+  else atomicOr(&target, value);
+#else
+  __atomic_fetch_or(&target, value, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Returns true when this call lowered the value.
+template <class T>
+ISOSHELL_HD inline bool atomic_min(T& target, T value) {
+#if defined(__CUDA_ARCH__)
+  return atomicMin(&target, value) > value;
+#else
+  T seen = __atomic_load_n(&target, __ATOMIC_RELAXED);
+  while (value < seen)
+    if (__atomic_compare_exchange_n(&target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return true;
+  return false;
+#endif
+}
+
+template <class T>
+ISOSHELL_HD inline bool atomic_max(T& target, T value) {
+#if defined(__CUDA_ARCH__)
+  return atomicMax(&target, value) < value;
+#else
+  T seen = __atomic_load_n(&target, __ATOMIC_RELAXED);
+  while (value > seen)
+    if (__atomic_compare_exchange_n(&target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return true;
+  return false;
+#endif
+}
+
+}  // namespace isoshell

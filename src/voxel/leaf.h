@@ -1,0 +1,89 @@
+// Arithmetic of 8x8x8 leaves: keys in NanoVDB's node order, offsets, and lookups in a VoxelSetView.
+#pragma once
+
+#include <cstdint>
+
+#include "isoshell/voxel_set.h"
+
+namespace isoshell {
+
+/// Key of the leaf with leaf coordinates (voxel >> 3), each below 2^19: root tile, then upper node offset (32^3 lower
+/// nodes), then lower node offset (16^3 leaves), each x-major. Sorting keys gives NanoVDB's breadth-first leaf order.
+ISOSHELL_HD inline uint64_t leaf_key(Voxel leaf) {
+  const uint64_t x = uint64_t(leaf.x), y = uint64_t(leaf.y), z = uint64_t(leaf.z);
+  const uint64_t root = (x >> 9) << 20 | (y >> 9) << 10 | (z >> 9);
+  const uint64_t upper = ((x >> 4) & 31) << 10 | ((y >> 4) & 31) << 5 | ((z >> 4) & 31);
+  const uint64_t lower = (x & 15) << 8 | (y & 15) << 4 | (z & 15);
+  return root << 27 | upper << 12 | lower;
+}
+
+/// Leaf coordinates of a key.
+ISOSHELL_HD inline Voxel leaf_of_key(uint64_t key) {
+  const uint32_t root = uint32_t(key >> 27), upper = uint32_t(key >> 12) & 32767, lower = uint32_t(key) & 4095;
+  return {int32_t((root >> 20) << 9 | (upper >> 10) << 4 | lower >> 8),
+          int32_t(((root >> 10) & 1023) << 9 | ((upper >> 5) & 31) << 4 | ((lower >> 4) & 15)),
+          int32_t((root & 1023) << 9 | (upper & 31) << 4 | (lower & 15))};
+}
+
+ISOSHELL_HD inline Voxel leaf_of_voxel(Voxel v) { return {v.x >> 3, v.y >> 3, v.z >> 3}; }
+ISOSHELL_HD inline int offset_in_leaf(Voxel v) { return (v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7); }
+ISOSHELL_HD inline Voxel voxel_at(Voxel leaf, int offset) {
+  return {leaf.x * 8 + (offset >> 6), leaf.y * 8 + ((offset >> 3) & 7), leaf.z * 8 + (offset & 7)};
+}
+
+ISOSHELL_HD inline int popcount64(uint64_t w) {
+#if defined(__CUDA_ARCH__)
+  return __popcll(w);
+#else
+  return __builtin_popcountll(w);
+#endif
+}
+/// Number of the lowest set bit; w must not be 0.
+ISOSHELL_HD inline int lowest_bit(uint64_t w) {
+#if defined(__CUDA_ARCH__)
+  return __ffsll(static_cast<long long>(w)) - 1;
+#else
+  return __builtin_ctzll(w);
+#endif
+}
+
+/// Active voxels of the leaf before this offset.
+ISOSHELL_HD inline int rank_in_leaf(const LeafMask& mask, int offset) {
+  int rank = 0;
+  for (int w = 0; w < offset >> 6; ++w) rank += popcount64(mask.word[w]);
+  return rank + popcount64(mask.word[offset >> 6] & ((uint64_t(1) << (offset & 63)) - 1));
+}
+ISOSHELL_HD inline bool is_on(const LeafMask& mask, int offset) { return mask.word[offset >> 6] >> (offset & 63) & 1; }
+
+/// Number of the leaf at these leaf coordinates, or kNone. Any coordinates are allowed.
+ISOSHELL_HD inline uint32_t find_leaf(const VoxelSetView& set, Voxel leaf) {
+  const int32_t bx = leaf.x >> 4, by = leaf.y >> 4, bz = leaf.z >> 4;
+  if (bx < 0 || by < 0 || bz < 0 || bx >= set.block_dims[0] || by >= set.block_dims[1] || bz >= set.block_dims[2])
+    return kNone;
+  const uint32_t b = set.block_table[(int64_t(bx) * set.block_dims[1] + by) * set.block_dims[2] + bz];
+  if (b == kNone) return kNone;
+  const LeafBlock& block = set.blocks[b];
+  const int bit = (leaf.x & 15) << 8 | (leaf.y & 15) << 4 | (leaf.z & 15);
+  const uint64_t word = block.word[bit >> 6];
+  if (!(word >> (bit & 63) & 1)) return kNone;
+  return block.first_leaf + block.before[bit >> 6] + uint32_t(popcount64(word & ((uint64_t(1) << (bit & 63)) - 1)));
+}
+
+/// Index of an active voxel in canonical order, or -1.
+ISOSHELL_HD inline int64_t find_voxel(const VoxelSetView& set, Voxel v) {
+  const uint32_t leaf = find_leaf(set, leaf_of_voxel(v));
+  if (leaf == kNone) return -1;
+  const int offset = offset_in_leaf(v);
+  const LeafMask& mask = set.mask[leaf];
+  return is_on(mask, offset) ? set.first[leaf] + rank_in_leaf(mask, offset) : -1;
+}
+
+/// Calls visit(offset, index) for every active voxel of a leaf, in canonical order.
+template <class Visit>
+ISOSHELL_HD inline void for_each_active(const VoxelSetView& set, int64_t leaf, Visit visit) {
+  int64_t index = set.first[leaf];
+  for (int w = 0; w < 8; ++w)
+    for (uint64_t bits = set.mask[leaf].word[w]; bits; bits &= bits - 1) visit(w * 64 + lowest_bit(bits), index++);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,65 @@
+// The lattice and the leaf arithmetic.
+#include "core/voxel_set.h"
+#include "isoshell/error.h"
+#include "isoshell/lattice.h"
+#include "support/catch.h"
+#include "voxel/exact_int.h"
+#include "voxel/leaf.h"
+#include "voxel/random.h"
+
+using namespace isoshell;
+
+TEST_CASE("lattice: the longest side spans exactly `resolution` voxels", "[lattice][unit]") {
+  const LatticeFrame f = LatticeFrame::around({-1, 2, 3}, {4, 3, 3.5}, 64);
+  const PointQ8 lo = f.snap({-1, 2, 3}), hi = f.snap({4, 3, 3.5});
+  CHECK(lo.x == kMarginVox * 256 + 128);
+  CHECK((hi.x >> 8) - (lo.x >> 8) == 63);
+  CHECK(f.extent_vox[0] % 8 == 0);
+  CHECK(f.extent_vox[0] >= 64 + 2 * kMarginVox);
+  CHECK_THROWS_AS(LatticeFrame::around({0, 0, 0}, {1, 1, 1}, kMaxResolution + 1), Error);
+}
+
+TEST_CASE("leaf: a key and its leaf are each other's inverse and order as NanoVDB does", "[leaf][unit]") {
+  for (uint64_t i = 0; i < 1000; ++i) {
+    const uint64_t r = random_bits(1, i);
+    const Voxel leaf = {int32_t(r & 0x7ffff), int32_t(r >> 20 & 0x7ffff), int32_t(r >> 40 & 0x7ffff)};
+    CHECK(leaf_of_key(leaf_key(leaf)) == leaf);
+  }
+  CHECK(leaf_key({15, 15, 15}) < leaf_key({0, 0, 16}));
+  CHECK(leaf_key({0, 0, 511}) < leaf_key({0, 0, 512}));
+}
+
+TEST_CASE("voxel set: every active voxel is found at its index and no other is", "[voxel_set][unit]") {
+  VoxelSet set;
+  set.leaf_key = Buffer<uint64_t>(40);
+  set.mask = Buffer<LeafMask>(40);
+  for (int64_t l = 0; l < 40; ++l) {
+    set.leaf_key[l] = uint64_t(l * l * 7 + l);
+    for (int w = 0; w < 8; ++w) set.mask[l].word[w] = random_bits(2, uint64_t(l * 8 + w));
+  }
+  const int32_t extent[3] = {4096, 4096, 4096};
+  index_leaves(set, extent);
+  const VoxelSetView view = set.view();
+  for (int64_t l = 0; l < 40; ++l) {
+    int64_t expect = set.first[l];
+    for (int offset = 0; offset < 512; ++offset) {
+      const Voxel v = voxel_at(leaf_of_key(set.leaf_key[l]), offset);
+      CHECK(find_voxel(view, v) == (is_on(set.mask[l], offset) ? expect++ : -1));
+    }
+  }
+  CHECK(find_voxel(view, {-1, 0, 0}) == -1);
+}
+
+TEST_CASE("exact integers: rounding division and square root are what they say", "[exact][unit]") {
+  CHECK(round_div(5, 2) == 3);
+  CHECK(round_div(-5, 2) == -2);
+  CHECK(floor_div(-1, 4) == -1);
+  for (uint64_t n : {0ull, 1ull, 3ull, 4ull, 99ull, 1ull << 61, (1ull << 62) - 1}) {
+    const uint64_t r = isqrt(n);
+    CHECK(r * r <= n);
+    CHECK((r + 1) * (r + 1) > n);
+  }
+  const Normal8 n = normal8({3, 4, 0});
+  CHECK(n.x == 76);
+  CHECK(n.y == 102);
+}
