@@ -1,12 +1,283 @@
-// Algorithm 1 of the paper, readable as such.
+// Algorithm 1 of the paper, readable as such: prepare (lines 2 and 3), relax (1 and 4 to 9), triangulate (10 and 11).
 #include "isoshell/remesh.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "isoshell/digest.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
+namespace {
 
-RemeshResult remesh(const TriangleSoup&, const RemeshOptions&, Context&) {
-  throw Error(ErrorCode::internal, "remesh", "remesh is missing");
+constexpr double kVoxelsPerSpacing = 6;      // default grid: a cell is about this many voxels wide
+constexpr int32_t kMinDefaultResolution = 64;
+constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
+constexpr int32_t kMaxAutoClosingVox = 4;
+constexpr int32_t kReoptimisePasses = 20;
+constexpr int kMaxReoptimisations = 4;
+
+void book_time(RemeshReport& report, const char* stage, double ms) {
+  for (StageTime& t : report.times)
+    if (t.stage == stage) {
+      t.ms += ms;
+      return;
+    }
+  report.times.push_back({stage, ms});
+}
+
+/// Runs one stage and books its time under its name.
+template <class Work>
+auto timed(RemeshReport& report, const char* stage, Work work) {
+  using Clock = std::chrono::steady_clock;
+  struct Book {
+    RemeshReport& report;
+    const char* stage;
+    Clock::time_point start = Clock::now();
+    ~Book() { book_time(report, stage, std::chrono::duration<double, std::milli>(Clock::now() - start).count()); }
+  } book{report, stage};
+  return work();
+}
+
+template <class Product>
+void note_digest(const RemeshOptions& options, RemeshReport& report, const char* name, const Product& product) {
+  if (options.want_digests) report.digests[name] = digest_text(digest(product));
+}
+
+/// Target count for a surface of this area.
+int64_t vertex_target(const RemeshOptions& options, double area_world) {
+  if (options.edge_length_world <= 0) return options.vertices;
+  const double per_vertex = kAreaPerEdgeSq * options.edge_length_world * options.edge_length_world;
+  return std::max<int64_t>(4, std::llround(area_world / per_vertex));
+}
+
+double longest_side(WorldPoint lo, WorldPoint hi) { return std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
+
+int32_t resolution_for_voxel(double longest, double voxel_size) {
+  return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
+}
+
+/// The grid to start from: the user's, or one on which a cell is about six voxels wide.
+int32_t first_resolution(const RemeshOptions& options, const InputTopology& input, WorldPoint lo, WorldPoint hi) {
+  if (options.resolution > 0) return options.resolution;
+  const double longest = longest_side(lo, hi);
+  if (options.voxel_size_world > 0) return resolution_for_voxel(longest, options.voxel_size_world);
+  const double spacing = std::sqrt(input.area_world / double(vertex_target(options, input.area_world)));
+  if (!(spacing > 0)) return kMinDefaultResolution;
+  return std::clamp(resolution_for_voxel(longest, spacing / kVoxelsPerSpacing), kMinDefaultResolution, kMaxResolution);
+}
+
+/// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose.
+int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
+  if (input.closed && input.oriented) return 0;
+  const double cell_world = input.area_world / double(std::max<int64_t>(1, vertex_target(options, input.area_world)));
+  const double cell_vox = cell_world / (frame.voxel_size * frame.voxel_size);
+  return int64_t(4 * cell_vox * 65536);
+}
+
+/// Volume inside the sheet in voxels. Serial, so the sum has one order.
+double volume_inside(const Sheet& sheet) {
+  double six = 0;
+  for (TriangleIndices t : sheet.triangles) {
+    const PointQ8 a = sheet.position[t.a], b = sheet.position[t.b], c = sheet.position[t.c];
+    six += double(a.x) * (double(b.y) * c.z - double(b.z) * c.y) + double(a.y) * (double(b.z) * c.x - double(b.x) * c.z) +
+           double(a.z) * (double(b.x) * c.y - double(b.y) * c.x);
+  }
+  return six / 6 / (double(kOneVoxelQ8) * kOneVoxelQ8 * kOneVoxelQ8);
+}
+
+/// Sites, samples and sheet of a surface, with the closing that is asked for or found.
+class Preparation {
+ public:
+  Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
+      : options_(options), report_(report), context_(context) {}
+
+  Prepared from(LatticeSurface surface, int32_t closing_vox) {
+    Prepared p;
+    p.surface = std::move(surface);
+    p.sites = timed(report_, "voxelize", [&] { return voxelize(p.surface, context_); });
+    p.samples = timed(report_, "samples", [&] { return sample_sites(p.surface, p.sites, context_); });
+    if (closing_vox >= 0) {
+      p.closing_vox = closing_vox;
+      p.sheet = sheet(p, closing_vox);
+    } else {
+      close_leaks(p);
+    }
+    return p;
+  }
+
+ private:
+  Sheet sheet(const Prepared& p, int32_t closing_vox) {
+    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    return timed(report_, "sheet", [&] { return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest}, context_); });
+  }
+
+  /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in and
+  /// the solid collapses to a crust (pipeline step 1).
+  void close_leaks(Prepared& p) {
+    Sheet widest = sheet(p, kMaxAutoClosingVox);
+    const double enough = 0.9 * volume_inside(widest);
+    for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
+      p.sheet = sheet(p, p.closing_vox);
+      if (volume_inside(p.sheet) >= enough) return;
+    }
+    p.sheet = std::move(widest);
+  }
+
+  const RemeshOptions& options_;
+  RemeshReport& report_;
+  Context& context_;
+};
+
+/// How far the sheet's topology is from the input's; 0 when they agree.
+int64_t topology_gap(const Prepared& p) {
+  const InputTopology& input = p.surface.topology;
+  return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
+}
+
+int32_t asked_closing(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
+  if (options.closing_world >= 0) {
+    const double r = std::ceil(options.closing_world / frame.voxel_size / 2);
+    if (r > kMaxClosingVox)
+      throw Error(ErrorCode::usage, "close-gaps",
+                  "a gap of " + std::to_string(options.closing_world) + " is " + std::to_string(int64_t(2 * r)) +
+                      " voxels wide on this grid; at most " + std::to_string(2 * kMaxClosingVox) +
+                      " can be closed: lower the resolution");
+    return int32_t(r);
+  }
+  return options.closing_vox < 0 && input.closed ? 0 : options.closing_vox;
+}
+
+void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  if (options.want_shell || options.method == Method::shell) {
+    p.shell = timed(report, "shell", [&] { return build_shell(p.sites, {options.band_vox}, context); });
+    report.active_voxels = p.shell.voxels.voxel_count();
+    report.leaves = p.shell.voxels.leaf_count();
+    note_digest(options, report, "shell", p.shell);
+  }
+  report.input = p.surface.topology;
+  report.frame = p.surface.frame;
+  report.band_vox = options.band_vox;
+  report.closing_vox = p.closing_vox;
+  report.sites = p.sites.voxels.voxel_count();
+  report.sheet_vertices = p.sheet.vertex_count();
+  report.sheet = p.sheet.topology;
+  report.topology_compared = report.input.closed && report.input.oriented && report.input.genus >= 0;
+  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
+  note_digest(options, report, "surface", p.surface);
+  note_digest(options, report, "sites", p.sites);
+  note_digest(options, report, "samples", p.samples);
+  note_digest(options, report, "sheet", p.sheet);
+}
+
+double sheet_area_world(const Sheet& sheet) {
+  double area = 0;
+  for (TriangleIndices t : sheet.triangles) {
+    const WorldPoint a = sheet.frame.to_world(sheet.position[t.a]), b = sheet.frame.to_world(sheet.position[t.b]),
+                     c = sheet.frame.to_world(sheet.position[t.c]);
+    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    area += std::sqrt(nx * nx + ny * ny + nz * nz) / 2;
+  }
+  return area;
+}
+
+RelaxOptions relax_options(const RemeshOptions& options) {
+  RelaxOptions relax;
+  if (options.max_passes > 0) relax.max_passes = options.max_passes;
+  else relax.max_passes = options.method == Method::shell ? 200 : 100;
+  if (options.tolerance >= 0) relax.tolerance_ppb = int32_t(std::min(options.tolerance, 1.0) * 1e9);
+  relax.max_step_q8 = int32_t(options.max_step_vox * kOneVoxelQ8);
+  return relax;
+}
+
+}  // namespace
+
+Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
+                 Context& context) {
+  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+  finish(p, options, report, context);
+  return p;
+}
+
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  report.dirt = soup.dirt;
+  const InputTopology input = timed(report, "topology", [&] { return measure_topology(soup, report.dirt, context); });
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  const bool compare = input.closed && input.oriented && input.genus >= 0;
+  const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
+  const int32_t first = first_resolution(options, input, lo, hi);
+  const int32_t cap = free_grid && compare ? std::min(4 * first, kMaxResolution) : first;
+
+  Prepared best;
+  int64_t best_gap = INT64_MAX;
+  int fruitless = 0;
+  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2; resolution += resolution / 2) {
+    const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
+    LatticeSurface surface = timed(report, "snap", [&] { return snap_surface(soup, frame, context); });
+    surface.topology = input;
+    Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+    const int64_t gap = compare ? topology_gap(p) : 0;
+    fruitless = gap < best_gap ? 0 : fruitless + 1;
+    if (gap < best_gap) {
+      best_gap = gap;
+      best = std::move(p);
+    }
+  }
+  finish(best, options, report, context);
+  if (report.topology_compared && !report.topology_agrees)
+    report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +
+                              std::to_string(report.sheet.genus) + ", the input " + std::to_string(input.components) +
+                              " and " + std::to_string(input.genus) + "; a higher --resolution may tell near parts apart");
+  return best;
+}
+
+SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  const int64_t area_known = options.edge_length_world > 0 ? 1 : 0;
+  const int64_t target = vertex_target(options, area_known ? sheet_area_world(p.sheet) : 0);
+  const SeedOptions seed_options{target, options.seed};
+  SeedSet seeds;
+  if (options.method == Method::sheet) {
+    seeds = timed(report, "seeds", [&] { return place_seeds(p.sheet, seed_options, context); });
+    report.relax = timed(report, "relax", [&] { return relax_on_sheet(p.sheet, seeds, relax_options(options), context); });
+  } else {
+    seeds = timed(report, "seeds", [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
+    report.relax = timed(report, "relax", [&] {
+      return relax_in_shell(p.shell, p.sites, p.samples, seeds, relax_options(options), context);
+    });
+    timed(report, "attach", [&] { attach_to_sheet(p.sheet, seeds, context); });
+  }
+  report.seeds = seeds.size();
+  note_digest(options, report, "seeds", seeds);
+  return seeds;
+}
+
+TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
+                         Context& context) {
+  DualMesh dual;
+  for (int round = 0;; ++round) {
+    DualReport found;
+    dual = timed(report, "dual", [&] { return triangulate_dual(p.sheet, seeds, {}, found, context); });
+    report.dual.inserted_seeds += found.inserted_seeds;
+    report.dual.relabelled_vertices += found.relabelled_vertices;
+    report.dual.repair_rounds += found.repair_rounds;
+    report.dual.failed_cells = found.failed_cells;
+    if (found.inserted_seeds == 0 || round == kMaxReoptimisations) break;
+    timed(report, "relax", [&] { return relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context); });
+  }
+  TriangleMesh mesh = timed(report, "post", [&] { return to_world(dual, p.surface.frame); });
+  note_digest(options, report, "mesh", mesh);
+  return mesh;
+}
+
+RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context) {
+  RemeshResult result;
+  const Prepared prepared = prepare(soup, options, result.report, context);
+  SeedSet seeds = relax(prepared, options, result.report, context);
+  result.mesh = triangulate(prepared, seeds, options, result.report, context);
+  return result;
 }
 
 }  // namespace isoshell

@@ -1,4 +1,5 @@
-// The call most people need: a surface in, an isotropic closed mesh out.
+// The call most people need: a surface in, an isotropic closed mesh out. And the same in three steps, for those who
+// keep or resume from the products between them.
 #pragma once
 
 #include <map>
@@ -9,51 +10,80 @@
 
 namespace isoshell {
 
-enum class Method { sheet, shell };
+enum class Method {
+  sheet,  ///< clipped cells on the sheet, the default
+  shell,  ///< the paper's Lloyd loop on shell voxels
+};
 
 struct RemeshOptions {
-  int64_t vertices = 10000;      ///< exact target; ignored when edge_length_world is set
+  int64_t vertices = 10000;      ///< target count; ignored when edge_length_world is set
   double edge_length_world = 0;  ///< 0 means by vertices
-  int32_t resolution = 0;        ///< voxels along the longest side, 0 chooses
+  int32_t resolution = 0;        ///< voxels along the longest side; 0 chooses
   double voxel_size_world = 0;   ///< 0 means by resolution
   int32_t band_vox = 2;          ///< d
   int32_t closing_vox = -1;      ///< r; -1 chooses (0 for a closed surface)
-  double closing_world = -1;     ///< gap width in world units; -1 means by closing_vox
+  double closing_world = -1;     ///< width of gaps to close, world units; -1 means by closing_vox
   Method method = Method::sheet;
   int32_t max_passes = 0;        ///< 0 means the method's own
   double tolerance = -1;         ///< relative fall of the energy a pass; negative means the method's own
   double max_step_vox = 0;       ///< u; 0 means the method's own
   uint64_t seed = 0;
+  bool want_shell = false;       ///< build the shell even when the method does not need it, to keep it
+  bool want_digests = false;     ///< fill RemeshReport::digests
 };
 
-/// One step of the run, in order, for the stats.
 struct StageTime {
   std::string stage;
   double ms;
 };
 
+/// Everything measured on the way.
 struct RemeshReport {
   InputTopology input;
   DirtCounts dirt;
   LatticeFrame frame;
   int32_t band_vox = 0, closing_vox = 0;
-  int64_t sites = 0, active_voxels = 0, leaves = 0, sheet_vertices = 0, seeds = 0;
+  int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
+  int64_t sheet_vertices = 0, seeds = 0;
   SheetTopology sheet;
-  bool topology_agrees = false;      ///< components and genus of the sheet equal the closed, oriented input's
+  bool topology_compared = false;  ///< the input is closed and oriented
+  bool topology_agrees = false;    ///< components and genus of the sheet equal the input's
   RelaxReport relax;
   DualReport dual;
-  int64_t components = 0, genus = 0; ///< of the result
-  std::vector<StageTime> times;
+  std::vector<StageTime> times;    ///< in order; a stage that ran more than once has one entry
   std::map<std::string, std::string> digests;
   std::vector<std::string> warnings;
 };
+
+/// Products up to the sheet.
+struct Prepared {
+  LatticeSurface surface;
+  SiteSet sites;
+  SiteSamples samples;
+  Shell shell;  ///< empty unless the method or want_shell asks for it
+  Sheet sheet;
+  int32_t closing_vox = 0;
+};
+
+/// Chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the
+/// sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
+/// resolution). Throws: nothing_to_mesh, usage, out_of_memory, interrupted.
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context);
+/// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.
+Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
+                 Context& context);
+/// Places and relaxes the seeds.
+SeedSet relax(const Prepared& prepared, const RemeshOptions& options, RemeshReport& report, Context& context);
+/// Dual, repair and the final mesh. Appends to the seeds where the topology needs more.
+TriangleMesh triangulate(const Prepared& prepared, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
+                         Context& context);
 
 struct RemeshResult {
   TriangleMesh mesh;
   RemeshReport report;
 };
 
-/// Algorithm 1 of the paper. Throws Error as the stages do.
-RemeshResult remesh(const TriangleSoup& surface, const RemeshOptions& options, Context& context);
+/// Algorithm 1 of the paper: prepare, relax, triangulate.
+RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context);
 
 }  // namespace isoshell

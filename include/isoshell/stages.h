@@ -18,6 +18,9 @@ namespace isoshell {
 /// Welds, measures and counts dirt of a soup; independent of any lattice. Cost: sorts of the vertices and edges.
 InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context);
 
+/// Smallest and largest coordinates of the vertices that triangles use.
+void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box_max);
+
 /// Snaps the soup to the lattice (see LatticeSurface). Throws: nothing_to_mesh when no triangle is left.
 LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context);
 
@@ -68,6 +71,9 @@ RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOption
 /// The paper's Lloyd loop over the active voxels of the shell, sections 3.2 and 3.3.
 RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
                            const RelaxOptions& options, Context& context);
+
+/// Moves seeds of method shell onto the sheet: nearest point of the sheet, its home vertex and outward normal.
+void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context);
 
 /// ShellFlooding(P, S) of the paper, section 3.4.
 VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, Context& context);

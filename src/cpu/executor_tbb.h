@@ -59,6 +59,12 @@ class TbbExecutor {
     return total;
   }
 
+  template <class T>
+  void inclusive_scan(View<T> counts) {
+    T total = 0;
+    for (T& c : counts) c = total += c;
+  }
+
   template <class T, class Less = std::less<T>>
   void sort(View<T> keys, Less less = {}) {
     check_cancel(context_, stage_);

@@ -4,10 +4,10 @@
 //   template <class T> void fill(View<T> out, T value);
 //   template <class Step> void for_each(const char* name, int64_t count, Step step);   // step(int64_t i), any order
 //   template <class T> T exclusive_scan(View<T> counts);             // in place; returns the total
+//   template <class T> void inclusive_scan(View<T> counts);          // in place
 //   template <class T, class Less> void sort(View<T> keys, Less less);   // less must be a total order on the values
 //   template <class Keep> Buffer<uint32_t> select(int64_t count, Keep keep); // ascending i with keep(i)
 //   template <class Term> int64_t sum(int64_t count, Term term);     // integer sum of term(i)
-//   template <class Word, class Add> atomics: see voxel/atomic.h
 //
 // Every operation has one mathematical answer, so no schedule can change a byte. Steps are functors named for what they
 // do. A step may write only to its own elements, or through the integer atomics of voxel/atomic.h.

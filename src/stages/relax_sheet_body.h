@@ -1,14 +1,337 @@
-// relax_on_sheet (see stages.h), written once over an executor.
+// relax_on_sheet (see stages.h): centroidal Voronoi tessellation restricted to the sheet (paper section 3.3, with the
+// sheet in place of the shell and cells clipped by their bisectors instead of counted in voxels).
+//
+// A pass: look ahead along the last move (Nesterov), label the sheet, sum area and moments of every clipped cell in
+// integers, move each seed to its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy rose.
 #pragma once
 
-#include "isoshell/error.h"
+#include <cmath>
+
 #include "isoshell/stages.h"
+#include "stages/label_body.h"
+#include "voxel/atomic.h"
+#include "voxel/cell_sum.h"
+#include "voxel/closest_point.h"
 
 namespace isoshell {
+namespace relax_sheet {
+
+/// Area, centre and energy of a cell relative to its seed: mass is the doubled area (q16), first three times the doubled
+/// first moment, energy_12 twelve times the doubled second moment, shifted down by kEnergyShift.
+struct CellSum {
+  int64_t mass, first_x, first_y, first_z, energy_12;
+};
+constexpr int kEnergyShift = 8;
+
+/// A sheet triangle with its doubled area.
+struct PatchTriangle {
+  uint32_t a, b, c, area2;
+};
+
+/// Triangles by the leaf of their smallest vertex: so all of a leaf's triangles are close to it.
+struct Patches {
+  Buffer<int64_t> first;             ///< leaf_count + 1
+  Buffer<PatchTriangle> triangles;
+};
+
+struct VisitPatch {
+  VoxelSetView corners;
+  View<const TriangleIndices> triangles;
+  View<const int64_t> vertex_first;
+  View<const uint32_t> vertex_triangles;
+
+  template <class Visit>
+  ISOSHELL_HD void visit(int64_t leaf, Visit each) const {
+    for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v)
+      for (int64_t n = vertex_first[v]; n < vertex_first[v + 1]; ++n) {
+        const TriangleIndices t = triangles[vertex_triangles[n]];
+        if (t.a >= v && t.b >= v && t.c >= v) each(t);
+      }
+  }
+};
+
+struct CountPatch {
+  VisitPatch patch;
+  View<int64_t> count;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    int64_t n = 0;
+    patch.visit(leaf, [&](TriangleIndices) { ++n; });
+    count[leaf] = n;
+  }
+};
+
+struct FillPatch {
+  VisitPatch patch;
+  View<const PointQ8> position;
+  View<const int64_t> first;
+  View<PatchTriangle> out;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    int64_t at = first[leaf];
+    patch.visit(leaf, [&](TriangleIndices t) {
+      const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
+      out[at++] = {t.a, t.b, t.c, uint32_t(isqrt(uint64_t(dot(n, n))))};
+    });
+  }
+};
 
 template <class Exec>
-RelaxReport relax_on_sheet_body(Exec&, const Sheet&, SeedSet&, const RelaxOptions&) {
-  throw Error(ErrorCode::internal, "relax_sheet", "relax_on_sheet is missing");
+Patches make_patches(Exec& exec, const Sheet& sheet) {
+  const int64_t leaves = sheet.corners.leaf_count();
+  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  Patches patches;
+  patches.first = exec.template make<int64_t>(leaves + 1);
+  patches.first[leaves] = 0;
+  exec.for_each("count patch triangles", leaves, CountPatch{visit, patches.first.view()});
+  exec.exclusive_scan(patches.first.view());
+  patches.triangles = exec.template make<PatchTriangle>(sheet.triangles.size());
+  exec.for_each("fill patch triangles", leaves,
+                FillPatch{visit, sheet.position.view(), patches.first.view(), patches.triangles.view()});
+  return patches;
+}
+
+/// Sums of a few cells while a leaf is worked on; what does not fit goes straight to the cell.
+template <int kSlots>
+class LocalSums {
+ public:
+  ISOSHELL_HD LocalSums() {
+    for (int i = 0; i < kSlots; ++i) label_[i] = kNone;
+  }
+  /// Null when every slot is taken by other labels.
+  ISOSHELL_HD PieceSum* of(uint32_t label) {
+    for (int probe = 0; probe < kSlots; ++probe) {
+      const int slot = int((label * 2654435761u >> 16) + uint32_t(probe)) & (kSlots - 1);
+      if (label_[slot] == label) return &sum_[slot];
+      if (label_[slot] == kNone) {
+        label_[slot] = label;
+        sum_[slot] = {0, 0, 0, 0, 0};
+        return &sum_[slot];
+      }
+    }
+    return nullptr;
+  }
+  template <class Visit>
+  ISOSHELL_HD void for_each(Visit visit) const {
+    for (int i = 0; i < kSlots; ++i)
+      if (label_[i] != kNone) visit(label_[i], sum_[i]);
+  }
+
+ private:
+  uint32_t label_[kSlots];
+  PieceSum sum_[kSlots];
+};
+
+/// Adds the pieces of one leaf's triangles to their cells.
+template <int kSlots = 64>
+struct SumLeaf {
+  View<const uint64_t> leaf_key;
+  View<const int64_t> first;
+  View<const PatchTriangle> triangles;
+  View<const PointQ8> position;
+  View<const uint32_t> label;
+  View<const PointQ8> seed;
+  View<CellSum> cell;
+
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    const Voxel v = leaf_of_key(leaf_key[leaf]);
+    const PointQ8 origin = {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
+    LocalSums<kSlots> sums;
+    uint32_t last = kNone;
+    PieceSum* last_sum = nullptr;
+    const auto add = [&](uint32_t id, const PieceSum& piece) {
+      if (id != last) last = id, last_sum = sums.of(id);
+      if (last_sum) *last_sum = *last_sum + piece;
+      else flush(id, piece, origin);
+    };
+    for (int64_t t = first[leaf]; t < first[leaf + 1]; ++t) add_triangle(triangles[t], origin, add);
+    sums.for_each([&](uint32_t id, const PieceSum& sum) { flush(id, sum, origin); });
+  }
+
+ private:
+  template <class Add>
+  ISOSHELL_HD void add_triangle(const PatchTriangle& t, PointQ8 origin, Add add) const {
+    const uint32_t id[3] = {label[t.a], label[t.b], label[t.c]};
+    const Local p[3] = {local(position[t.a], origin), local(position[t.b], origin), local(position[t.c], origin)};
+    if (id[0] == id[1] && id[1] == id[2]) return add(id[0], piece_sum(t.area2, p[0], p[1], p[2]));
+    const SplitTriangle split{{p[0], p[1], p[2]},
+                              {local(seed[id[0]], origin), local(seed[id[1]], origin), local(seed[id[2]], origin)},
+                              t.area2};
+    const auto add_piece = [&](int corner, const PieceSum& piece) { add(id[corner], piece); };
+    if (id[1] == id[2]) split.two_cells(0, add_piece);
+    else if (id[2] == id[0]) split.two_cells(1, add_piece);
+    else if (id[0] == id[1]) split.two_cells(2, add_piece);
+    else split.three_cells(add_piece);
+  }
+
+  /// Moves the sums from the leaf's origin to the seed: d = seed - origin.
+  ISOSHELL_HD void flush(uint32_t id, const PieceSum& s, PointQ8 origin) const {
+    const Local d = local(seed[id], origin);
+    const int64_t energy = s.second - 8 * (s.first_x * d.x + s.first_y * d.y + s.first_z * d.z) + 12 * square(d) * s.mass;
+    CellSum& c = cell[id];
+    atomic_add(c.mass, s.mass);
+    atomic_add(c.first_x, s.first_x - 3 * s.mass * d.x);
+    atomic_add(c.first_y, s.first_y - 3 * s.mass * d.y);
+    atomic_add(c.first_z, s.first_z - 3 * s.mass * d.z);
+    atomic_add(c.energy_12, energy >> kEnergyShift);
+  }
+};
+
+/// Puts a position back onto the sheet: walks from vertex to neighbouring vertex as long as one is nearer, then takes
+/// the closest point of the triangles around the last one. Never jumps through a thin wall. Result: a function of
+/// (start vertex, position) alone.
+struct WalkOntoSheet {
+  View<const PointQ8> position;
+  View<const Normal8> normal;
+  View<const TriangleIndices> triangles;
+  View<const int64_t> vertex_first;
+  View<const uint32_t> vertex_triangles;
+
+  ISOSHELL_HD uint32_t nearest_vertex(uint32_t from, PointQ8 p) const {
+    int64_t best = distance_sq_q16(position[from], p);
+    for (;;) {
+      uint32_t next = from;
+      const auto consider = [&](uint32_t v) {
+        const int64_t d = distance_sq_q16(position[v], p);
+        if (d < best || (d == best && v < next)) best = d, next = v;
+      };
+      for (int64_t n = vertex_first[from]; n < vertex_first[from + 1]; ++n) {
+        const TriangleIndices t = triangles[vertex_triangles[n]];
+        consider(t.a);
+        consider(t.b);
+        consider(t.c);
+      }
+      if (next == from) return from;
+      from = next;
+    }
+  }
+  ISOSHELL_HD PointQ8 closest_around(uint32_t vertex, PointQ8 p) const {
+    PointQ8 closest = position[vertex];
+    int64_t best = INT64_MAX;
+    for (int64_t n = vertex_first[vertex]; n < vertex_first[vertex + 1]; ++n) {
+      const TriangleIndices t = triangles[vertex_triangles[n]];
+      const PointQ8 q = closest_point_on_triangle(p, position[t.a], position[t.b], position[t.c]);
+      const int64_t d = distance_sq_q16(q, p);
+      if (d < best) best = d, closest = q;
+    }
+    return closest;
+  }
+};
+
+/// Seeds while they move. `here` is where the cells are measured, `last` the outcome of the pass before.
+struct MovingSeeds {
+  WalkOntoSheet walk;
+  View<PointQ8> here;
+  View<PointQ8> last;
+  View<uint32_t> home;
+  View<Normal8> normal;
+  int64_t max_step_q8;
+
+  /// The step, shortened to the bound.
+  ISOSHELL_HD PointQ8 moved(PointQ8 from, Vec64 step) const {
+    const int64_t length_sq = dot(step, step);
+    if (length_sq > max_step_q8 * max_step_q8) {
+      const int64_t length = int64_t(isqrt(uint64_t(length_sq))) + 1;
+      step = {step.x * max_step_q8 / length, step.y * max_step_q8 / length, step.z * max_step_q8 / length};
+    }
+    return {from.x + int32_t(step.x), from.y + int32_t(step.y), from.z + int32_t(step.z)};
+  }
+  ISOSHELL_HD PointQ8 settle(int64_t s, PointQ8 target) const {
+    const uint32_t vertex = walk.nearest_vertex(home[s], target);
+    home[s] = vertex;
+    normal[s] = walk.normal[vertex];
+    return walk.closest_around(vertex, target);
+  }
+};
+
+/// here = s + beta (s - last), last = s.
+struct LookAhead {
+  MovingSeeds seeds;
+  int64_t beta_q15;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const PointQ8 s = seeds.here[i];
+    const Vec64 step = difference(s, seeds.last[i]) * beta_q15;
+    seeds.last[i] = s;
+    if (beta_q15 == 0) return;
+    seeds.here[i] = seeds.settle(i, seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15}));
+  }
+};
+
+/// here = centre of the cell measured at here.
+struct MoveToCentre {
+  MovingSeeds seeds;
+  View<const CellSum> cell;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const CellSum c = cell[i];
+    if (c.mass <= 0) return;
+    const Vec64 step = {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass), round_div(c.first_z, 3 * c.mass)};
+    seeds.here[i] = seeds.settle(i, seeds.moved(seeds.here[i], step));
+  }
+};
+
+struct CellEnergy {
+  View<const CellSum> cell;
+  ISOSHELL_HD int64_t operator()(int64_t i) const { return cell[i].energy_12 >> 4; }
+};
+
+/// Nesterov's momentum factors, capped. Host only: one square root a pass.
+class Momentum {
+ public:
+  void restart() { t_ = 1; }
+  int64_t next_q15() {
+    const double after = (1 + std::sqrt(1 + 4 * t_ * t_)) / 2;
+    const double beta = (t_ - 1) / after;
+    t_ = after;
+    return int64_t((beta < kCap ? beta : kCap) * 32768);
+  }
+
+ private:
+  static constexpr double kCap = 0.95;
+  double t_ = 1;
+};
+
+/// True when the energy fell by less than `tolerance_ppb` of itself a pass over the last five passes.
+inline bool has_converged(const std::vector<double>& energy, int32_t tolerance_ppb) {
+  constexpr size_t kWindow = 5;
+  if (energy.size() <= kWindow) return false;
+  const double before = energy[energy.size() - 1 - kWindow], now = energy.back();
+  return before - now < before * (double(tolerance_ppb) * 1e-9 * kWindow) && now <= before;
+}
+
+}  // namespace relax_sheet
+
+template <class Exec>
+RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options) {
+  using namespace relax_sheet;
+  const int64_t count = seeds.size();
+  const Patches patches = make_patches(exec, sheet);
+  const SeedSpacing spacing = seed_spacing(doubled_area_q16(exec, sheet), count);
+  Buffer<uint32_t> labels = exec.template make<uint32_t>(sheet.vertex_count());
+  Buffer<PointQ8> last = exec.template make<PointQ8>(count);
+  Buffer<CellSum> cells = exec.template make<CellSum>(count);
+  for (int64_t i = 0; i < count; ++i) last[i] = seeds.position[i];
+
+  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
+                           sheet.vertex_triangles.view()};
+  const int64_t max_step = options.max_step_q8 > 0 ? options.max_step_q8 : spacing.h_q8 * 2 / 5;
+  const MovingSeeds moving{walk, seeds.position.view(), last.view(), seeds.home.view(), seeds.normal.view(), max_step};
+
+  RelaxReport report;
+  Momentum momentum;
+  while (report.passes < options.max_passes && !report.converged) {
+    exec.for_each("look ahead", count, LookAhead{moving, momentum.next_q15()});
+    label_sheet(exec, sheet, seeds, spacing, labels.view());
+    exec.fill(cells.view(), CellSum{0, 0, 0, 0, 0});
+    exec.for_each("sum cells", sheet.corners.leaf_count(),
+                  SumLeaf<>{sheet.corners.leaf_key.view(), patches.first.view(), patches.triangles.view(),
+                            sheet.position.view(), labels.view(), seeds.position.view(), cells.view()});
+    exec.for_each("move to centre", count, MoveToCentre{moving, cells.view()});
+    const double energy = double(exec.sum(count, CellEnergy{cells.view()}));
+    if (!report.energy.empty() && energy > report.energy.back()) momentum.restart();
+    report.energy.push_back(energy);
+    ++report.passes;
+    report.converged = has_converged(report.energy, options.tolerance_ppb);
+    if (exec.context().progress) exec.context().progress("relax", double(report.passes) / options.max_passes);
+  }
+  return report;
 }
 
 }  // namespace isoshell

@@ -18,6 +18,15 @@ ISOSHELL_HD inline void atomic_add(T& target, T value) {
 #endif
 }
 
+/// Lowers the target by one and returns the new value: hands out the places below an end, each once, in any order.
+ISOSHELL_HD inline uint32_t atomic_take_one_below(uint32_t& target) {
+#if defined(__CUDA_ARCH__)
+  return atomicSub(&target, 1u) - 1;
+#else
+  return __atomic_sub_fetch(&target, 1u, __ATOMIC_RELAXED);
+#endif
+}
+
 template <class T>
 ISOSHELL_HD inline void atomic_or(T& target, T value) {
 #if defined(__CUDA_ARCH__)

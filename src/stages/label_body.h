@@ -1,0 +1,281 @@
+// Nearest seed of every sheet vertex, exact (paper section 3.2, on the sheet).
+//
+// Result: label = minimum of (squared distance + penalty, seed id). The penalty, 16 h^2, is paid by a seed that sits on
+// the other side of a thin wall (normals at more than about 104 degrees), so that each side keeps its own seeds.
+// A leaf gathers the seeds that can win inside its box, each 4^3 quarter keeps those that can win inside its own box,
+// and its vertices compare those. A seed can win when its smallest cost over the box is not above the smallest of the
+// seeds' largest costs.
+#pragma once
+
+#include "stages/seed_grid_body.h"
+#include "voxel/leaf.h"
+
+namespace isoshell {
+
+/// Sum of the doubled areas of the sheet's triangles, q16.
+template <class Exec>
+int64_t doubled_area_q16(Exec& exec, const Sheet& sheet);
+
+/// Seed spacing and what follows from it.
+struct SeedSpacing {
+  int64_t h_sq_q16;      ///< area per seed
+  int64_t h_q8;          ///< its square root
+  int64_t penalty_q16;   ///< 16 h^2
+};
+inline SeedSpacing seed_spacing(int64_t area2_q16, int64_t seeds) {
+  const int64_t h_sq = area2_q16 / 2 / (seeds > 0 ? seeds : 1);
+  return {h_sq, int64_t(isqrt(uint64_t(h_sq))) + 1, 16 * h_sq};
+}
+
+namespace label {
+
+constexpr int32_t kOpposite = -127 * 127 / 4;   ///< dot products below this are opposite sides
+constexpr int kMaxCandidates = 256;             ///< per leaf; more take the exact slow path
+
+/// Smallest and largest of the vertices' positions and normals.
+struct Bounds {
+  PointQ8 lo, hi;
+  Normal8 normal_lo, normal_hi;
+};
+
+ISOSHELL_HD inline Bounds empty_bounds() {
+  return {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}, {127, 127, 127}, {-127, -127, -127}};
+}
+template <class T>
+ISOSHELL_HD inline void widen(T& lo, T& hi, T value) {
+  if (value < lo) lo = value;
+  if (value > hi) hi = value;
+}
+ISOSHELL_HD inline void include(Bounds& b, PointQ8 p, Normal8 n) {
+  widen(b.lo.x, b.hi.x, p.x);
+  widen(b.lo.y, b.hi.y, p.y);
+  widen(b.lo.z, b.hi.z, p.z);
+  widen(b.normal_lo.x, b.normal_hi.x, n.x);
+  widen(b.normal_lo.y, b.normal_hi.y, n.y);
+  widen(b.normal_lo.z, b.normal_hi.z, n.z);
+}
+
+/// Smallest and largest cost of a seed over the bounds.
+struct CostRange {
+  int64_t lo, hi;
+  bool may_oppose;
+};
+ISOSHELL_HD inline CostRange cost_range(const Bounds& b, PointQ8 p, Normal8 n, int64_t penalty) {
+  const auto axis = [](int32_t s, int32_t lo, int32_t hi, int64_t& near_sq, int64_t& far_sq) {
+    const int64_t to_lo = int64_t(s) - lo, to_hi = int64_t(hi) - s;
+    const int64_t outside = to_lo < 0 ? -to_lo : (to_hi < 0 ? -to_hi : 0);
+    const int64_t far = to_lo > to_hi ? to_lo : to_hi;
+    near_sq += outside * outside;
+    far_sq += far * far;
+  };
+  int64_t near_sq = 0, far_sq = 0;
+  axis(p.x, b.lo.x, b.hi.x, near_sq, far_sq);
+  axis(p.y, b.lo.y, b.hi.y, near_sq, far_sq);
+  axis(p.z, b.lo.z, b.hi.z, near_sq, far_sq);
+  const auto product = [](int8_t s, int8_t lo, int8_t hi, int32_t& least, int32_t& most) {
+    const int32_t a = int32_t(s) * lo, c = int32_t(s) * hi;
+    least += a < c ? a : c;
+    most += a < c ? c : a;
+  };
+  int32_t least = 0, most = 0;
+  product(n.x, b.normal_lo.x, b.normal_hi.x, least, most);
+  product(n.y, b.normal_lo.y, b.normal_hi.y, least, most);
+  product(n.z, b.normal_lo.z, b.normal_hi.z, least, most);
+  const bool may = least < kOpposite;
+  return {near_sq + (most < kOpposite ? penalty : 0), far_sq + (may ? penalty : 0), may};
+}
+
+ISOSHELL_HD inline int64_t cost(PointQ8 v, Normal8 n, const GridSeed& s, int64_t penalty) {
+  return distance_sq_q16(v, s.position) + (dot(n, s.normal) < kOpposite ? penalty : 0);
+}
+
+/// Labels the vertices of one leaf.
+template <int kCapacity = kMaxCandidates>
+struct LabelLeaf {
+  VoxelSetView corners;
+  View<const PointQ8> position;
+  View<const Normal8> normal;
+  SeedGridView grid;
+  SeedSpacing spacing;
+  View<uint32_t> out;
+
+  struct Candidate {
+    GridSeed seed;
+    int64_t nearest;
+  };
+
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    const int64_t begin = corners.first[leaf], end = corners.first[leaf + 1];
+    Bounds bounds = empty_bounds();
+    for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
+    int64_t limit = search_limit(bounds);
+
+    Candidate candidates[kCapacity];
+    int count = 0;
+    bool overflow = false;
+    for_each_within(bounds, limit, [&](const GridSeed& s) {
+      const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
+      if (range.lo > limit) return;
+      if (count == kCapacity) overflow = true;
+      else candidates[count++] = {s, range.lo};
+    });
+    if (overflow) return label_directly(bounds, limit, begin, end);
+    if (count == 1) {
+      for (int64_t v = begin; v < end; ++v) out[v] = candidates[0].seed.id;
+      return;
+    }
+    sort_by_id(candidates, count);
+    label_quarters(leaf, candidates, count);
+  }
+
+ private:
+  /// Smallest of the seeds' largest costs over the box: no vertex pays more. Widens the search until that is certain.
+  ISOSHELL_HD int64_t search_limit(const Bounds& bounds) const {
+    for (int64_t reach = spacing.h_q8;; reach *= 2) {
+      int64_t limit = INT64_MAX;
+      for_each_within(bounds, reach * reach, [&](const GridSeed& s) {
+        const int64_t most = cost_range(bounds, s.position, s.normal, spacing.penalty_q16).hi;
+        if (most < limit) limit = most;
+      });
+      // Any seed's largest cost bounds every vertex's label, even if a seed out of reach has a smaller one.
+      if (limit != INT64_MAX) return limit;
+    }
+  }
+
+  template <class Visit>
+  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
+    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
+    grid.for_each_in({b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}, visit);
+  }
+
+  ISOSHELL_HD static void sort_by_id(Candidate* c, int count) {
+    for (int i = 1; i < count; ++i) {
+      const Candidate here = c[i];
+      int j = i;
+      for (; j > 0 && c[j - 1].seed.id > here.seed.id; --j) c[j] = c[j - 1];
+      c[j] = here;
+    }
+  }
+
+  /// The exact path without lists: every seed in reach against every vertex.
+  ISOSHELL_HD void label_directly(const Bounds& bounds, int64_t limit, int64_t begin, int64_t end) const {
+    for (int64_t v = begin; v < end; ++v) {
+      int64_t best = INT64_MAX;
+      uint32_t id = kNone;
+      for_each_within(bounds, limit, [&](const GridSeed& s) {
+        const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
+        if (c < best || (c == best && s.id < id)) best = c, id = s.id;
+      });
+      out[v] = id;
+    }
+  }
+
+  /// The eight 4^3 quarters of the leaf in turn.
+  ISOSHELL_HD void label_quarters(int64_t leaf, const Candidate* candidates, int count) const {
+    for (int q = 0; q < 8; ++q) {
+      int64_t member[64];
+      int members = 0;
+      const int x0 = q >> 2 << 2, y0 = (q >> 1 & 1) << 2, z0 = (q & 1) << 2;
+      const uint64_t rows = uint64_t(0x0f0f0f0f) << (y0 * 8) << z0;
+      int64_t word_first = corners.first[leaf];
+      for (int x = 0; x < 8; ++x) {
+        const uint64_t word = corners.mask[leaf].word[x];
+        if (x >= x0 && x < x0 + 4)
+          for (uint64_t bits = word & rows; bits; bits &= bits - 1) {
+            const uint64_t bit = bits & (~bits + 1);
+            member[members++] = word_first + popcount64(word & (bit - 1));
+          }
+        word_first += popcount64(word);
+      }
+      if (members) label_quarter(member, members, candidates, count);
+    }
+  }
+
+  ISOSHELL_HD void label_quarter(const int64_t* member, int members, const Candidate* candidates, int count) const {
+    Bounds bounds = empty_bounds();
+    for (int m = 0; m < members; ++m) include(bounds, position[member[m]], normal[member[m]]);
+    int64_t least[kCapacity];
+    int64_t limit = INT64_MAX;
+    bool may_oppose = false;
+    for (int c = 0; c < count; ++c) {
+      const GridSeed& s = candidates[c].seed;
+      const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
+      least[c] = range.lo;
+      if (range.hi < limit) limit = range.hi;
+      may_oppose |= range.may_oppose;
+    }
+    const PointQ8 origin = bounds.lo;
+    // Differences below 2^15 keep squared distances below 3 * 2^30: 32 bits do.
+    const bool narrow = !may_oppose && limit < int64_t(1) << 29 && bounds.hi.x - origin.x < 1 << 13 &&
+                        bounds.hi.y - origin.y < 1 << 13 && bounds.hi.z - origin.z < 1 << 13;
+    if (narrow) label_narrow(member, members, candidates, count, least, limit, origin);
+    else label_wide(member, members, candidates, count, least, limit);
+  }
+
+  ISOSHELL_HD void label_wide(const int64_t* member, int members, const Candidate* candidates, int count,
+                              const int64_t* least, int64_t limit) const {
+    for (int m = 0; m < members; ++m) {
+      int64_t best = INT64_MAX;
+      uint32_t id = kNone;
+      for (int c = 0; c < count; ++c) {
+        if (least[c] > limit) continue;
+        const int64_t here = cost(position[member[m]], normal[member[m]], candidates[c].seed, spacing.penalty_q16);
+        if (here < best) best = here, id = candidates[c].seed.id;
+      }
+      out[member[m]] = id;
+    }
+  }
+
+  ISOSHELL_HD void label_narrow(const int64_t* member, int members, const Candidate* candidates, int count,
+                                const int64_t* least, int64_t limit, PointQ8 origin) const {
+    uint32_t x[64], y[64], z[64], best[64], id[64];
+    for (int m = 0; m < members; ++m) {
+      const PointQ8 p = position[member[m]];
+      x[m] = uint32_t(p.x - origin.x);
+      y[m] = uint32_t(p.y - origin.y);
+      z[m] = uint32_t(p.z - origin.z);
+      best[m] = UINT32_MAX;
+      id[m] = kNone;
+    }
+    for (int c = 0; c < count; ++c) {
+      if (least[c] > limit) continue;
+      const GridSeed& s = candidates[c].seed;
+      const uint32_t sx = uint32_t(s.position.x - origin.x), sy = uint32_t(s.position.y - origin.y),
+                     sz = uint32_t(s.position.z - origin.z), seed = s.id;
+      for (int m = 0; m < members; ++m) {
+        const uint32_t dx = x[m] - sx, dy = y[m] - sy, dz = z[m] - sz;
+        const uint32_t here = dx * dx + dy * dy + dz * dz;
+        id[m] = here < best[m] ? seed : id[m];
+        best[m] = here < best[m] ? here : best[m];
+      }
+    }
+    for (int m = 0; m < members; ++m) out[member[m]] = id[m];
+  }
+};
+
+struct DoubledArea {
+  View<const PointQ8> position;
+  View<const TriangleIndices> triangles;
+  ISOSHELL_HD int64_t operator()(int64_t t) const {
+    const TriangleIndices i = triangles[t];
+    const Vec64 n = cross(difference(position[i.b], position[i.a]), difference(position[i.c], position[i.a]));
+    return int64_t(isqrt(uint64_t(dot(n, n))));
+  }
+};
+
+}  // namespace label
+
+template <class Exec>
+int64_t doubled_area_q16(Exec& exec, const Sheet& sheet) {
+  return exec.sum(sheet.triangles.size(), label::DoubledArea{sheet.position.view(), sheet.triangles.view()});
+}
+
+/// Labels of all sheet vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
+template <class Exec>
+void label_sheet(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing, View<uint32_t> labels) {
+  const SeedGrid grid = build_seed_grid(exec, sheet.frame.extent_vox, seeds, spacing.h_q8);
+  exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
+                label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(), spacing, labels});
+}
+
+}  // namespace isoshell
