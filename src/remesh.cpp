@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 
@@ -240,8 +241,8 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
-    seeds = timed(report, "seeds", [&] { return place_seeds(p.sheet, seed_options, context); });
-    report.relax = timed(report, "relax", [&] { return relax_on_sheet(p.sheet, seeds, relax_options(options), context); });
+    seeds = timed(report, "relax",
+                  [&] { return relax_by_levels(p.sheet, seed_options, relax_options(options), report.relax, context); });
   } else {
     seeds = timed(report, "seeds", [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
     report.relax = timed(report, "relax", [&] {
@@ -267,7 +268,8 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     if (found.inserted_seeds == 0 || round == kMaxReoptimisations) break;
     timed(report, "relax", [&] { return relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context); });
   }
-  TriangleMesh mesh = timed(report, "post", [&] { return to_world(dual, p.surface.frame); });
+  timed(report, "post", [&] { improve_mesh(p.sheet, {}, seeds, dual, context); });
+  TriangleMesh mesh = to_world(dual, p.surface.frame);
   note_digest(options, report, "mesh", mesh);
   return mesh;
 }

@@ -97,6 +97,20 @@ struct DualOptions {
 DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
                           Context& context);
 
+/// Seeds of the next finer level: the given ones, the middles of the dual's edges (the longest, if there are more than
+/// needed) in canonical order, then the middles of the largest triangles. `target` seeds in all, at most
+/// seeds + edges + triangles.
+SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target, Context& context);
+
+struct PostOptions {
+  int32_t rounds = 3;            ///< of flips, then smoothing
+  int32_t flip_rounds = 6;       ///< independent sets a round
+  int32_t smoothing_steps = 3;   ///< a round
+};
+/// Valence flips and tangential smoothing of a closed mesh whose vertices are the seeds; homes and positions of the seeds
+/// follow. Result: still closed and 2-manifold, same genus. Returns the number of flips.
+int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context);
+
 /// Final positions in the world.
 TriangleMesh to_world(const DualMesh& mesh, const LatticeFrame& frame);
 

@@ -13,6 +13,8 @@ RelaxReport cpu_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Cont
 RelaxReport cpu_relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&, Context&);
 VoronoiLabels cpu_flood_shell(const Shell&, const SeedSet&, Context&);
 DualMesh cpu_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
+SeedSet cpu_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
+int64_t cpu_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 

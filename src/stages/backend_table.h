@@ -18,6 +18,8 @@ struct BackendTable {
   RelaxReport (*relax_in_shell)(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&, Context&);
   VoronoiLabels (*flood_shell)(const Shell&, const SeedSet&, Context&);
   DualMesh (*triangulate_dual)(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
+  SeedSet (*subdivide_seeds)(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
+  int64_t (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 };
 
 /// Always there.

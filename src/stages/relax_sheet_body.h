@@ -9,9 +9,9 @@
 
 #include "isoshell/stages.h"
 #include "stages/label_body.h"
+#include "stages/sheet_walk.h"
 #include "voxel/atomic.h"
 #include "voxel/cell_sum.h"
-#include "voxel/closest_point.h"
 
 namespace isoshell {
 namespace relax_sheet {
@@ -172,47 +172,6 @@ struct SumLeaf {
     atomic_add(c.first_y, s.first_y - 3 * s.mass * d.y);
     atomic_add(c.first_z, s.first_z - 3 * s.mass * d.z);
     atomic_add(c.energy_12, energy >> kEnergyShift);
-  }
-};
-
-/// Puts a position back onto the sheet: walks from vertex to neighbouring vertex as long as one is nearer, then takes
-/// the closest point of the triangles around the last one. Never jumps through a thin wall. Result: a function of
-/// (start vertex, position) alone.
-struct WalkOntoSheet {
-  View<const PointQ8> position;
-  View<const Normal8> normal;
-  View<const TriangleIndices> triangles;
-  View<const int64_t> vertex_first;
-  View<const uint32_t> vertex_triangles;
-
-  ISOSHELL_HD uint32_t nearest_vertex(uint32_t from, PointQ8 p) const {
-    int64_t best = distance_sq_q16(position[from], p);
-    for (;;) {
-      uint32_t next = from;
-      const auto consider = [&](uint32_t v) {
-        const int64_t d = distance_sq_q16(position[v], p);
-        if (d < best || (d == best && v < next)) best = d, next = v;
-      };
-      for (int64_t n = vertex_first[from]; n < vertex_first[from + 1]; ++n) {
-        const TriangleIndices t = triangles[vertex_triangles[n]];
-        consider(t.a);
-        consider(t.b);
-        consider(t.c);
-      }
-      if (next == from) return from;
-      from = next;
-    }
-  }
-  ISOSHELL_HD PointQ8 closest_around(uint32_t vertex, PointQ8 p) const {
-    PointQ8 closest = position[vertex];
-    int64_t best = INT64_MAX;
-    for (int64_t n = vertex_first[vertex]; n < vertex_first[vertex + 1]; ++n) {
-      const TriangleIndices t = triangles[vertex_triangles[n]];
-      const PointQ8 q = closest_point_on_triangle(p, position[t.a], position[t.b], position[t.c]);
-      const int64_t d = distance_sq_q16(q, p);
-      if (d < best) best = d, closest = q;
-    }
-    return closest;
   }
 };
 

@@ -1,0 +1,13 @@
+// The CPU's improve_mesh.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/post_body.h"
+
+namespace isoshell {
+
+int64_t cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context) {
+  TbbExecutor exec(context, "post");
+  return run_with_threads(context, [&] { return improve_mesh_body(exec, sheet, options, seeds, mesh); });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,13 @@
+// The CPU's subdivide_seeds.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/subdivide_body.h"
+
+namespace isoshell {
+
+SeedSet cpu_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target, Context& context) {
+  TbbExecutor exec(context, "subdivide");
+  return run_with_threads(context, [&] { return subdivide_seeds_body(exec, sheet, mesh, seeds, target); });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,16 @@
+// subdivide_seeds: checks its arguments, then runs on the backend that the context asks for.
+#include "isoshell/error.h"
+#include "stages/backend_table.h"
+
+namespace isoshell {
+
+SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target, Context& context) {
+  const int64_t most = seeds.size() + mesh.triangles.size() / 2 * 5;
+  if (target < seeds.size() || target > most)
+    throw Error(ErrorCode::usage, "subdivide",
+                "target is " + std::to_string(target) + "; it must be " + std::to_string(seeds.size()) + " to " +
+                    std::to_string(most) + " for this mesh");
+  return backend_for(context).subdivide_seeds(sheet, mesh, seeds, target, context);
+}
+
+}  // namespace isoshell
