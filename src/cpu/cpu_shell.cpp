@@ -1,13 +1,14 @@
 // The CPU's build_shell.
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/leaf_lanes.h"
 #include "stages/shell_body.h"
 
 namespace isoshell {
 
 Shell cpu_build_shell(const SiteSet& sites, const ShellOptions& options, Context& context) {
   TbbExecutor exec(context, "shell");
-  return run_with_threads(context, [&] { return build_shell_body(exec, sites, options); });
+  return run_with_threads(context, [&] { return build_shell_body<LeafLanes>(exec, sites, options); });
 }
 
 }  // namespace isoshell
