@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Renders a triangle mesh (PLY binary little-endian, OBJ, OFF) to a PNG: flat shading, edges drawn, orthographic.
+
+usage: render.py MESH OUT.png [--size N] [--view X,Y,Z] [--up X,Y,Z] [--zoom F] [--no-edges]
+Needs numpy only.
+"""
+import argparse
+import struct
+import zlib
+
+import numpy as np
+
+
+def read_mesh(path):
+    data = open(path, "rb").read()
+    if path.endswith(".ply"):
+        head, body = data.split(b"end_header\n", 1)
+        lines = head.decode().split("\n")
+        nv = next(int(l.split()[2]) for l in lines if l.startswith("element vertex"))
+        nf = next(int(l.split()[2]) for l in lines if l.startswith("element face"))
+        kind = "<f8" if any("property double x" in l for l in lines) else "<f4"
+        floats = sum(l.startswith(("property float", "property double")) for l in lines)
+        v = np.frombuffer(body, kind, nv * floats).reshape(nv, floats)[:, :3].astype(float)
+        faces = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<i4", 3)]), nf, nv * floats * np.dtype(kind).itemsize)
+        return v, faces["i"].astype(int)
+    text = data.decode().split("\n")
+    if path.endswith(".off"):
+        tokens = [t for l in text if not l.startswith("#") for t in l.split()][1:]
+        nv, nf = int(tokens[0]), int(tokens[1])
+        v = np.array(tokens[3:3 + 3 * nv], float).reshape(nv, 3)
+        return v, np.array(tokens[3 + 3 * nv:3 + 3 * nv + 4 * nf], int).reshape(nf, 4)[:, 1:]
+    v = [l.split()[1:4] for l in text if l.startswith("v ")]
+    f = [[int(w.split("/")[0]) - 1 for w in l.split()[1:4]] for l in text if l.startswith("f ")]
+    return np.array(v, float), np.array(f)
+
+
+def write_png(path, image):
+    rows = b"".join(b"\0" + row.tobytes() for row in image)
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    h, w, _ = image.shape
+    open(path, "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", w, h, 8, 2, 0, 0, 0))
+                           + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+
+
+def render(v, f, size, view, up, zoom, edges):
+    back = view / np.linalg.norm(view)
+    right = np.cross(up, back)
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(back, right), back])
+    p = v @ axes.T
+    centre, extent = (p.max(0) + p.min(0)) / 2, (p.max(0) - p.min(0))[:2].max()
+    p = (p - centre) * (0.94 * size * zoom / extent)
+    p[:, 0] += size / 2
+    p[:, 1] = size / 2 - p[:, 1]
+    image = np.full((size, size, 3), 255, np.uint8)
+    depth = np.full((size, size), -1e30)
+    light = np.array([0.35, 0.45, 0.82])
+    for t in f:
+        a, b, c = p[t]
+        n = np.cross(*((v[t[1:]] - v[t[0]]) @ axes.T))
+        if not np.linalg.norm(n):
+            continue
+        n /= np.linalg.norm(n)
+        x0, y0 = np.floor(np.minimum(np.minimum(a, b), c)[:2]).astype(int).clip(0, size - 1)
+        x1, y1 = np.ceil(np.maximum(np.maximum(a, b), c)[:2]).astype(int).clip(0, size - 1)
+        det = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if x1 < x0 or y1 < y0 or det == 0:
+            continue
+        ys, xs = np.mgrid[y0:y1 + 1, x0:x1 + 1]
+        px, py = xs + 0.5 - a[0], ys + 0.5 - a[1]
+        w1 = (px * (c[1] - a[1]) - py * (c[0] - a[0])) / det
+        w2 = (py * (b[0] - a[0]) - px * (b[1] - a[1])) / det
+        w0 = 1 - w1 - w2
+        z = w0 * a[2] + w1 * b[2] + w2 * c[2]
+        hit = (w0 >= 0) & (w1 >= 0) & (w2 >= 0) & (z > depth[y0:y1 + 1, x0:x1 + 1])
+        if not hit.any():
+            continue
+        front = np.array([205, 216, 232]) if n[2] > 0 else np.array([232, 120, 110])
+        colour = np.where(True, front * (0.35 + 0.65 * abs(n @ light)), 0)
+        block = np.broadcast_to(colour, hit.shape + (3,)).copy()
+        if edges:
+            height = abs(det) / np.array([np.hypot(*(c - b)[:2]), np.hypot(*(a - c)[:2]), np.hypot(*(b - a)[:2])]).clip(1e-9)
+            near = np.minimum(np.minimum(w0 * height[0], w1 * height[1]), w2 * height[2])
+            block = np.where((near < 0.6)[..., None], block * 0.35, block)
+        image[y0:y1 + 1, x0:x1 + 1][hit] = block[hit].clip(0, 255).astype(np.uint8)
+        depth[y0:y1 + 1, x0:x1 + 1][hit] = z[hit]
+    return image
+
+
+def main():
+    args = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    args.add_argument("mesh")
+    args.add_argument("png")
+    args.add_argument("--size", type=int, default=1200)
+    args.add_argument("--view", default="0.3,0.2,1")
+    args.add_argument("--up", default="0,1,0")
+    args.add_argument("--zoom", type=float, default=1)
+    args.add_argument("--no-edges", action="store_true")
+    a = args.parse_args()
+    vector = lambda s: np.array([float(x) for x in s.split(",")])
+    v, f = read_mesh(a.mesh)
+    write_png(a.png, render(v, f, a.size, vector(a.view), vector(a.up), a.zoom, not a.no_edges))
+
+
+if __name__ == "__main__":
+    main()
