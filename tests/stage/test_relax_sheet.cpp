@@ -1,0 +1,150 @@
+// Seeds on the sheet, their labels, and relaxation.
+#include <algorithm>
+
+#include "cpu/executor_tbb.h"
+#include "isoshell/digest.h"
+#include "isoshell/error.h"
+#include "isoshell/stages.h"
+#include "stages/label_body.h"
+#include "stages/relax_sheet_body.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "support/soup_sheet.h"
+
+using namespace isoshell;
+
+namespace {
+
+Sheet torus_sheet() { return sheet_of_soup(shapes::torus(2, 0.7, 160, 70), 256, 1, 1); }
+
+/// Two walls two voxels apart with opposite normals.
+Sheet plate_sheet() {
+  TriangleSoup s;
+  const int n = 41;
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) s.vertices.push_back({i * 0.1, j * 0.1, k * 0.07});
+  const auto at = [&](int k, int i, int j) { return uint32_t((k * n + i) * n + j); };
+  for (int i = 0; i + 1 < n; ++i)
+    for (int j = 0; j + 1 < n; ++j) {
+      s.triangles.push_back({at(1, i, j), at(1, i + 1, j), at(1, i + 1, j + 1)});
+      s.triangles.push_back({at(1, i, j), at(1, i + 1, j + 1), at(1, i, j + 1)});
+      s.triangles.push_back({at(0, i, j), at(0, i + 1, j + 1), at(0, i + 1, j)});
+      s.triangles.push_back({at(0, i, j), at(0, i, j + 1), at(0, i + 1, j + 1)});
+    }
+  return sheet_of_soup(s, 120, 2, 0);
+}
+
+std::vector<uint32_t> brute_force_labels(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing) {
+  std::vector<uint32_t> labels;
+  for (int64_t v = 0; v < sheet.vertex_count(); ++v) {
+    int64_t best = INT64_MAX;
+    uint32_t id = kNone;
+    for (int64_t s = 0; s < seeds.size(); ++s) {
+      const bool opposite = 4 * dot(sheet.normal[v], seeds.normal[s]) < -127 * 127;
+      const int64_t cost = distance_sq_q16(sheet.position[v], seeds.position[s]) + (opposite ? spacing.penalty_q16 : 0);
+      if (cost < best) best = cost, id = uint32_t(s);
+    }
+    labels.push_back(id);
+  }
+  return labels;
+}
+
+template <int kCapacity>
+std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing, Context& context) {
+  TbbExecutor exec(context, "test");
+  const SeedGrid grid = build_seed_grid(exec, sheet.frame.extent_vox, seeds, spacing.h_q8);
+  std::vector<uint32_t> labels(size_t(sheet.vertex_count()));
+  exec.for_each("label", sheet.corners.leaf_count(),
+                label::LabelLeaf<kCapacity>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
+                                            spacing, {labels.data(), int64_t(labels.size())}});
+  return labels;
+}
+
+SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, Context& context) {
+  TbbExecutor exec(context, "test");
+  return seed_spacing(doubled_area_q16(exec, sheet), seeds.size());
+}
+
+}  // namespace
+
+TEST_CASE("seeds: every stratum of the sheet's area gets one, near its home", "[seeds][stage]") {
+  Context context;
+  const Sheet sheet = torus_sheet();
+  const SeedSet seeds = place_seeds(sheet, {900, 3}, context);
+  REQUIRE(seeds.size() == 900);
+  for (int64_t s = 0; s < seeds.size(); ++s)
+    CHECK(distance_sq_q16(seeds.position[s], sheet.position[seeds.home[s]]) < int64_t(8 * 256) * (8 * 256));
+  CHECK(digest(place_seeds(sheet, {900, 3}, context)) == digest(seeds));
+  CHECK(digest(place_seeds(sheet, {900, 4}, context)) != digest(seeds));
+  CHECK_THROWS_AS(place_seeds(sheet, {3, 0}, context), Error);
+  CHECK_THROWS_AS(place_seeds(sheet, {sheet.vertex_count(), 0}, context), Error);
+}
+
+TEST_CASE("labels: each sheet vertex has its nearest seed, the penalty counted, at any density", "[relax][stage]") {
+  Context context;
+  for (const bool plate : {false, true})
+    for (int64_t count : {8, 30, 400, 1600}) {
+      const Sheet sheet = plate ? plate_sheet() : torus_sheet();
+      const SeedSet seeds = place_seeds(sheet, {count, 1}, context);
+      const SeedSpacing spacing = spacing_of(sheet, seeds, context);
+      const std::vector<uint32_t> expected = brute_force_labels(sheet, seeds, spacing);
+      CHECK(labels_with_capacity<label::kMaxCandidates>(sheet, seeds, spacing, context) == expected);
+      // So few places that most leaves overflow and take the path without lists.
+      CHECK(labels_with_capacity<3>(sheet, seeds, spacing, context) == expected);
+    }
+}
+
+TEST_CASE("relax: the energy falls towards that of hexagons", "[relax][stage]") {
+  Context context;
+  const Sheet sheet = torus_sheet();
+  SeedSet seeds = place_seeds(sheet, {400, 0}, context);
+  const RelaxReport report = relax_on_sheet(sheet, seeds, {60, 0, 0}, context);
+  REQUIRE(report.energy.size() == 60);
+  CHECK(report.energy.back() < 0.93 * report.energy.front());
+  // Second moment over (area^2 / k): 5 / (18 sqrt 3) = 0.1604 for regular hexagons. The report's unit: doubled area,
+  // twelve times the moment, shifted down by 8 and 4 bits.
+  TbbExecutor exec(context, "test");
+  const double area = double(doubled_area_q16(exec, sheet)) / 2;
+  const double normalised = report.energy.back() * 256 * 16 / 2 / 12 / (area * area / 400);
+  CHECK(normalised > 0.160);
+  CHECK(normalised < 0.170);
+}
+
+TEST_CASE("relax: full tables of local sums change nothing, and the cells add up to the sheet", "[relax][stage]") {
+  Context context;
+  TbbExecutor exec(context, "test");
+  const Sheet sheet = torus_sheet();
+  const SeedSet seeds = place_seeds(sheet, {1500, 0}, context);
+  const relax_sheet::Patches patches = relax_sheet::make_patches(exec, sheet);
+  Buffer<uint32_t> labels(sheet.vertex_count());
+  label_sheet(exec, sheet, seeds, spacing_of(sheet, seeds, context), labels.view());
+  const auto sums = [&](auto like) {
+    Buffer<relax_sheet::CellSum> cells(seeds.size());
+    exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0, 0});
+    like = {sheet.corners.leaf_key.view(), patches.first.view(),  patches.triangles.view(), sheet.position.view(),
+            labels.view(),                 seeds.position.view(), cells.view()};
+    exec.for_each("sum", sheet.corners.leaf_count(), like);
+    std::vector<int64_t> out;
+    for (const auto& c : cells) out.insert(out.end(), {c.mass, c.first_x, c.first_y, c.first_z});
+    return out;
+  };
+  const std::vector<int64_t> wide = sums(relax_sheet::SumLeaf<64>{});
+  CHECK(sums(relax_sheet::SumLeaf<2>{}) == wide);
+  int64_t total = 0;
+  for (size_t i = 0; i < wide.size(); i += 4) total += wide[i];
+  CHECK(std::abs(total - doubled_area_q16(exec, sheet)) < 8 * sheet.triangles.size());
+}
+
+TEST_CASE("relax: threads do not change a bit", "[relax][parity]") {
+  const Sheet sheet = torus_sheet();
+  uint64_t expected = 0;
+  for (int threads : {1, 2, 4}) {
+    Context context;
+    context.threads = threads;
+    SeedSet seeds = place_seeds(sheet, {600, 0}, context);
+    relax_on_sheet(sheet, seeds, {30, 0, 0}, context);
+    if (threads == 1) expected = digest(seeds);
+    CHECK(digest(seeds) == expected);
+  }
+}
