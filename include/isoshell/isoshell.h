@@ -4,5 +4,6 @@
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/io/vdb_file.h"
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"

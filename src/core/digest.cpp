@@ -1,29 +1,15 @@
-// Digests of the canonical arrays: a 64-bit hash of 8-byte words, by fixed chunks so that threads cannot matter.
+// Digests of the canonical arrays.
 #include "isoshell/digest.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cstdio>
-#include <cstring>
+#include <type_traits>
 #include <vector>
 
+#include "core/hash_bytes.h"
 #include "voxel/random.h"
 
 namespace isoshell {
 namespace {
-
-uint64_t hash_chunk(const unsigned char* data, int64_t bytes) {
-  uint64_t h = mix64(uint64_t(bytes) + 1);
-  int64_t i = 0;
-  for (; i + 8 <= bytes; i += 8) {
-    uint64_t w;
-    std::memcpy(&w, data + i, 8);
-    h = mix64(h ^ w) + w;
-  }
-  uint64_t tail = 0;
-  if (i < bytes) std::memcpy(&tail, data + i, size_t(bytes - i));
-  return mix64(h ^ tail);
-}
 
 class Digest {
  public:
@@ -31,16 +17,7 @@ class Digest {
   Digest& array(const Array& values) {
     static_assert(std::has_unique_object_representations_v<std::remove_cv_t<std::remove_reference_t<decltype(*values.data())>>> ||
                   std::is_same_v<std::remove_cv_t<std::remove_reference_t<decltype(*values.data())>>, WorldPoint>);
-    constexpr int64_t kChunk = 1 << 16;
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-    const int64_t size = int64_t(values.size()) * int64_t(sizeof(*values.data()));
-    const int64_t chunks = (size + kChunk - 1) / kChunk;
-    std::vector<uint64_t> part(size_t(chunks) + 1);
-    tbb::parallel_for(int64_t(0), chunks, [&](int64_t c) {
-      part[size_t(c)] = hash_chunk(bytes + c * kChunk, std::min(kChunk, size - c * kChunk));
-    });
-    part[size_t(chunks)] = uint64_t(size);
-    return value(hash_chunk(reinterpret_cast<const unsigned char*>(part.data()), int64_t(part.size() * 8)));
+    return value(hash_bytes(values.data(), int64_t(values.size()) * int64_t(sizeof(*values.data()))));
   }
   Digest& value(uint64_t v) {
     h_ = mix64(h_ ^ v) + v;

@@ -1,0 +1,27 @@
+// Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
+#include "isoshell/error.h"
+#include "isoshell/io/vdb_file.h"
+
+namespace isoshell {
+namespace {
+
+[[noreturn]] void throw_without_openvdb(ErrorCode code, const std::string& path) {
+  throw Error(code, "vdb", path + ": this build cannot read or write .vdb files; build with -DISOSHELL_VDB=ON");
+}
+
+}  // namespace
+
+void save_shell(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&, const StageWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+void save_voronoi(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&, const SeedSet&,
+                  const VoronoiLabels&, const StageWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+void save_preview(const std::string& path, const LatticeFrame&, const Shell&, const VoronoiLabels&,
+                  const StageWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
+
+}  // namespace isoshell

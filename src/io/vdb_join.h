@@ -1,0 +1,20 @@
+// Many grids, one file.
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace isoshell {
+
+/// Registers OpenVDB's types; may be called again and from any thread.
+void initialize_openvdb();
+
+/// Calls the makers, several at a time, and writes their grids in order behind one header. The file's unique tag is a
+/// checksum of the rest, so equal grids give equal bytes. Throws: unwritable_output.
+void write_vdb_file(const std::string& path, const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
+                    const openvdb::MetaMap& meta, bool overwrite);
+
+}  // namespace isoshell
