@@ -15,10 +15,12 @@
 
 namespace isoshell {
 
-/// Welds, measures and counts dirt of a soup; independent of any lattice. Cost: sorts of the vertices and edges.
+/// Welds and measures a soup, and adds the dirt it finds to what a reader counted (degenerate and duplicate faces, edges).
+/// Faces with fewer than three distinct positions, and repeats in the same orientation, are left out of the topology.
+/// Independent of any lattice and of the order of vertices and faces. Cost: sorts of the vertices, faces and edges.
 InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context);
 
-/// Smallest and largest coordinates of the vertices that triangles use.
+/// Smallest and largest coordinates of the vertices that triangles use. Throws: nothing_to_mesh without triangles.
 void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box_max);
 
 /// Snaps the soup to the lattice (see LatticeSurface). Throws: nothing_to_mesh when no triangle is left.

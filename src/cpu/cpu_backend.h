@@ -5,6 +5,8 @@
 
 namespace isoshell {
 
+InputTopology cpu_measure_topology(const TriangleSoup&, DirtCounts&, Context&);
+LatticeSurface cpu_snap_surface(const TriangleSoup&, const LatticeFrame&, Context&);
 SiteSet cpu_voxelize(const LatticeSurface&, Context&);
 SiteSamples cpu_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
 Shell cpu_build_shell(const SiteSet&, const ShellOptions&, Context&);

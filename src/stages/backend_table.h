@@ -8,6 +8,9 @@ namespace isoshell {
 /// Same inputs, same definition, same bytes, whichever backend fills it. See stages.h for what each function computes.
 struct BackendTable {
   const char* name;
+  // The CPU's table serves every backend with these two: world units are double and end on the host.
+  InputTopology (*measure_topology)(const TriangleSoup&, DirtCounts&, Context&);
+  LatticeSurface (*snap_surface)(const TriangleSoup&, const LatticeFrame&, Context&);
   SiteSet (*voxelize)(const LatticeSurface&, Context&);
   SiteSamples (*sample_sites)(const LatticeSurface&, const SiteSet&, Context&);
   Shell (*build_shell)(const SiteSet&, const ShellOptions&, Context&);

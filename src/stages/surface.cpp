@@ -1,15 +1,53 @@
-// From a soup in world units to the canonical surface on the lattice. Runs on the host.
+// From a soup in world units to the canonical surface on the lattice: always by the CPU's table, since world units are
+// double and stay on the host.
+#include <algorithm>
+#include <limits>
+
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
+#include "stages/backend_table.h"
 
 namespace isoshell {
+namespace {
 
-InputTopology measure_topology(const TriangleSoup&, DirtCounts&, Context&) {
-  throw Error(ErrorCode::internal, "surface", "measure_topology is missing");
+void require_triangles(const TriangleSoup& soup) {
+  if (soup.triangles.empty())
+    throw Error(ErrorCode::nothing_to_mesh, "surface", "the surface has 0 triangles; a mesh needs at least 1");
 }
 
-LatticeSurface snap_surface(const TriangleSoup&, const LatticeFrame&, Context&) {
-  throw Error(ErrorCode::internal, "surface", "snap_surface is missing");
+// Half-edges are numbered in 32 bits.
+void require_countable(const TriangleSoup& soup) {
+  constexpr size_t kMaxTriangles = 0xffffffffu / 3;
+  if (soup.triangles.size() > kMaxTriangles || soup.vertices.size() > 0xffffffffu)
+    throw Error(ErrorCode::usage, "surface",
+                "the surface has " + std::to_string(soup.triangles.size()) + " triangles and " +
+                    std::to_string(soup.vertices.size()) + " vertices; at most " + std::to_string(kMaxTriangles) +
+                    " triangles can be numbered; split the file");
+}
+
+}  // namespace
+
+void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box_max) {
+  require_triangles(soup);
+  const double inf = std::numeric_limits<double>::infinity();
+  box_min = {inf, inf, inf};
+  box_max = {-inf, -inf, -inf};
+  for (const auto& t : soup.triangles)
+    for (uint32_t v : t) {
+      const WorldPoint& p = soup.vertices[v];
+      box_min = {std::min(box_min.x, p.x), std::min(box_min.y, p.y), std::min(box_min.z, p.z)};
+      box_max = {std::max(box_max.x, p.x), std::max(box_max.y, p.y), std::max(box_max.z, p.z)};
+    }
+}
+
+InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {
+  require_countable(soup);
+  return cpu_backend().measure_topology(soup, dirt, context);
+}
+
+LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
+  require_triangles(soup);
+  require_countable(soup);
+  return cpu_backend().snap_surface(soup, frame, context);
 }
 
 }  // namespace isoshell

@@ -38,6 +38,35 @@ ISOSHELL_HD inline void atomic_or(T& target, T value) {
 #endif
 }
 
+ISOSHELL_HD inline uint32_t atomic_load(const uint32_t& target) {
+#if defined(__CUDA_ARCH__)
+  return *static_cast<const volatile uint32_t*>(&target);
+#else
+  return __atomic_load_n(&target, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Stores `value` if the target still holds `expected`; returns whether it did.
+ISOSHELL_HD inline bool atomic_exchange_if(uint32_t& target, uint32_t expected, uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicCAS(&target, expected, value) == expected;
+#else
+  return __atomic_compare_exchange_n(&target, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Returns the value before. Which caller gets which value depends on the schedule, so results must not.
+template <class T>
+ISOSHELL_HD inline T atomic_fetch_add(T& target, T value) {
+#if defined(__CUDA_ARCH__)
+  using Word = unsigned long long;
+  if constexpr (sizeof(T) == 8) return T(atomicAdd(reinterpret_cast<Word*>(&target), Word(value)));
+  else return atomicAdd(&target, value);
+#else
+  return __atomic_fetch_add(&target, value, __ATOMIC_RELAXED);
+#endif
+}
+
 /// Returns true when this call lowered the value.
 template <class T>
 ISOSHELL_HD inline bool atomic_min(T& target, T value) {
