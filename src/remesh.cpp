@@ -257,6 +257,7 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
 
 TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
                          Context& context) {
+  const int64_t asked = seeds.size();
   DualMesh dual;
   for (int round = 0;; ++round) {
     DualReport found;
@@ -266,8 +267,14 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     report.dual.repair_rounds += found.repair_rounds;
     report.dual.failed_cells = found.failed_cells;
     if (found.inserted_seeds == 0 || round == kMaxReoptimisations) break;
-    timed(report, "relax", [&] { return relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context); });
+    timed(report, "relax", [&] {
+      drop_crowded_seeds(dual, std::max<int64_t>(0, seeds.size() - asked), found.inserted_seeds, seeds);
+      relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context);
+    });
   }
+  if (seeds.size() != asked)
+    report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
+                              std::to_string(asked) + ": its topology needs them at this resolution");
   timed(report, "post", [&] { improve_mesh(p.sheet, {}, seeds, dual, context); });
   TriangleMesh mesh = to_world(dual, p.surface.frame);
   note_digest(options, report, "mesh", mesh);
