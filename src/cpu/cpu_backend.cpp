@@ -5,8 +5,23 @@ namespace isoshell {
 
 const BackendTable& cpu_backend() {
   static const BackendTable table = {
-      "cpu", cpu_measure_topology, cpu_snap_surface, cpu_voxelize, cpu_sample_sites,  cpu_build_shell,          cpu_build_sheet, cpu_place_seeds_on_sheet,
-      cpu_place_seeds_on_sites, cpu_relax_on_sheet, cpu_relax_in_shell, cpu_flood_shell, cpu_triangulate_dual, cpu_subdivide_seeds, cpu_improve_mesh};
+      "cpu",
+      cpu_measure_topology,
+      cpu_snap_surface,
+      cpu_voxelize,
+      cpu_sample_sites,
+      cpu_build_shell,
+      cpu_build_sheet,
+      cpu_place_seeds_on_sheet,
+      cpu_place_seeds_on_sites,
+      cpu_relax_on_sheet,
+      cpu_relax_in_shell,
+      cpu_attach_to_sheet,
+      cpu_flood_shell,
+      cpu_triangulate_dual,
+      cpu_subdivide_seeds,
+      cpu_improve_mesh,
+  };
   return table;
 }
 

@@ -79,9 +79,42 @@ SeedSet place_seeds_body(Exec& exec, const Sheet& sheet, const SeedOptions& opti
   return out;
 }
 
+namespace seeds {
+
+/// Seed i: the sample of one site at random in stratum i.
+struct PlaceOnSites {
+  VoxelSetView sites;
+  View<const SiteSample> samples;
+  int64_t count;
+  uint64_t seed;
+  View<PointQ8> out_position;
+  View<Normal8> out_normal;
+  View<uint32_t> out_home;
+
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const int64_t total = sites.first[sites.leaf_key.size], width = total / count, rest = total % count;
+    const int64_t lo = width * i + rest * i / count, hi = width * (i + 1) + rest * (i + 1) / count;
+    const int64_t site = lo + int64_t(random_bits(seed, uint64_t(i)) % uint64_t(hi - lo));
+    const PointQ8 centre = voxel_centre(voxel_of_index(sites, site));
+    const SiteSample& s = samples[site];
+    out_position[i] = {centre.x + s.dx, centre.y + s.dy, centre.z + s.dz};
+    out_normal[i] = s.normal;
+    out_home[i] = uint32_t(site);
+  }
+};
+
+}  // namespace seeds
+
 template <class Exec>
-SeedSet place_seeds_body(Exec&, const SiteSet&, const SiteSamples&, const SeedOptions&) {
-  throw Error(ErrorCode::internal, "seeds", "place_seeds is missing");
+SeedSet place_seeds_body(Exec& exec, const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options) {
+  SeedSet out;
+  out.position = exec.template make<PointQ8>(options.count);
+  out.normal = exec.template make<Normal8>(options.count);
+  out.home = exec.template make<uint32_t>(options.count);
+  exec.for_each("place seeds", options.count,
+                seeds::PlaceOnSites{sites.voxels.view(), samples.sample.view(), options.count, options.seed,
+                                    out.position.view(), out.normal.view(), out.home.view()});
+  return out;
 }
 
 }  // namespace isoshell

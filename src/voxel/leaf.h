@@ -31,6 +31,12 @@ ISOSHELL_HD inline Voxel voxel_at(Voxel leaf, int offset) {
   return {leaf.x * 8 + (offset >> 6), leaf.y * 8 + ((offset >> 3) & 7), leaf.z * 8 + (offset & 7)};
 }
 
+ISOSHELL_HD inline PointQ8 voxel_centre(Voxel v) {
+  const int32_t half = kOneVoxelQ8 / 2;
+  return {v.x * kOneVoxelQ8 + half, v.y * kOneVoxelQ8 + half, v.z * kOneVoxelQ8 + half};
+}
+ISOSHELL_HD inline Voxel voxel_of(PointQ8 p) { return {p.x >> kFractionBits, p.y >> kFractionBits, p.z >> kFractionBits}; }
+
 ISOSHELL_HD inline int popcount64(uint64_t w) {
 #if defined(__CUDA_ARCH__)
   return __popcll(w);
@@ -76,6 +82,21 @@ ISOSHELL_HD inline int64_t find_voxel(const VoxelSetView& set, Voxel v) {
   const int offset = offset_in_leaf(v);
   const LeafMask& mask = set.mask[leaf];
   return is_on(mask, offset) ? set.first[leaf] + rank_in_leaf(mask, offset) : -1;
+}
+
+/// The active voxel with this index. Cost: a search in `first`.
+ISOSHELL_HD inline Voxel voxel_of_index(const VoxelSetView& set, int64_t index) {
+  int64_t lo = 0, hi = set.leaf_key.size;
+  while (hi - lo > 1) {
+    const int64_t mid = lo + (hi - lo) / 2;
+    if (set.first[mid] <= index) lo = mid;
+    else hi = mid;
+  }
+  int rank = int(index - set.first[lo]), w = 0;
+  for (; rank >= popcount64(set.mask[lo].word[w]); ++w) rank -= popcount64(set.mask[lo].word[w]);
+  uint64_t bits = set.mask[lo].word[w];
+  for (; rank > 0; --rank) bits &= bits - 1;
+  return voxel_at(leaf_of_key(set.leaf_key[lo]), w * 64 + lowest_bit(bits));
 }
 
 /// Calls visit(offset, index) for every active voxel of a leaf, in canonical order.

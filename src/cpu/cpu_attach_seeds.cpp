@@ -1,0 +1,13 @@
+// The CPU's attach_to_sheet.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/attach_seeds_body.h"
+
+namespace isoshell {
+
+void cpu_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context) {
+  TbbExecutor exec(context, "attach");
+  run_with_threads(context, [&] { attach_to_sheet_body(exec, sheet, seeds); });
+}
+
+}  // namespace isoshell

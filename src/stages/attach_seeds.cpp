@@ -1,0 +1,13 @@
+// attach_to_sheet: runs on the backend that the context asks for.
+#include "isoshell/error.h"
+#include "stages/backend_table.h"
+
+namespace isoshell {
+
+void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context) {
+  if (sheet.vertex_count() == 0)
+    throw Error(ErrorCode::usage, "attach", "the sheet has no vertices; seeds need at least one to sit on");
+  backend_for(context).attach_to_sheet(sheet, seeds, context);
+}
+
+}  // namespace isoshell

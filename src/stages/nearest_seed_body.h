@@ -1,0 +1,133 @@
+// Nearest seed of every active voxel (paper section 3.2), by leaves: a list of candidates a leaf, eighths of a leaf where
+// the list does not fit, and one search a voxel where even that does not. All three give the same labels.
+#pragma once
+
+#include "stages/point_grid_body.h"
+#include "voxel/leaf_candidates.h"
+
+namespace isoshell {
+
+/// Which of `count` candidates is nearest to the voxel at (x, y, z) of a leaf, as the smallest linear form
+/// |a|^2 - 2 a.v, a from the centre of the leaf's voxel 0. T = int32_t holds it while every |a| < 64 voxels on each axis.
+template <class T>
+struct CandidateForms {
+  T constant[kMaxCandidates], per_x[kMaxCandidates], per_y[kMaxCandidates], per_z[kMaxCandidates];
+
+  ISOSHELL_HD CandidateForms(const Candidates& candidates, PointQ8 origin) {
+    for (int c = 0; c < candidates.count; ++c) {
+      const Vec64 a = difference(candidates.point[c].position, origin);
+      constant[c] = T(dot(a, a));
+      per_x[c] = T(-2 * kOneVoxelQ8 * a.x);
+      per_y[c] = T(-2 * kOneVoxelQ8 * a.y);
+      per_z[c] = T(-2 * kOneVoxelQ8 * a.z);
+    }
+  }
+  ISOSHELL_HD static bool fits(const Candidates& candidates, PointQ8 origin) {
+    if (sizeof(T) == 8) return true;
+    for (int c = 0; c < candidates.count; ++c) {
+      const Vec64 a = difference(candidates.point[c].position, origin);
+      const int64_t limit = 64 * kOneVoxelQ8;
+      if (a.x <= -limit || a.x >= limit || a.y <= -limit || a.y >= limit || a.z <= -limit || a.z >= limit) return false;
+    }
+    return true;
+  }
+};
+
+/// What labelling does with its labels: writes them down.
+struct WriteLabels {
+  VoxelSetView voxels;
+  View<uint32_t> label;
+
+  struct Block {
+    const WriteLabels& to;
+    int64_t leaf;
+    const Candidates& candidates;
+    ISOSHELL_HD void voxel(int candidate, int x, int y, int z) const {
+      to.voxel(leaf, x << 6 | y << 3 | z, candidates.point[candidate].id);
+    }
+    ISOSHELL_HD void finish() const {}
+  };
+  ISOSHELL_HD Block open(int64_t leaf, const Candidates& candidates) const { return {*this, leaf, candidates}; }
+  ISOSHELL_HD void voxel(int64_t leaf, int offset, uint32_t seed) const {
+    label[voxels.first[leaf] + rank_in_leaf(voxels.mask[leaf], offset)] = seed;
+  }
+};
+
+template <class T, class Sink>
+ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafCube& block, PointQ8 origin, Sink& sink) {
+  const CandidateForms<T> form(candidates, origin);
+  T line[kMaxCandidates];
+  for (int x = block.x; x < block.x + block.edge; ++x)
+    for (int y = block.y; y < block.y + block.edge; ++y) {
+      uint32_t bits = uint32_t(block.row[x - block.x] >> (8 * y)) & 255;
+      if (bits == 0) continue;
+      for (int c = 0; c < candidates.count; ++c) line[c] = T(form.constant[c] + x * form.per_x[c] + y * form.per_y[c]);
+      for (; bits; bits &= bits - 1) {
+        const int z = lowest_bit(bits);
+        int best = 0;
+        T least = T(line[0] + z * form.per_z[0]);
+        for (int c = 1; c < candidates.count; ++c) {
+          const T here = T(line[c] + z * form.per_z[c]);
+          best = here < least ? c : best;
+          least = here < least ? here : least;
+        }
+        sink.voxel(best, x, y, z);
+      }
+    }
+}
+
+/// One leaf: label its active voxels and hand the labels to the sink.
+template <class Sink>
+struct LabelLeaf {
+  VoxelSetView voxels;
+  PointGridView grid;
+  Sink sink;
+  int first_edge;  ///< 8, or 4 where seeds are dense
+
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    if (first_edge == 8 && label(leaf, cube_of_leaf(voxels.mask[leaf], 8, 0, 0, 0))) return;
+    for (int octant = 0; octant < 8; ++octant) {
+      const LeafCube block =
+          cube_of_leaf(voxels.mask[leaf], 4, (octant >> 2) * 4, (octant >> 1 & 1) * 4, (octant & 1) * 4);
+      if (!label(leaf, block)) label_each(leaf, block);
+    }
+  }
+
+  /// False when the candidates do not fit; nothing was handed over then.
+  ISOSHELL_HD bool label(int64_t leaf, const LeafCube& block) const {
+    if (block.empty()) return true;
+    const PointQ8 origin = voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[leaf]), 0));
+    Candidates candidates(box_of_centres(block, origin));
+    gather_candidates(grid, candidates);
+    if (candidates.overflow || candidates.count == 0) return false;
+    auto into = sink.open(leaf, candidates);
+    if (CandidateForms<int32_t>::fits(candidates, origin)) label_block_as<int32_t>(candidates, block, origin, into);
+    else label_block_as<int64_t>(candidates, block, origin, into);
+    into.finish();
+    return true;
+  }
+
+  ISOSHELL_HD void label_each(int64_t leaf, const LeafCube& block) const {
+    const Voxel at = leaf_of_key(voxels.leaf_key[leaf]);
+    for (int x = 0; x < block.edge; ++x)
+      for (uint64_t bits = block.row[x]; bits; bits &= bits - 1) {
+        const int offset = (block.x + x) << 6 | lowest_bit(bits);
+        sink.voxel(leaf, offset, nearest_point(grid, voxel_centre(voxel_at(at, offset))).id);
+      }
+  }
+};
+
+/// Edge of the cubes that get one candidate list each: a leaf, or an eighth of one when seeds are closer than a leaf.
+inline int cube_edge_for(int64_t seed_spacing_vox) { return seed_spacing_vox >= 6 ? 8 : 4; }
+
+/// Per active voxel the seed of the smallest (squared distance from the voxel's centre, seed id).
+template <class Exec>
+Buffer<uint32_t> label_nearest(Exec& exec, const VoxelSet& voxels, PointGrid& grid, View<const PointQ8> seeds, int edge) {
+  Buffer<uint32_t> label = exec.template make<uint32_t>(voxels.voxel_count());
+  fill_point_grid(exec, grid, seeds);
+  exec.for_each("nearest seed", voxels.leaf_count(),
+                LabelLeaf<WriteLabels>{voxels.view(), grid.view(), WriteLabels{voxels.view(), label.view()}, edge});
+  return label;
+}
+
+}  // namespace isoshell

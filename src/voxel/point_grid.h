@@ -1,0 +1,114 @@
+// Points in a uniform grid (paper section 3.2), and exact searches in it: rings of cells around a box, until no cell that
+// is left can hold anything closer. The order of points within a cell is free; no result may depend on it.
+#pragma once
+
+#include <cstdint>
+
+#include "isoshell/voxel_set.h"
+#include "voxel/exact_int.h"
+
+namespace isoshell {
+
+/// A point as the grid keeps it: its place and its number in the array the grid was made from.
+struct GridPoint {
+  PointQ8 position;
+  uint32_t id;
+};
+
+struct PointGridView {
+  int32_t shift;                  ///< edge of a cell is 1 << shift in q8
+  int32_t dims[3];                ///< cells per axis
+  View<const uint32_t> cell_first;  ///< cell_count + 1 offsets into points; cells are x-major
+  View<const GridPoint> points;
+};
+
+/// Inclusive box in q8.
+struct BoxQ8 {
+  PointQ8 lo, hi;
+};
+
+ISOSHELL_HD inline int32_t grid_coordinate(const PointGridView& grid, int32_t q8, int axis) {
+  const int32_t c = q8 >> grid.shift;
+  return c < 0 ? 0 : c < grid.dims[axis] ? c : grid.dims[axis] - 1;
+}
+ISOSHELL_HD inline int64_t grid_cell(const PointGridView& grid, int32_t cx, int32_t cy, int32_t cz) {
+  return (int64_t(cx) * grid.dims[1] + cy) * grid.dims[2] + cz;
+}
+ISOSHELL_HD inline int64_t grid_cell_of(const PointGridView& grid, PointQ8 p) {
+  return grid_cell(grid, grid_coordinate(grid, p.x, 0), grid_coordinate(grid, p.y, 1), grid_coordinate(grid, p.z, 2));
+}
+
+/// Calls visit(const GridPoint&) for the points of the cells cz_lo..cz_hi of one row; they lie together.
+template <class Visit>
+ISOSHELL_HD inline void visit_row(const PointGridView& grid, int32_t cx, int32_t cy, int32_t cz_lo, int32_t cz_hi,
+                                  Visit& visit) {
+  const int64_t first = grid_cell(grid, cx, cy, cz_lo);
+  const uint32_t end = grid.cell_first[first + (cz_hi - cz_lo) + 1];
+  for (uint32_t i = grid.cell_first[first]; i < end; ++i) visit(grid.points[i]);
+}
+
+/// Calls visit(const GridPoint&) outwards from the box until every point at squared distance <= visit.bound_q16() of it
+/// was visited; the bound may fall on the way, and points that are farther may be visited too.
+template <class Visit>
+ISOSHELL_HD inline void visit_around(const PointGridView& grid, const BoxQ8& box, Visit& visit) {
+  const int32_t lo[3] = {grid_coordinate(grid, box.lo.x, 0), grid_coordinate(grid, box.lo.y, 1),
+                         grid_coordinate(grid, box.lo.z, 2)};
+  const int32_t hi[3] = {grid_coordinate(grid, box.hi.x, 0), grid_coordinate(grid, box.hi.y, 1),
+                         grid_coordinate(grid, box.hi.z, 2)};
+  const int32_t box_lo[3] = {box.lo.x, box.lo.y, box.lo.z}, box_hi[3] = {box.hi.x, box.hi.y, box.hi.z};
+  for (int32_t ring = 0;; ++ring) {
+    int32_t from[3], to[3];
+    // Points in cells beyond this ring are farther from the box than `gap` on some axis.
+    int64_t gap = int64_t(1) << 40;
+    for (int axis = 0; axis < 3; ++axis) {
+      from[axis] = lo[axis] - ring;
+      to[axis] = hi[axis] + ring;
+      if (from[axis] <= 0) from[axis] = 0;
+      else {
+        const int64_t below = int64_t(box_lo[axis]) - (int64_t(from[axis]) << grid.shift);
+        gap = below < gap ? below : gap;
+      }
+      if (to[axis] >= grid.dims[axis] - 1) to[axis] = grid.dims[axis] - 1;
+      else {
+        const int64_t above = (int64_t(to[axis] + 1) << grid.shift) - 1 - box_hi[axis];
+        gap = above < gap ? above : gap;
+      }
+    }
+    for (int32_t cx = from[0]; cx <= to[0]; ++cx)
+      for (int32_t cy = from[1]; cy <= to[1]; ++cy) {
+        const bool inner = ring > 0 && cx > lo[0] - ring && cx < hi[0] + ring && cy > lo[1] - ring && cy < hi[1] + ring;
+        if (!inner) {
+          visit_row(grid, cx, cy, from[2], to[2], visit);
+          continue;
+        }
+        if (lo[2] - ring >= 0) visit_row(grid, cx, cy, lo[2] - ring, lo[2] - ring, visit);
+        if (hi[2] + ring < grid.dims[2]) visit_row(grid, cx, cy, hi[2] + ring, hi[2] + ring, visit);
+      }
+    if (gap == int64_t(1) << 40) return;
+    if (gap >= 0 && gap * gap >= visit.bound_q16()) return;
+  }
+}
+
+/// Keeps the smallest (squared distance, id) of the points it is shown.
+struct NearestPoint {
+  PointQ8 from;
+  int64_t distance_sq_q16 = int64_t(1) << 62;
+  uint32_t id = kNone;
+
+  ISOSHELL_HD int64_t bound_q16() const { return distance_sq_q16; }
+  ISOSHELL_HD void operator()(const GridPoint& p) {
+    const int64_t d = isoshell::distance_sq_q16(from, p.position);
+    if (d > distance_sq_q16 || (d == distance_sq_q16 && p.id > id)) return;
+    distance_sq_q16 = d;
+    id = p.id;
+  }
+};
+
+/// The point with the smallest (squared distance, id), exact; kNone from an empty grid.
+ISOSHELL_HD inline NearestPoint nearest_point(const PointGridView& grid, PointQ8 from) {
+  NearestPoint nearest{from};
+  visit_around(grid, BoxQ8{from, from}, nearest);
+  return nearest;
+}
+
+}  // namespace isoshell
