@@ -4,6 +4,7 @@
 #include "cpu/leaf_lanes.h"
 
 #include <cstring>
+#include <type_traits>
 
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && \
     !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
@@ -41,17 +42,34 @@ constexpr Tables kTables = make_tables();
 ISOSHELL_INLINE void lower_to(Lanes& best, const Lanes& key) { best = key < best ? key : best; }
 ISOSHELL_INLINE const Lanes& lanes(const uint32_t (&row)[8]) { return reinterpret_cast<const Lanes&>(row); }
 
-/// The words of one plane of constant x of the cube of leaves, [y][z].
-struct PlaneWords {
-  uint64_t word[Neighbourhood::kMaxSpan][Neighbourhood::kMaxSpan];
+/// One plane of constant x of the cube of leaves, as rows along z: bit 8 * l + z of a row is voxel z of leaf l.
+/// Three leaves fit 32 bits, which keeps twice as many rows in a vector.
+template <int kSpan>
+struct Plane {
+  using Row = std::conditional_t<kSpan == 3, uint32_t, uint64_t>;
+  static constexpr int kRows = 8 * kSpan;
+  alignas(32) Row rows[kRows];
 };
-ISOSHELL_INLINE bool gather_plane(const Neighbourhood& around, const LeafMask* sites, int x, PlaneWords& plane) {
-  const uint32_t* leaf = &around.leaf[around.at(x >> 3, 0, 0)];
-  uint64_t any = 0;
-  for (int y = 0; y < around.span; ++y)
-    for (int z = 0; z < around.span; ++z, ++leaf)
-      any |= plane.word[y][z] = *leaf == kNone ? 0 : sites[*leaf].word[x & 7];
-  return any != 0;
+
+/// Returns false, with the plane undefined, when there is no site in it.
+template <int kSpan>
+ISOSHELL_INLINE bool gather_plane(const Neighbourhood& around, const LeafMask* sites, int x, Plane<kSpan>& plane) {
+  using Row = typename Plane<kSpan>::Row;
+  const uint32_t* leaf = &around.leaf[(x >> 3) * kSpan * kSpan];
+  uint64_t word[kSpan][kSpan], any = 0;
+  for (int y = 0; y < kSpan; ++y)
+    for (int z = 0; z < kSpan; ++z, ++leaf) any |= word[y][z] = *leaf == kNone ? 0 : sites[*leaf].word[x & 7];
+  if (!any) return false;
+  for (int y = 0; y < kSpan; ++y) {
+    Row rows[8] = {};
+    for (int z = 0; z < kSpan; ++z) {
+      uint8_t bytes[8];
+      std::memcpy(bytes, &word[y][z], 8);
+      for (int i = 0; i < 8; ++i) rows[i] |= Row(bytes[i]) << (8 * z);
+    }
+    std::memcpy(plane.rows + 8 * y, rows, sizeof rows);
+  }
+  return true;
 }
 
 /// Of the sites in a row, those that can be the closest of a voxel in the middle leaf: all inside it, one on either
@@ -64,14 +82,15 @@ ISOSHELL_INLINE uint64_t useful_bits(uint64_t row, int middle) {
 }
 
 /// The z pass over one plane: best keys of the middle eight voxels of every row. Returns which rows have any.
-ISOSHELL_INLINE uint64_t pass_z(const Neighbourhood& around, const PlaneWords& plane, int x, int band, Lanes* rows) {
-  const int middle = 8 * (around.span / 2), lowest = middle - band, count = 8 + 2 * band;
+template <int kSpan>
+ISOSHELL_INLINE uint64_t pass_z(const Neighbourhood& around, const Plane<kSpan>& plane, int x, int band, Lanes* rows) {
+  const int middle = 8 * (kSpan / 2), lowest = middle - band, count = 8 + 2 * band;
   const uint64_t window = ((uint64_t(1) << count) - 1) << lowest;
   const Lanes none = Lanes{} + kNoKey;
   uint64_t used = 0;
   for (int j = 0; j < count; ++j) {
     const int y = lowest + j;
-    const uint64_t row = row_bits(plane.word[y >> 3], around.span, y & 7) & window;
+    const uint64_t row = plane.rows[y] & window;
     Lanes best = none;
     if (row) {
       const uint16_t* place = &around.place[around.at(x >> 3, y >> 3, 0)];
@@ -98,18 +117,16 @@ ISOSHELL_INLINE void pass_across(const Lanes* in, int stride, int at, int band, 
   }
 }
 
-}  // namespace
-
-ISOSHELL_VECTOR_VERSIONS
-void LeafLanes::closest(const Neighbourhood& around, const LeafMask* sites, int band_vox, uint32_t keys[512]) {
-  const int lowest = 8 * (around.span / 2) - band_vox, count = 8 + 2 * band_vox;
-  PlaneWords words;
+template <int kSpan>
+ISOSHELL_INLINE void closest_within(const Neighbourhood& around, const LeafMask* sites, int band_vox, uint32_t* keys) {
+  const int lowest = 8 * (kSpan / 2) - band_vox, count = 8 + 2 * band_vox;
+  Plane<kSpan> plane;
   Lanes rows[kMaxRows], planes[kMaxRows * 8];
   const Lanes none = Lanes{} + kNoKey;
   int first = count, last = -1;
   for (int i = 0; i < count; ++i) {
     uint64_t used = 0;
-    if (gather_plane(around, sites, lowest + i, words)) used = pass_z(around, words, lowest + i, band_vox, rows);
+    if (gather_plane(around, sites, lowest + i, plane)) used = pass_z(around, plane, lowest + i, band_vox, rows);
     if (!used) {
       for (int y = 0; y < 8; ++y) planes[i * 8 + y] = none;
       continue;
@@ -127,38 +144,66 @@ void LeafLanes::closest(const Neighbourhood& around, const LeafMask* sites, int 
     }
 }
 
-ISOSHELL_VECTOR_VERSIONS
-void LeafLanes::reached(const Neighbourhood& around, const LeafMask* sites, const Ball& ball, LeafMask& out) {
-  const int radius = ball.radius, middle = 8 * (around.span / 2), lowest = middle - radius, count = 8 + 2 * radius;
-  PlaneWords words;
-  // grown[w][j]: row j's voxels in the middle leaf that are at most w from a site of that row.
-  uint8_t grown[kMaxBandVox + 1][kMaxRows];
-  uint64_t rows[kMaxRows], spread[kMaxRows];
+template <int kSpan>
+ISOSHELL_INLINE void reached_within(const Neighbourhood& around, const LeafMask* sites, const Ball& ball,
+                                    LeafMask& out) {
+  using Row = typename Plane<kSpan>::Row;
+  constexpr int kMiddle = 8 * (kSpan / 2), kRows = Plane<kSpan>::kRows;
+  const int radius = ball.radius;
+  Plane<kSpan> plane;
+  // grown[w][y]: row y's voxels in the middle leaf that are at most w from a site of that row.
+  alignas(32) uint8_t grown[kMaxBandVox + 1][kRows];
   for (uint64_t& word : out.word) word = 0;
-  for (int i = 0; i < count; ++i) {
-    if (!gather_plane(around, sites, lowest + i, words)) continue;
-    uint64_t any = 0;
-    for (int j = 0; j < count; ++j) {
-      rows[j] = row_bits(words.word[(lowest + j) >> 3], around.span, (lowest + j) & 7);
-      any |= spread[j] = rows[j];
-      grown[0][j] = uint8_t(rows[j] >> middle);
+  for (int i = 0; i < 8 + 2 * radius; ++i) {
+    if (!gather_plane(around, sites, kMiddle - radius + i, plane)) continue;
+    alignas(32) Row spread[kRows];
+    for (int y = 0; y < kRows; ++y) {
+      spread[y] = plane.rows[y];
+      grown[0][y] = uint8_t(spread[y] >> kMiddle);
     }
-    if (!any) continue;
     const int outside = i < radius ? radius - i : i > radius + 7 ? i - radius - 7 : 0;
     for (int w = 1; w <= ball.half[outside][0]; ++w)
-      for (int j = 0; j < count; ++j) {
-        spread[j] |= rows[j] << w | rows[j] >> w;
-        grown[w][j] = uint8_t(spread[j] >> middle);
+      for (int y = 0; y < kRows; ++y) {
+        spread[y] |= plane.rows[y] << w | plane.rows[y] >> w;
+        grown[w][y] = uint8_t(spread[y] >> kMiddle);
       }
     for (int x = i > 2 * radius ? i - 2 * radius : 0; x < 8 && x <= i; ++x) {
       const int dx = i - radius - x < 0 ? x + radius - i : i - radius - x;
       for (int dy = -ball.half[dx][0]; dy <= ball.half[dx][0]; ++dy) {
         uint64_t eight_rows;
-        std::memcpy(&eight_rows, &grown[ball.half[dx][dy < 0 ? -dy : dy]][radius + dy], 8);
+        std::memcpy(&eight_rows, &grown[ball.half[dx][dy < 0 ? -dy : dy]][kMiddle + dy], 8);
         out.word[x] |= eight_rows;
       }
     }
   }
+}
+
+}  // namespace
+
+ISOSHELL_VECTOR_VERSIONS
+void LeafLanes::closest(const Neighbourhood& around, const LeafMask* sites, const uint32_t* word_first, int band_vox,
+                        const LeafMask& reached, uint32_t* closest_site, uint16_t* distance_sq_vox) {
+  alignas(32) uint32_t keys[512];
+  if (around.span == 3)
+    closest_within<3>(around, sites, band_vox, keys);
+  else if (around.span == 5)
+    closest_within<5>(around, sites, band_vox, keys);
+  else
+    closest_within<7>(around, sites, band_vox, keys);
+  int64_t at = 0;
+  for (int w = 0; w < 8; ++w)
+    for (uint64_t bits = reached.word[w]; bits; bits &= bits - 1, ++at) {
+      const uint32_t key = keys[w * 64 + __builtin_ctzll(bits)];
+      closest_site[at] = site_of_rank(around, sites, word_first, rank_of_key(key));
+      distance_sq_vox[at] = uint16_t(distance_sq_of_key(key));
+    }
+}
+
+ISOSHELL_VECTOR_VERSIONS
+void LeafLanes::reached(const Neighbourhood& around, const LeafMask* sites, const Ball& ball, LeafMask& out) {
+  if (around.span == 3) return reached_within<3>(around, sites, ball, out);
+  if (around.span == 5) return reached_within<5>(around, sites, ball, out);
+  reached_within<7>(around, sites, ball, out);
 }
 
 }  // namespace isoshell

@@ -9,8 +9,10 @@ namespace isoshell {
 struct LeafLanes {
   /// Which voxels of the leaf in the middle lie within the ball's radius of a site.
   static void reached(const Neighbourhood& around, const LeafMask* sites, const Ball& ball, LeafMask& out);
-  /// The smallest key of every voxel of that leaf, by offset; exact where the squared distance is at most band_vox^2.
-  static void closest(const Neighbourhood& around, const LeafMask* sites, int band_vox, uint32_t keys[512]);
+  /// Closest sites and squared distances of the leaf's `reached` voxels, in their order. See NumberWords for
+  /// word_first.
+  static void closest(const Neighbourhood& around, const LeafMask* sites, const uint32_t* word_first, int band_vox,
+                      const LeafMask& reached, uint32_t* closest_site, uint16_t* distance_sq_vox);
 };
 
 }  // namespace isoshell

@@ -188,12 +188,9 @@ struct CloseLeaf {
     Neighbourhood around;
     find_neighbours(around, sites, at, reach);
     order_neighbours(around, {at.x - reach, at.y - reach, at.z - reach});
-    uint32_t keys[512];
-    LeafPasses::closest(around, sites.mask.data, band_vox, keys);
-    for_each_active(shell, leaf, [&](int offset, int64_t index) {
-      closest_site[index] = site_of_rank(around, sites.mask, word_first, rank_of_key(keys[offset]));
-      distance_sq_vox[index] = uint16_t(distance_sq_of_key(keys[offset]));
-    });
+    const int64_t first = shell.first[leaf];
+    LeafPasses::closest(around, sites.mask.data, word_first.data, band_vox, shell.mask[leaf], &closest_site[first],
+                        &distance_sq_vox[first]);
   }
 };
 

@@ -104,19 +104,12 @@ ISOSHELL_HD inline bool find_neighbours(Neighbourhood& around, const VoxelSetVie
 
 /// Site id of the voxel with this rank: the closest site itself. `word_first` holds the site id of the first voxel of
 /// every mask word.
-ISOSHELL_HD inline uint32_t site_of_rank(const Neighbourhood& around, View<const LeafMask> masks,
-                                         View<const uint32_t> word_first, int rank) {
+ISOSHELL_HD inline uint32_t site_of_rank(const Neighbourhood& around, const LeafMask* masks, const uint32_t* word_first,
+                                         int rank) {
   const uint32_t leaf = around.by_place[rank >> 9];
   const int word = rank >> 6 & 7;
   const uint64_t below = (uint64_t(1) << (rank & 63)) - 1;
   return word_first[int64_t(leaf) * 8 + word] + uint32_t(popcount64(masks[leaf].word[word] & below));
-}
-
-/// The occupied voxels of one row along z through a column of leaves: bit 8 * l + z for voxel z of leaf l.
-ISOSHELL_HD inline uint64_t row_bits(const uint64_t* plane_words, int span, int y_in_leaf) {
-  uint64_t row = 0;
-  for (int l = 0; l < span; ++l) row |= (plane_words[l] >> (8 * y_in_leaf) & 255) << (8 * l);
-  return row;
 }
 
 /// Half-lengths along the third axis of a ball of lattice points.

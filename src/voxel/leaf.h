@@ -40,8 +40,13 @@ ISOSHELL_HD inline Voxel voxel_of(PointQ8 p) { return {p.x >> kFractionBits, p.y
 ISOSHELL_HD inline int popcount64(uint64_t w) {
 #if defined(__CUDA_ARCH__)
   return __popcll(w);
-#else
+#elif defined(__POPCNT__) || !defined(__x86_64__)
   return __builtin_popcountll(w);
+#else  // without the instruction the builtin is a call; compilers turn this into the instruction where they may
+  w -= w >> 1 & 0x5555555555555555ull;
+  w = (w & 0x3333333333333333ull) + (w >> 2 & 0x3333333333333333ull);
+  w = (w + (w >> 4)) & 0x0f0f0f0f0f0f0f0full;
+  return int(w * 0x0101010101010101ull >> 56);
 #endif
 }
 /// Number of the lowest set bit; w must not be 0.
