@@ -1,0 +1,17 @@
+// One writer a format. They only write; the caller commits.
+#pragma once
+
+#include "io/output_file.h"
+#include "isoshell/triangle_mesh.h"
+
+namespace isoshell {
+
+void write_ply(OutputFile& file, const TriangleMesh& mesh);
+void write_obj(OutputFile& file, const TriangleMesh& mesh);
+void write_stl(OutputFile& file, const TriangleMesh& mesh);
+void write_off(OutputFile& file, const TriangleMesh& mesh);
+
+/// True when single precision would move a vertex by more than a thousandth of the shortest edge.
+bool needs_double(const TriangleMesh& mesh);
+
+}  // namespace isoshell

@@ -1,0 +1,38 @@
+// A file that appears whole or not at all.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace isoshell {
+
+/// Written under a temporary name in the same folder; commit() gives it its own. Without commit the temporary goes and
+/// what stood there stays. "-" is standard output; a device or pipe is written as it is.
+/// Throws: unwritable_output, from every member but the destructor.
+class OutputFile {
+ public:
+  /// Refuses a path that exists unless `overwrite`.
+  OutputFile(const std::string& path, bool overwrite);
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile();
+
+  void write(const void* data, int64_t bytes);
+  void write(const std::string& text) { write(text.data(), int64_t(text.size())); }
+  /// Closes, and puts the file in its place.
+  void commit();
+
+  /// Where the bytes go until commit(), for a library that wants a name; empty for standard output and devices.
+  const std::string& temporary_path() const { return temporary_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const;
+  void open_temporary();
+  void put_in_place();
+
+  std::string path_, target_, temporary_;  // target_: path_ with symbolic links followed
+  bool overwrite_;
+  int file_ = -1;
+};
+
+}  // namespace isoshell
