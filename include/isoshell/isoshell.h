@@ -5,5 +5,6 @@
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"
