@@ -13,7 +13,7 @@ struct SiteSet {
 
 /// The surface point a site stands for.
 struct SiteSample {
-  int16_t dx, dy, dz;   ///< q8, from the voxel's centre; each within -128..128
+  int16_t dx, dy, dz;   ///< q8, from the voxel's centre, at most half its diagonal (222) long; may leave the voxel
   Normal8 normal;       ///< of the triangle, as oriented in the input
   uint32_t triangle;    ///< index in LatticeSurface::triangles
 };

@@ -56,10 +56,6 @@ struct FillSiteTriangles {
   }
 };
 
-ISOSHELL_HD inline int16_t within_voxel(int32_t offset_q8) {
-  return int16_t(offset_q8 < -128 ? -128 : offset_q8 > 128 ? 128 : offset_q8);
-}
-
 struct SampleSites {
   SurfaceView surface;
   VoxelSetView sites;
@@ -87,9 +83,9 @@ struct SampleSites {
     SiteSample s = {};
     s.triangle = from;
     if (from == kNone) return s;
-    s.dx = within_voxel(best.x - centre.x);
-    s.dy = within_voxel(best.y - centre.y);
-    s.dz = within_voxel(best.z - centre.z);
+    s.dx = int16_t(best.x - centre.x);
+    s.dy = int16_t(best.y - centre.y);
+    s.dz = int16_t(best.z - centre.z);
     s.normal = normal8(triangle_normal(surface.triangle(from)));
     return s;
   }

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "isoshell/surface_source.h"
+#include "voxel/random.h"
 
 namespace isoshell::shapes {
 
@@ -90,6 +92,43 @@ inline TriangleSoup two_sheets(double side, double gap) {
     add_triangle(s, 4 * k, 4 * k + 3, 4 * k + 2);
   }
   s.faces_in_file = 4;
+  return s;
+}
+
+/// Triangles of three random corners each in a cube of this side; edges up to `reach`.
+inline TriangleSoup random_soup(uint32_t count, double side, double reach, uint64_t seed) {
+  TriangleSoup s;
+  uint64_t next = 0;
+  const auto unit = [&] { return double(random_bits(seed, next++) >> 11) / 9007199254740992.0; };
+  for (uint32_t i = 0; i < count; ++i) {
+    const WorldPoint at = {unit() * side, unit() * side, unit() * side};
+    for (int k = 0; k < 3; ++k) s.vertices.push_back({at.x + unit() * reach, at.y + unit() * reach, at.z + unit() * reach});
+    add_triangle(s, 3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  s.faces_in_file = count;
+  return s;
+}
+
+/// The same surface with vertices and faces in another order, and faces that start at another corner.
+inline TriangleSoup shuffled(const TriangleSoup& soup, uint64_t seed) {
+  const auto order = [&](size_t count, uint64_t stream) {
+    std::vector<uint32_t> o(count);
+    for (size_t i = 0; i < count; ++i) o[i] = uint32_t(i);
+    for (size_t i = count; i > 1; --i) std::swap(o[i - 1], o[random_bits(seed + stream, i) % i]);
+    return o;
+  };
+  const std::vector<uint32_t> vertices = order(soup.vertices.size(), 0), faces = order(soup.triangles.size(), 1);
+  TriangleSoup s = soup;
+  std::vector<uint32_t> to(vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    s.vertices[i] = soup.vertices[vertices[i]];
+    to[vertices[i]] = uint32_t(i);
+  }
+  for (size_t i = 0; i < faces.size(); ++i) {
+    const auto& t = soup.triangles[faces[i]];
+    const size_t turn = random_bits(seed + 2, i) % 3;
+    s.triangles[i] = {to[t[turn]], to[t[(turn + 1) % 3]], to[t[(turn + 2) % 3]]};
+  }
   return s;
 }
 
