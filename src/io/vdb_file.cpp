@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "io/vdb_cursor.h"
 #include "io/vdb_format.h"
 #include "io/vdb_layout.h"
 #include "isoshell/error.h"

@@ -2,9 +2,9 @@
 #include "io/vdb_layout.h"
 
 #include <cstdio>
-#include <cstring>
 
 #include "core/hash_bytes.h"
+#include "io/vdb_cursor.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -14,38 +14,7 @@ constexpr int64_t kMagic = 0x56444220;
 constexpr uint32_t kOldestFormat = 222;  // from here on the header ends with the tag
 constexpr char kTagStart[] = "69736f73-6865-8";  // "isoshe" in ASCII, then the version digit of a custom UUID
 
-/// Reads little-endian values in order and refuses to pass the end.
-class Cursor {
- public:
-  Cursor(const std::string& path, View<const char> bytes, int64_t at) : path_(path), bytes_(bytes), at_(at) {}
-
-  int64_t at() const { return at_; }
-  template <class T>
-  T value(const char* what) {
-    T v;
-    std::memcpy(&v, take(sizeof v, what), sizeof v);
-    return v;
-  }
-  std::string text(const char* what) {
-    const uint32_t length = value<uint32_t>(what);
-    return std::string(take(length, what), length);
-  }
-  const char* take(int64_t count, const char* what) {
-    if (count > bytes_.size - at_)
-      throw_unreadable_vdb(path_, std::string(what) + " at byte " + std::to_string(at_) + " needs " +
-                                      std::to_string(count) + " bytes, " + std::to_string(bytes_.size - at_) +
-                                      " are left: the file is truncated or damaged");
-    at_ += count;
-    return bytes_.data + at_ - count;
-  }
-
- private:
-  const std::string& path_;
-  View<const char> bytes_;
-  int64_t at_;
-};
-
-std::map<std::string, std::string> read_metadata(Cursor& in) {
+std::map<std::string, std::string> read_metadata(VdbCursor& in) {
   std::map<std::string, std::string> texts;
   const uint32_t count = in.value<uint32_t>("count of metadata");
   for (uint32_t i = 0; i < count; ++i) {
@@ -57,7 +26,7 @@ std::map<std::string, std::string> read_metadata(Cursor& in) {
 }
 
 VdbGridSpan read_grid_span(const std::string& path, View<const char> bytes, int64_t begin) {
-  Cursor in(path, bytes, begin);
+  VdbCursor in(path, bytes, begin);
   VdbGridSpan grid;
   grid.begin = begin;
   grid.name = in.text("name of a grid");
@@ -73,9 +42,10 @@ VdbGridSpan read_grid_span(const std::string& path, View<const char> bytes, int6
   if (grid.end > bytes.size)
     throw_unreadable_vdb(path, "grid \"" + grid.name + "\" ends at byte " + std::to_string(grid.end) + " of " +
                                    std::to_string(bytes.size) + ": the file is truncated");
-  Cursor inside(path, {bytes.data, grid.end}, grid.content);
-  inside.value<uint32_t>("compression of a grid");
-  read_metadata(inside);
+  VdbCursor inside(path, {bytes.data, grid.end}, grid.content);
+  grid.compression = inside.value<uint32_t>("compression of a grid");
+  grid.texts = read_metadata(inside);
+  grid.transform = inside.at();
   return grid;
 }
 
@@ -86,7 +56,7 @@ void throw_unreadable_vdb(const std::string& path, const std::string& what) {
 }
 
 VdbLayout read_vdb_header(const std::string& path, View<const char> bytes) {
-  Cursor in(path, bytes, 0);
+  VdbCursor in(path, bytes, 0);
   if (in.value<int64_t>("header") != kMagic)
     throw_unreadable_vdb(path, "is not a .vdb file: it does not start with the bytes of one");
   const uint32_t format = in.value<uint32_t>("header");
@@ -104,7 +74,7 @@ VdbLayout read_vdb_header(const std::string& path, View<const char> bytes) {
 VdbLayout read_vdb_layout(const std::string& path, View<const char> bytes) {
   VdbLayout layout = read_vdb_header(path, bytes);
   if (!layout.has_offsets) throw_unreadable_vdb(path, "was written as a stream, without offsets; save it as a file");
-  Cursor in(path, bytes, kVdbHeaderBytes);
+  VdbCursor in(path, bytes, kVdbHeaderBytes);
   read_metadata(in);
   const uint32_t count = in.value<uint32_t>("count of grids");
   int64_t at = in.at();

@@ -19,8 +19,11 @@ constexpr int64_t kVdbHeaderBytes = kVdbTagBegin + kVdbTagBytes;
 struct VdbGridSpan {
   std::string name, type;
   bool instance = false;    ///< shares the tree of another grid
+  uint32_t compression = 0; ///< OpenVDB's flags
+  std::map<std::string, std::string> texts;  ///< its metadata of type string
   int64_t begin = 0;        ///< of its descriptor
-  int64_t content = 0;      ///< of its metadata, transform and tree; the descriptor ends here
+  int64_t content = 0;      ///< of its compression flags and metadata; the descriptor ends here
+  int64_t transform = 0;    ///< of its transform, which the tree follows
   int64_t end = 0;
 };
 
@@ -39,6 +42,11 @@ VdbLayout read_vdb_header(const std::string& path, View<const char> bytes);
 /// metadata of each lies inside it. Throws: unreadable_input.
 VdbLayout read_vdb_layout(const std::string& path, View<const char> bytes);
 
+/// Walks the tree of a grid without decompressing it: every count, mask and length must be borne out by the bytes, so
+/// that OpenVDB cannot be led astray by them. Throws: unreadable_input, also for a grid type that is not a number or a
+/// vector of three.
+void check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid);
+
 /// Checksum of a file's bytes without its tag, in the form of a tag that is recognised as ours.
 std::string vdb_checksum_tag(View<const char> bytes);
 /// Whether a tag has the form that vdb_checksum_tag gives.
@@ -46,8 +54,5 @@ bool is_checksum_tag(const std::string& tag);
 
 /// The first bytes of a regular file, all of them when there are fewer. Throws: unreadable_input.
 Buffer<char> read_file_start(const std::string& path, int64_t max_bytes);
-
-/// Throws Error{unreadable_input} about this file.
-[[noreturn]] void throw_unreadable_vdb(const std::string& path, const std::string& what);
 
 }  // namespace isoshell

@@ -1,6 +1,5 @@
-// Reading stage files. OpenVDB sees one grid at a time, from memory, through a stream that throws at its end, and only
-// after the file's own layout and checksum agreed; what it gives is then held to its range and to its digest.
-#include <openvdb/io/Stream.h>
+// Reading stage files: layout and checksum first, then each grid, whose values are held to their range and the products
+// to their digests.
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -11,11 +10,11 @@
 #include "core/voxel_set.h"
 #include "io/key_values.h"
 #include "io/shell_sites.h"
+#include "io/vdb_cursor.h"
 #include "io/vdb_format.h"
 #include "io/vdb_grids.h"
-#include "io/vdb_join.h"
+#include "io/vdb_stream.h"
 #include "io/vdb_layout.h"
-#include "io/vdb_streams.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
@@ -78,24 +77,13 @@ class StageReader {
   const std::map<std::string, std::string>& texts() const { return layout_.texts; }
 
  private:
-  // A file of one grid is made of the header, no metadata, the count 1 and the grid's own bytes.
   openvdb::GridBase::Ptr parse(const VdbGridSpan& span) const {
-    std::vector<char> head(bytes_.data(), bytes_.data() + kVdbHeaderBytes);
-    const uint32_t counts[2] = {0, 1};
-    head.insert(head.end(), reinterpret_cast<const char*>(counts), reinterpret_cast<const char*>(counts + 2));
-    MemorySource source({head.data(), int64_t(head.size())}, {bytes_.data() + span.begin, span.end - span.begin});
-    std::istream in(&source);
-    in.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
     try {
-      const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(in, false).getGrids();
-      if (grids && grids->size() == 1 && (*grids)[0]) return (*grids)[0];
+      return read_vdb_grid(path_, bytes_.view(), span);
     } catch (const std::bad_alloc&) {
-      if (is_checksum_tag(layout_.tag)) throw;
+      if (is_checksum_tag(layout_.tag)) throw Error(ErrorCode::out_of_memory, "read", path_ + ": out of memory");
       fail("grid \"" + span.name + "\" asks for more memory than there is: the file is damaged");
-    } catch (const std::exception& error) {
-      fail("grid \"" + span.name + "\" cannot be read: " + error.what());
     }
-    fail("grid \"" + span.name + "\" cannot be read");
   }
 
   const std::string path_;

@@ -1,6 +1,5 @@
 // Writing stage files. Every grid is made and compressed on its own, several at a time, and they are joined behind one
 // header: OpenVDB by itself keeps all grids in memory and compresses one leaf after the other.
-#include <openvdb/io/Archive.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 #include "io/shell_sites.h"
 #include "io/vdb_format.h"
 #include "io/vdb_grids.h"
-#include "io/vdb_join.h"
+#include "io/vdb_stream.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"

@@ -1,7 +1,7 @@
-// Joins separately written grids into one .vdb file.
-#include "io/vdb_join.h"
+// Grids to bytes and back.
+#include "io/vdb_stream.h"
 
-#include <openvdb/io/Archive.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
@@ -9,8 +9,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "io/memory_stream.h"
+#include "io/vdb_cursor.h"
 #include "io/vdb_layout.h"
-#include "io/vdb_streams.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -47,6 +48,20 @@ void append_grid(std::vector<char>& file, const std::vector<char>& alone) {
     const int64_t offset = read_offset(alone, grid.content - 8 * k) + move;
     std::memcpy(file.data() + move + grid.content - 8 * k, &offset, sizeof offset);
   }
+}
+
+/// OpenVDB 10 reads a tag of another form wrongly and loses its place.
+constexpr char kSomeTag[] = "00000000-0000-4000-8000-000000000000";
+
+std::string raw(uint32_t value) { return std::string(reinterpret_cast<const char*>(&value), sizeof value); }
+std::string raw(const std::string& text) { return raw(uint32_t(text.size())) + text; }
+
+/// The metadata of a grid as the file would hold it if there were only texts and what the reading of values needs.
+std::string metadata_bytes(const VdbGridSpan& grid) {
+  std::string bytes = raw(uint32_t(grid.texts.size() + 1));
+  for (const auto& [name, value] : grid.texts) bytes += raw(name) + raw(std::string("string")) + raw(value);
+  const char half = grid.type.find("_HalfFloat") != std::string::npos;
+  return bytes + raw(std::string("is_saved_as_half_float")) + raw(std::string("bool")) + raw(std::string(1, half));
 }
 
 void write_bytes(const std::string& path, const std::vector<char>& bytes, bool overwrite) {
@@ -87,6 +102,34 @@ void write_vdb_file(const std::string& path, const std::vector<std::function<ope
   const std::string tag = vdb_checksum_tag({file.data(), int64_t(file.size())});
   std::memcpy(file.data() + kVdbTagBegin, tag.data(), size_t(kVdbTagBytes));
   write_bytes(path, file, overwrite);
+}
+
+// A file of one grid: header, no metadata, the count 1, then the grid's descriptor, compression, transform and tree as
+// they are. Its metadata is written anew, texts only: OpenVDB writes past a value whose size in the file is wrong.
+openvdb::GridBase::Ptr read_vdb_grid(const std::string& path, View<const char> bytes, const VdbGridSpan& grid) {
+  check_vdb_tree(path, bytes, grid);
+  uint32_t format;
+  std::memcpy(&format, bytes.data + sizeof(int64_t), sizeof format);
+  if (format > openvdb::OPENVDB_FILE_VERSION)
+    throw_unreadable_vdb(path, ".vdb format " + std::to_string(format) + " is newer than " +
+                                   std::to_string(openvdb::OPENVDB_FILE_VERSION) + ", the newest that this build reads");
+  const std::string head = std::string(bytes.data, size_t(kVdbTagBegin)) + kSomeTag + raw(uint32_t(0)) + raw(uint32_t(1)) +
+                           std::string(bytes.data + grid.begin, size_t(grid.content - grid.begin)) +
+                           raw(grid.compression) + metadata_bytes(grid);
+  MemorySource source({head.data(), int64_t(head.size())}, {bytes.data + grid.transform, grid.end - grid.transform});
+  std::istream in(&source);
+  in.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
+  try {
+    const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(in, false).getGrids();
+    if (grids && grids->size() == 1 && (*grids)[0]) return (*grids)[0];
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::ios_base::failure&) {
+    throw_unreadable_vdb(path, "grid \"" + grid.name + "\" is longer than its bytes: the file is damaged");
+  } catch (const std::exception& error) {
+    throw_unreadable_vdb(path, "grid \"" + grid.name + "\" cannot be read: " + error.what());
+  }
+  throw_unreadable_vdb(path, "grid \"" + grid.name + "\" cannot be read");
 }
 
 }  // namespace isoshell
