@@ -5,6 +5,12 @@
 namespace isoshell {
 
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples, const SheetOptions& options, Context& context) {
+  if (options.closing_vox < 0 || options.closing_vox > kMaxClosingVox)
+    throw Error(ErrorCode::usage, "sheet",
+                "closing_vox is " + std::to_string(options.closing_vox) + "; it must be 0 to " +
+                    std::to_string(kMaxClosingVox));
+  if (sites.voxels.voxel_count() == 0)
+    throw Error(ErrorCode::nothing_to_mesh, "sheet", "there are no sites; the surface is empty");
   return backend_for(context).build_sheet(surface, sites, samples, options, context);
 }
 

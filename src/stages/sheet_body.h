@@ -1,14 +1,156 @@
-// build_sheet (see stages.h), written once over an executor.
+// build_sheet (see stages.h), written once over an executor: from sites to a closed 2-manifold on the surface.
 #pragma once
 
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
+#include "stages/sheet_closing_body.h"
+#include "stages/sheet_components_body.h"
+#include "stages/sheet_project_body.h"
+#include "stages/sheet_quads_body.h"
+#include "stages/sheet_repair_body.h"
 
 namespace isoshell {
+namespace sheet_steps {
+
+struct SplitQuads {
+  View<const Quad> quads;
+  View<const PointQ8> position;
+  View<TriangleIndices> triangles;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const SplitQuad split = split_quad(quads[i], position);
+    triangles[2 * i] = split.first;
+    triangles[2 * i + 1] = split.second;
+  }
+};
+
+struct CountTrianglesAround {
+  View<const TriangleIndices> triangles;
+  View<uint32_t> count;
+  ISOSHELL_HD void operator()(int64_t t) const {
+    atomic_add(count[triangles[t].a], 1u);
+    atomic_add(count[triangles[t].b], 1u);
+    atomic_add(count[triangles[t].c], 1u);
+  }
+};
+
+struct WidenCount {
+  View<const uint32_t> count;
+  View<int64_t> first;
+  ISOSHELL_HD void operator()(int64_t v) const { first[v] = count[v]; }
+};
+
+/// Each triangle takes a place at each of its corners, in any order; `left` counts the places that are free.
+struct TakePlaces {
+  View<const TriangleIndices> triangles;
+  View<const int64_t> first;
+  View<uint32_t> left, around;
+  ISOSHELL_HD void operator()(int64_t t) const {
+    const uint32_t corner[3] = {triangles[t].a, triangles[t].b, triangles[t].c};
+    for (const uint32_t v : corner) around[first[v] + atomic_take_one_below(left[v])] = uint32_t(t);
+  }
+};
+
+struct SortAround {
+  View<const int64_t> first;
+  View<uint32_t> around;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    for (int64_t i = first[v] + 1; i < first[v + 1]; ++i) {
+      const uint32_t t = around[i];
+      int64_t at = i;
+      for (; at > first[v] && around[at - 1] > t; --at) around[at] = around[at - 1];
+      around[at] = t;
+    }
+  }
+};
+
+/// Direction of the area vectors around a vertex before projection; where they cancel, of the lattice faces, and where
+/// those cancel too, of the first triangle that has area.
+struct FindNormal {
+  View<const TriangleIndices> triangles;
+  View<const int64_t> first;
+  View<const uint32_t> around;
+  View<const PointQ8> smooth;
+  View<const Normal8> lattice_normal;
+  View<Normal8> normal;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    Vec64 sum = {0, 0, 0}, any = {0, 0, 0};
+    for (int64_t i = first[v]; i < first[v + 1]; ++i) {
+      const Vec64 n = area_vector(triangles[around[i]], smooth);
+      sum = sum + n;
+      if (is_zero(any)) any = n;
+    }
+    if (is_zero(sum)) sum = {lattice_normal[v].x, lattice_normal[v].y, lattice_normal[v].z};
+    normal[v] = normal8(is_zero(sum) ? any : sum);
+  }
+  ISOSHELL_HD static bool is_zero(Vec64 n) { return n.x == 0 && n.y == 0 && n.z == 0; }
+};
 
 template <class Exec>
-Sheet build_sheet_body(Exec&, const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&) {
-  throw Error(ErrorCode::internal, "sheet", "build_sheet is missing");
+void list_triangles_around(Exec& exec, Sheet& sheet) {
+  const int64_t vertices = sheet.vertex_count();
+  Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
+  exec.fill(count.view(), 0u);
+  exec.for_each("count triangles around", sheet.triangles.size(),
+                CountTrianglesAround{sheet.triangles.view(), count.view()});
+  sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
+  sheet.vertex_first[vertices] = 0;
+  exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
+  exec.exclusive_scan(sheet.vertex_first.view());
+  sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
+  exec.for_each("list triangles around", sheet.triangles.size(),
+                TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(),
+                           sheet.vertex_triangles.view()});
+  exec.for_each("sort triangles around", vertices,
+                SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
+}
+
+}  // namespace sheet_steps
+
+template <class Exec>
+Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                       const SheetOptions& options) {
+  using namespace sheet_steps;
+  QuadMesh mesh;
+  {
+    Solid solid = close_sites(exec, sites, options.closing_vox);
+    make_well_composed(exec, solid);
+    mesh = list_boundary(exec, solid);
+  }
+  const SurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
+                                    samples.first.view(), samples.triangles.view()};
+  LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
+  mesh.edges = {};
+  const ComponentCount components = drop_small_components(exec, mesh, laid, options.min_component_area_q16);
+  if (components.kept == 0) 
+    throw Error(ErrorCode::nothing_to_mesh, "sheet",
+                "all " + std::to_string(components.dropped) + " components are smaller than " +
+                    std::to_string(options.min_component_area_q16 >> 16) + " square voxels; lower the limit");
+  if (mesh.quads.size() * 2 >= int64_t(kNone))
+    throw Error(ErrorCode::out_of_memory, "sheet",
+                "the sheet has " + std::to_string(mesh.quads.size() * 2) + " triangles; at most " +
+                    std::to_string(kNone) + " can be numbered; lower the resolution");
+
+  Sheet sheet;
+  sheet.frame = surface.frame;
+  sheet.corners = std::move(mesh.corners);
+  sheet.position = std::move(laid.position);
+  sheet.source_triangle = std::move(laid.source_triangle);
+  sheet.triangles = exec.template make<TriangleIndices>(2 * mesh.quads.size());
+  exec.for_each("split quads", mesh.quads.size(),
+                SplitQuads{mesh.quads.view(), sheet.position.view(), sheet.triangles.view()});
+  mesh.quads = {};
+  list_triangles_around(exec, sheet);
+  sheet.normal = exec.template make<Normal8>(sheet.vertex_count());
+  exec.for_each("normals", sheet.vertex_count(),
+                FindNormal{sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
+                           laid.smooth.view(), mesh.lattice_normal.view(), sheet.normal.view()});
+  // Euler: V - E + F = 2 components - 2 genus, and E = 3 F / 2.
+  const int64_t euler = sheet.vertex_count() - sheet.triangles.size() / 2;
+  sheet.topology.components = components.kept;
+  sheet.topology.genus = components.kept - euler / 2;
+  sheet.topology.dropped_components = components.dropped;
+  sheet.topology.bridged_vertices = exec.sum(sheet.vertex_count(), IsBridge{sheet.source_triangle.view()});
+  return sheet;
 }
 
 }  // namespace isoshell

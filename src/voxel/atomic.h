@@ -47,9 +47,11 @@ ISOSHELL_HD inline void atomic_or(T& target, T value) {
 #endif
 }
 
-ISOSHELL_HD inline uint32_t atomic_load(const uint32_t& target) {
+/// Reads a value that other threads may change meanwhile.
+template <class T>
+ISOSHELL_HD inline T atomic_load(const T& target) {
 #if defined(__CUDA_ARCH__)
-  return *static_cast<const volatile uint32_t*>(&target);
+  return *static_cast<const volatile T*>(&target);
 #else
   return __atomic_load_n(&target, __ATOMIC_RELAXED);
 #endif

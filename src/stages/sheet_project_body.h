@@ -1,0 +1,157 @@
+// The part of build_sheet that lays the quad mesh onto the surface: smoothing, projection, bridges over gaps.
+#pragma once
+
+#include "isoshell/stages.h"
+#include "stages/sheet_quads_body.h"
+#include "voxel/exact_int.h"
+#include "voxel/nearest_triangle.h"
+
+namespace isoshell {
+
+constexpr int kSheetSmoothingSteps = 2;   ///< before projection
+constexpr int kBridgeSteps = 60;          ///< for vertices over a gap, after projection
+constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther from the surface are over a gap
+
+namespace sheet_steps {
+
+/// Calls visit(neighbour) for the vertices that lattice edges of the boundary join to the corner at `offset` of `leaf`.
+template <class Visit>
+ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, Voxel l, int offset, uint8_t edges, Visit visit) {
+  const Voxel c = voxel_at(l, offset);
+  for (int f = 0; f < 6; ++f)
+    if (edges >> f & 1) visit(uint32_t(find_voxel(corners, step_through(c, f))));
+}
+
+ISOSHELL_HD inline PointQ8 mean_of(Vec64 sum, int64_t count) {
+  return {int32_t(round_div(sum.x, count)), int32_t(round_div(sum.y, count)), int32_t(round_div(sum.z, count))};
+}
+ISOSHELL_HD inline Vec64 to_vec64(PointQ8 p) { return {p.x, p.y, p.z}; }
+
+/// One umbrella step: every vertex goes to the mean of its neighbours.
+struct SmoothCorners {
+  VoxelSetView corners;
+  View<const uint8_t> edges;
+  View<const PointQ8> from;
+  View<PointQ8> to;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    const Voxel l = leaf_of_key(corners.leaf_key[leaf]);
+    for_each_active(corners, leaf, [&](int offset, int64_t v) {
+      Vec64 sum = {0, 0, 0};
+      int64_t count = 0;
+      for_each_neighbour(corners, l, offset, edges[v], [&](uint32_t n) {
+        sum = sum + to_vec64(from[n]);
+        ++count;
+      });
+      to[v] = mean_of(sum, count);
+    });
+  }
+};
+
+/// Puts every vertex on the nearest triangle. Only with `may_bridge` a vertex farther than two voxels stays in place.
+struct ProjectVertex {
+  SurfaceView surface;
+  bool may_bridge;
+  View<const PointQ8> smooth;
+  View<PointQ8> position;
+  View<uint32_t> source_triangle;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    NearestTriangleSearch search(surface, smooth[v]);
+    bool found = search.search(1) || search.search(2);
+    if (may_bridge) found = search.best().distance_sq_q16 <= kBridgeDistanceQ8 * kBridgeDistanceQ8;
+    for (int32_t reach = 4; !found && !may_bridge && reach <= 16; reach *= 2) found = search.search(reach);
+    position[v] = found ? search.best().point : smooth[v];
+    source_triangle[v] = found ? search.best().triangle : kNone;
+  }
+};
+
+struct IsBridge {
+  View<const uint32_t> source_triangle;
+  ISOSHELL_HD bool operator()(int64_t v) const { return source_triangle[v] == kNone; }
+};
+
+/// Neighbours of the bridging vertices, six places each; `leaf_of` is found by the vertex's lattice corner.
+struct ListBridgeNeighbours {
+  VoxelSetView corners;
+  View<const uint8_t> edges;
+  View<const uint32_t> bridges;
+  View<uint32_t> neighbours;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    // The leaf is the last one that starts at or before the vertex.
+    int64_t lo = 0, hi = corners.leaf_key.size;
+    while (hi - lo > 1) {
+      const int64_t middle = (lo + hi) / 2;
+      (corners.first[middle] <= int64_t(bridges[i]) ? lo : hi) = middle;
+    }
+    const Voxel l = leaf_of_key(corners.leaf_key[lo]);
+    int count = 0;
+    for_each_active(corners, lo, [&](int offset, int64_t v) {
+      if (v != int64_t(bridges[i])) return;
+      for_each_neighbour(corners, l, offset, edges[v], [&](uint32_t n) { neighbours[6 * i + count++] = n; });
+    });
+    while (count < 6) neighbours[6 * i + count++] = kNone;
+  }
+};
+
+struct SmoothBridge {
+  View<const uint32_t> neighbours;
+  View<const PointQ8> position;
+  View<PointQ8> moved;  ///< per bridging vertex
+  ISOSHELL_HD void operator()(int64_t i) const {
+    Vec64 sum = {0, 0, 0};
+    int64_t count = 0;
+    for (; count < 6 && neighbours[6 * i + count] != kNone; ++count)
+      sum = sum + to_vec64(position[neighbours[6 * i + count]]);
+    moved[i] = mean_of(sum, count);
+  }
+};
+
+struct MoveBridge {
+  View<const uint32_t> bridges;
+  View<const PointQ8> moved;
+  View<PointQ8> position;
+  ISOSHELL_HD void operator()(int64_t i) const { position[bridges[i]] = moved[i]; }
+};
+
+template <class Exec>
+void smooth_bridges(Exec& exec, const QuadMesh& mesh, View<const uint32_t> source_triangle, View<PointQ8> position) {
+  const Buffer<uint32_t> bridges = exec.select(source_triangle.size, IsBridge{source_triangle});
+  if (bridges.empty()) return;
+  Buffer<uint32_t> neighbours = exec.template make<uint32_t>(6 * bridges.size());
+  exec.for_each("neighbours on bridges", bridges.size(),
+                ListBridgeNeighbours{mesh.corners.view(), mesh.edges.view(), bridges.view(), neighbours.view()});
+  Buffer<PointQ8> moved = exec.template make<PointQ8>(bridges.size());
+  for (int step = 0; step < kBridgeSteps; ++step) {
+    exec.for_each("smooth bridges", bridges.size(), SmoothBridge{neighbours.view(), position, moved.view()});
+    exec.for_each("move bridges", bridges.size(), MoveBridge{bridges.view(), moved.view(), position});
+  }
+}
+
+}  // namespace sheet_steps
+
+/// The quad mesh with its vertices where they belong.
+struct LaidMesh {
+  Buffer<PointQ8> smooth;     ///< before projection: sides are plain here
+  Buffer<PointQ8> position;
+  Buffer<uint32_t> source_triangle;
+};
+
+template <class Exec>
+LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SurfaceView& surface, bool may_bridge) {
+  using namespace sheet_steps;
+  LaidMesh laid;
+  const int64_t vertices = mesh.position.size();
+  laid.smooth = std::move(mesh.position);
+  laid.position = exec.template make<PointQ8>(vertices);
+  for (int step = 0; step < kSheetSmoothingSteps; ++step) {
+    exec.for_each("smooth", mesh.corners.leaf_count(),
+                  SmoothCorners{mesh.corners.view(), mesh.edges.view(), laid.smooth.view(), laid.position.view()});
+    std::swap(laid.smooth, laid.position);
+  }
+  laid.source_triangle = exec.template make<uint32_t>(vertices);
+  exec.for_each("project", vertices, ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(),
+                                                   laid.source_triangle.view()});
+  smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
+  return laid;
+}
+
+}  // namespace isoshell

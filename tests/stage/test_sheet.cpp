@@ -1,0 +1,316 @@
+// build_sheet against brute force: the solid voxel by voxel, the mesh by counting.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "cpu/executor_tbb.h"
+#include "isoshell/digest.h"
+#include "isoshell/error.h"
+#include "isoshell/stages.h"
+#include "oracle/dense_solid.h"
+#include "stages/sheet_body.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "support/voxel_sites.h"
+#include "voxel/random.h"
+
+using namespace isoshell;
+
+namespace {
+
+struct Named {
+  std::string name;
+  std::vector<Voxel> voxels;
+};
+
+const Extent kExtent = {56, 52, 60};          // of the dense lattice
+const Voxel kOffset = {100, 104, 96};         // of the dense lattice in the sparse one, so that blocks of 128 meet inside
+const Extent kSparseExtent = {256, 256, 256};
+
+/// Voxels of the middle of the lattice, 12 off its border, for which inside(x, y, z) holds, relative to the centre.
+template <class Inside>
+Named filled(std::string name, Inside inside) {
+  Named out{std::move(name), {}};
+  for (int32_t x = 12; x < kExtent[0] - 12; ++x)
+    for (int32_t y = 12; y < kExtent[1] - 12; ++y)
+      for (int32_t z = 12; z < kExtent[2] - 12; ++z)
+        if (inside(x - kExtent[0] / 2, y - kExtent[1] / 2, z - kExtent[2] / 2)) out.voxels.push_back({x, y, z});
+  return out;
+}
+
+Named noise(uint64_t seed, uint64_t percent) {
+  return filled("noise " + std::to_string(seed) + " at " + std::to_string(percent), [&](int x, int y, int z) {
+    return random_bits(seed, uint64_t((x + 50) * 10000 + (y + 50) * 100 + z + 50)) % 100 < percent;
+  });
+}
+
+Named holed_sphere(int width) {
+  return filled("sphere with holes " + std::to_string(width) + " wide", [&](int x, int y, int z) {
+    const double r = std::sqrt(double(x * x + y * y + z * z));
+    return std::abs(r - 11) <= 0.87 && !(2 * std::abs(x) < width && 2 * std::abs(y) < width);
+  });
+}
+
+std::vector<Named> all_blobs() {
+  std::vector<Named> out;
+  for (uint64_t percent : {1, 5, 20, 50, 80}) out.push_back(noise(percent, percent));
+  for (int width : {0, 1, 2, 3, 5, 7, 9}) out.push_back(holed_sphere(width));
+  out.push_back(filled("diagonal wires", [](int x, int y, int z) { return (x == y && y == z) || (x == -y && z == 3); }));
+  out.push_back(filled("diagonal tunnels", [](int x, int y, int z) {
+    return !((x == y && y == z) || (x == -y && z == 3) || (x == 5 && y == z));
+  }));
+  out.push_back(filled("two walls", [](int x, int, int) { return x == -2 || x == 1; }));
+  out.push_back(filled("one voxel", [](int x, int y, int z) { return x == 0 && y == 0 && z == 0; }));
+  return out;
+}
+
+oracle::Dense dense_of(const std::vector<Voxel>& voxels) {
+  oracle::Dense out(kExtent);
+  for (Voxel v : voxels) out.value[out.at(v)] = 1;
+  return out;
+}
+
+Voxel in_sparse(Voxel v) { return {v.x + kOffset.x, v.y + kOffset.y, v.z + kOffset.z}; }
+
+SiteSet site_set_of(const Named& blob) {
+  std::vector<Voxel> voxels;
+  for (const Voxel v : blob.voxels) voxels.push_back(in_sparse(v));
+  return make_site_set(voxels, kSparseExtent);
+}
+
+bool is_solid(const SolidView& solid, Voxel dense) {
+  const Voxel v = in_sparse(dense);
+  return solid.at(leaf_of_voxel(v)).word(v.x & 7) >> (offset_in_leaf(v) & 63) & 1;
+}
+
+int64_t mismatches(Solid& solid, const oracle::Dense& expected) {
+  const SolidView view = solid.view();
+  int64_t wrong = 0;
+  expected.for_each([&](Voxel v) { wrong += is_solid(view, v) != bool(expected.get(v, 0)); });
+  return wrong;
+}
+
+/// Defects of a quad mesh as the boundary of a solid: edges without exactly two opposite sides, corners with two fans.
+int64_t count_defects(const QuadMesh& mesh) {
+  std::map<std::pair<uint32_t, uint32_t>, int> sides;
+  std::vector<std::map<uint32_t, uint32_t>> next(size_t(mesh.corners.voxel_count()));
+  int64_t defects = 0;
+  for (const Quad& q : mesh.quads)
+    for (int k = 0; k < 4; ++k) {
+      const uint32_t a = q.corner[k], b = q.corner[(k + 1) % 4], before = q.corner[(k + 3) % 4];
+      defects += sides[{a, b}]++ != 0;
+      next[a][b] = before;
+    }
+  for (const auto& side : sides) defects += sides.count({side.first.second, side.first.first}) != 1;
+  for (const auto& fan : next) {
+    if (fan.empty()) {
+      ++defects;
+      continue;
+    }
+    size_t steps = 0;
+    uint32_t at = fan.begin()->first;
+    do {
+      at = fan.at(at);
+      ++steps;
+    } while (at != fan.begin()->first && fan.count(at) && steps <= fan.size());
+    defects += steps != fan.size();
+  }
+  return defects;
+}
+
+struct Pipeline {
+  LatticeSurface surface;
+  SiteSet sites;
+  SiteSamples samples;
+};
+
+Pipeline sites_of(const TriangleSoup& soup, int32_t resolution, Context& context) {
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  Pipeline p;
+  p.surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
+  p.sites = voxelize(p.surface, context);
+  p.samples = sample_sites(p.surface, p.sites, context);
+  return p;
+}
+
+Sheet sheet_of(const TriangleSoup& soup, int32_t resolution, const SheetOptions& options = {}, int threads = 0) {
+  Context context;
+  context.backend = Backend::cpu;
+  context.threads = threads;
+  const Pipeline p = sites_of(soup, resolution, context);
+  return build_sheet(p.surface, p.sites, p.samples, options, context);
+}
+
+/// Everything that a sheet promises whatever the input.
+void check_sheet(const Sheet& sheet) {
+  std::map<std::pair<uint32_t, uint32_t>, int> sides;
+  int64_t defects = 0;
+  for (const TriangleIndices& t : sheet.triangles) {
+    const uint32_t c[3] = {t.a, t.b, t.c};
+    for (int k = 0; k < 3; ++k) defects += sides[{c[k], c[(k + 1) % 3]}]++ != 0;
+  }
+  for (const auto& side : sides) defects += sides.count({side.first.second, side.first.first}) != 1;
+  CHECK(defects == 0);
+  CHECK(sheet.corners.voxel_count() == sheet.vertex_count());
+  const int64_t euler = sheet.vertex_count() - int64_t(sides.size()) / 2 + sheet.triangles.size();
+  CHECK(euler == 2 * (sheet.topology.components - sheet.topology.genus));
+  REQUIRE(sheet.vertex_first[sheet.vertex_count()] == 3 * sheet.triangles.size());
+  int64_t misplaced = 0;
+  for (int64_t v = 0; v < sheet.vertex_count(); ++v)
+    for (int64_t i = sheet.vertex_first[v]; i < sheet.vertex_first[v + 1]; ++i) {
+      const TriangleIndices t = sheet.triangles[sheet.vertex_triangles[i]];
+      misplaced += t.a != v && t.b != v && t.c != v;
+      misplaced += i > sheet.vertex_first[v] && sheet.vertex_triangles[i] <= sheet.vertex_triangles[i - 1];
+    }
+  CHECK(misplaced == 0);
+  int64_t without_normal = 0;
+  for (const Normal8 n : sheet.normal) without_normal += n.x == 0 && n.y == 0 && n.z == 0;
+  CHECK(without_normal == 0);
+}
+
+/// Six times the enclosed volume in voxels.
+double signed_volume(const Sheet& sheet) {
+  double sum = 0;
+  for (const TriangleIndices& t : sheet.triangles) {
+    const auto p = [&](uint32_t v) { return difference(sheet.position[v], sheet.position[0]); };
+    sum += double(dot(p(t.a), cross(p(t.b), p(t.c)))) / (256.0 * 256 * 256);
+  }
+  return sum / 6;
+}
+
+}  // namespace
+
+TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel", "[sheet][stage]") {
+  Context context;
+  TbbExecutor exec(context, "sheet");
+  for (const Named& blob : all_blobs())
+    for (const int32_t r : {0, 1, 2, 5}) {
+      INFO(blob.name << ", r = " << r);
+      const SiteSet sites = site_set_of(blob);
+      Solid solid = close_sites(exec, sites, r);
+      oracle::Dense expected = oracle::closed(dense_of(blob.voxels), r);
+      CHECK(mismatches(solid, expected) == 0);
+      make_well_composed(exec, solid);
+      while (oracle::repair_once(expected)) {
+      }
+      CHECK(mismatches(solid, expected) == 0);
+      const QuadMesh mesh = list_boundary(exec, solid);
+      CHECK(count_defects(mesh) == 0);
+    }
+}
+
+TEST_CASE("sheet: holes close as wide as the closing reaches", "[sheet][stage]") {
+  Context context;
+  TbbExecutor exec(context, "sheet");
+  for (const int width : {1, 3, 5, 7})
+    for (const int32_t r : {0, 1, 2, 3, 4}) {
+      Solid solid = close_sites(exec, site_set_of(holed_sphere(width)), r);
+      const bool is_full = is_solid(solid.view(), {kExtent[0] / 2, kExtent[1] / 2, kExtent[2] / 2});
+      INFO("width " << width << ", r = " << r);
+      if (width <= 2 * r) CHECK(is_full);
+      if (width >= 2 * r + 3) CHECK(!is_full);
+    }
+}
+
+TEST_CASE("sheet: simple shapes have their components, genus and volume", "[sheet][stage]") {
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 48);
+  const Sheet sphere = sheet_of(ball, 64);
+  check_sheet(sphere);
+  CHECK(sphere.topology.components == 1);
+  CHECK(sphere.topology.genus == 0);
+  CHECK(signed_volume(sphere) == Approx(4.18879 * 31.5 * 31.5 * 31.5).epsilon(0.02));
+
+  const Sheet ring = sheet_of(shapes::torus(2, .7, 60, 30), 96);
+  check_sheet(ring);
+  CHECK(ring.topology.components == 1);
+  CHECK(ring.topology.genus == 1);
+  CHECK(signed_volume(ring) > 0);
+
+  const TriangleSoup boxes = shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({2, .1, .2}, {3, 1.2, 1}));
+  const Sheet two = sheet_of(boxes, 80);
+  check_sheet(two);
+  CHECK(two.topology.components == 2);
+  CHECK(two.topology.genus == 0);
+
+  const Sheet walls = sheet_of(shapes::two_sheets(1, .2), 64);
+  check_sheet(walls);
+  CHECK(walls.topology.components == 2);
+  CHECK(walls.topology.genus == 0);
+  SheetOptions closing;
+  closing.closing_vox = 7;
+  const Sheet slab = sheet_of(shapes::two_sheets(1, .2), 64, closing);
+  check_sheet(slab);
+  CHECK(slab.topology.components == 1);
+  CHECK(slab.topology.bridged_vertices > 0);
+
+  const Sheet outer = sheet_of(shapes::together(ball, shapes::sphere({0, 0, 0}, .5, 24)), 64);
+  CHECK(outer.topology.components == 1);
+}
+
+TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet][stage]") {
+  const TriangleSoup soup = shapes::together(shapes::torus(2, .7, 40, 20), shapes::box({-.4, -.4, -.4}, {.4, .5, .3}));
+  Context context;
+  context.backend = Backend::cpu;
+  const Pipeline p = sites_of(soup, 72, context);
+  const Sheet sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
+  check_sheet(sheet);
+  TbbExecutor exec(context, "sheet");
+  Solid solid = close_sites(exec, p.sites, 0);
+  make_well_composed(exec, solid);
+  QuadMesh mesh = list_boundary(exec, solid);
+  const SurfaceView view = {p.surface.points.view(), p.surface.triangles.view(), p.sites.voxels.view(),
+                            p.samples.first.view(), p.samples.triangles.view()};
+  const LaidMesh laid = lay_onto_surface(exec, mesh, view, false);
+  int64_t wrong = 0, far = 0;
+  for (int64_t v = 0; v < sheet.vertex_count(); ++v) {
+    NearestTriangle best;
+    for (int64_t t = 0; t < p.surface.triangles.size(); ++t) {
+      const TriangleIndices c = p.surface.triangles[t];
+      const PointQ8 q = closest_point_on_triangle(laid.smooth[v], p.surface.points[c.a], p.surface.points[c.b], p.surface.points[c.c]);
+      const int64_t d = distance_sq_q16(laid.smooth[v], q);
+      if (d < best.distance_sq_q16) best = {d, uint32_t(t), q};
+    }
+    wrong += sheet.source_triangle[v] != best.triangle || sheet.position[v] != best.point;
+    far += best.distance_sq_q16 > 512 * 512;
+  }
+  CHECK(wrong == 0);
+  CHECK(far == 0);
+}
+
+TEST_CASE("sheet: neither threads nor the order of the input change a bit", "[sheet][stage]") {
+  TriangleSoup soup = shapes::together(shapes::torus(2, .7, 60, 30), shapes::box({-.4, -.4, -.4}, {.4, .5, .3}));
+  for (const int32_t r : {0, 3}) {
+    SheetOptions options;
+    options.closing_vox = r;
+    const uint64_t one = digest(sheet_of(soup, 100, options, 1));
+    CHECK(digest(sheet_of(soup, 100, options, 2)) == one);
+    TriangleSoup shuffled = soup;
+    std::reverse(shuffled.triangles.begin(), shuffled.triangles.end());
+    CHECK(digest(sheet_of(shuffled, 100, options, 2)) == one);
+  }
+}
+
+TEST_CASE("sheet: small components are dropped and the rest is as if they had never been", "[sheet][stage]") {
+  const TriangleSoup large = shapes::torus(2, .7, 60, 30);
+  TriangleSoup both = shapes::together(large, shapes::box({-.1, -.1, -.1}, {.1, .1, .1}));
+  SheetOptions options;
+  CHECK(sheet_of(both, 96, options).topology.components == 2);
+  options.min_component_area_q16 = int64_t(2000) << 16;
+  const Sheet kept = sheet_of(both, 96, options);
+  check_sheet(kept);
+  CHECK(kept.topology.components == 1);
+  CHECK(kept.topology.genus == 1);
+  CHECK(kept.topology.dropped_components == 1);
+  const Sheet alone = sheet_of(large, 96);
+  CHECK(digest(kept.corners) == digest(alone.corners));
+  CHECK(std::equal(kept.position.begin(), kept.position.end(), alone.position.begin(), alone.position.end()));
+  options.min_component_area_q16 = int64_t(1) << 50;
+  CHECK_THROWS_AS(sheet_of(both, 96, options), Error);
+}
+
+TEST_CASE("sheet: arguments out of range are refused", "[sheet][stage]") {
+  SheetOptions options;
+  options.closing_vox = kMaxClosingVox + 1;
+  CHECK_THROWS_AS(sheet_of(shapes::box({0, 0, 0}, {1, 1, 1}), 16, options), Error);
+}
