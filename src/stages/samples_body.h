@@ -56,11 +56,19 @@ struct FillSiteTriangles {
   }
 };
 
+/// A normal costs more than a distance, and a triangle has many sites.
+struct FindNormals {
+  SurfaceView surface;
+  View<Normal8> normal;
+  ISOSHELL_HD void operator()(int64_t t) const { normal[t] = normal8(triangle_normal(surface.triangle(t))); }
+};
+
 struct SampleSites {
   SurfaceView surface;
   VoxelSetView sites;
   View<const int64_t> first;
   View<const uint32_t> triangles;
+  View<const Normal8> normal;
   View<SiteSample> sample;
   ISOSHELL_HD void operator()(int64_t l) const {
     const Voxel leaf = leaf_of_key(sites.leaf_key[l]);
@@ -86,7 +94,7 @@ struct SampleSites {
     s.dx = int16_t(best.x - centre.x);
     s.dy = int16_t(best.y - centre.y);
     s.dz = int16_t(best.z - centre.z);
-    s.normal = normal8(triangle_normal(surface.triangle(from)));
+    s.normal = normal[from];
     return s;
   }
 };
@@ -111,8 +119,10 @@ SiteSamples sample_sites_body(Exec& exec, const LatticeSurface& surface, const S
                 FillSiteTriangles{triangles, set, lists.first.view(), lists.triangle.view(), out.first.view(),
                                   out.triangles.view()});
   out.sample = exec.template make<SiteSample>(count);
+  Buffer<Normal8> normal = exec.template make<Normal8>(surface.triangles.size());
+  exec.for_each("find normals", normal.size(), FindNormals{triangles, normal.view()});
   exec.for_each("sample sites", leaves,
-                SampleSites{triangles, set, out.first.view(), out.triangles.view(), out.sample.view()});
+                SampleSites{triangles, set, out.first.view(), out.triangles.view(), normal.view(), out.sample.view()});
   return out;
 }
 

@@ -42,16 +42,37 @@ struct CellRun {
   int32_t lo, hi;
 };
 
-/// p P + q Q + k >= 0 over cell coordinates (P, Q).
-struct CellHalfPlane {
-  int64_t p, q, k;
+/// One side of a shadow, p P + q Q + k >= 0 over cell coordinates, ready to be solved for Q: floor((p P + k) / size) is
+/// an upper bound of Q where q < 0, and the lower bound's negative where q > 0.
+struct ShadowSide {
+  int64_t p, k, size;
+  bool bounds_below;
 };
+ISOSHELL_HD inline ShadowSide shadow_side(int64_t p, int64_t q, int64_t k) {
+  // Without Q, the bound is beyond every cell where the side holds, and -1 or less where it does not.
+  if (q == 0) return {p << 15, (k << 15) + 0x7fff, 1, false};
+  return {p, k, q < 0 ? -q : q, q > 0};
+}
 
-/// A triangle seen along an axis: cell face (P, Q) meets it if and only if every half-plane holds and the face lies in
-/// the bounding range.
+/// A triangle seen along an axis: cell face (P, Q) meets it if and only if every side holds and the face lies in the
+/// bounding range.
 struct TriangleShadow {
-  CellHalfPlane edge[6];
+  ShadowSide side[6];
   int count;
+
+  /// Cells Q in 0..last of a row.
+  ISOSHELL_HD CellRun row(int32_t row, int32_t last) const {
+    int64_t lo = 0, hi = last;
+    for (int i = 0; i < count; ++i) {
+      const ShadowSide& s = side[i];
+      const int64_t bound = floor_div(s.k + s.p * row, s.size);
+      const int64_t below = s.bounds_below ? -bound : 0, above = s.bounds_below ? last : bound;
+      lo = below > lo ? below : lo;
+      hi = above < hi ? above : hi;
+    }
+    if (lo > hi) return {1, 0};
+    return {int32_t(lo), int32_t(hi)};
+  }
 };
 
 ISOSHELL_HD inline int64_t positive_part(int64_t x) { return x > 0 ? x : 0; }
@@ -71,7 +92,7 @@ ISOSHELL_HD inline TriangleShadow shadow_of(const TriangleQ8& t, int p, int q, c
     // The cell's corner farthest along the normal must not be outside the edge; divided by the cell's side.
     const auto add = [&](int64_t mp, int64_t mq) {
       const int64_t k = positive_part(mp) + positive_part(mq) + (-(mp * rp + mq * rq) >> shift);
-      shadow.edge[shadow.count++] = {mp, mq, k};
+      shadow.side[shadow.count++] = shadow_side(mp, mq, k);
     };
     if (area >= 0) add(np, nq);
     if (area <= 0) add(-np, -nq);
@@ -79,40 +100,32 @@ ISOSHELL_HD inline TriangleShadow shadow_of(const TriangleQ8& t, int p, int q, c
   return shadow;
 }
 
-/// Cells Q in 0..last of row P that meet the shadow.
-ISOSHELL_HD inline CellRun run_of_row(const TriangleShadow& shadow, int32_t row, int32_t last) {
-  int64_t lo = 0, hi = last;
-  for (int e = 0; e < shadow.count; ++e) {
-    const CellHalfPlane& h = shadow.edge[e];
-    const int64_t value = h.k + h.p * row;
-    if (h.q > 0) {
-      const int64_t first = -floor_div(value, h.q);
-      lo = first > lo ? first : lo;
-    } else if (h.q < 0) {
-      const int64_t end = floor_div(value, -h.q);
-      hi = end < hi ? end : hi;
-    } else if (value < 0) {
-      return {1, 0};
-    }
-  }
-  if (lo > hi) return {1, 0};
-  return {int32_t(lo), int32_t(hi)};
-}
-
-/// Cells that the triangle's bounding box meets, within `clip`.
-ISOSHELL_HD inline CellRange bounding_range(const TriangleQ8& t, const CellRange& clip, int shift) {
+/// Cells that the triangle's bounding box meets.
+ISOSHELL_HD inline CellRange bounding_range(const TriangleQ8& t, int shift) {
   CellRange r;
   for (int axis = 0; axis < 3; ++axis) {
     const int32_t a = t.at[0][axis], b = t.at[1][axis], c = t.at[2][axis];
     const int32_t ab_lo = a < b ? a : b, ab_hi = a < b ? b : a;
-    const int32_t lo = ((ab_lo < c ? ab_lo : c) - 1) >> shift, hi = (ab_hi > c ? ab_hi : c) >> shift;
-    r.lo[axis] = lo > clip.lo[axis] ? lo : clip.lo[axis];
-    r.hi[axis] = hi < clip.hi[axis] ? hi : clip.hi[axis];
+    r.lo[axis] = ((ab_lo < c ? ab_lo : c) - 1) >> shift;
+    r.hi[axis] = (ab_hi > c ? ab_hi : c) >> shift;
+  }
+  return r;
+}
+ISOSHELL_HD inline CellRange common_range(const CellRange& a, const CellRange& b) {
+  CellRange r;
+  for (int axis = 0; axis < 3; ++axis) {
+    r.lo[axis] = a.lo[axis] > b.lo[axis] ? a.lo[axis] : b.lo[axis];
+    r.hi[axis] = a.hi[axis] < b.hi[axis] ? a.hi[axis] : b.hi[axis];
   }
   return r;
 }
 ISOSHELL_HD inline bool is_empty(const CellRange& r) {
   return r.lo[0] > r.hi[0] || r.lo[1] > r.hi[1] || r.lo[2] > r.hi[2];
+}
+/// The axis along which a range is a single row, or -1. A triangle that fits into one row meets all its cells.
+ISOSHELL_HD inline int axis_of_row(const CellRange& r) {
+  const bool x = r.lo[0] == r.hi[0], y = r.lo[1] == r.hi[1], z = r.lo[2] == r.hi[2];
+  return x && y ? 2 : x && z ? 1 : y && z ? 0 : -1;
 }
 
 /// The triangle's plane as a function of columns: floor division carried from one column to the next without dividing.
@@ -181,8 +194,13 @@ ISOSHELL_HD inline int largest_axis(int64_t x, int64_t y, int64_t z) {
 /// most kSpan cells wide. Cost: a few divisions a row, none a column.
 template <int kSpan, class Visit>
 ISOSHELL_HD inline void for_each_run(const TriangleQ8& t, const CellRange& clip, int shift, Visit visit) {
-  const CellRange range = bounding_range(t, clip, shift);
+  const CellRange box = bounding_range(t, shift), range = common_range(box, clip);
   if (is_empty(range)) return;
+  const int row = axis_of_row(box);
+  if (row >= 0) {
+    visit(row, Voxel{range.lo[0], range.lo[1], range.lo[2]}, range.hi[row] - range.lo[row] + 1);
+    return;
+  }
   const Vec64 n = triangle_normal(t);
   const int32_t span[3] = {range.hi[0] - range.lo[0], range.hi[1] - range.lo[1], range.hi[2] - range.lo[2]};
   const bool flat = n.x == 0 && n.y == 0 && n.z == 0;
@@ -192,9 +210,9 @@ ISOSHELL_HD inline void for_each_run(const TriangleQ8& t, const CellRange& clip,
                        on_vw = shadow_of(t, v, w, range.lo, shift);
   const TrianglePlane plane = plane_of(t, n, w, range.lo, shift);
   CellRun along_v[kSpan];
-  for (int32_t j = 0; j <= span[v]; ++j) along_v[j] = run_of_row(on_vw, j, span[w]);
+  for (int32_t j = 0; j <= span[v]; ++j) along_v[j] = on_vw.row(j, span[w]);
   for (int32_t i = 0; i <= span[u]; ++i) {
-    const CellRun columns = run_of_row(on_uv, i, span[v]), along_u = run_of_row(on_uw, i, span[w]);
+    const CellRun columns = on_uv.row(i, span[v]), along_u = on_uw.row(i, span[w]);
     if (columns.lo > columns.hi || along_u.lo > along_u.hi) continue;
     PlaneWalk walk = {plane.normal[v], plane.normal[w], 0, 0, span[w], 0};
     const int64_t at_row = plane.normal[u] * i + plane.normal[v] * columns.lo;
