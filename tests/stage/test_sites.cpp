@@ -3,6 +3,7 @@
 #include <array>
 #include <set>
 
+#include "core/voxel_set.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "oracle/overlap_oracle.h"
@@ -77,11 +78,43 @@ TEST_CASE("sites: exactly the voxels whose closed cube meets a closed triangle",
     }
 }
 
+TEST_CASE("sites: the index equals the one that is built from leaves and masks", "[sites][stage]") {
+  Context context;
+  const LatticeSurface s = shapes::snapped(shapes::torus(2, .7, 24, 12), 600, context);
+  const SiteSet sites = voxelize(s, context);
+  const VoxelSet& got = sites.voxels;
+  VoxelSet expect;
+  expect.leaf_key = Buffer<uint64_t>(got.leaf_count());
+  expect.mask = Buffer<LeafMask>(got.leaf_count());
+  std::copy(got.leaf_key.begin(), got.leaf_key.end(), expect.leaf_key.begin());
+  std::copy(got.mask.begin(), got.mask.end(), expect.mask.begin());
+  index_leaves(expect, s.frame.extent_vox);
+  CHECK(std::equal(got.block_dims, got.block_dims + 3, expect.block_dims));
+  CHECK(std::equal(got.first.begin(), got.first.end(), expect.first.begin(), expect.first.end()));
+  CHECK(
+      std::equal(got.block_table.begin(), got.block_table.end(), expect.block_table.begin(), expect.block_table.end()));
+  REQUIRE(got.blocks.size() == expect.blocks.size());
+  int64_t wrong = 0;
+  for (int64_t b = 0; b < got.blocks.size(); ++b)
+    wrong += got.blocks[b].first_leaf != expect.blocks[b].first_leaf ||
+             !std::equal(got.blocks[b].word, got.blocks[b].word + 64, expect.blocks[b].word) ||
+             !std::equal(got.blocks[b].before, got.blocks[b].before + 64, expect.blocks[b].before);
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("sites: triangles on voxel boundaries occupy the voxels on both sides", "[sites][stage]") {
   Context context;
   const LatticeSurface s = shapes::on_voxel_boundaries(context);
   for (PointQ8 p : s.points) REQUIRE((p.x % 256 == 0 && p.y % 256 == 0 && p.z % 256 == 0));
   CHECK(voxels_of(voxelize(s, context).voxels) == sites_by_axes(s));
+}
+
+TEST_CASE("sites: a surface outside its lattice is refused", "[sites][stage]") {
+  Context context;
+  LatticeSurface s = shapes::snapped(shapes::box({0, 0, 0}, {1, 1, 1}), 8, context);
+  s.points[0].x = s.frame.extent_vox[0] * kOneVoxelQ8;
+  CHECK_THROWS_AS(voxelize(s, context), Error);
+  CHECK_THROWS_AS(voxelize(LatticeSurface{}, context), Error);
 }
 
 TEST_CASE("sites: order of the file and threads change nothing", "[sites][stage][parity]") {
