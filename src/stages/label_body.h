@@ -99,29 +99,16 @@ struct LabelLeaf {
   SeedSpacing spacing;
   View<uint32_t> out;
 
-  struct Candidate {
-    GridSeed seed;
-    int64_t nearest;
-  };
-
   ISOSHELL_HD void operator()(int64_t leaf) const {
     const int64_t begin = corners.first[leaf], end = corners.first[leaf + 1];
     Bounds bounds = empty_bounds();
     for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
-    int64_t limit = search_limit(bounds);
-
-    Candidate candidates[kCapacity];
-    int count = 0;
-    bool overflow = false;
-    for_each_within(bounds, limit, [&](const GridSeed& s) {
-      const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
-      if (range.lo > limit) return;
-      if (count == kCapacity) overflow = true;
-      else candidates[count++] = {s, range.lo};
-    });
-    if (overflow) return label_directly(bounds, limit, begin, end);
+    GridSeed candidates[kCapacity];
+    int64_t limit;
+    const int count = gather(bounds, candidates, limit);
+    if (count > kCapacity) return label_directly(bounds, limit, begin, end);
     if (count == 1) {
-      for (int64_t v = begin; v < end; ++v) out[v] = candidates[0].seed.id;
+      for (int64_t v = begin; v < end; ++v) out[v] = candidates[0].id;
       return;
     }
     sort_by_id(candidates, count);
@@ -129,17 +116,38 @@ struct LabelLeaf {
   }
 
  private:
-  /// Smallest of the seeds' largest costs over the box: no vertex pays more. Widens the search until that is certain.
-  ISOSHELL_HD int64_t search_limit(const Bounds& bounds) const {
-    for (int64_t reach = spacing.h_q8;; reach *= 2) {
-      int64_t limit = INT64_MAX;
+  /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
+  /// costs, taken over those in reach. Returns more than kCapacity when they do not fit.
+  ISOSHELL_HD int gather(const Bounds& bounds, GridSeed* candidates, int64_t& limit) const {
+    const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds.lo, bounds.hi))));
+    for (int64_t reach = diagonal + spacing.h_q8 * 3 / 4;; reach *= 2) {
+      limit = INT64_MAX;
+      int count = 0;
       for_each_within(bounds, reach * reach, [&](const GridSeed& s) {
-        const int64_t most = cost_range(bounds, s.position, s.normal, spacing.penalty_q16).hi;
-        if (most < limit) limit = most;
+        const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
+        if (range.hi < limit) limit = range.hi;
+        if (count < kCapacity) candidates[count] = s;
+        ++count;
       });
-      // Any seed's largest cost bounds every vertex's label, even if a seed out of reach has a smaller one.
-      if (limit != INT64_MAX) return limit;
+      if (limit == INT64_MAX) continue;
+      if (limit <= reach * reach && count <= kCapacity) return keep_winnable(bounds, limit, candidates, count);
+      // Reached too short or too far; the limit is a bound all the same, and says how far to look.
+      count = 0;
+      for_each_within(bounds, limit, [&](const GridSeed& s) {
+        if (cost_range(bounds, s.position, s.normal, spacing.penalty_q16).lo > limit) return;
+        if (count < kCapacity) candidates[count] = s;
+        ++count;
+      });
+      return count;
     }
+  }
+
+  ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, GridSeed* candidates, int count) const {
+    int kept = 0;
+    for (int c = 0; c < count; ++c)
+      if (cost_range(bounds, candidates[c].position, candidates[c].normal, spacing.penalty_q16).lo <= limit)
+        candidates[kept++] = candidates[c];
+    return kept;
   }
 
   template <class Visit>
@@ -148,11 +156,11 @@ struct LabelLeaf {
     grid.for_each_in({b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}, visit);
   }
 
-  ISOSHELL_HD static void sort_by_id(Candidate* c, int count) {
+  ISOSHELL_HD static void sort_by_id(GridSeed* c, int count) {
     for (int i = 1; i < count; ++i) {
-      const Candidate here = c[i];
+      const GridSeed here = c[i];
       int j = i;
-      for (; j > 0 && c[j - 1].seed.id > here.seed.id; --j) c[j] = c[j - 1];
+      for (; j > 0 && c[j - 1].id > here.id; --j) c[j] = c[j - 1];
       c[j] = here;
     }
   }
@@ -171,7 +179,7 @@ struct LabelLeaf {
   }
 
   /// The eight 4^3 quarters of the leaf in turn.
-  ISOSHELL_HD void label_quarters(int64_t leaf, const Candidate* candidates, int count) const {
+  ISOSHELL_HD void label_quarters(int64_t leaf, const GridSeed* candidates, int count) const {
     for (int q = 0; q < 8; ++q) {
       int64_t member[64];
       int members = 0;
@@ -191,14 +199,14 @@ struct LabelLeaf {
     }
   }
 
-  ISOSHELL_HD void label_quarter(const int64_t* member, int members, const Candidate* candidates, int count) const {
+  ISOSHELL_HD void label_quarter(const int64_t* member, int members, const GridSeed* candidates, int count) const {
     Bounds bounds = empty_bounds();
     for (int m = 0; m < members; ++m) include(bounds, position[member[m]], normal[member[m]]);
     int64_t least[kCapacity];
     int64_t limit = INT64_MAX;
     bool may_oppose = false;
     for (int c = 0; c < count; ++c) {
-      const GridSeed& s = candidates[c].seed;
+      const GridSeed& s = candidates[c];
       const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
       least[c] = range.lo;
       if (range.hi < limit) limit = range.hi;
@@ -212,21 +220,21 @@ struct LabelLeaf {
     else label_wide(member, members, candidates, count, least, limit);
   }
 
-  ISOSHELL_HD void label_wide(const int64_t* member, int members, const Candidate* candidates, int count,
+  ISOSHELL_HD void label_wide(const int64_t* member, int members, const GridSeed* candidates, int count,
                               const int64_t* least, int64_t limit) const {
     for (int m = 0; m < members; ++m) {
       int64_t best = INT64_MAX;
       uint32_t id = kNone;
       for (int c = 0; c < count; ++c) {
         if (least[c] > limit) continue;
-        const int64_t here = cost(position[member[m]], normal[member[m]], candidates[c].seed, spacing.penalty_q16);
-        if (here < best) best = here, id = candidates[c].seed.id;
+        const int64_t here = cost(position[member[m]], normal[member[m]], candidates[c], spacing.penalty_q16);
+        if (here < best) best = here, id = candidates[c].id;
       }
       out[member[m]] = id;
     }
   }
 
-  ISOSHELL_HD void label_narrow(const int64_t* member, int members, const Candidate* candidates, int count,
+  ISOSHELL_HD void label_narrow(const int64_t* member, int members, const GridSeed* candidates, int count,
                                 const int64_t* least, int64_t limit, PointQ8 origin) const {
     uint32_t x[64], y[64], z[64], best[64], id[64];
     for (int m = 0; m < members; ++m) {
@@ -239,7 +247,7 @@ struct LabelLeaf {
     }
     for (int c = 0; c < count; ++c) {
       if (least[c] > limit) continue;
-      const GridSeed& s = candidates[c].seed;
+      const GridSeed& s = candidates[c];
       const uint32_t sx = uint32_t(s.position.x - origin.x), sy = uint32_t(s.position.y - origin.y),
                      sz = uint32_t(s.position.z - origin.z), seed = s.id;
       for (int m = 0; m < members; ++m) {

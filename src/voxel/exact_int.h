@@ -32,13 +32,15 @@ ISOSHELL_HD inline int64_t floor_div(int64_t a, int64_t b) { return a / b - (a %
 /// a / b rounded to nearest, halves up, b > 0.
 ISOSHELL_HD inline int64_t round_div(int64_t a, int64_t b) { return floor_div(2 * a + b, 2 * b); }
 
-/// floor(sqrt(n)), exact, for n < 2^62.
+/// floor(sqrt(n)), exact, for n < 2^62: the rounded root is off by at most one.
 ISOSHELL_HD inline uint64_t isqrt(uint64_t n) {
-  uint64_t root = 0;
-  for (uint64_t bit = uint64_t(1) << 31; bit; bit >>= 1) {
-    const uint64_t trial = root | bit;
-    if (trial * trial <= n) root = trial;
-  }
+#if defined(__CUDA_ARCH__)
+  uint64_t root = uint64_t(__dsqrt_rn(double(n)));
+#else
+  uint64_t root = uint64_t(__builtin_sqrt(double(n)));
+#endif
+  root -= root * root > n;
+  root += (root + 1) * (root + 1) <= n;
   return root;
 }
 
