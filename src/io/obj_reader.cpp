@@ -16,7 +16,7 @@ enum class ObjLine { other, vertex, face };
 // What the line at p holds; p moves behind the keyword.
 ObjLine classify(const char*& p, const char* end) {
   p = skip_blanks(p, end);
-  if (end - p < 2 || !is_blank(p[1])) return ObjLine::other;
+  if (p == end || !ends_token(p + 1, end)) return ObjLine::other;
   const char keyword = *p;
   ++p;
   return keyword == 'v' ? ObjLine::vertex : keyword == 'f' ? ObjLine::face : ObjLine::other;
