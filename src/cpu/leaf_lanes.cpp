@@ -24,17 +24,18 @@ using Lanes = uint32_t __attribute__((vector_size(32)));
 constexpr int kMaxRows = 8 + 2 * kMaxBandVox;  ///< rows of the halo of a leaf, per axis
 constexpr int kMaxReach = 3;
 
-/// Squared distances from the eight voxels of a row to a site `z` voxels from its first, and the same for all eight.
+/// Squared distances from the eight voxels of a row to a site `s - 8 * kMaxReach` voxels from its first, and from all
+/// eight to a row `s - kMaxBandVox` away.
 struct Tables {
   alignas(32) uint32_t along[8 * (2 * kMaxReach + 1)][8];
-  alignas(32) uint32_t across[kMaxRows][8];
+  alignas(32) uint32_t across[2 * kMaxBandVox + 1][8];
 };
 constexpr Tables make_tables() {
   Tables t{};
   for (int s = 0; s < 8 * (2 * kMaxReach + 1); ++s)
     for (int z = 0; z < 8; ++z) t.along[s][z] = key_of_distance_sq((s - 8 * kMaxReach - z) * (s - 8 * kMaxReach - z));
-  for (int d = 0; d < kMaxRows; ++d)
-    for (int z = 0; z < 8; ++z) t.across[d][z] = key_of_distance_sq(d * d);
+  for (int s = 0; s <= 2 * kMaxBandVox; ++s)
+    for (int z = 0; z < 8; ++z) t.across[s][z] = key_of_distance_sq((s - kMaxBandVox) * (s - kMaxBandVox));
   return t;
 }
 constexpr Tables kTables = make_tables();
@@ -111,10 +112,9 @@ ISOSHELL_INLINE uint64_t pass_z(const Neighbourhood& around, const Plane<kSpan>&
 ISOSHELL_INLINE void pass_across(const Lanes* in, int stride, int at, int band, int first, int last, Lanes& best) {
   const int from = at > first ? at : first, to = at + 2 * band < last ? at + 2 * band : last;
   best = Lanes{} + kNoKey;
-  for (int j = from; j <= to; ++j) {
-    const int distance = j - at - band;
-    lower_to(best, in[j * stride] + lanes(kTables.across[distance < 0 ? -distance : distance]));
-  }
+  if (from > to) return;
+  const uint32_t(*distance)[8] = &kTables.across[kMaxBandVox + from - at - band];
+  for (int j = from; j <= to; ++j, ++distance) lower_to(best, in[j * stride] + lanes(*distance));
 }
 
 template <int kSpan>
