@@ -42,8 +42,10 @@ class Checker {
         if (v >= vertex_count)
           throw Error(ErrorCode::internal, "check",
                       "triangle corner " + std::to_string(v) + " of " + std::to_string(vertex_count) + " vertices");
-      if (t.a == t.b || t.b == t.c || t.c == t.a) ++found_.degenerate_triangles;
-      else corners_.insert(corners_.end(), {t.a, t.b, t.c});
+      if (t.a == t.b || t.b == t.c || t.c == t.a)
+        ++found_.degenerate_triangles;
+      else
+        corners_.insert(corners_.end(), {t.a, t.b, t.c});
     }
   }
 
@@ -88,8 +90,10 @@ class Checker {
         while (stop != end && stop->larger_end == run->larger_end) ++stop;
         ++edges_;
         vertices.unite(v, run->larger_end);
-        if (stop - run == 1) boundary.push_back(run->number);
-        else if (stop - run > 2 || run[0].rises == run[1].rises) ++found_.nonmanifold_edges;
+        if (stop - run == 1)
+          boundary.push_back(run->number);
+        else if (stop - run > 2 || run[0].rises == run[1].rises)
+          ++found_.nonmanifold_edges;
         else {
           fans.unite(run[0].number, next_in_triangle(run[1].number));
           fans.unite(next_in_triangle(run[0].number), run[1].number);
@@ -128,8 +132,10 @@ class Checker {
 
   void count_vertices() {
     for (uint32_t n : fans_) {
-      if (n == 0) ++found_.unreferenced_vertices;
-      else ++referenced_;
+      if (n == 0)
+        ++found_.unreferenced_vertices;
+      else
+        ++referenced_;
       if (n > 1) ++found_.nonmanifold_vertices;
     }
   }

@@ -6,7 +6,8 @@
 
 namespace isoshell {
 
-DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report, Context& context) {
+DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
+                          Context& context) {
   const int64_t seed_count = seeds.size(), vertex_count = sheet.vertex_count();
   if (seed_count < 1 || seed_count > vertex_count)
     throw Error(ErrorCode::usage, "dual",

@@ -1,10 +1,10 @@
 // triangulate_dual (see stages.h), written once over an executor. Paper section 3.5; pipeline step 7.
 //
-// The labels of the sheet's vertices cut the sheet into cells; a sheet triangle with three labels is a face of the dual.
-// When every cell is a disk in one piece, two cells meet in at most one arc, and every component of the sheet has four
-// cells or more, the dual is a triangulation of the sheet. Strays are resolved first, then cells that are not disks are
-// split, then pairs that meet twice; a split keeps both halves connected, so no strays come back, and since the finest
-// partition is the sheet itself, the rounds end.
+// The labels of the sheet's vertices cut the sheet into cells; a sheet triangle with three labels is a face of the
+// dual. When every cell is a disk in one piece, two cells meet in at most one arc, and every component of the sheet has
+// four cells or more, the dual is a triangulation of the sheet. Strays are resolved first, then cells that are not
+// disks are split, then pairs that meet twice; a split keeps both halves connected, so no strays come back, and since
+// the finest partition is the sheet itself, the rounds end.
 #pragma once
 
 #include "isoshell/stages.h"
@@ -32,8 +32,13 @@ template <class Exec>
 class Partition {
  public:
   Partition(Exec& exec, const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report)
-      : exec_(exec), sheet_(sheet), seeds_(seeds), report_(report), rounds_left_(options.max_repair_rounds),
-        first_count_(seeds.size()), label_(exec.template make<uint32_t>(sheet.vertex_count())) {
+      : exec_(exec),
+        sheet_(sheet),
+        seeds_(seeds),
+        report_(report),
+        rounds_left_(options.max_repair_rounds),
+        first_count_(seeds.size()),
+        label_(exec.template make<uint32_t>(sheet.vertex_count())) {
     report_ = {};
     label_sheet(exec_, sheet_, seeds_, seed_spacing(doubled_area_q16(exec_, sheet_), seeds_.size()), label_.view());
     grow(exec_, cells_, seeds_.size());
@@ -49,8 +54,10 @@ class Partition {
       const int64_t unused = unused_seeds().size();
       report_.failed_cells = strays + failing.size() + unused;
       if (report_.failed_cells == 0 || strays > 0 || !take_round()) break;
-      if (failing.size() > 0) split(failing);
-      else split(largest_cells(unused));
+      if (failing.size() > 0)
+        split(failing);
+      else
+        split(largest_cells(unused));
     }
     if (faces.empty()) faces = dual_faces(exec_, sheet_, label_.view());
     return faces;
@@ -151,10 +158,10 @@ class Partition {
       exec_.fill(mark_.view(), uint8_t(SplitCell::kClear));
     }
     const Buffer<uint32_t> ids = new_ids(count);
-    exec_.for_each("split cells", count,
-                   SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(),
-                             sheet_.position.view(), seeds_.position.view(), cells_.view(), queue.view(), mark_.view(),
-                             half.view()});
+    exec_.for_each(
+        "split cells", count,
+        SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(), sheet_.position.view(),
+                  seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()});
     exec_.for_each("apply splits", count,
                    ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(),
                               cells_.view(), writer_of(sheet_, seeds_)});

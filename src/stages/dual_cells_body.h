@@ -12,9 +12,9 @@ namespace isoshell::dual {
 /// What is known of every cell; index is the seed id. A cell's main piece is its largest connected set of vertices, the
 /// one with the smallest vertex among equals.
 struct CellsView {
-  View<uint32_t> size;   ///< vertices of the main piece; 0 when the seed owns nothing
-  View<uint32_t> root;   ///< a vertex of the main piece; kNone when the seed owns nothing
-  View<int32_t> euler;   ///< V - E + F of the vertices with this label; 1 for a disk, once there is only one piece
+  View<uint32_t> size;  ///< vertices of the main piece; 0 when the seed owns nothing
+  View<uint32_t> root;  ///< a vertex of the main piece; kNone when the seed owns nothing
+  View<int32_t> euler;  ///< V - E + F of the vertices with this label; 1 for a disk, once there is only one piece
 };
 struct Cells {
   Buffer<uint32_t> size;
@@ -141,7 +141,8 @@ Pieces find_pieces(Exec& exec, const Sheet& sheet, View<const uint32_t> label, C
   const int64_t n = sheet.vertex_count();
   Pieces pieces{exec.template make<uint32_t>(n), exec.template make<uint32_t>(n)};
   exec.for_each("start pieces", n, StartAlone{pieces.piece.view()});
-  exec.for_each("hook pieces", sheet.triangles.size(), HookEqualLabels{sheet.triangles.view(), label, pieces.piece.view()});
+  exec.for_each("hook pieces", sheet.triangles.size(),
+                HookEqualLabels{sheet.triangles.view(), label, pieces.piece.view()});
   exec.for_each("root pieces", n, PointAtRoot{pieces.piece.view()});
   exec.fill(pieces.size.view(), uint32_t(0));
   exec.for_each("count pieces", (n + CountPieceSizes::kRun - 1) / CountPieceSizes::kRun,

@@ -1,4 +1,5 @@
-// Output faces of the dual, the pairs of cells they join, and what is wrong with them (pipeline step 7, checks iii, iv).
+// Output faces of the dual, the pairs of cells they join, and what is wrong with them (pipeline step 7, checks iii,
+// iv).
 #pragma once
 
 #include "stages/dual_cells_body.h"
@@ -23,18 +24,19 @@ struct MakeFace {
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = triangles[selected[i]];
     const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
-    if (a < b && a < c) face[i] = {a, b, c};
-    else if (b < c) face[i] = {b, c, a};
-    else face[i] = {c, a, b};
+    if (a < b && a < c)
+      face[i] = {a, b, c};
+    else if (b < c)
+      face[i] = {b, c, a};
+    else
+      face[i] = {c, a, b};
   }
 };
 template <class Exec>
 Buffer<TriangleIndices> dual_faces(Exec& exec, const Sheet& sheet, View<const uint32_t> label) {
-  const Buffer<uint32_t> selected =
-      exec.select(sheet.triangles.size(), HasThreeLabels{sheet.triangles.view(), label});
+  const Buffer<uint32_t> selected = exec.select(sheet.triangles.size(), HasThreeLabels{sheet.triangles.view(), label});
   Buffer<TriangleIndices> faces = exec.template make<TriangleIndices>(selected.size());
-  exec.for_each("make faces", selected.size(),
-                MakeFace{sheet.triangles.view(), label, selected.view(), faces.view()});
+  exec.for_each("make faces", selected.size(), MakeFace{sheet.triangles.view(), label, selected.view(), faces.view()});
   return faces;
 }
 
@@ -83,7 +85,7 @@ struct RequestNonDisks {
 /// Check iii: of a pair that more than two faces see, the larger cell is split where it touches the other, ties by the
 /// smaller id; of several requests to one cell the smallest wins.
 struct RequestDoublePairs {
-  View<const uint64_t> pair;   ///< sorted
+  View<const uint64_t> pair;  ///< sorted
   CellsView cells;
   View<uint32_t> request;
   ISOSHELL_HD void operator()(int64_t i) const {
@@ -146,7 +148,7 @@ struct RankCell {
   ISOSHELL_HD void operator()(int64_t s) const { rank[s] = ~piece_rank(cells.size[s], uint32_t(s)); }
 };
 struct RequestRanked {
-  View<const uint64_t> rank;   ///< ascending, so larger cells first
+  View<const uint64_t> rank;  ///< ascending, so larger cells first
   CellsView cells;
   View<uint32_t> request;
   ISOSHELL_HD void operator()(int64_t i) const {

@@ -14,19 +14,19 @@ struct Half {
 };
 
 /// Splits cell[i]: its old source is its vertex nearest to its seed, the new source the vertex farthest from that along
-/// edges (among those that touch the requested cell, if one is), ties by the smaller vertex. A vertex goes to the source
-/// that is fewer edges away within the cell, ties to the old one; so both halves are connected. Writes marks only, so
-/// that all splits of a round read the same labels.
+/// edges (among those that touch the requested cell, if one is), ties by the smaller vertex. A vertex goes to the
+/// source that is fewer edges away within the cell, ties to the old one; so both halves are connected. Writes marks
+/// only, so that all splits of a round read the same labels.
 struct SplitCell {
   enum Mark : uint8_t { kClear, kSeen, kMeasured, kOldHalf, kNewHalf };
 
   SheetGraph graph;
   View<const uint32_t> label, cell, request;
-  View<const int64_t> first;         ///< offsets of the cells' places in queue
+  View<const int64_t> first;  ///< offsets of the cells' places in queue
   View<const PointQ8> vertex_position, seed_position;
   CellsView cells;
   View<uint32_t> queue;
-  View<uint8_t> mark;                ///< kClear outside the cells of the round, before and after
+  View<uint8_t> mark;  ///< kClear outside the cells of the round, before and after
   View<Half> half;
 
   ISOSHELL_HD void operator()(int64_t i) const {
@@ -49,7 +49,8 @@ struct SplitCell {
   /// Breadth first over the vertices of the cell whose mark is `fresh`; each takes mark_from(its predecessor).
   /// Calls from the first `count` places; returns how many vertices the queue then holds.
   template <class MarkFrom>
-  ISOSHELL_HD int64_t spread(uint32_t id, View<uint32_t> places, int64_t count, uint8_t fresh, MarkFrom mark_from) const {
+  ISOSHELL_HD int64_t spread(uint32_t id, View<uint32_t> places, int64_t count, uint8_t fresh,
+                             MarkFrom mark_from) const {
     for (int64_t at = 0; at < count; ++at) {
       const uint32_t v = places[at];
       graph.for_each_corner(v, [&](uint32_t w, uint32_t) {

@@ -24,8 +24,8 @@ struct IsStrayVertex {
 /// The strays in ascending order of their roots, and their vertices, ascending within each.
 struct StraysView {
   View<const uint32_t> root;
-  View<const int64_t> first;     ///< count + 1 offsets into member
-  View<const uint64_t> member;   ///< root << 32 | vertex
+  View<const int64_t> first;    ///< count + 1 offsets into member
+  View<const uint64_t> member;  ///< root << 32 | vertex
   ISOSHELL_HD uint32_t vertex(int64_t m) const { return uint32_t(member[m]); }
 };
 struct Strays {

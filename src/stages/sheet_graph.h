@@ -16,9 +16,12 @@ struct SheetGraph {
   ISOSHELL_HD void for_each_corner(uint32_t v, Visit visit) const {
     for (int64_t n = first[v]; n < first[v + 1]; ++n) {
       const TriangleIndices t = triangles[incident[n]];
-      if (t.a == v) visit(t.b, t.c);
-      else if (t.b == v) visit(t.c, t.a);
-      else visit(t.a, t.b);
+      if (t.a == v)
+        visit(t.b, t.c);
+      else if (t.b == v)
+        visit(t.c, t.a);
+      else
+        visit(t.a, t.b);
     }
   }
 };

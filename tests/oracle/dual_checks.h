@@ -39,7 +39,7 @@ inline int64_t count_pieces(const std::set<uint32_t>& vertices, const std::set<E
 
 struct DualChecks {
   int64_t cells_in_pieces = 0, cells_not_disks = 0, bad_pairs = 0, small_components = 0, empty_seeds = 0;
-  std::vector<std::array<uint32_t, 3>> faces;   ///< canonical, sorted, repeats kept
+  std::vector<std::array<uint32_t, 3>> faces;  ///< canonical, sorted, repeats kept
   bool all_pass() const {
     return !cells_in_pieces && !cells_not_disks && !bad_pairs && !small_components && !empty_seeds;
   }
@@ -61,7 +61,8 @@ inline DualChecks check_labels(const Sheet& sheet, const std::vector<uint32_t>& 
     const std::array<uint32_t, 3> v = {t.a, t.b, t.c}, l = {label[t.a], label[t.b], label[t.c]};
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
-      if (l[i] == l[j]) cells[l[i]].edges.insert(edge(v[i], v[j]));
+      if (l[i] == l[j])
+        cells[l[i]].edges.insert(edge(v[i], v[j]));
       else {
         meeting.insert(edge(l[i], l[j]));
         pairs.try_emplace(edge(l[i], l[j]), 0);

@@ -131,7 +131,8 @@ TEST_CASE("dual: the repaired labels pass the four checks by brute force", "[dua
     }
 }
 
-TEST_CASE("dual: without rounds nothing is changed and failures are found exactly when there are some", "[dual][stage]") {
+TEST_CASE("dual: without rounds nothing is changed and failures are found exactly when there are some",
+          "[dual][stage]") {
   int64_t passed = 0, failed = 0;
   for (const NamedSheet& named : ugly_sheets())
     for (int64_t count : {3, 30, 150}) {

@@ -54,9 +54,8 @@ inline TriangleSoup cube_frame(int n, int width) {
 /// A plate with `holes` by `holes` square holes, bars `bar` wide, `thick` voxels thick: genus holes^2.
 inline TriangleSoup sieve(int holes, int hole, int bar, int thick) {
   const int n = holes * (hole + bar) + bar;
-  return solid_boundary(n, [=](int x, int y, int z) {
-    return z < thick && (x % (hole + bar) < bar || y % (hole + bar) < bar);
-  });
+  return solid_boundary(
+      n, [=](int x, int y, int z) { return z < thick && (x % (hole + bar) < bar || y % (hole + bar) < bar); });
 }
 
 /// A straight rod of one voxel's width.
@@ -66,7 +65,8 @@ inline TriangleSoup rod(int length) {
 
 /// `count` cubes of `side` voxels in a row, one voxel apart.
 inline TriangleSoup cubes(int count, int side) {
-  return solid_boundary(count * (side + 1), [=](int x, int y, int z) { return x % (side + 1) < side && y < side && z < side; });
+  return solid_boundary(count * (side + 1),
+                        [=](int x, int y, int z) { return x % (side + 1) < side && y < side && z < side; });
 }
 
 }  // namespace isoshell::shapes
