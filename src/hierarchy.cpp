@@ -12,7 +12,7 @@ namespace {
 constexpr int kMaxLevels = 3;
 constexpr int64_t kFewestSeeds = 64;          // of a level
 constexpr int64_t kFewestPerComponent = 12;
-constexpr int64_t kMostRepairPerMille = 5;
+constexpr int64_t kMostRepairPerMille = 15;
 constexpr int32_t kCoarsePasses = 60;
 constexpr int32_t kFinestPasses = 40;         // after a coarser level; without one the caller's own number
 
