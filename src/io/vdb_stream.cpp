@@ -6,10 +6,9 @@
 #include <tbb/parallel_for.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "io/memory_stream.h"
+#include "io/output_file.h"
 #include "io/vdb_cursor.h"
 #include "io/vdb_layout.h"
 #include "isoshell/error.h"
@@ -64,27 +63,8 @@ std::string metadata_bytes(const VdbGridSpan& grid) {
   return bytes + raw(std::string("is_saved_as_half_float")) + raw(std::string("bool")) + raw(std::string(1, half));
 }
 
-void write_bytes(const std::string& path, const std::vector<char>& bytes, bool overwrite) {
-  if (!overwrite && std::filesystem::exists(path))
-    throw Error(ErrorCode::unwritable_output, "write", path + ": exists; ask for overwriting to replace it");
-  const std::string temporary = path + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(bytes.data(), std::streamsize(bytes.size()));
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(temporary, path, failed);
-  if (!out || failed) {
-    std::filesystem::remove(temporary, failed);
-    throw Error(ErrorCode::unwritable_output, "write", path + ": cannot be written; check the folder and the free space");
-  }
-}
-
-}  // namespace
-
-void initialize_openvdb() { openvdb::initialize(); }
-
-void write_vdb_file(const std::string& path, const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
-                    const openvdb::MetaMap& meta, bool overwrite) {
+std::vector<char> join_grids(const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
+                             const openvdb::MetaMap& meta) {
   const StreamArchive archive;
   std::vector<std::vector<char>> parts(makers.size());
   tbb::parallel_for(size_t(0), makers.size(), [&](size_t i) { parts[i] = archive.bytes({makers[i]()}, {}); });
@@ -101,7 +81,23 @@ void write_vdb_file(const std::string& path, const std::vector<std::function<ope
   }
   const std::string tag = vdb_checksum_tag({file.data(), int64_t(file.size())});
   std::memcpy(file.data() + kVdbTagBegin, tag.data(), size_t(kVdbTagBytes));
-  write_bytes(path, file, overwrite);
+  return file;
+}
+
+}  // namespace
+
+void initialize_openvdb() { openvdb::initialize(); }
+
+void write_vdb_file(const std::string& path, const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
+                    const openvdb::MetaMap& meta, bool overwrite) {
+  OutputFile out(path, overwrite);
+  try {
+    const std::vector<char> file = join_grids(makers, meta);
+    out.write(file.data(), int64_t(file.size()));
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::out_of_memory, "write", path + ": out of memory while packing its grids; lower the resolution");
+  }
+  out.commit();
 }
 
 // A file of one grid: header, no metadata, the count 1, then the grid's descriptor, compression, transform and tree as

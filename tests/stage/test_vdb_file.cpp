@@ -294,6 +294,16 @@ TEST_CASE("vdb: without our checksum damage is refused or harmless", "[vdb][stag
   CHECK(refused > 40);
 }
 
+TEST_CASE("vdb: a file whose tag is of another form is still read", "[vdb][stage]") {
+  const TemporaryFile file("tag.vdb");
+  const Products p = make_products(100, 30, 4);
+  save_shell(file.path, p.surface, p.samples, p.shell);
+  std::string whole = bytes_of(file.path);
+  whole.replace(size_t(kVdbTagBegin), size_t(kVdbTagBytes), "~~ not at all what OpenVDB expects ~");
+  put_bytes(file.path, whole);
+  CHECK(digest(read_stage(file.path).shell) == digest(p.shell));
+}
+
 TEST_CASE("vdb: products that do not fit one another are not written", "[vdb][stage]") {
   const TemporaryFile file("misfit.vdb");
   Products p = make_products(20, 20, 4);

@@ -1,0 +1,36 @@
+#!/bin/sh
+# Do OpenVDB's own tools and its Python module open what we write? Exit status 77: skipped, the tools are not installed.
+# Usage: test_vdb_tools.sh WRITER, which writes stage files and a preview into the folder that it is given.
+set -eu
+writer=$1
+python=${PYTHON:-/usr/bin/python3}
+command -v vdb_print > /dev/null || { echo "skipped: vdb_print is not installed"; exit 77; }
+"$python" -c 'import pyopenvdb' 2> /dev/null || { echo "skipped: pyopenvdb is not installed"; exit 77; }
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$writer" "$folder"
+
+expect() {  # FILE TEXT...: vdb_print -m lists every text
+  file=$1
+  shift
+  vdb_print -m "$folder/$file" > "$folder/print.txt"
+  for text in "$@"; do
+    grep -q -- "$text" "$folder/print.txt" || { echo "vdb_print -m $file does not show: $text"; exit 1; }
+  done
+}
+expect a.shell.vdb closest_site distance_sq_vox shell_distance closest_offset surface_points surface_triangles \
+  'isoshell:stage: shell' 'class: unknown' 'vector_type: contravariant relative' 'creator: vdb_isomesh'
+expect a.voronoi.vdb seed_id seed_points seed_normals seed_homes 'isoshell:stage: voronoi'
+expect a.preview.vdb density seed_rand color 'class: fog volume'
+
+"$python" - "$folder/a.preview.vdb" <<'PYTHON'
+import sys, pyopenvdb
+grids = {grid.name: grid for grid in pyopenvdb.readAll(sys.argv[1])[0]}
+assert sorted(grids) == ["color", "density", "seed_rand"], sorted(grids)
+counts = {name: grid.activeVoxelCount() for name, grid in grids.items()}
+assert len(set(counts.values())) == 1 and counts["density"] > 0, counts
+for value in grids["seed_rand"].citerOnValues():
+    assert 0 < value.value <= 1, value.value
+PYTHON
+echo "opened by vdb_print and pyopenvdb"
