@@ -113,7 +113,7 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
   QuadMesh mesh;
   {
     Solid solid = close_sites(exec, sites, options.closing_vox);
-    make_well_composed(exec, solid);
+    if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);  // an addition may wall up a pocket
     mesh = list_boundary(exec, solid);
   }
   const SurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),

@@ -8,7 +8,7 @@
 namespace isoshell {
 namespace sheet_steps {
 
-/// Solid voxels of the leaves with sites when nothing is closed.
+/// Solid voxels of the leaves that hold walls.
 struct ComplementOfOutside {
   OutsideView out;
   View<uint64_t> key;
@@ -113,6 +113,19 @@ struct WantInsideNeighbours {
   }
 };
 
+/// The solid of every voxel that is not outside of `walls`, which must stay where it is as long as the solid lives.
+template <class Exec>
+Solid complement_of_outside(Exec& exec, const VoxelSetView& walls) {
+  Solid solid;
+  solid.outside = find_outside(exec, walls);
+  solid.set.leaf_key = exec.template make<uint64_t>(walls.leaf_key.size);
+  solid.set.mask = exec.template make<LeafMask>(walls.leaf_key.size);
+  exec.for_each("solid", walls.leaf_key.size,
+                ComplementOfOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
+  index_leaves(solid.set, BlockExtent(walls).vox);
+  return solid;
+}
+
 }  // namespace sheet_steps
 
 /// Result: with outside(r) the voxels that a path of face neighbours, all farther than r from every site (centre to
@@ -123,16 +136,8 @@ template <class Exec>
 Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   using namespace sheet_steps;
   const VoxelSetView site_view = sites.voxels.view();
+  if (closing_vox == 0) return complement_of_outside(exec, site_view);
   Solid solid;
-  if (closing_vox == 0) {
-    solid.outside = find_outside(exec, site_view);
-    solid.set.leaf_key = exec.template make<uint64_t>(site_view.leaf_key.size);
-    solid.set.mask = exec.template make<LeafMask>(site_view.leaf_key.size);
-    exec.for_each("solid", site_view.leaf_key.size,
-                  ComplementOfOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
-    index_leaves(solid.set, BlockExtent(site_view).vox);
-    return solid;
-  }
   ShellOptions band;
   band.band_vox = closing_vox;
   solid.blocked = build_shell(sites, band, exec.context()).voxels;
@@ -147,6 +152,14 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   exec.for_each("leaves inside", wanted.size(), WantInsideNeighbours{solid.view(), wanted.view()});
   give_masks(exec, solid, wanted.view());
   return solid;
+}
+
+/// Adds every voxel that the solid encloses. A well-composed solid stays so: only whole components of its boundary go.
+template <class Exec>
+void fill_cavities(Exec& exec, Solid& solid) {
+  VoxelSet walls = std::move(solid.set);
+  solid = sheet_steps::complement_of_outside(exec, walls.view());
+  solid.blocked = std::move(walls);
 }
 
 }  // namespace isoshell

@@ -75,6 +75,12 @@ inline Dense closed(const Dense& sites, int32_t r) {
   return out;
 }
 
+inline Dense filled(const Dense& solid) {
+  Dense out = outside_of(solid);
+  for (char& v : out.value) v = !v;
+  return out;
+}
+
 /// One synchronous round; see find_additions for what is added. Returns whether anything was.
 inline bool repair_once(Dense& solid) {
   std::vector<Voxel> add;

@@ -195,6 +195,8 @@ TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel"
       while (oracle::repair_once(expected)) {
       }
       CHECK(mismatches(solid, expected) == 0);
+      fill_cavities(exec, solid);
+      CHECK(mismatches(solid, oracle::filled(expected)) == 0);
       const QuadMesh mesh = list_boundary(exec, solid);
       CHECK(count_defects(mesh) == 0);
     }
@@ -257,7 +259,7 @@ TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet]
   check_sheet(sheet);
   TbbExecutor exec(context, "sheet");
   Solid solid = close_sites(exec, p.sites, 0);
-  make_well_composed(exec, solid);
+  if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);
   QuadMesh mesh = list_boundary(exec, solid);
   const SurfaceView view = {p.surface.points.view(), p.surface.triangles.view(), p.sites.voxels.view(),
                             p.samples.first.view(), p.samples.triangles.view()};
