@@ -86,6 +86,16 @@ ISOSHELL_HD inline bool within_45_degrees(Direction a, Direction b) {
   return d > 0 && 2 * d * d > dot(a, a) * dot(b, b);
 }
 
+/// Square of 2 sqrt(3) |normal| / (sum of the squared edges): 1 for the equilateral triangle, 0 without area.
+ISOSHELL_HD inline double shape_of(PointQ8 a, PointQ8 b, PointQ8 c) {
+  const Direction n = normal_of(a, b, c);
+  const double edges = double(distance_sq_q16(a, b)) + double(distance_sq_q16(b, c)) + double(distance_sq_q16(c, a));
+  return edges > 0 ? 12 * dot(n, n) / (edges * edges) : 0;
+}
+/// Below this, an angle is near 30 degrees or less, and no step may make the triangle worse.
+constexpr double kPoorShape = 0.5;
+ISOSHELL_HD inline bool harms_shape(double before, double after) { return after < kPoorShape && after < before; }
+
 /// Flips that would make valences more even, each with a key: larger gain first, then the smaller half-edge.
 struct FlipKey {
   MeshView mesh;
@@ -106,6 +116,9 @@ struct FlipKey {
     const Direction before_1 = normal_of(pa, pb, pc), before_2 = normal_of(pb, pa, pd);
     const Direction before = {before_1.x + before_2.x, before_1.y + before_2.y, before_1.z + before_2.z};
     if (!within_45_degrees(before, normal_of(pa, pd, pc)) || !within_45_degrees(before, normal_of(pd, pb, pc))) return 0;
+    const double shape_1 = shape_of(pa, pb, pc), shape_2 = shape_of(pb, pa, pd), flipped_1 = shape_of(pa, pd, pc),
+                 flipped_2 = shape_of(pd, pb, pc);
+    if (harms_shape(shape_1 < shape_2 ? shape_1 : shape_2, flipped_1 < flipped_2 ? flipped_1 : flipped_2)) return 0;
     return uint64_t(gain) << 32 | (0xffffffffu - h);
   }
 };
@@ -189,28 +202,28 @@ struct SmoothVertex {
   }
 };
 
-/// Marks the corners of triangles whose normal turned by more than 45 degrees in a step.
-struct MarkTurned {
+/// Marks the corners of triangles that a step turned by more than 45 degrees or made poor.
+struct MarkHarmed {
   View<const TriangleIndices> triangles;
   View<const PointQ8> before, after;
-  View<uint32_t> turned;
+  View<uint32_t> harmed;
   ISOSHELL_HD void operator()(int64_t t) const {
     const TriangleIndices i = triangles[t];
-    if (within_45_degrees(normal_of(before[i.a], before[i.b], before[i.c]), normal_of(after[i.a], after[i.b], after[i.c])))
-      return;
-    atomic_or(turned[i.a], 1u);
-    atomic_or(turned[i.b], 1u);
-    atomic_or(turned[i.c], 1u);
+    const PointQ8 a = before[i.a], b = before[i.b], c = before[i.c], d = after[i.a], e = after[i.b], f = after[i.c];
+    if (within_45_degrees(normal_of(a, b, c), normal_of(d, e, f)) && !harms_shape(shape_of(a, b, c), shape_of(d, e, f))) return;
+    atomic_or(harmed[i.a], 1u);
+    atomic_or(harmed[i.b], 1u);
+    atomic_or(harmed[i.c], 1u);
   }
 };
-struct RestoreTurned {
+struct RestoreHarmed {
   View<const PointQ8> before;
   View<const uint32_t> home_before;
-  View<const uint32_t> turned;
+  View<const uint32_t> harmed;
   View<PointQ8> after;
   View<uint32_t> home_after;
   ISOSHELL_HD void operator()(int64_t v) const {
-    if (!turned[v]) return;
+    if (!harmed[v]) return;
     after[v] = before[v];
     home_after[v] = home_before[v];
   }
@@ -250,7 +263,7 @@ class Improvement {
     claim_ = exec.template make<uint64_t>(vertices_);
     moved_ = exec.template make<PointQ8>(vertices_);
     moved_home_ = exec.template make<uint32_t>(vertices_);
-    turned_ = exec.template make<uint32_t>(vertices_);
+    harmed_ = exec.template make<uint32_t>(vertices_);
     connect();
   }
 
@@ -273,7 +286,7 @@ class Improvement {
     for (int s = 0; s < steps; ++s) {
       exec_.for_each("copy homes", vertices_, CopyValue<uint32_t>{seeds_.home.view(), moved_home_.view()});
       exec_.for_each("smooth", vertices_, SmoothVertex{view(), walk_, mesh_.position.view(), moved_home_.view(), moved_.view()});
-      keep_upright();
+      undo_harm();
       exec_.for_each("take positions", vertices_, CopyValue<PointQ8>{moved_.view(), mesh_.position.view()});
       exec_.for_each("take homes", vertices_, CopyValue<uint32_t>{moved_home_.view(), seeds_.home.view()});
     }
@@ -298,16 +311,16 @@ class Improvement {
     exec_.for_each("count valences", half_edges_, CountValence{view()});
   }
 
-  /// Undoes the step where it would fold a triangle; a restored vertex can fold another, so up to a fixed point.
-  void keep_upright() {
+  /// Undoes the step where it would harm a triangle; a restored vertex can harm another, so up to a fixed point.
+  void undo_harm() {
     constexpr int kMaxRounds = 20;
     for (int r = 0; r < kMaxRounds; ++r) {
-      exec_.fill(turned_.view(), 0u);
-      exec_.for_each("mark turned", mesh_.triangles.size(),
-                     MarkTurned{mesh_.triangles.view(), mesh_.position.view(), moved_.view(), turned_.view()});
-      if (exec_.sum(vertices_, [turned = turned_.view()](int64_t v) { return int64_t(turned[v]); }) == 0) return;
-      exec_.for_each("restore turned", vertices_,
-                     RestoreTurned{mesh_.position.view(), seeds_.home.view(), turned_.view(), moved_.view(), moved_home_.view()});
+      exec_.fill(harmed_.view(), 0u);
+      exec_.for_each("mark harmed", mesh_.triangles.size(),
+                     MarkHarmed{mesh_.triangles.view(), mesh_.position.view(), moved_.view(), harmed_.view()});
+      if (exec_.sum(vertices_, [harmed = harmed_.view()](int64_t v) { return int64_t(harmed[v]); }) == 0) return;
+      exec_.for_each("restore harmed", vertices_,
+                     RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
     }
   }
 
@@ -316,7 +329,7 @@ class Improvement {
   DualMesh& mesh_;
   int64_t vertices_, half_edges_;
   WalkOntoSheet walk_;
-  Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, turned_;
+  Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, harmed_;
   Buffer<uint64_t> claim_;
   Buffer<PointQ8> moved_;
 };
