@@ -42,8 +42,8 @@ struct WriteLabels {
     const WriteLabels& to;
     int64_t leaf;
     const Candidates& candidates;
-    ISOSHELL_HD void voxel(int candidate, int x, int y, int z) const {
-      to.voxel(leaf, x << 6 | y << 3 | z, candidates.point[candidate].id);
+    ISOSHELL_HD void run(int candidate, int x, int y, int z, int count) const {
+      for (int i = z; i < z + count; ++i) to.voxel(leaf, x << 6 | y << 3 | i, candidates.point[candidate].id);
     }
     ISOSHELL_HD void finish() const {}
   };
@@ -53,6 +53,20 @@ struct WriteLabels {
   }
 };
 
+/// Number of the smallest form at z, the first of equals. `line`: the forms at z = 0 of a row.
+template <class T>
+ISOSHELL_HD inline int smallest_form(const CandidateForms<T>& form, const T* line, int count, int z) {
+  int best = 0;
+  T least = T(line[0] + z * form.per_z[0]);
+  for (int c = 1; c < count; ++c) {
+    const T here = T(line[c] + z * form.per_z[c]);
+    best = here < least ? c : best;
+    least = here < least ? here : least;
+  }
+  return best;
+}
+
+/// Labels the rows of a cube. A cell is convex, ties included, so a run of voxels whose ends share a label has that label.
 template <class T, class Sink>
 ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafCube& block, PointQ8 origin, Sink& sink) {
   const CandidateForms<T> form(candidates, origin);
@@ -62,16 +76,19 @@ ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafC
       uint32_t bits = uint32_t(block.row[x - block.x] >> (8 * y)) & 255;
       if (bits == 0) continue;
       for (int c = 0; c < candidates.count; ++c) line[c] = T(form.constant[c] + x * form.per_x[c] + y * form.per_y[c]);
-      for (; bits; bits &= bits - 1) {
-        const int z = lowest_bit(bits);
-        int best = 0;
-        T least = T(line[0] + z * form.per_z[0]);
-        for (int c = 1; c < candidates.count; ++c) {
-          const T here = T(line[c] + z * form.per_z[c]);
-          best = here < least ? c : best;
-          least = here < least ? here : least;
+      while (bits) {
+        const int z = lowest_bit(bits), length = lowest_bit(~(bits >> z));
+        bits &= ~uint32_t(0) << (z + length);
+        const int first = smallest_form(form, line, candidates.count, z);
+        const int last = length == 1 ? first : smallest_form(form, line, candidates.count, z + length - 1);
+        if (first == last) {
+          sink.run(first, x, y, z, length);
+          continue;
         }
-        sink.voxel(best, x, y, z);
+        sink.run(first, x, y, z, 1);
+        for (int i = z + 1; i < z + length - 1; ++i)
+          sink.run(smallest_form(form, line, candidates.count, i), x, y, i, 1);
+        sink.run(last, x, y, z + length - 1, 1);
       }
     }
 }

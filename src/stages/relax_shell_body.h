@@ -36,9 +36,12 @@ struct SumCells {
     uint64_t sums[kMaxCandidates] = {};
     uint32_t squares[kMaxCandidates] = {};
 
-    ISOSHELL_HD void voxel(int candidate, int x, int y, int z) {
-      sums[candidate] += uint64_t(1) | uint64_t(x) << 16 | uint64_t(y) << 32 | uint64_t(z) << 48;
-      squares[candidate] += uint32_t(x * x + y * y + z * z);
+    /// The voxels z .. z + n - 1 of a row; both sums over z are exact in integers.
+    ISOSHELL_HD void run(int candidate, int x, int y, int z, int n) {
+      const int first = n * z + n * (n - 1) / 2;
+      const int second = n * z * z + z * n * (n - 1) + (n - 1) * n * (2 * n - 1) / 6;
+      sums[candidate] += uint64_t(n) | uint64_t(n * x) << 16 | uint64_t(n * y) << 32 | uint64_t(first) << 48;
+      squares[candidate] += uint32_t(n * (x * x + y * y) + second);
     }
     ISOSHELL_HD void finish() const {
       for (int c = 0; c < candidates.count; ++c)
