@@ -8,7 +8,7 @@
 namespace isoshell {
 namespace attach_seeds {
 
-constexpr int32_t kCellVox = 4;   ///< edge of the grid's cells: about 16 sheet vertices each
+constexpr int32_t kCellVox = 4;  ///< edge of the grid's cells: about 16 sheet vertices each
 
 struct AttachSeed {
   PointGridView vertices;
@@ -28,14 +28,13 @@ struct AttachSeed {
 
 template <class Exec>
 void attach_to_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds) {
-  PointGrid grid =
-      make_point_grid(exec, sheet.corners.block_dims, attach_seeds::kCellVox, sheet.vertex_count());
+  PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, attach_seeds::kCellVox, sheet.vertex_count());
   fill_point_grid(exec, grid, sheet.position.view());
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-                           sheet.vertex_triangles.view()};
-  exec.for_each("attach seeds", seeds.size(),
-                attach_seeds::AttachSeed{grid.view(), walk, seeds.position.view(), seeds.normal.view(),
-                                         seeds.home.view()});
+  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
+                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  exec.for_each(
+      "attach seeds", seeds.size(),
+      attach_seeds::AttachSeed{grid.view(), walk, seeds.position.view(), seeds.normal.view(), seeds.home.view()});
 }
 
 }  // namespace isoshell

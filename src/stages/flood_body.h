@@ -1,8 +1,8 @@
 // flood_shell (see stages.h), written once over an executor. Section 3.4 of the paper: seeds spread through the shell.
 //
-// A voxel gets its label in the round after its first neighbour did, so its labelled neighbours are exactly those of the
-// round before. Each round therefore visits only leaves near voxels of the round before (the front), grows their masks
-// by bit operations, and looks at labels only for voxels that are new: every voxel is labelled once.
+// A voxel gets its label in the round after its first neighbour did, so its labelled neighbours are exactly those of
+// the round before. Each round therefore visits only leaves near voxels of the round before (the front), grows their
+// masks by bit operations, and looks at labels only for voxels that are new: every voxel is labelled once.
 #pragma once
 
 #include "isoshell/error.h"
@@ -37,7 +37,8 @@ struct FindStart {
     const PointQ8 p = position[i];
     const Voxel v = voxel_of(p);
     const int64_t index = find_voxel(voxels, v);
-    start[i] = index >= 0 ? Start{index, distance_sq_q16(voxel_centre(v), p), uint32_t(i)} : nearest_active(p, uint32_t(i));
+    start[i] =
+        index >= 0 ? Start{index, distance_sq_q16(voxel_centre(v), p), uint32_t(i)} : nearest_active(p, uint32_t(i));
   }
 
   /// Rings of leaves around the seed's, until no voxel beyond can be nearer. Rare: a seed on a bridge over a gap.
@@ -64,8 +65,7 @@ struct FindStart {
     if (leaf == kNone) return;
     for_each_active(voxels, leaf, [&](int offset, int64_t index) {
       const int64_t d = distance_sq_q16(voxel_centre(voxel_at(at, offset)), p);
-      if (d < best.distance_sq_q16 || (d == best.distance_sq_q16 && index < best.voxel))
-        best = {index, d, best.seed};
+      if (d < best.distance_sq_q16 || (d == best.distance_sq_q16 && index < best.voxel)) best = {index, d, best.seed};
     });
   }
 };
@@ -95,10 +95,10 @@ struct State {
   VoxelSetView voxels;
   View<const PointQ8> position;
   View<const Neighbours> neighbours;
-  View<LeafMask> done;        ///< labelled voxels
+  View<LeafMask> done;  ///< labelled voxels
   View<uint32_t> label;
-  View<uint32_t> due;         ///< round for which the leaf is listed
-  Front front[2];             ///< by parity of the round
+  View<uint32_t> due;  ///< round for which the leaf is listed
+  Front front[2];      ///< by parity of the round
 };
 
 /// First labels: the best seed of each start voxel. Runs over the sorted starts.
@@ -184,13 +184,15 @@ struct Spread {
     Halo halo;
     for (uint32_t& l : halo.label) l = kNone;
     for (int n = 0; n < 27; ++n)
-      if (around[n]) read_neighbour(state.neighbours[leaf].leaf[n], *around[n], n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1, halo);
+      if (around[n])
+        read_neighbour(state.neighbours[leaf].leaf[n], *around[n], n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1, halo);
     const Voxel at = leaf_of_key(state.voxels.leaf_key[leaf]);
     for (int x = 0; x < 8; ++x)
       for (uint64_t bits = fresh.word[x]; bits; bits &= bits - 1) {
         const int offset = x << 6 | lowest_bit(bits);
         const int64_t index = state.voxels.first[leaf] + rank_in_leaf(state.voxels.mask[leaf], offset);
-        state.label[index] = best_around(halo, Halo::at(x, offset >> 3 & 7, offset & 7), voxel_centre(voxel_at(at, offset)));
+        state.label[index] =
+            best_around(halo, Halo::at(x, offset >> 3 & 7, offset & 7), voxel_centre(voxel_at(at, offset)));
       }
   }
 
@@ -241,7 +243,8 @@ VoronoiLabels flood_shell_body(Exec& exec, const Shell& shell, const SeedSet& se
   exec.for_each("find neighbours", leaves, FindNeighbours{voxels, neighbours.view()});
 
   Buffer<LeafMask> done = exec.template make<LeafMask>(leaves), mask[2];
-  Buffer<uint32_t> due = exec.template make<uint32_t>(leaves), round_of[2], list[2], count = exec.template make<uint32_t>(1);
+  Buffer<uint32_t> due = exec.template make<uint32_t>(leaves), round_of[2], list[2],
+                   count = exec.template make<uint32_t>(1);
   State state{voxels, seeds.position.view(), neighbours.view(), done.view(), out.voxel_seed.view(), due.view(), {}};
   for (int parity = 0; parity < 2; ++parity) {
     mask[parity] = exec.template make<LeafMask>(leaves);

@@ -1,5 +1,5 @@
-// Nearest seed of every active voxel (paper section 3.2), by leaves: a list of candidates a leaf, eighths of a leaf where
-// the list does not fit, and one search a voxel where even that does not. All three give the same labels.
+// Nearest seed of every active voxel (paper section 3.2), by leaves: a list of candidates a leaf, eighths of a leaf
+// where the list does not fit, and one search a voxel where even that does not. All three give the same labels.
 #pragma once
 
 #include "stages/point_grid_body.h"
@@ -8,7 +8,8 @@
 namespace isoshell {
 
 /// Which of `count` candidates is nearest to the voxel at (x, y, z) of a leaf, as the smallest linear form
-/// |a|^2 - 2 a.v, a from the centre of the leaf's voxel 0. T = int32_t holds it while every |a| < 64 voxels on each axis.
+/// |a|^2 - 2 a.v, a from the centre of the leaf's voxel 0. T = int32_t holds it while every |a| < 64 voxels on each
+/// axis.
 template <class T>
 struct CandidateForms {
   T constant[kMaxCandidates], per_x[kMaxCandidates], per_y[kMaxCandidates], per_z[kMaxCandidates];
@@ -66,9 +67,11 @@ ISOSHELL_HD inline int smallest_form(const CandidateForms<T>& form, const T* lin
   return best;
 }
 
-/// Labels the rows of a cube. A cell is convex, ties included, so a run of voxels whose ends share a label has that label.
+/// Labels the rows of a cube. A cell is convex, ties included, so a run of voxels whose ends share a label has that
+/// label.
 template <class T, class Sink>
-ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafCube& block, PointQ8 origin, Sink& sink) {
+ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafCube& block, PointQ8 origin,
+                                       Sink& sink) {
   const CandidateForms<T> form(candidates, origin);
   T line[kMaxCandidates];
   for (int x = block.x; x < block.x + block.edge; ++x)
@@ -118,8 +121,10 @@ struct LabelLeaf {
     gather_candidates(grid, candidates);
     if (candidates.overflow || candidates.count == 0) return false;
     auto into = sink.open(leaf, candidates);
-    if (CandidateForms<int32_t>::fits(candidates, origin)) label_block_as<int32_t>(candidates, block, origin, into);
-    else label_block_as<int64_t>(candidates, block, origin, into);
+    if (CandidateForms<int32_t>::fits(candidates, origin))
+      label_block_as<int32_t>(candidates, block, origin, into);
+    else
+      label_block_as<int64_t>(candidates, block, origin, into);
     into.finish();
     return true;
   }
@@ -139,7 +144,8 @@ inline int cube_edge_for(int64_t seed_spacing_vox) { return seed_spacing_vox >= 
 
 /// Per active voxel the seed of the smallest (squared distance from the voxel's centre, seed id).
 template <class Exec>
-Buffer<uint32_t> label_nearest(Exec& exec, const VoxelSet& voxels, PointGrid& grid, View<const PointQ8> seeds, int edge) {
+Buffer<uint32_t> label_nearest(Exec& exec, const VoxelSet& voxels, PointGrid& grid, View<const PointQ8> seeds,
+                               int edge) {
   Buffer<uint32_t> label = exec.template make<uint32_t>(voxels.voxel_count());
   fill_point_grid(exec, grid, seeds);
   exec.for_each("nearest seed", voxels.leaf_count(),

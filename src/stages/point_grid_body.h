@@ -34,8 +34,8 @@ struct PlaceGridPoint {
   }
 };
 
-/// Room for `count` points over a lattice of `blocks` (VoxelSetView::block_dims). The edge of a cell is the smallest power
-/// of two voxels that is at least `spacing_vox` and gives at most max(2^20, 32 count) cells.
+/// Room for `count` points over a lattice of `blocks` (VoxelSetView::block_dims). The edge of a cell is the smallest
+/// power of two voxels that is at least `spacing_vox` and gives at most max(2^20, 32 count) cells.
 template <class Exec>
 PointGrid make_point_grid(Exec& exec, const int32_t blocks[3], int64_t spacing_vox, int64_t count) {
   PointGrid grid;

@@ -4,7 +4,8 @@
 
 namespace isoshell {
 
-RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds, const RelaxOptions& options, Context& context) {
+RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
+                           const RelaxOptions& options, Context& context) {
   if (seeds.size() == 0) throw Error(ErrorCode::usage, "relax", "there are no seeds; place at least 4");
   if (options.max_passes < 0 || options.tolerance_ppb < 0 || options.max_step_q8 < 0)
     throw Error(ErrorCode::usage, "relax", "passes, tolerance and step must not be negative; 0 is allowed for each");

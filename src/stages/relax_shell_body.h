@@ -14,8 +14,8 @@
 namespace isoshell {
 namespace relax_shell {
 
-constexpr int kEnergyShift = 8;   ///< energies are in 1/256 voxel^2: each leaf's share of a cell is cut there
-constexpr int kStallPasses = 5;   ///< over which the tolerance is measured
+constexpr int kEnergyShift = 8;  ///< energies are in 1/256 voxel^2: each leaf's share of a cell is cut there
+constexpr int kStallPasses = 5;  ///< over which the tolerance is measured
 
 /// Sums of one cell. Relative to its seed, so they stay small: moment < 2^28 voxels * 2^21, energy < 2^60 for k >= 4.
 struct CellSums {
@@ -61,7 +61,8 @@ struct SumCells {
     const int64_t n = int64_t(sums & 0xffff);
     const Vec64 first = {int64_t(sums >> 16 & 0xffff), int64_t(sums >> 32 & 0xffff), int64_t(sums >> 48)};
     const Vec64 moment = first * kOneVoxelQ8 - a * n;
-    const int64_t energy = int64_t(squares) * kOneVoxelQ8 * kOneVoxelQ8 - 2 * kOneVoxelQ8 * dot(a, first) + n * dot(a, a);
+    const int64_t energy =
+        int64_t(squares) * kOneVoxelQ8 * kOneVoxelQ8 - 2 * kOneVoxelQ8 * dot(a, first) + n * dot(a, a);
     CellSums& cell = cells[seed.id];
     atomic_add(cell.count, n);
     atomic_add(cell.x, moment.x);
@@ -99,7 +100,8 @@ struct MoveSeed {
   ISOSHELL_HD void operator()(int64_t i) const {
     const CellSums& cell = cells[i];
     if (cell.count == 0) return;
-    const Vec64 to_centre = {round_div(cell.x, cell.count), round_div(cell.y, cell.count), round_div(cell.z, cell.count)};
+    const Vec64 to_centre = {round_div(cell.x, cell.count), round_div(cell.y, cell.count),
+                             round_div(cell.z, cell.count)};
     const Vec64 step = bounded_step(to_centre, most_q8);
     PointQ8 p = {position[i].x + int32_t(step.x), position[i].y + int32_t(step.y), position[i].z + int32_t(step.z)};
     const int64_t voxel = find_voxel(voxels, voxel_of(p));
@@ -161,11 +163,17 @@ RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& s
   const VoxelSetView voxels = shell.voxels.view();
   PointGrid grid = make_point_grid(exec, shell.voxels.block_dims, spacing, k);
   Buffer<CellSums> cells = exec.template make<CellSums>(k);
-  const LabelLeaf<SumCells> sum_leaf{voxels, grid.view(), {voxels, seeds.position.view(), cells.view()},
-                                     cube_edge_for(spacing)};
-  const MoveSeed move{voxels, shell.closest_site.view(), sites.voxels.view(), samples.sample.view(),
+  const LabelLeaf<SumCells> sum_leaf{
+      voxels, grid.view(), {voxels, seeds.position.view(), cells.view()}, cube_edge_for(spacing)};
+  const MoveSeed move{voxels,
+                      shell.closest_site.view(),
+                      sites.voxels.view(),
+                      samples.sample.view(),
                       options.max_step_q8 > 0 ? options.max_step_q8 : kOneVoxelQ8,
-                      cells.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()};
+                      cells.view(),
+                      seeds.position.view(),
+                      seeds.normal.view(),
+                      seeds.home.view()};
   RelaxReport report;
   report.normalised_energy_factor =
       double(k) / (double(1 << (2 * kFractionBits - kEnergyShift)) * double(shell.voxels.voxel_count()) *

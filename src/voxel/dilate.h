@@ -19,8 +19,8 @@ ISOSHELL_HD inline uint64_t dilate_y(uint64_t slice, uint64_t below, uint64_t ab
   return slice | slice << 8 | slice >> 8 | below >> 56 | above << 56;
 }
 
-/// Voxels of the middle leaf that are in the set or have a 26-neighbour in it. around[n]: the set's mask in neighbour n,
-/// null where it is empty.
+/// Voxels of the middle leaf that are in the set or have a 26-neighbour in it. around[n]: the set's mask in neighbour
+/// n, null where it is empty.
 ISOSHELL_HD inline LeafMask dilate_26(const LeafMask* const around[27]) {
   LeafMask out{};
   // Slices x = -1..8 of the middle column, grown along z and y, go into slices x - 1, x and x + 1.

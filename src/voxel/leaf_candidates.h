@@ -1,6 +1,6 @@
-// Which points can be the nearest one of some voxel in a block of a leaf: gathered once a block, so that a voxel compares
-// a handful of them. Exact: a point stays out only when others are strictly nearer, or as near with a smaller id, at every
-// voxel of the block.
+// Which points can be the nearest one of some voxel in a block of a leaf: gathered once a block, so that a voxel
+// compares a handful of them. Exact: a point stays out only when others are strictly nearer, or as near with a smaller
+// id, at every voxel of the block.
 #pragma once
 
 #include "voxel/leaf.h"
@@ -56,14 +56,15 @@ ISOSHELL_HD inline BoxQ8 box_of_centres(const LeafCube& block, PointQ8 origin) {
           {origin.x + x_hi * kOneVoxelQ8, origin.y + y_hi * kOneVoxelQ8, origin.z + z_hi * kOneVoxelQ8}};
 }
 
-/// Points whose least distance to the box is at most the smallest greatest distance of any point; at most kMaxCandidates.
+/// Points whose least distance to the box is at most the smallest greatest distance of any point; at most
+/// kMaxCandidates.
 struct Candidates {
   BoxQ8 box;
   int64_t bound = int64_t(1) << 62;  ///< smallest greatest squared distance so far
   int count = 0;
   bool overflow = false;
   GridPoint point[kMaxCandidates];
-  int64_t least[kMaxCandidates];     ///< least squared distance to the box
+  int64_t least[kMaxCandidates];  ///< least squared distance to the box
 
   ISOSHELL_HD explicit Candidates(const BoxQ8& b) : box(b) {}
   ISOSHELL_HD int64_t bound_q16() const { return overflow ? -1 : bound; }
@@ -104,8 +105,8 @@ struct Candidates {
   }
 };
 
-/// True when a beats b at every point of the box: the difference of their squared distances is linear, so its largest value
-/// is that of one corner.
+/// True when a beats b at every point of the box: the difference of their squared distances is linear, so its largest
+/// value is that of one corner.
 ISOSHELL_HD inline bool beats_in_box(const BoxQ8& box, const GridPoint& a, const GridPoint& b) {
   const auto axis = [](int32_t lo, int32_t hi, int32_t pa, int32_t pb) {
     const int64_t v = pb > pa ? hi : lo;
@@ -126,7 +127,8 @@ ISOSHELL_HD inline void gather_candidates(const PointGridView& grid, Candidates&
   bool beaten[kMaxCandidates];
   for (int b = 0; b < out.count; ++b) {
     beaten[b] = false;
-    for (int a = 0; a < out.count && !beaten[b]; ++a) beaten[b] = a != b && beats_in_box(out.box, out.point[a], out.point[b]);
+    for (int a = 0; a < out.count && !beaten[b]; ++a)
+      beaten[b] = a != b && beats_in_box(out.box, out.point[a], out.point[b]);
   }
   int kept = 0;
   for (int i = 0; i < out.count; ++i) {

@@ -1,5 +1,5 @@
-// Points in a uniform grid (paper section 3.2), and exact searches in it: rings of cells around a box, until no cell that
-// is left can hold anything closer. The order of points within a cell is free; no result may depend on it.
+// Points in a uniform grid (paper section 3.2), and exact searches in it: rings of cells around a box, until no cell
+// that is left can hold anything closer. The order of points within a cell is free; no result may depend on it.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct GridPoint {
 };
 
 struct PointGridView {
-  int32_t shift;                  ///< edge of a cell is 1 << shift in q8
-  int32_t dims[3];                ///< cells per axis
+  int32_t shift;                    ///< edge of a cell is 1 << shift in q8
+  int32_t dims[3];                  ///< cells per axis
   View<const uint32_t> cell_first;  ///< cell_count + 1 offsets into points; cells are x-major
   View<const GridPoint> points;
 };
@@ -63,12 +63,14 @@ ISOSHELL_HD inline void visit_around(const PointGridView& grid, const BoxQ8& box
     for (int axis = 0; axis < 3; ++axis) {
       from[axis] = lo[axis] - ring;
       to[axis] = hi[axis] + ring;
-      if (from[axis] <= 0) from[axis] = 0;
+      if (from[axis] <= 0)
+        from[axis] = 0;
       else {
         const int64_t below = int64_t(box_lo[axis]) - (int64_t(from[axis]) << grid.shift);
         gap = below < gap ? below : gap;
       }
-      if (to[axis] >= grid.dims[axis] - 1) to[axis] = grid.dims[axis] - 1;
+      if (to[axis] >= grid.dims[axis] - 1)
+        to[axis] = grid.dims[axis] - 1;
       else {
         const int64_t above = (int64_t(to[axis] + 1) << grid.shift) - 1 - box_hi[axis];
         gap = above < gap ? above : gap;

@@ -71,8 +71,7 @@ inline std::vector<uint32_t> flood(const VoxelSet& voxels, const std::vector<Poi
     for (size_t i = 0; i < all.size(); ++i) {
       if (label[i] != kNone) continue;
       for (int n = 0; n < 27; ++n) {
-        const int64_t other =
-            find_voxel(view, {all[i].x + n / 9 - 1, all[i].y + n / 3 % 3 - 1, all[i].z + n % 3 - 1});
+        const int64_t other = find_voxel(view, {all[i].x + n / 9 - 1, all[i].y + n / 3 % 3 - 1, all[i].z + n % 3 - 1});
         if (other < 0 || label[size_t(other)] == kNone || !closer(i, label[size_t(other)], next[i])) continue;
         next[i] = label[size_t(other)];
         changed = true;

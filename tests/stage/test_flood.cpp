@@ -35,7 +35,7 @@ TEST_CASE("flood: equals the synchronous rounds of its definition", "[flood][sta
 TEST_CASE("flood: seeds in one voxel, on ties and outside the shell start as defined", "[flood][stage]") {
   const PaperSetup setup = paper_setup(ball_skin(17), 1);
   const PointQ8 c = voxel_centre({128, 128, 145});
-  const std::vector<PointQ8> seeds = {{c.x + 9, c.y, c.z},  {c.x, c.y + 8, c.z},           {c.x, c.y - 8, c.z},
+  const std::vector<PointQ8> seeds = {{c.x + 9, c.y, c.z},   {c.x, c.y + 8, c.z},           {c.x, c.y - 8, c.z},
                                       {32768, 32768, 32768}, {32768 + 64, 32768, 32768},    {0, 0, 0},
                                       {65535, 65535, 65535}, voxel_centre({111, 128, 128}), {32768, 20000, 45000}};
   CHECK(flood_of(setup.shell, seeds_at(seeds)) == oracle::flood(setup.shell.voxels, seeds));
@@ -56,10 +56,9 @@ TEST_CASE("flood: a component without a seed stays without label", "[flood][stag
 TEST_CASE("flood: labels follow the shell, not the straight line", "[flood][stage]") {
   // A hairpin: two bars 6 voxels apart that meet at one end. The seed at the open end of one bar is nearer to the other
   // bar than that bar's own seed, but far along the shell.
-  const auto shape =
-      voxel_shapes::filled("hairpin", {64, 64, 64}, 40, {128, 128, 128}, [](int x, int y, int z) {
-        return y == 0 && ((x >= -40 && x <= 0 && (z == -3 || z == 3)) || (x == 0 && z >= -3 && z <= 3));
-      });
+  const auto shape = voxel_shapes::filled("hairpin", {64, 64, 64}, 40, {128, 128, 128}, [](int x, int y, int z) {
+    return y == 0 && ((x >= -40 && x <= 0 && (z == -3 || z == 3)) || (x == 0 && z >= -3 && z <= 3));
+  });
   const PaperSetup setup = paper_setup(shape, 1);
   const SeedSet seeds = seeds_at({voxel_centre({26, 64, 61}), voxel_centre({50, 64, 67})});
   const std::vector<uint32_t> label = flood_of(setup.shell, seeds);

@@ -19,7 +19,8 @@ double length(WorldPoint a, WorldPoint b) {
 double mean_quality(const TriangleMesh& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
-    const double a = length(mesh.vertices[t[0]], mesh.vertices[t[1]]), b = length(mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    const double a = length(mesh.vertices[t[0]], mesh.vertices[t[1]]),
+                 b = length(mesh.vertices[t[1]], mesh.vertices[t[2]]);
     const double c = length(mesh.vertices[t[2]], mesh.vertices[t[0]]), s = (a + b + c) / 2;
     sum += 6 / std::sqrt(3.0) * std::sqrt(std::max(0.0, (s - a) * (s - b) * (s - c) / s)) / std::max({a, b, c});
   }
@@ -45,8 +46,7 @@ TEST_CASE("method shell: a torus gets the asked vertices, its genus, and good tr
     CHECK(mesh.triangles.size() == 2 * mesh.vertices.size());  // closed with Euler number 0
     CHECK(result.report.dual.failed_cells == 0);
     CHECK(mean_quality(mesh) > .88);
-    for (const WorldPoint& p : mesh.vertices)
-      CHECK(std::abs(std::hypot(std::hypot(p.x, p.y) - 3, p.z) - 1.2) < .05);
+    for (const WorldPoint& p : mesh.vertices) CHECK(std::abs(std::hypot(std::hypot(p.x, p.y) - 3, p.z) - 1.2) < .05);
     if (threads == 1) one = digest(mesh);
     CHECK(digest(mesh) == one);
   }

@@ -55,7 +55,8 @@ TEST_CASE("nearest seed: equals brute force, ties to the smaller id", "[relax_sh
   for (const auto& shape : voxel_shapes::all(12)) {
     const PaperSetup setup = paper_setup(shape, 2);
     for (const int64_t k : {int64_t(4), int64_t(60), setup.sites.voxels.voxel_count() / 2}) {
-      if (k < 4 || k > setup.sites.voxels.voxel_count() / 2 || k * setup.shell.voxels.voxel_count() > 20000000) continue;
+      if (k < 4 || k > setup.sites.voxels.voxel_count() / 2 || k * setup.shell.voxels.voxel_count() > 20000000)
+        continue;
       std::vector<PointQ8> seeds = positions(place_seeds(setup.sites, setup.samples, {k, 1}, context));
       check_labels(setup.shell.voxels, seeds);
       // On voxel centres every second voxel is a tie.

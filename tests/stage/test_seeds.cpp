@@ -18,7 +18,8 @@ TEST_CASE("seeds: one site in each of k strata, placed at its sample", "[seeds][
     for (int64_t i = 0; i < k; ++i) {
       const uint32_t home = seeds.home[i];
       // Strata differ by one site at most, so this holds for any way to cut them.
-      CHECK(std::abs(double(home) + .5 - (double(i) + .5) * double(sites) / double(k)) <= .5 * double(sites) / double(k) + 1);
+      CHECK(std::abs(double(home) + .5 - (double(i) + .5) * double(sites) / double(k)) <=
+            .5 * double(sites) / double(k) + 1);
       if (i > 0) CHECK(home > seeds.home[i - 1]);
       const SiteSample& s = setup.samples.sample[home];
       const PointQ8 c = voxel_centre(voxel[home]);
@@ -33,7 +34,8 @@ TEST_CASE("seeds: one site in each of k strata, placed at its sample", "[seeds][
   CHECK(five == digest(place_seeds(setup.sites, setup.samples, {97, 5}, single)));
 }
 
-TEST_CASE("seeds: more than half the sites is a usage error that names the resolution that would do", "[seeds][stage]") {
+TEST_CASE("seeds: more than half the sites is a usage error that names the resolution that would do",
+          "[seeds][stage]") {
   const PaperSetup setup = paper_setup(ball_skin(20), 2);
   Context context;
   const int64_t most = setup.sites.voxels.voxel_count() / 2;
@@ -49,7 +51,8 @@ TEST_CASE("seeds: more than half the sites is a usage error that names the resol
   }
 }
 
-TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex that was nearest", "[seeds][attach][stage]") {
+TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex that was nearest",
+          "[seeds][attach][stage]") {
   // A tetrahedron of four vertices stands in for a sheet.
   Sheet sheet;
   const PointQ8 corner[4] = {{9000, 9000, 9000}, {12000, 9000, 9000}, {9000, 13000, 9000}, {9000, 9000, 11000}};
@@ -90,7 +93,8 @@ TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex th
     int64_t least = INT64_MAX;
     for (const TriangleIndices& t : face)
       if (t.a == nearest || t.b == nearest || t.c == nearest)
-        least = std::min(least, distance_sq_q16(p, closest_point_on_triangle(p, corner[t.a], corner[t.b], corner[t.c])));
+        least =
+            std::min(least, distance_sq_q16(p, closest_point_on_triangle(p, corner[t.a], corner[t.b], corner[t.c])));
     CHECK(distance_sq_q16(seeds.position[i], p) == least);
   }
 }

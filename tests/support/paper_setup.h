@@ -49,9 +49,8 @@ inline SeedSet seeds_at(const std::vector<PointQ8>& positions) {
 }
 
 inline voxel_shapes::Named ball_skin(int32_t radius) {
-  return voxel_shapes::filled("sphere", {128, 128, 128}, radius + 1, {256, 256, 256}, [=](int x, int y, int z) {
-    return voxel_shapes::near_sphere(x, y, z, radius);
-  });
+  return voxel_shapes::filled("sphere", {128, 128, 128}, radius + 1, {256, 256, 256},
+                              [=](int x, int y, int z) { return voxel_shapes::near_sphere(x, y, z, radius); });
 }
 
 }  // namespace isoshell
