@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Configures and builds one preset (cpu unless named) into build/<preset>. Further arguments are targets.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset=${1:-cpu}
+[ $# -gt 0 ] && shift
+launcher=()
+command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+cmake --preset "$preset" "${launcher[@]}" >&2
+targets=()
+[ $# -gt 0 ] && targets=(--target "$@")
+cmake --build --preset "$preset" "${targets[@]}" >&2

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Installs what the build needs and this machine lacks. Debian 12 and 13, Ubuntu 24.04 and newer.
+# Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
+set -euo pipefail
+
+packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
+          libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2)
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "setup: this is not a Debian or Ubuntu system; install by hand what these packages hold: ${packages[*]}" >&2
+  exit 1
+fi
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+  [ "$status" = "install ok installed" ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "setup: everything is installed" >&2
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup: need root or sudo to install: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "setup: installing ${missing[*]}" >&2
+"${as_root[@]}" apt-get update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
