@@ -5,16 +5,15 @@
 #include <chrono>
 #include <cmath>
 
+#include "choose_grid.h"
 #include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
+#include "isoshell/memory_estimate.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kVoxelsPerSpacing = 6;      // default grid: a cell is about this many voxels wide
-constexpr int32_t kMinDefaultResolution = 64;
-constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
 constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kReoptimisePasses = 20;
 constexpr int kMaxReoptimisations = 4;
@@ -44,29 +43,6 @@ auto timed(RemeshReport& report, const char* stage, Work work) {
 template <class Product>
 void note_digest(const RemeshOptions& options, RemeshReport& report, const char* name, const Product& product) {
   if (options.want_digests) report.digests[name] = digest_text(digest(product));
-}
-
-/// Target count for a surface of this area.
-int64_t vertex_target(const RemeshOptions& options, double area_world) {
-  if (options.edge_length_world <= 0) return options.vertices;
-  const double per_vertex = kAreaPerEdgeSq * options.edge_length_world * options.edge_length_world;
-  return std::max<int64_t>(4, std::llround(area_world / per_vertex));
-}
-
-double longest_side(WorldPoint lo, WorldPoint hi) { return std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
-
-int32_t resolution_for_voxel(double longest, double voxel_size) {
-  return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
-}
-
-/// The grid to start from: the user's, or one on which a cell is about six voxels wide.
-int32_t first_resolution(const RemeshOptions& options, const InputTopology& input, WorldPoint lo, WorldPoint hi) {
-  if (options.resolution > 0) return options.resolution;
-  const double longest = longest_side(lo, hi);
-  if (options.voxel_size_world > 0) return resolution_for_voxel(longest, options.voxel_size_world);
-  const double spacing = std::sqrt(input.area_world / double(vertex_target(options, input.area_world)));
-  if (!(spacing > 0)) return kMinDefaultResolution;
-  return std::clamp(resolution_for_voxel(longest, spacing / kVoxelsPerSpacing), kMinDefaultResolution, kMaxResolution);
 }
 
 /// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose.
@@ -150,6 +126,18 @@ int32_t asked_closing(const RemeshOptions& options, const InputTopology& input, 
   return options.closing_vox < 0 && input.closed ? 0 : options.closing_vox;
 }
 
+/// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made yet.
+bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
+  report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
+  if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) return true;
+  const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
+                           std::to_string(estimate.bytes >> 20) + " MiB, more than the limit of " +
+                           std::to_string(context.memory_limit_bytes >> 20) + " MiB";
+  if (!refining) throw Error(ErrorCode::out_of_memory, "memory", what + "; lower --resolution or raise --max-memory");
+  report.warnings.push_back("the grid was not refined further: " + what);
+  return false;
+}
+
 void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
   if (options.want_shell || options.method == Method::shell) {
     p.shell = timed(report, "shell", [&] { return build_shell(p.sites, {options.band_vox}, context); });
@@ -209,13 +197,14 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   bounding_box(soup, lo, hi);
   const bool compare = input.closed && input.oriented && input.genus >= 0;
   const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
-  const int32_t first = first_resolution(options, input, lo, hi);
+  const int32_t first = first_resolution(options, input.area_world, lo, hi);
   const int32_t cap = free_grid && compare ? std::min(4 * first, kMaxResolution) : first;
 
   Prepared best;
   int64_t best_gap = INT64_MAX;
   int fruitless = 0;
   for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2; resolution += resolution / 2) {
+    if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
     LatticeSurface surface = timed(report, "snap", [&] { return snap_surface(soup, frame, context); });
     surface.topology = input;

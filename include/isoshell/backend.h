@@ -21,4 +21,7 @@ struct Context {
   std::atomic<bool> cancel{false};
 };
 
+/// "cpu" or "cuda": where this context's stages run. Throws: no_device when it asks for CUDA and there is none.
+const char* backend_name(const Context& context);
+
 }  // namespace isoshell

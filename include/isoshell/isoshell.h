@@ -5,6 +5,8 @@
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/memory_estimate.h"
 #include "isoshell/mesh_topology.h"
+#include "isoshell/quality.h"
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"

@@ -14,4 +14,6 @@ const BackendTable& backend_for(const Context& context) {
   return cpu_backend();
 }
 
+const char* backend_name(const Context& context) { return backend_for(context).name; }
+
 }  // namespace isoshell

@@ -1,4 +1,61 @@
-// vdb_isomesh: the command.
-#include "isoshell/isoshell.h"
+// vdb_isomesh: the command. Turns exceptions into exit statuses and signals into a cancelled run.
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
 
-int main() { return 0; }
+#include "isoshell/error.h"
+#include "vdb_isomesh/memory.h"
+#include "vdb_isomesh/output.h"
+#include "vdb_isomesh/run.h"
+
+namespace {
+
+isoshell::Context context;
+
+/// The first signal asks the run to stop; the next one ends the process at once.
+extern "C" void cancel_run(int) {
+  context.cancel = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+int run_command(int argc, char* argv[]) {
+  using namespace isoshell;
+  const tool::CommandLine command = tool::parse_command_line(argc, argv);
+  if (!command.run) {
+    tool::write_text("-", command.text);
+    return 0;
+  }
+  const tool::Arguments& a = *command.run;
+  tool::Console console(a.progress, a.verbosity);
+  context.backend = a.backend;
+  context.device = a.device;
+  context.threads = a.threads;
+  context.memory_limit_bytes = a.max_memory_bytes > 0 ? a.max_memory_bytes : tool::default_memory_limit_bytes();
+  context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
+  return tool::run(a, context, console);
+}
+
+int report(isoshell::ErrorCode code, const char* message) {
+  isoshell::tool::Console(isoshell::tool::ProgressMode::never, 0).error(message);
+  return int(code);
+}
+
+}  // namespace
+
+int main(int argc, char* argv[]) {
+  using isoshell::ErrorCode;
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write that fails, not a silent end
+  std::signal(SIGINT, cancel_run);
+  std::signal(SIGTERM, cancel_run);
+  try {
+    return run_command(argc, argv);
+  } catch (const isoshell::Error& e) {
+    return report(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return report(ErrorCode::out_of_memory, "out of memory; lower --resolution");
+  } catch (const std::exception& e) {
+    return report(ErrorCode::internal, e.what());
+  }
+}

@@ -1,0 +1,35 @@
+// Resolution and vertex count from what was asked for and the area of the surface.
+#include "choose_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isoshell {
+namespace {
+
+constexpr double kVoxelsPerSpacing = 6;      // default grid: a cell is about this many voxels wide
+constexpr int32_t kMinDefaultResolution = 64;
+constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
+
+int32_t resolution_for_voxel(double longest, double voxel_size) {
+  return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
+}
+
+}  // namespace
+
+int64_t vertex_target(const RemeshOptions& options, double area_world) {
+  if (options.edge_length_world <= 0) return options.vertices;
+  const double per_vertex = kAreaPerEdgeSq * options.edge_length_world * options.edge_length_world;
+  return std::max<int64_t>(4, std::llround(area_world / per_vertex));
+}
+
+int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint lo, WorldPoint hi) {
+  if (options.resolution > 0) return options.resolution;
+  const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
+  if (options.voxel_size_world > 0) return resolution_for_voxel(longest, options.voxel_size_world);
+  const double spacing = std::sqrt(area_world / double(vertex_target(options, area_world)));
+  if (!(spacing > 0)) return kMinDefaultResolution;
+  return std::clamp(resolution_for_voxel(longest, spacing / kVoxelsPerSpacing), kMinDefaultResolution, kMaxResolution);
+}
+
+}  // namespace isoshell

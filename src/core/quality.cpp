@@ -1,0 +1,127 @@
+// Quality of a mesh. Chunks of fixed size are summed in parallel and joined in order: one shape, one result.
+#include "isoshell/quality.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kChunk = 4096;
+constexpr double kDegrees = 57.29577951308232;
+constexpr double kEquilateral = 3.4641016151377544;  // 6 / sqrt(3)
+
+struct Moments {
+  double sum = 0, sum_sq = 0;
+
+  void add(double value) {
+    sum += value;
+    sum_sq += value * value;
+  }
+  void add(const Moments& other) {
+    sum += other.sum;
+    sum_sq += other.sum_sq;
+  }
+  double variation(double count) const {
+    const double mean = sum / count;
+    return mean > 0 ? std::sqrt(std::max(0.0, sum_sq / count - mean * mean)) / mean : 0;
+  }
+};
+
+struct Part {
+  double q_min = 1, q_sum = 0, theta_min = 180, theta_sum = 0, theta_max = 0;
+  int64_t below_30 = 0;
+  Moments edge, area;
+
+  void add(const Part& other) {
+    q_min = std::min(q_min, other.q_min);
+    q_sum += other.q_sum;
+    theta_min = std::min(theta_min, other.theta_min);
+    theta_sum += other.theta_sum;
+    theta_max = std::max(theta_max, other.theta_max);
+    below_30 += other.below_30;
+    edge.add(other.edge);
+    area.add(other.area);
+  }
+};
+
+WorldPoint minus(WorldPoint a, WorldPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+double dot(WorldPoint a, WorldPoint b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double length(WorldPoint a) { return std::sqrt(dot(a, a)); }
+WorldPoint cross(WorldPoint a, WorldPoint b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+void measure_triangle(WorldPoint a, WorldPoint b, WorldPoint c, Part& part) {
+  const WorldPoint side[3] = {minus(b, a), minus(c, b), minus(a, c)};
+  const double edge[3] = {length(side[0]), length(side[1]), length(side[2])};
+  const double twice_area = length(cross(side[0], side[2]));
+  const double longest = std::max({edge[0], edge[1], edge[2]}), around = edge[0] + edge[1] + edge[2];
+  const double q = longest > 0 ? kEquilateral * (twice_area / around) / longest : 0;
+  double smallest = 180;
+  for (int i = 0; i < 3; ++i) {
+    const double angle = std::atan2(twice_area, -dot(side[i], side[(i + 2) % 3])) * kDegrees;
+    smallest = std::min(smallest, angle);
+    part.theta_max = std::max(part.theta_max, angle);
+    part.edge.add(edge[i]);
+  }
+  part.q_min = std::min(part.q_min, q);
+  part.q_sum += q;
+  part.theta_min = std::min(part.theta_min, smallest);
+  part.theta_sum += smallest;
+  part.below_30 += smallest < 30;
+  part.area.add(twice_area / 2);
+}
+
+double irregular_share(const TriangleMesh& mesh) {
+  std::vector<uint32_t> triangles_at(mesh.vertices.size());
+  for (const auto& t : mesh.triangles)
+    for (uint32_t v : t) ++triangles_at[v];
+  int64_t used = 0, irregular = 0;
+  for (uint32_t count : triangles_at) {
+    used += count > 0;
+    irregular += count > 0 && count != 6;
+  }
+  return double(irregular) / double(used);
+}
+
+}  // namespace
+
+MeshQuality measure_quality(const TriangleMesh& mesh) {
+  const int64_t count = int64_t(mesh.triangles.size());
+  if (count == 0) return {};
+  for (const auto& t : mesh.triangles)
+    if (std::max({t[0], t[1], t[2]}) >= mesh.vertices.size())
+      throw Error(ErrorCode::usage, "quality", "a triangle names vertex " + std::to_string(std::max({t[0], t[1], t[2]})) +
+                                                   "; there are " + std::to_string(mesh.vertices.size()));
+
+  std::vector<Part> parts(size_t((count + kChunk - 1) / kChunk));
+  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+    const int64_t end = std::min(count, int64_t(c + 1) * kChunk);
+    for (int64_t i = int64_t(c) * kChunk; i < end; ++i) {
+      const auto& t = mesh.triangles[size_t(i)];
+      measure_triangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], parts[c]);
+    }
+  });
+  Part all;
+  for (const Part& part : parts) all.add(part);
+
+  MeshQuality quality;
+  const double n = double(count);
+  quality.q_min = all.q_min;
+  quality.q_avg = all.q_sum / n;
+  quality.theta_min_deg = all.theta_min;
+  quality.theta_avg_deg = all.theta_sum / n;
+  quality.theta_max_deg = all.theta_max;
+  quality.below_30_deg_pct = 100 * double(all.below_30) / n;
+  quality.irregular_ratio = irregular_share(mesh);
+  quality.edge_cv = all.edge.variation(3 * n);
+  quality.area_cv = all.area.variation(n);
+  return quality;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,132 @@
+// The command line alone: what is refused, with which words, and what it turns into. No stage runs here.
+#include "isoshell/error.h"
+#include "support/catch.h"
+#include "vdb_isomesh/args.h"
+
+using namespace isoshell;
+using namespace isoshell::tool;
+
+namespace {
+
+CommandLine parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "vdb_isomesh");
+  return parse_command_line(int(words.size()), words.data());
+}
+
+Arguments arguments(std::vector<const char*> options) {
+  options.insert(options.begin(), {"in.obj", "out.ply"});
+  return *parse(std::move(options)).run;
+}
+
+/// The message of the usage error that these words give; empty when they are accepted.
+std::string refusal(std::vector<const char*> words) {
+  try {
+    parse(std::move(words));
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::usage);
+    return e.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("args: two files are enough, and every option has a default", "[cli][args]") {
+  const Arguments a = arguments({});
+  CHECK(a.input == "in.obj");
+  CHECK(a.input_format == "obj");
+  CHECK(a.output_format == "ply");
+  CHECK(a.remesh.vertices == 10000);
+  CHECK(a.remesh.resolution == 0);
+  CHECK(a.remesh.band_vox == 2);
+  CHECK(a.remesh.closing_vox == -1);
+  CHECK(a.backend == Backend::best);
+  CHECK(a.given.empty());
+  CHECK_FALSE(a.gates.any());
+}
+
+TEST_CASE("args: options reach the library with their units", "[cli][args]") {
+  CHECK(arguments({"--vertices", "500"}).remesh.vertices == 500);
+  CHECK(arguments({"--edge-length=0.25"}).remesh.edge_length_world == 0.25);
+  CHECK(arguments({"--resolution", "256"}).remesh.resolution == 256);
+  CHECK(arguments({"--voxel-size", "0.5"}).remesh.voxel_size_world == 0.5);
+  CHECK(arguments({"--method", "shell"}).remesh.method == Method::shell);
+  CHECK(arguments({"--seed", "18446744073709551615"}).remesh.seed == 18446744073709551615ull);
+  CHECK(arguments({"--tolerance", "0"}).remesh.tolerance == 0);
+  CHECK(arguments({"--close-gaps", "0"}).remesh.closing_vox == 0);
+  CHECK(arguments({"--close-gaps", "auto"}).remesh.closing_vox == -1);
+  CHECK(arguments({"--close-gaps", "4vox"}).remesh.closing_vox == 2);
+  CHECK(arguments({"--close-gaps", "5vox"}).remesh.closing_vox == 3);
+  CHECK(arguments({"--close-gaps", "0.7"}).remesh.closing_world == 0.7);
+  CHECK(arguments({"--device", "cuda:2"}).device == 2);
+  CHECK(arguments({"--device", "cuda:2"}).backend == Backend::cuda);
+  CHECK(arguments({"--threads", "3"}).threads == 3);
+  CHECK(arguments({"--max-memory", "1.5G"}).max_memory_bytes == 1610612736);
+  CHECK(arguments({"-q"}).verbosity == 0);
+  CHECK(arguments({"-v"}).verbosity == 2);
+}
+
+TEST_CASE("args: gates are a list", "[cli][args]") {
+  const Gates g = arguments({"--require", "closed,manifold,genus=3,components=2,min-angle=20.5"}).gates;
+  CHECK(g.closed);
+  CHECK(g.manifold);
+  CHECK(g.genus == 3);
+  CHECK(g.components == 2);
+  CHECK(g.min_angle_deg == 20.5);
+  CHECK(contains(refusal({"a.obj", "b.ply", "--require", "genus"}), "genus=G"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--require", "watertight"}), "closed"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--require", "max-deviation=1"}), "not available yet"));
+  CHECK(contains(refusal({"a.obj", "b.vdb", "--stop-after", "shell", "--require", "closed"}), "needs a mesh"));
+}
+
+TEST_CASE("args: a mistyped option is refused with the one that was meant", "[cli][args]") {
+  CHECK(contains(refusal({"a.obj", "b.ply", "--vertces", "10"}), "did you mean --vertices?"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--vertces=10"}), "did you mean --vertices?"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--edge"}), "did you mean --edge-length?"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--xyzzy"}), "--help"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "c.ply"}), "'c.ply'"));
+}
+
+TEST_CASE("args: values outside their range are named with the range", "[cli][args]") {
+  CHECK(contains(refusal({"a.obj", "b.ply", "--vertices", "3"}), "--vertices is 3; it must be 4 to"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--resolution", "8193"}), "8 to 8192"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--band", "0"}), "1 to 20"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--edge-length", "-1"}), "more than 0"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--voxel-size", "nan"}), "voxel-size"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--vertices", "many"}), "vertices"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--close-gaps", "31vox"}), "0 to 30"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--close-gaps", "wide"}), "must be a number"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--device", "gpu"}), "auto, cpu, cuda"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--device", "cuda:x"}), "number"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--max-memory", "4X"}), "unit"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--max-memory", "0"}), "more than 0"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--method", "best"}), "sheet, shell"));
+}
+
+TEST_CASE("args: what excludes each other is refused", "[cli][args]") {
+  CHECK_FALSE(refusal({"a.obj", "b.ply", "--vertices", "10", "--edge-length", "1"}).empty());
+  CHECK_FALSE(refusal({"a.obj", "b.ply", "--resolution", "64", "--voxel-size", "1"}).empty());
+  CHECK_FALSE(refusal({"a.obj", "b.ply", "-v", "-q"}).empty());
+  CHECK(contains(refusal({"a.obj", "-", "--output-format", "ply", "--stats", "-"}), "standard output"));
+}
+
+TEST_CASE("args: files must say what they are", "[cli][args]") {
+  CHECK(contains(refusal({}), "INPUT is missing"));
+  CHECK(contains(refusal({"a.obj"}), "OUTPUT is missing"));
+  CHECK(contains(refusal({"-", "b.ply"}), "--input-format"));
+  CHECK(contains(refusal({"a.obj", "-"}), "--output-format"));
+  CHECK(contains(refusal({"a.obj", "b.fbx"}), "ply, obj, stl, off"));
+  CHECK(contains(refusal({"a.obj", "b"}), "ply, obj, stl, off"));
+  CHECK(contains(refusal({"a.obj", "b.vdb"}), "ply, obj, stl, off"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--stop-after", "shell"}), ".vdb"));
+  CHECK(parse({"-", "-", "--input-format", "OBJ", "--output-format", ".STL"}).run->output_format == "stl");
+  CHECK(parse({"a.obj", "--dry-run"}).run->dry_run);
+  CHECK(parse({"dir.x/a.OBJ", "b.Ply"}).run->input_format == "obj");
+}
+
+TEST_CASE("args: help and version answer under every name", "[cli][args]") {
+  for (const char* name : {"--help", "-help", "-h"}) CHECK(contains(parse({name}).text, "--close-gaps W"));
+  for (const char* name : {"--version", "-version"}) CHECK(parse({name}).text.find("vdb_isomesh ") == 0);
+}

@@ -1,0 +1,303 @@
+// Parses and checks the command line. CLI11 does the splitting; every message is ours to keep readable.
+#include "vdb_isomesh/args.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "isoshell/error.h"
+#include "vdb_isomesh/help.h"
+
+namespace isoshell::tool {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "command line", message); }
+
+constexpr const char* kDescription =
+    "vdb_isomesh INPUT OUTPUT [options]\n\n"
+    "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
+    "INPUT   mesh (.obj .ply .stl .off) or a stage file that this command wrote (.vdb); - reads standard\n"
+    "        input and needs --input-format\n"
+    "OUTPUT  mesh (.ply .obj .stl .off), or .vdb with --stop-after; - writes standard output and needs\n"
+    "        --output-format";
+
+/// What CLI11 fills in before it is checked and turned into Arguments.
+struct Raw {
+  int64_t vertices = 0;
+  double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0;
+  int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
+  uint64_t seed = 0;
+  std::string close_gaps, method, device, stop_after, require, max_memory, progress;
+  bool verbose = false, quiet = false, help = false, version = false;
+};
+
+void describe(CLI::App& app, Arguments& a, Raw& raw) {
+  app.set_help_flag();
+  app.allow_extras();
+  app.add_option("INPUT", a.input);
+  app.add_option("OUTPUT", a.output);
+
+  const auto option = [&](const char* group, const char* name, auto& value, const char* value_name, const char* text,
+                          const char* fallback) {
+    return app.add_option(name, value, text)->group(group)->type_name(value_name)->default_str(fallback);
+  };
+  const auto flag = [&](const char* group, const char* name, bool& value, const char* text) {
+    app.add_flag(name, value, text)->group(group)->type_name("");
+  };
+
+  const char* size = "Size of the result";
+  CLI::Option* vertices = option(size, "--vertices", raw.vertices, "K", "number of vertices", "10000");
+  option(size, "--edge-length", raw.edge_length, "L", "edge length to aim at, in world units, instead of --vertices", "")
+      ->excludes(vertices);
+
+  const char* grid = "Grid";
+  CLI::Option* resolution =
+      option(grid, "--resolution", raw.resolution, "R", "voxels along the longest side, 8 to 8192",
+             "a cell is about 6 voxels wide");
+  option(grid, "--voxel-size", raw.voxel_size, "S", "the same in world units, instead of --resolution", "")
+      ->excludes(resolution);
+  option(grid, "--band", raw.band, "D", "thickness of the shell in voxels, 1 to 20", "2");
+  option(grid, "--close-gaps", raw.close_gaps, "W",
+         "bridge gaps up to W world units wide; auto, 0, or voxels as 4vox", "auto");
+
+  const char* relaxation = "Relaxation";
+  option(relaxation, "--method", raw.method, "sheet|shell",
+         "sheet: exact clipped cells on the closed sheet; shell: the paper's Lloyd loop on shell voxels", "sheet");
+  option(relaxation, "--iterations", raw.iterations, "N", "most passes", "the method's own");
+  option(relaxation, "--tolerance", raw.tolerance, "E", "stop when the energy falls by less than this part a pass",
+         "the method's own");
+  option(relaxation, "--step", raw.step, "U", "longest move of a seed in a pass, in voxels", "the method's own");
+  option(relaxation, "--seed", raw.seed, "N", "start of the random generator", "0");
+
+  const char* files = "Files";
+  option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off or vdb", "by its name");
+  option(files, "--output-format", a.output_format, "F", "format of OUTPUT: ply, obj, stl, off or vdb", "by its name");
+  option(files, "--save-shell", a.save_shell, "F.vdb", "keep the shell; a run can resume from it", "");
+  option(files, "--save-voronoi", a.save_voronoi, "F.vdb", "keep the Voronoi volume; a run can resume from it", "");
+  option(files, "--stop-after", raw.stop_after, "shell|voronoi", "stop there; OUTPUT is that stage's .vdb", "");
+  option(files, "--stats", a.stats, "F.json", "write everything measured; - for standard output", "");
+  flag(files, "--force", a.force, "replace files that exist");
+
+  const char* run = "Run";
+  option(run, "--require", raw.require, "LIST",
+         "gates on the result, exit 6 when one fails: closed, manifold, genus=G, components=N, min-angle=DEG", "");
+  option(run, "--device", raw.device, "auto|cpu|cuda[:N]", "where to run", "auto");
+  option(run, "--threads", raw.threads, "N", "CPU threads", "all");
+  option(run, "--max-memory", raw.max_memory, "SIZE", "refuse runs that would need more, as 512M or 8G",
+         "80 % of what is free");
+  flag(run, "--dry-run", a.dry_run, "print grid and memory estimate, and stop");
+  option(run, "--progress", raw.progress, "auto|always|never|json", "progress on standard error", "auto");
+  flag(run, "-v,--verbose", raw.verbose, "say more");
+  flag(run, "-q,--quiet", raw.quiet, "say errors only");
+  flag(run, "-h,--help", raw.help, "print this and stop");
+  flag(run, "--version", raw.version, "print the version and stop");
+}
+
+template <class Value>
+Value chosen(const std::string& option, const std::string& text,
+             std::initializer_list<std::pair<const char*, Value>> choices) {
+  std::string names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names += names.empty() ? name : std::string(", ") + name;
+  }
+  refuse(option + " is '" + text + "'; it must be one of " + names);
+}
+
+double parse_number(const std::string& option, const std::string& text) {
+  double value = 0;
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  if (!(stream >> value) || !stream.eof() || !std::isfinite(value))
+    refuse(option + " is '" + text + "'; it must be a number");
+  return value;
+}
+
+int64_t parse_count(const std::string& option, const std::string& text) {
+  const double value = parse_number(option, text);
+  if (value != std::floor(value) || value < 0 || value > 1e15)
+    refuse(option + " is '" + text + "'; it must be a whole number, 0 or more");
+  return int64_t(value);
+}
+
+void check_range(const std::string& option, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  std::ostringstream text;
+  text << option << " is " << value << "; it must be ";
+  if (high == std::numeric_limits<double>::max())
+    text << (low == std::numeric_limits<double>::min() ? "more than 0" : "0 or more");
+  else
+    text << std::fixed << std::setprecision(0) << low << " to " << high;
+  refuse(text.str());
+}
+
+void set_gaps(const std::string& text, RemeshOptions& options) {
+  if (text == "auto") return;
+  const size_t unit = text.find("vox");
+  const bool voxels = unit != std::string::npos && unit + 3 == text.size();
+  const double width = parse_number("--close-gaps", voxels ? text.substr(0, unit) : text);
+  if (width < 0) refuse("--close-gaps is " + text + "; a width is 0 or more");
+  if (voxels) check_range("--close-gaps in voxels", width, 0, 2 * kMaxClosingVox);
+  if (voxels || width == 0) options.closing_vox = int32_t(std::ceil(width / 2));
+  else options.closing_world = width;
+}
+
+void set_device(const std::string& text, Arguments& a) {
+  if (text.compare(0, 5, "cuda:") == 0) {
+    a.backend = Backend::cuda;
+    const int64_t number = parse_count("--device", text.substr(5));
+    check_range("the device number", double(number), 0, 1023);
+    a.device = int(number);
+    return;
+  }
+  a.backend = chosen<Backend>("--device", text,
+                              {{"auto", Backend::best}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}});
+}
+
+void set_gate(const std::string& gate, Gates& gates) {
+  const size_t equals = gate.find('=');
+  const std::string name = gate.substr(0, equals);
+  const std::string value = equals == std::string::npos ? "" : gate.substr(equals + 1);
+  const bool has_value = equals != std::string::npos;
+  if (name == "closed" && !has_value) gates.closed = true;
+  else if (name == "manifold" && !has_value) gates.manifold = true;
+  else if (name == "genus" && has_value) gates.genus = parse_count("--require genus", value);
+  else if (name == "components" && has_value) gates.components = parse_count("--require components", value);
+  else if (name == "min-angle" && has_value) {
+    gates.min_angle_deg = parse_number("--require min-angle", value);
+    check_range("--require min-angle", *gates.min_angle_deg, 0, 60);
+  } else if (name == "max-deviation" || name == "no-self-intersections") {
+    refuse("--require " + name + " is not available yet; leave it out");
+  } else {
+    refuse("--require has '" + gate + "'; gates are closed, manifold, genus=G, components=N, min-angle=DEG");
+  }
+}
+
+std::string lower_extension(std::string format) {
+  if (!format.empty() && format[0] == '.') format.erase(0, 1);
+  std::transform(format.begin(), format.end(), format.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return format;
+}
+
+std::string extension_of(const std::string& path) {
+  const size_t slash = path.find_last_of('/'), dot = path.find_last_of('.');
+  return dot == std::string::npos || (slash != std::string::npos && dot < slash) ? "" : lower_extension(path.substr(dot));
+}
+
+/// Formats by name or option; "-" has no name to go by.
+void settle_formats(Arguments& a) {
+  a.input_format = lower_extension(a.input_format);
+  a.output_format = lower_extension(a.output_format);
+  if (a.input == "-" && a.input_format.empty()) refuse("INPUT is standard input; say what it holds by --input-format");
+  if (a.output == "-" && a.output_format.empty())
+    refuse("OUTPUT is standard output; say what to write by --output-format");
+  if (a.input_format.empty()) a.input_format = extension_of(a.input);
+  if (a.output_format.empty() && !a.output.empty()) a.output_format = extension_of(a.output);
+  if (a.output.empty()) return;
+  if (a.stop_after == StopAfter::mesh) {
+    chosen<int>("the format of OUTPUT", a.output_format, {{"ply", 0}, {"obj", 0}, {"stl", 0}, {"off", 0}});
+  } else {
+    if (a.output_format != "vdb") refuse("with --stop-after, OUTPUT is a .vdb file; it is '" + a.output + "'");
+    if (a.output == "-") refuse("a .vdb file cannot be written to standard output; name a file");
+  }
+}
+
+void settle(CLI::App& app, Arguments& a, const Raw& raw) {
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0 && !option->get_lnames().empty()) a.given.push_back(option->get_lnames()[0]);
+  const double tiny = std::numeric_limits<double>::min(), most = std::numeric_limits<double>::max();
+  const auto ranged = [&](const char* name, double value, double low, double high) {
+    const bool given = a.was_given(name);
+    if (given) check_range(std::string("--") + name, value, low, high);
+    return given;
+  };
+  RemeshOptions& o = a.remesh;
+  if (ranged("vertices", double(raw.vertices), 4, 2147483647)) o.vertices = raw.vertices;
+  if (ranged("edge-length", raw.edge_length, tiny, most)) o.edge_length_world = raw.edge_length;
+  if (ranged("resolution", double(raw.resolution), 8, kMaxResolution)) o.resolution = int32_t(raw.resolution);
+  if (ranged("voxel-size", raw.voxel_size, tiny, most)) o.voxel_size_world = raw.voxel_size;
+  if (ranged("band", double(raw.band), 1, kMaxBandVox)) o.band_vox = int32_t(raw.band);
+  if (ranged("iterations", double(raw.iterations), 1, 1000000)) o.max_passes = int32_t(raw.iterations);
+  if (ranged("tolerance", raw.tolerance, 0, 1)) o.tolerance = raw.tolerance;
+  if (ranged("step", raw.step, 0, 1000)) o.max_step_vox = raw.step;
+  if (ranged("threads", double(raw.threads), 1, 4096)) a.threads = int(raw.threads);
+  o.seed = raw.seed;
+  if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);
+  if (!raw.method.empty())
+    o.method = chosen<Method>("--method", raw.method, {{"sheet", Method::sheet}, {"shell", Method::shell}});
+  if (!raw.device.empty()) set_device(raw.device, a);
+  if (!raw.stop_after.empty())
+    a.stop_after = chosen<StopAfter>("--stop-after", raw.stop_after,
+                                     {{"shell", StopAfter::shell}, {"voronoi", StopAfter::voronoi}});
+  if (!raw.progress.empty())
+    a.progress = chosen<ProgressMode>("--progress", raw.progress,
+                                      {{"auto", ProgressMode::automatic}, {"always", ProgressMode::always},
+                                       {"never", ProgressMode::never}, {"json", ProgressMode::json}});
+  if (!raw.max_memory.empty()) a.max_memory_bytes = parse_size_bytes(raw.max_memory);
+  std::istringstream gates(raw.require);
+  for (std::string gate; std::getline(gates, gate, ',');) set_gate(gate, a.gates);
+  if (a.gates.any() && a.stop_after != StopAfter::mesh) refuse("--require needs a mesh; leave out --stop-after");
+  if (raw.verbose && raw.quiet) refuse("--verbose and --quiet exclude each other");
+  a.verbosity = raw.quiet ? 0 : raw.verbose ? 2 : 1;
+}
+
+void refuse_leftovers(const CLI::App& app) {
+  for (const std::string& left : app.remaining()) {
+    if (left.size() < 2 || left[0] != '-') continue;
+    const std::string hint = closest_option(app, left);
+    refuse("unknown option " + left + (hint.empty() ? "; see --help" : "; did you mean " + hint + "?"));
+  }
+  if (!app.remaining().empty())
+    refuse("one argument too many: '" + app.remaining()[0] + "'; there is one INPUT and one OUTPUT");
+}
+
+}  // namespace
+
+bool Arguments::was_given(const std::string& option) const {
+  return std::find(given.begin(), given.end(), option) != given.end();
+}
+
+int64_t parse_size_bytes(const std::string& text) {
+  const size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
+  const std::string unit = lower_extension(text.substr(end));
+  const int64_t scale =
+      chosen<int64_t>("the unit of a size", unit.empty() ? "bytes" : unit,
+                      {{"bytes", 1}, {"b", 1}, {"k", 1ll << 10}, {"kb", 1ll << 10}, {"kib", 1ll << 10},
+                       {"m", 1ll << 20}, {"mb", 1ll << 20}, {"mib", 1ll << 20}, {"g", 1ll << 30}, {"gb", 1ll << 30},
+                       {"gib", 1ll << 30}, {"t", 1ll << 40}, {"tb", 1ll << 40}, {"tib", 1ll << 40}});
+  const double bytes = parse_number("the size", text.substr(0, end)) * double(scale);
+  if (!(bytes >= 1) || bytes > 9e18) refuse("the size '" + text + "' must be more than 0");
+  return int64_t(bytes);
+}
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  Arguments a;
+  Raw raw;
+  CLI::App app(kDescription);
+  describe(app, a, raw);
+
+  std::vector<std::string> words;  // backwards, as CLI11 wants them
+  for (int i = argc - 1; i > 0; --i) {
+    std::string word = argv[i];
+    if (word == "-help" || word == "-version") word.insert(0, "-");
+    words.push_back(word);
+  }
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& e) {
+    refuse(std::string(e.what()) + "; see --help");
+  }
+  if (raw.help) return {std::nullopt, help_text(app)};
+  if (raw.version) return {std::nullopt, version_text()};
+  refuse_leftovers(app);
+  settle(app, a, raw);
+  if (a.input.empty()) refuse("INPUT is missing; see --help");
+  if (a.output.empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
+  settle_formats(a);
+  if (a.output == "-" && a.stats == "-") refuse("OUTPUT and --stats cannot both be standard output");
+  return {std::move(a), ""};
+}
+
+}  // namespace isoshell::tool

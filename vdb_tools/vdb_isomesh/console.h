@@ -1,0 +1,47 @@
+// Everything a person reads: messages and progress, all on standard error.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "vdb_isomesh/args.h"
+
+namespace isoshell::tool {
+
+/// Messages of one run. Errors always, warnings and results unless quiet, details when verbose. No colour unless standard
+/// error is a terminal and NO_COLOR is not set.
+class Console {
+ public:
+  Console(ProgressMode progress, int verbosity);
+  ~Console() { clear_bar(); }
+
+  void error(const std::string& message);
+  void warn(const std::string& message);
+  void result(const std::string& message);
+  void detail(const std::string& message);
+
+  /// A stage began (fraction 0), goes on, or is done (1). A bar on a terminal, lines of JSON with --progress json.
+  void progress(const std::string& stage, double fraction);
+
+ private:
+  void print(const char* label, const char* colour, const std::string& message);
+  void clear_bar();
+  void draw_bar(const std::string& stage, double fraction);
+
+  ProgressMode progress_;
+  int verbosity_;
+  bool colour_;
+  bool bar_drawn_ = false;
+  std::string last_stage_;
+  double last_fraction_ = -1;
+  std::chrono::steady_clock::time_point start_, last_drawn_;
+};
+
+/// 1234567 as "1,234,567".
+std::string with_commas(int64_t count);
+/// "1 face", "3 faces"; `plural` where an s will not do.
+std::string counted(int64_t count, const std::string& noun, const std::string& plural = "");
+/// Bytes as "1.5 GiB".
+std::string readable_bytes(int64_t bytes);
+
+}  // namespace isoshell::tool

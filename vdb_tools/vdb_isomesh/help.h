@@ -1,0 +1,18 @@
+// The text of --help. README's option table is made from it.
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace isoshell::tool {
+
+std::string help_text(const CLI::App& app);
+std::string version_text();
+
+/// The option of `app` closest to a mistyped one, "--name"; empty when none is close.
+std::string closest_option(const CLI::App& app, const std::string& mistyped);
+
+}  // namespace isoshell::tool

@@ -1,0 +1,284 @@
+// Reads, calls the library step by step, keeps what was asked for, measures, writes.
+#include "vdb_isomesh/run.h"
+
+#include <chrono>
+#include <sstream>
+#include <type_traits>
+
+#include "isoshell/error.h"
+#include "isoshell/isoshell.h"
+#include "vdb_isomesh/input.h"
+#include "vdb_isomesh/memory.h"
+#include "vdb_isomesh/output.h"
+#include "vdb_isomesh/stats.h"
+
+namespace isoshell::tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// What the run starts from: a soup, or a stage file.
+struct Source {
+  TriangleSoup soup;
+  std::optional<StageFile> stage;
+};
+
+class Run {
+ public:
+  Run(const Arguments& a, Context& context, Console& console)
+      : a_(a), options_(a.remesh), context_(context), console_(console) {
+    record_.device = backend_name(context);
+    options_.want_shell = keeps_shell();
+    options_.want_digests = !a.stats.empty();
+  }
+
+  int go() {
+    check_outputs(a_);
+    Source source = step("read", [&] { return read(); });
+    if (a_.dry_run) {
+      print_estimate(source);
+      return 0;
+    }
+    Prepared prepared = step("prepare", [&] { return prepare_from(source); });
+    warn_of_dirt();
+    save_shell_if_asked(prepared);
+    if (a_.stop_after == StopAfter::shell) return finish();
+    SeedSet seeds = step("relax", [&] { return relaxed_seeds(source, prepared); });
+    save_voronoi_if_asked(prepared, seeds);
+    if (a_.stop_after == StopAfter::voronoi) return finish();
+    const TriangleMesh mesh =
+        step("triangulate", [&] { return triangulate(prepared, seeds, options_, record_.report, context_); });
+    step("measure", [&] { measure(mesh); });
+    step("write", [&] { write_mesh(a_.output, mesh, {mesh_format(a_.output_format), a_.force}); });
+    return finish();
+  }
+
+ private:
+  bool keeps_shell() const {
+    return !a_.save_shell.empty() || !a_.save_voronoi.empty() || a_.stop_after != StopAfter::mesh;
+  }
+
+  template <class Work>
+  std::invoke_result_t<Work> step(const char* name, Work work) {
+    if (context_.cancel) throw Error(ErrorCode::interrupted, name, "interrupted; nothing was written");
+    console_.progress(name, 0);
+    struct Book {
+      Run& run;
+      const char* name;
+      Clock::time_point start = Clock::now();
+      ~Book() { run.record_.times.push_back({name, ms_since(start)}); }
+    };
+    Book book{*this, name};
+    if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+      work();
+      console_.progress(name, 1);
+    } else {
+      auto product = work();
+      console_.progress(name, 1);
+      return product;
+    }
+  }
+
+  Source read() {
+    record_.input.kind = classify_input(a_.input, a_.input_format);
+    Source source;
+    switch (record_.input.kind) {
+      case InputKind::mesh: read_soup(source.soup); break;
+      case InputKind::stage: read_stage_file(source); break;
+      default:
+        throw Error(ErrorCode::unreadable_input, "read",
+                    a_.input + ": " + (record_.input.kind == InputKind::points ? "point clouds" : "volumes") +
+                        " are not read yet; give a mesh (.obj .ply .stl .off) or a stage file");
+    }
+    return source;
+  }
+
+  void read_soup(TriangleSoup& soup) {
+    soup = read_mesh(a_.input, mesh_format(a_.input_format));
+    InputFacts& facts = record_.input;
+    facts.vertices = int64_t(soup.vertices.size());
+    facts.faces = soup.faces_in_file;
+    WorldPoint lo, hi;
+    bounding_box(soup, lo, hi);
+    facts.box_min = lo;
+    facts.box_max = hi;
+    console_.detail(a_.input + ": " + counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
+  }
+
+  void read_stage_file(Source& source) {
+    refuse_given({"resolution", "voxel-size", "close-gaps", "band"}, "is fixed by a stage file");
+    source.stage = isoshell::read_stage(a_.input);
+    if (source.stage->seeds)
+      refuse_given({"vertices", "edge-length", "method", "iterations", "tolerance", "step", "seed"},
+                   "is fixed by a Voronoi stage file");
+    adopt_options(source.stage->info.options_json, a_.input, a_, options_);
+    options_.band_vox = source.stage->shell.band_vox;
+    if (source.stage->seeds && a_.stop_after == StopAfter::shell)
+      throw Error(ErrorCode::usage, "command line", "INPUT is past the shell already; leave out --stop-after shell");
+    console_.detail(a_.input + ": stage " + source.stage->info.stage + ", " +
+                    counted(source.stage->shell.voxels.voxel_count(), "active voxel"));
+  }
+
+  void refuse_given(std::initializer_list<const char*> options, const char* why) {
+    for (const char* option : options)
+      if (a_.was_given(option))
+        throw Error(ErrorCode::usage, "command line", std::string("--") + option + " " + why + "; leave it out");
+  }
+
+  Prepared prepare_from(Source& source) {
+    if (!source.stage) return prepare(source.soup, options_, record_.report, context_);
+    return prepare(std::move(source.stage->surface), source.stage->info.closing_vox, options_, record_.report, context_);
+  }
+
+  SeedSet relaxed_seeds(Source& source, const Prepared& prepared) {
+    if (!source.stage || !source.stage->seeds) return isoshell::relax(prepared, options_, record_.report, context_);
+    record_.report.seeds = source.stage->seeds->size();
+    return std::move(*source.stage->seeds);
+  }
+
+  StageWriteOptions stage_options(const Prepared& prepared) const {
+    StageWriteOptions options;
+    options.options_json = options_json(options_);
+    options.closing_vox = prepared.closing_vox;
+    options.overwrite = a_.force;
+    return options;
+  }
+
+  void save_shell_if_asked(const Prepared& p) {
+    for (const std::string& path : {a_.save_shell, a_.stop_after == StopAfter::shell ? a_.output : std::string()})
+      if (!path.empty())
+        step("save-shell", [&] { save_shell(path, p.surface, p.samples, p.shell, stage_options(p)); });
+  }
+
+  void save_voronoi_if_asked(const Prepared& p, const SeedSet& seeds) {
+    if (a_.save_voronoi.empty() && a_.stop_after != StopAfter::voronoi) return;
+    const VoronoiLabels labels = step("flood", [&] { return flood_shell(p.shell, seeds, context_); });
+    if (options_.want_digests) record_.report.digests["labels"] = digest_text(digest(labels));
+    for (const std::string& path : {a_.save_voronoi, a_.stop_after == StopAfter::voronoi ? a_.output : std::string()})
+      if (!path.empty())
+        step("save-voronoi", [&] { save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p)); });
+  }
+
+  /// On the triangles alone: no stage's word is taken for it.
+  void measure(const TriangleMesh& mesh) {
+    record_.vertices = int64_t(mesh.vertices.size());
+    record_.triangles = int64_t(mesh.triangles.size());
+    if (a_.stats.empty() && !a_.gates.any() && a_.verbosity == 0) return;
+    record_.topology = check_mesh(mesh);
+    record_.quality = measure_quality(mesh);
+  }
+
+  void warn(const std::string& text) {
+    record_.warnings.push_back(text);
+    console_.warn(text);
+  }
+
+  void warn_of_dirt() {
+    const DirtCounts& d = record_.report.dirt;
+    const auto note = [&](int64_t count, const char* what) {
+      if (count > 0) warn(a_.input + ": " + with_commas(count) + " " + what);
+    };
+    note(d.nonfinite_vertices, "vertices that are not finite");
+    note(d.dropped_faces_nonfinite, "faces dropped, they use vertices that are not finite");
+    note(d.short_faces, "faces of fewer than three corners dropped");
+    note(d.degenerate_faces, "faces without area");
+    note(d.duplicate_faces, "repeated faces");
+    note(d.unreferenced_vertices, "vertices that no face uses");
+    note(d.nonmanifold_edges, "edges that more than two faces share");
+    note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
+    const InputTopology& t = record_.report.input;
+    if (!t.closed && t.boundary_loops > 0) note(t.boundary_loops, "open boundaries; the result closes them or follows both sides");
+  }
+
+  void print_estimate(const Source& source) {
+    if (source.stage)
+      throw Error(ErrorCode::usage, "command line", "--dry-run needs a mesh as INPUT, a stage file has its grid already");
+    DirtCounts dirt;
+    const RunEstimate e = estimate_run(source.soup, measure_topology(source.soup, dirt, context_), options_);
+    std::ostringstream text;
+    text << "estimate: resolution " << e.resolution << ", voxel size " << e.voxel_size_world << ", "
+         << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices") << ", "
+         << counted(e.vertices, "vertex", "vertices") << " in the result, about " << readable_bytes(e.bytes) << " of "
+         << readable_bytes(context_.memory_limit_bytes) << " allowed";
+    console_.result(text.str());
+    if (context_.memory_limit_bytes > 0 && e.bytes > context_.memory_limit_bytes)
+      throw Error(ErrorCode::out_of_memory, "memory",
+                  "the run needs about " + readable_bytes(e.bytes) + ", more than the limit of " +
+                      readable_bytes(context_.memory_limit_bytes) + "; lower --resolution or raise --max-memory");
+  }
+
+  std::vector<std::string> failed_gates() const {
+    std::vector<std::string> failed;
+    const Gates& g = a_.gates;
+    if (!g.any()) return failed;
+    const MeshTopology& t = *record_.topology;
+    const auto gate = [&](bool passed, const std::string& text) {
+      if (!passed) failed.push_back(text);
+    };
+    if (g.closed) gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
+    if (g.manifold) gate(t.is_closed_manifold(), "manifold: the mesh is not a closed 2-manifold");
+    if (g.genus)
+      gate(t.genus == *g.genus, "genus=" + std::to_string(*g.genus) + ": the mesh has " +
+                                         (t.genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(t.genus)));
+    if (g.components)
+      gate(t.components == *g.components,
+           "components=" + std::to_string(*g.components) + ": the mesh has " + std::to_string(t.components));
+    if (g.min_angle_deg) {
+      std::ostringstream text;
+      text << "min-angle=" << *g.min_angle_deg << ": the smallest angle is " << record_.quality->theta_min_deg;
+      gate(record_.quality->theta_min_deg >= *g.min_angle_deg, text.str());
+    }
+    return failed;
+  }
+
+  void tell_result() {
+    for (const StageTime& t : record_.report.times) {
+      std::ostringstream text;
+      text.precision(1);
+      text << std::fixed << "  " << t.stage << " " << t.ms << " ms";
+      console_.detail(text.str());
+    }
+    std::ostringstream text;
+    text.precision(1);
+    text << std::fixed << (a_.output == "-" ? "standard output" : a_.output) << ": ";
+    if (record_.vertices >= 0) text << counted(record_.vertices, "vertex", "vertices") << ", " << counted(record_.triangles, "triangle") << ", ";
+    else text << counted(record_.report.active_voxels, "active voxel") << ", ";
+    if (record_.topology) {
+      const MeshTopology& t = *record_.topology;
+      text << counted(t.components, "component") << ", "
+           << (t.is_closed_manifold() ? "closed 2-manifold of genus " + std::to_string(t.genus) : "not a closed 2-manifold")
+           << ", ";
+    }
+    if (record_.quality) text << "smallest angle " << record_.quality->theta_min_deg << ", ";
+    text << record_.total_ms / 1000 << " s";
+    console_.result(text.str());
+  }
+
+  int finish() {
+    record_.total_ms = ms_since(start_);
+    record_.host_peak_bytes = process_peak_bytes();
+    for (const std::string& text : record_.report.warnings) warn(text);
+    if (!a_.stats.empty()) write_text(a_.stats, stats_json(a_, record_));
+    tell_result();
+    const std::vector<std::string> failed = failed_gates();
+    for (const std::string& text : failed) console_.error("gate failed: " + text);
+    return failed.empty() ? 0 : int(ErrorCode::gate_failed);
+  }
+
+  const Arguments& a_;
+  RemeshOptions options_;
+  Context& context_;
+  Console& console_;
+  RunRecord record_;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace
+
+int run(const Arguments& arguments, Context& context, Console& console) { return Run(arguments, context, console).go(); }
+
+}  // namespace isoshell::tool

@@ -1,0 +1,157 @@
+// JSON in and out.
+#include "vdb_isomesh/stats.h"
+
+#include <nlohmann/json.hpp>
+
+#include "isoshell/error.h"
+
+namespace isoshell::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json known(int64_t count) { return count < 0 ? Json() : Json(count); }
+Json known(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json point(const std::optional<WorldPoint>& p) { return p ? Json{p->x, p->y, p->z} : Json(); }
+
+Json dirt_json(const DirtCounts& d) {
+  return {{"nonfinite_vertices", d.nonfinite_vertices},
+          {"faces_with_nonfinite_vertices", d.dropped_faces_nonfinite},
+          {"short_faces", d.short_faces},
+          {"degenerate_faces", d.degenerate_faces},
+          {"duplicate_faces", d.duplicate_faces},
+          {"unreferenced_vertices", d.unreferenced_vertices},
+          {"nonmanifold_edges", d.nonmanifold_edges},
+          {"inconsistent_edges", d.inconsistent_edges}};
+}
+
+Json input_json(const Arguments& a, const RunRecord& r) {
+  const InputTopology& t = r.report.input;
+  return {{"path", a.input},
+          {"kind", kind_name(r.input.kind)},
+          {"vertices", known(r.input.vertices)},
+          {"faces", known(r.input.faces)},
+          {"dropped", dirt_json(r.report.dirt)},
+          {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
+          {"components", t.components},
+          {"genus", known(t.genus)},
+          {"boundary_loops", t.boundary_loops},
+          {"closed", t.closed},
+          {"oriented", t.oriented},
+          {"area", t.area_world}};
+}
+
+Json grid_json(const RemeshReport& r) {
+  return {{"resolution", r.frame.resolution},
+          {"voxel_size", r.frame.voxel_size},
+          {"band", r.band_vox},
+          {"closing", r.closing_vox}};
+}
+
+Json counts_json(const RunRecord& r) {
+  return {{"sites", r.report.sites},
+          {"active_voxels", r.report.active_voxels > 0 ? Json(r.report.active_voxels) : Json()},
+          {"leaves", r.report.leaves > 0 ? Json(r.report.leaves) : Json()},
+          {"sheet_vertices", r.report.sheet_vertices},
+          {"seeds", r.report.seeds},
+          {"vertices", known(r.vertices)},
+          {"triangles", known(r.triangles)}};
+}
+
+Json topology_json(const RunRecord& r) {
+  Json j = {{"components", nullptr}, {"genus", nullptr}, {"closed", nullptr}, {"manifold", nullptr},
+            {"boundary_loops", nullptr}, {"nonmanifold_edges", nullptr}, {"nonmanifold_vertices", nullptr}, {"self_intersections", nullptr},
+            {"sheet_components", r.report.sheet.components}, {"sheet_genus", r.report.sheet.genus},
+            {"agrees_with_input", r.report.topology_compared ? Json(r.report.topology_agrees) : Json()},
+            {"failed_cells", r.report.dual.failed_cells}, {"inserted_seeds", r.report.dual.inserted_seeds}};
+  if (!r.topology) return j;
+  const MeshTopology& t = *r.topology;
+  j["components"] = t.components;
+  j["genus"] = known(t.genus);
+  j["closed"] = t.closed;
+  j["manifold"] = t.is_closed_manifold();
+  j["boundary_loops"] = t.boundary_loops;
+  j["nonmanifold_edges"] = t.nonmanifold_edges;
+  j["nonmanifold_vertices"] = t.nonmanifold_vertices;
+  return j;
+}
+
+Json quality_json(const RunRecord& r) {
+  if (!r.quality) return nullptr;
+  const MeshQuality& q = *r.quality;
+  return {{"q_min", q.q_min},
+          {"q_avg", q.q_avg},
+          {"theta_min_deg", q.theta_min_deg},
+          {"theta_avg_deg", q.theta_avg_deg},
+          {"theta_max_deg", q.theta_max_deg},
+          {"below_30_deg_pct", q.below_30_deg_pct},
+          {"irregular_ratio", q.irregular_ratio},
+          {"edge_cv", q.edge_cv},
+          {"area_cv", q.area_cv}};
+}
+
+Json timings_json(const RunRecord& r) {
+  Json j = Json::object();
+  for (const auto* times : {&r.times, &r.report.times})
+    for (const StageTime& t : *times) j[t.stage] = t.ms;
+  j["total"] = r.total_ms;
+  return j;
+}
+
+const char* method_name(Method method) { return method == Method::shell ? "shell" : "sheet"; }
+
+}  // namespace
+
+std::string stats_json(const Arguments& a, const RunRecord& r) {
+  Json j;
+  j["schema"] = 1;
+  j["version"] = VDB_ISOMESH_VERSION;
+  j["options"] = Json::parse(options_json(a.remesh));
+  j["input"] = input_json(a, r);
+  j["output"] = {{"path", a.output}, {"format", a.output_format}};
+  j["grid"] = grid_json(r.report);
+  j["counts"] = counts_json(r);
+  j["topology"] = topology_json(r);
+  j["quality"] = quality_json(r);
+  j["distance"] = {{"to_input_mean", nullptr}, {"to_input_max", nullptr}, {"from_input_max", nullptr}, {"unit", "world"}};
+  j["energy"] = r.report.relax.energy;
+  j["timings_ms"] = timings_json(r);
+  j["memory_bytes"] = {{"host_peak", r.host_peak_bytes}, {"device_peak", nullptr},
+                       {"estimate", r.report.memory_estimate_bytes > 0 ? Json(r.report.memory_estimate_bytes) : Json()}};
+  j["device"] = known(r.device);
+  j["digests"] = r.report.digests.empty() ? Json::object() : Json(r.report.digests);
+  j["warnings"] = r.warnings.empty() ? Json::array() : Json(r.warnings);
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string options_json(const RemeshOptions& o) {
+  const Json j = {{"vertices", o.vertices}, {"edge-length", o.edge_length_world}, {"band", o.band_vox},
+                  {"method", method_name(o.method)}, {"iterations", o.max_passes}, {"tolerance", o.tolerance},
+                  {"step", o.max_step_vox}, {"seed", o.seed}};
+  return j.dump();
+}
+
+void adopt_options(const std::string& json, const std::string& path, const Arguments& a, RemeshOptions& o) {
+  try {
+    const Json j = Json::parse(json);
+    const auto adopt = [&](const char* name, auto& value) {
+      if (!a.was_given(name)) value = j.at(name).get<std::decay_t<decltype(value)>>();
+    };
+    const bool size_given = a.was_given("vertices") || a.was_given("edge-length");
+    if (!size_given) {
+      adopt("vertices", o.vertices);
+      adopt("edge-length", o.edge_length_world);
+    }
+    adopt("iterations", o.max_passes);
+    adopt("tolerance", o.tolerance);
+    adopt("step", o.max_step_vox);
+    adopt("seed", o.seed);
+    if (!a.was_given("method")) o.method = j.at("method") == "shell" ? Method::shell : Method::sheet;
+  } catch (const Json::exception& e) {
+    throw Error(ErrorCode::unreadable_input, "read",
+                path + ": the options kept in this stage file cannot be read (" + e.what() + "); make the file again");
+  }
+}
+
+}  // namespace isoshell::tool

@@ -1,0 +1,45 @@
+// Everything measured in a run, as JSON (schema 1).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/mesh_topology.h"
+#include "isoshell/quality.h"
+#include "isoshell/remesh.h"
+#include "vdb_isomesh/args.h"
+#include "vdb_isomesh/input.h"
+
+namespace isoshell::tool {
+
+/// What is known of the input before the first stage; counts are -1 where they are not known.
+struct InputFacts {
+  InputKind kind = InputKind::mesh;
+  int64_t vertices = -1, faces = -1;
+  std::optional<WorldPoint> box_min, box_max;
+};
+
+struct RunRecord {
+  InputFacts input;
+  RemeshReport report;
+  std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
+  std::optional<MeshQuality> quality;
+  int64_t vertices = -1, triangles = -1;
+  std::vector<StageTime> times;  ///< of the command; the library's are in the report
+  double total_ms = 0;
+  std::string device;
+  int64_t host_peak_bytes = 0;
+  std::vector<std::string> warnings;
+};
+
+/// What was not measured is null.
+std::string stats_json(const Arguments& arguments, const RunRecord& record);
+
+/// The options that a resumed run must repeat, to be kept in a stage file.
+std::string options_json(const RemeshOptions& options);
+
+/// Takes from a stage file's options those that were not given on the command line. Throws: unreadable_input.
+void adopt_options(const std::string& json, const std::string& path, const Arguments& arguments, RemeshOptions& options);
+
+}  // namespace isoshell::tool
