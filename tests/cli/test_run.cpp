@@ -1,0 +1,192 @@
+// Whole runs of the command: meshes, statistics, gates, pipes, stage files, interruption.
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/command.h"
+#include "support/catch.h"
+
+using namespace isoshell;
+using namespace isoshell::cli;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kQuick = " --vertices 300 --resolution 48 ";
+
+void write_ball(const Folder& folder) { folder.write_off("ball.off", shapes::sphere({1, 2, 3}, 5, 48)); }
+
+std::set<std::string> keys(const Json& object) {
+  std::set<std::string> names;
+  for (const auto& item : object.items()) names.insert(item.key());
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("run: a surface becomes a closed mesh of the asked size, in the input's coordinates", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  const auto r = folder.run("ball.off out.ply --require closed,manifold,genus=0,components=1" + kQuick);
+  CHECK(r.status == 0);
+  CHECK(r.out.empty());
+  CHECK(contains(r.err, "300 vertices"));
+  const TriangleSoup mesh = read_mesh((folder / "out.ply").string());
+  CHECK(mesh.vertices.size() == 300);
+  CHECK(mesh.triangles.size() == 596);
+  for (const WorldPoint& p : mesh.vertices) {
+    const double r_sq = (p.x - 1) * (p.x - 1) + (p.y - 2) * (p.y - 2) + (p.z - 3) * (p.z - 3);
+    CHECK(r_sq > 4.5 * 4.5);
+    CHECK(r_sq < 5.3 * 5.3);
+  }
+  CHECK(folder.file_count() == 2);
+}
+
+TEST_CASE("run: statistics have every key of schema 1, and null for what is not measured", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  const auto r = folder.run("ball.off out.ply --stats - -q" + kQuick);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.empty());
+  const Json j = Json::parse(r.out);
+  CHECK(j["schema"] == 1);
+  for (const char* name : {"input", "grid", "counts", "topology", "quality", "distance", "energy", "timings_ms",
+                           "memory_bytes", "device", "digests", "warnings"})
+    CHECK(j.contains(name));
+  CHECK(j["input"]["kind"] == "mesh");
+  CHECK(j["input"]["closed"] == true);
+  CHECK(j["grid"]["resolution"] == 48);
+  CHECK(j["counts"]["vertices"] == 300);
+  CHECK(j["counts"]["triangles"] == 596);
+  CHECK(j["topology"]["genus"] == 0);
+  CHECK(j["topology"]["manifold"] == true);
+  CHECK(j["distance"]["to_input_max"].is_null());
+  CHECK(j["device"] == "cpu");
+  CHECK(j["quality"]["q_avg"] > 0.8);
+  CHECK(j["memory_bytes"]["host_peak"] > 0);
+  CHECK(j["timings_ms"]["total"] > 0);
+  CHECK(keys(j["digests"]) == std::set<std::string>{"mesh", "samples", "seeds", "sheet", "sites", "surface"});
+}
+
+TEST_CASE("run: a gate that fails exits with 6 and still writes the mesh", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  const auto r = folder.run("ball.off out.ply --require genus=1,min-angle=59.9 --stats out.json" + kQuick);
+  CHECK(r.status == 6);
+  CHECK(contains(r.err, "gate failed: genus=1: the mesh has 0"));
+  CHECK(contains(r.err, "gate failed: min-angle=59.9"));
+  CHECK(folder.has("out.ply"));
+  CHECK(folder.has("out.json"));
+}
+
+TEST_CASE("run: standard input and output carry meshes, and the same bytes as files", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  REQUIRE(folder.run("ball.off file.off" + kQuick).status == 0);
+  const auto piped = folder.shell("cat ball.off | '" VDB_ISOMESH "' - - --input-format off --output-format off" + kQuick);
+  CHECK(piped.status == 0);
+  CHECK(piped.out == folder.content("file.off"));
+  CHECK_FALSE(piped.out.empty());
+  const auto full = folder.run("ball.off out.off --stats - > /dev/full" + kQuick);
+  CHECK(full.status == 4);
+}
+
+TEST_CASE("run: the number of threads and the order of faces do not change a byte", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  TriangleSoup turned = shapes::sphere({1, 2, 3}, 5, 48);
+  std::reverse(turned.triangles.begin(), turned.triangles.end());
+  folder.write_off("turned.off", turned);
+  REQUIRE(folder.run("ball.off one.ply --threads 1" + kQuick).status == 0);
+  REQUIRE(folder.run("ball.off three.ply --threads 3" + kQuick).status == 0);
+  REQUIRE(folder.run("turned.off turned.ply" + kQuick).status == 0);
+  CHECK(folder.content("one.ply") == folder.content("three.ply"));
+  CHECK(folder.content("one.ply") == folder.content("turned.ply"));
+  REQUIRE(folder.run("ball.off other.ply --seed 1" + kQuick).status == 0);
+  CHECK(folder.content("one.ply") != folder.content("other.ply"));
+}
+
+TEST_CASE("run: --force replaces, and a failed run leaves the old file", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  folder.write("out.ply", "old");
+  folder.write("empty.off", "OFF\n0 0 0\n");
+  CHECK(folder.run("empty.off out.ply --force" + kQuick).status == 5);
+  CHECK(folder.content("out.ply") == "old");
+  CHECK(folder.run("ball.off out.ply --force" + kQuick).status == 0);
+  CHECK(folder.content("out.ply") != "old");
+  CHECK(folder.file_count() == 3);
+}
+
+TEST_CASE("run: dirt is counted in one line a kind, and quiet says nothing", "[cli]") {
+  Folder folder;
+  TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 48);
+  ball.vertices.push_back({9, 9, 9});
+  ball.triangles.push_back({0, 0, 1});
+  ball.triangles.push_back(ball.triangles[0]);
+  folder.write_off("dirty.off", ball);
+  const auto r = folder.run("dirty.off out.ply" + kQuick);
+  CHECK(r.status == 0);
+  CHECK(contains(r.err, "warning: dirty.off: 1 faces without area"));
+  CHECK(contains(r.err, "1 repeated faces"));
+  CHECK(contains(r.err, "1 vertices that no face uses"));
+  CHECK(folder.run("dirty.off quiet.ply -q" + kQuick).err.empty());
+}
+
+TEST_CASE("run: progress is lines of JSON when asked, and none without a terminal", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  const auto r = folder.run("ball.off out.ply -q --progress json" + kQuick);
+  REQUIRE(r.status == 0);
+  std::istringstream lines(r.err);
+  std::set<std::string> stages;
+  for (std::string line; std::getline(lines, line);) stages.insert(Json::parse(line)["stage"].get<std::string>());
+  CHECK(stages.count("read"));
+  CHECK(stages.count("relax"));
+  CHECK(stages.count("write"));
+  CHECK_FALSE(contains(folder.run("ball.off out2.ply" + kQuick).err, "["));
+}
+
+TEST_CASE("run: an interrupted run exits with 130 and leaves nothing", "[cli]") {
+  Folder folder;
+  folder.write_off("ball.off", shapes::sphere({1, 2, 3}, 5, 200));
+  const auto r = folder.shell("timeout --preserve-status -s INT 0.5 '" VDB_ISOMESH
+                              "' ball.off out.ply --vertices 60000 --stats out.json --save-shell shell.vdb");
+  CHECK(r.status == 130);
+  CHECK(contains(r.err, "interrupted"));
+  CHECK_FALSE(folder.has("out.ply"));
+  CHECK_FALSE(folder.has("out.json"));
+}
+
+#ifdef ISOSHELL_TEST_VDB
+TEST_CASE("run: resumed from either stage file, the result is the same, byte by byte", "[cli][vdb]") {
+  Folder folder;
+  write_ball(folder);
+  for (const std::string& method : {std::string("sheet"), std::string("shell")}) {
+    const std::string options = kQuick + "--force --seed 7 --method " + method;
+    REQUIRE(folder.run("ball.off once.ply --save-shell s.vdb --save-voronoi v.vdb" + options).status == 0);
+    REQUIRE(folder.run("ball.off shell.vdb --stop-after shell" + options).status == 0);
+    REQUIRE(folder.run("ball.off voronoi.vdb --stop-after voronoi" + options).status == 0);
+    CHECK(folder.content("s.vdb") == folder.content("shell.vdb"));
+    CHECK(folder.content("v.vdb") == folder.content("voronoi.vdb"));
+    REQUIRE(folder.run("shell.vdb from_shell.ply --force").status == 0);
+    REQUIRE(folder.run("voronoi.vdb from_voronoi.ply --force").status == 0);
+    REQUIRE(folder.run("shell.vdb voronoi2.vdb --force --stop-after voronoi").status == 0);
+    CHECK(folder.content("once.ply") == folder.content("from_shell.ply"));
+    CHECK(folder.content("once.ply") == folder.content("from_voronoi.ply"));
+    CHECK(folder.content("voronoi.vdb") == folder.content("voronoi2.vdb"));
+  }
+}
+
+TEST_CASE("run: options that a stage file has fixed are refused", "[cli][vdb]") {
+  Folder folder;
+  write_ball(folder);
+  REQUIRE(folder.run("ball.off shell.vdb --stop-after shell" + kQuick).status == 0);
+  CHECK(folder.run("shell.vdb out.ply --resolution 64").status == 2);
+  CHECK(folder.run("shell.vdb out.ply --vertices 200").status == 0);
+  CHECK(read_mesh((folder / "out.ply").string()).vertices.size() == 200);
+  REQUIRE(folder.run("ball.off voronoi.vdb --stop-after voronoi" + kQuick).status == 0);
+  CHECK(folder.run("voronoi.vdb out2.ply --vertices 200").status == 2);
+  folder.write("fake.vdb", folder.content("shell.vdb").substr(0, 3000));
+  CHECK(folder.run("fake.vdb out3.ply").status == 3);
+}
+#endif
