@@ -22,8 +22,6 @@ Buffer<T> to_buffer(const std::vector<T>& values) {
   return out;
 }
 
-inline Voxel voxel_of(PointQ8 p) { return {p.x >> kFractionBits, p.y >> kFractionBits, p.z >> kFractionBits}; }
-
 /// Sheet of `soup` on a lattice of this resolution. Components and genus are the caller's to say.
 inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t components, int64_t genus) {
   WorldPoint lo = soup.vertices[0], hi = lo;
