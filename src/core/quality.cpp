@@ -96,8 +96,9 @@ MeshQuality measure_quality(const TriangleMesh& mesh) {
   if (count == 0) return {};
   for (const auto& t : mesh.triangles)
     if (std::max({t[0], t[1], t[2]}) >= mesh.vertices.size())
-      throw Error(ErrorCode::usage, "quality", "a triangle names vertex " + std::to_string(std::max({t[0], t[1], t[2]})) +
-                                                   "; there are " + std::to_string(mesh.vertices.size()));
+      throw Error(ErrorCode::usage, "quality",
+                  "a triangle names vertex " + std::to_string(std::max({t[0], t[1], t[2]})) + "; there are " +
+                      std::to_string(mesh.vertices.size()));
 
   std::vector<Part> parts(size_t((count + kChunk - 1) / kChunk));
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {

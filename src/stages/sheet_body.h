@@ -121,7 +121,7 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
   mesh.edges = {};
   const ComponentCount components = drop_small_components(exec, mesh, laid, options.min_component_area_q16);
-  if (components.kept == 0) 
+  if (components.kept == 0)
     throw Error(ErrorCode::nothing_to_mesh, "sheet",
                 "all " + std::to_string(components.dropped) + " components are smaller than " +
                     std::to_string(options.min_component_area_q16 >> 16) + " square voxels; lower the limit");

@@ -36,7 +36,7 @@ class Folder {
   }
 
   struct Result {
-    int status;       ///< exit status; 128 + signal as a shell says it
+    int status;  ///< exit status; 128 + signal as a shell says it
     std::string out, err;
   };
 
@@ -56,7 +56,9 @@ class Folder {
   bool has(const std::string& name) const { return fs::exists(path_ / name); }
   size_t file_count() const { return size_t(std::distance(fs::directory_iterator(path_), fs::directory_iterator())); }
   fs::path operator/(const std::string& name) const { return path_ / name; }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+  }
 
   /// A surface as an OFF file.
   void write_off(const std::string& name, const TriangleSoup& soup) const {

@@ -23,11 +23,13 @@ TEST_CASE("command: help goes to standard output and is README's option table", 
   const auto table = folder.shell("'" ISOSHELL_SOURCE "/scripts/option_table.sh' '" VDB_ISOMESH "'");
   REQUIRE(table.status == 0);
   CHECK(contains(table.out, "| `--vertices K` |"));
-  CHECK(contains(content(ISOSHELL_SOURCE "/README.md"), "<!-- options: begin -->\n" + table.out + "<!-- options: end -->"));
+  CHECK(contains(content(ISOSHELL_SOURCE "/README.md"),
+                 "<!-- options: begin -->\n" + table.out + "<!-- options: end -->"));
 }
 
 TEST_CASE("command: README's program is the first example", "[cli]") {
-  CHECK(contains(content(ISOSHELL_SOURCE "/README.md"), "```cpp\n" + content(ISOSHELL_SOURCE "/examples/01_remesh.cpp") + "```"));
+  CHECK(contains(content(ISOSHELL_SOURCE "/README.md"),
+                 "```cpp\n" + content(ISOSHELL_SOURCE "/examples/01_remesh.cpp") + "```"));
 }
 
 TEST_CASE("command: wrong usage exits with 2 and one line", "[cli]") {
@@ -46,8 +48,9 @@ TEST_CASE("command: an input that cannot be read exits with 3 and is named", "[c
   folder.write("cloud.xyz", "0 0 0\n1 1 1\n");
   CHECK(folder.run("cloud.xyz out.ply").status == 3);
   CHECK(contains(folder.run("cloud.xyz out.ply").err, "not read yet"));
-  folder.write("cloud.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                            "property float z\nend_header\n0 0 0\n");
+  folder.write("cloud.ply",
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+               "property float z\nend_header\n0 0 0\n");
   CHECK(contains(folder.run("cloud.ply out.ply").err, "point clouds are not read yet"));
   folder.write("smoke.nvdb", "x");
   CHECK(contains(folder.run("smoke.nvdb out.ply").err, "volumes are not read yet"));

@@ -82,7 +82,8 @@ TEST_CASE("run: standard input and output carry meshes, and the same bytes as fi
   Folder folder;
   write_ball(folder);
   REQUIRE(folder.run("ball.off file.off" + kQuick).status == 0);
-  const auto piped = folder.shell("cat ball.off | '" VDB_ISOMESH "' - - --input-format off --output-format off" + kQuick);
+  const auto piped =
+      folder.shell("cat ball.off | '" VDB_ISOMESH "' - - --input-format off --output-format off" + kQuick);
   CHECK(piped.status == 0);
   CHECK(piped.out == folder.content("file.off"));
   CHECK_FALSE(piped.out.empty());

@@ -1,9 +1,8 @@
 // Quality against meshes whose measures are known by hand.
-#include "isoshell/quality.h"
-
 #include <cmath>
 
 #include "isoshell/error.h"
+#include "isoshell/quality.h"
 #include "support/catch.h"
 
 using namespace isoshell;
@@ -26,7 +25,8 @@ TEST_CASE("quality: one right triangle beside one needle", "[quality][unit]") {
   const TriangleMesh mesh = {{{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {100, 0, 0}, {100, 1, 0}}, {{{0, 1, 2}}, {{0, 3, 4}}}};
   const MeshQuality q = measure_quality(mesh);
   const double right = 6 / std::sqrt(3) * 1 / 5;  // inradius 1, longest edge 5
-  const double smallest = std::atan(3.0 / 4) * 180 / 3.141592653589793, needle = std::atan(1.0 / 100) * 180 / 3.141592653589793;
+  const double smallest = std::atan(3.0 / 4) * 180 / 3.141592653589793,
+               needle = std::atan(1.0 / 100) * 180 / 3.141592653589793;
   CHECK(2 * q.q_avg - q.q_min == Approx(right));
   CHECK(q.theta_min_deg == Approx(needle));
   CHECK(q.theta_avg_deg == Approx((smallest + needle) / 2));

@@ -49,18 +49,18 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
 
   const char* size = "Size of the result";
   CLI::Option* vertices = option(size, "--vertices", raw.vertices, "K", "number of vertices", "10000");
-  option(size, "--edge-length", raw.edge_length, "L", "edge length to aim at, in world units, instead of --vertices", "")
+  option(size, "--edge-length", raw.edge_length, "L", "edge length to aim at, in world units, instead of --vertices",
+         "")
       ->excludes(vertices);
 
   const char* grid = "Grid";
-  CLI::Option* resolution =
-      option(grid, "--resolution", raw.resolution, "R", "voxels along the longest side, 8 to 8192",
-             "a cell is about 6 voxels wide");
+  CLI::Option* resolution = option(grid, "--resolution", raw.resolution, "R",
+                                   "voxels along the longest side, 8 to 8192", "a cell is about 6 voxels wide");
   option(grid, "--voxel-size", raw.voxel_size, "S", "the same in world units, instead of --resolution", "")
       ->excludes(resolution);
   option(grid, "--band", raw.band, "D", "thickness of the shell in voxels, 1 to 20", "2");
-  option(grid, "--close-gaps", raw.close_gaps, "W",
-         "bridge gaps up to W world units wide; auto, 0, or voxels as 4vox", "auto");
+  option(grid, "--close-gaps", raw.close_gaps, "W", "bridge gaps up to W world units wide; auto, 0, or voxels as 4vox",
+         "auto");
 
   const char* relaxation = "Relaxation";
   option(relaxation, "--method", raw.method, "sheet|shell",
@@ -140,8 +140,10 @@ void set_gaps(const std::string& text, RemeshOptions& options) {
   const double width = parse_number("--close-gaps", voxels ? text.substr(0, unit) : text);
   if (width < 0) refuse("--close-gaps is " + text + "; a width is 0 or more");
   if (voxels) check_range("--close-gaps in voxels", width, 0, 2 * kMaxClosingVox);
-  if (voxels || width == 0) options.closing_vox = int32_t(std::ceil(width / 2));
-  else options.closing_world = width;
+  if (voxels || width == 0)
+    options.closing_vox = int32_t(std::ceil(width / 2));
+  else
+    options.closing_world = width;
 }
 
 void set_device(const std::string& text, Arguments& a) {
@@ -152,8 +154,8 @@ void set_device(const std::string& text, Arguments& a) {
     a.device = int(number);
     return;
   }
-  a.backend = chosen<Backend>("--device", text,
-                              {{"auto", Backend::best}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}});
+  a.backend =
+      chosen<Backend>("--device", text, {{"auto", Backend::best}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}});
 }
 
 void set_gate(const std::string& gate, Gates& gates) {
@@ -161,10 +163,14 @@ void set_gate(const std::string& gate, Gates& gates) {
   const std::string name = gate.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : gate.substr(equals + 1);
   const bool has_value = equals != std::string::npos;
-  if (name == "closed" && !has_value) gates.closed = true;
-  else if (name == "manifold" && !has_value) gates.manifold = true;
-  else if (name == "genus" && has_value) gates.genus = parse_count("--require genus", value);
-  else if (name == "components" && has_value) gates.components = parse_count("--require components", value);
+  if (name == "closed" && !has_value)
+    gates.closed = true;
+  else if (name == "manifold" && !has_value)
+    gates.manifold = true;
+  else if (name == "genus" && has_value)
+    gates.genus = parse_count("--require genus", value);
+  else if (name == "components" && has_value)
+    gates.components = parse_count("--require components", value);
   else if (name == "min-angle" && has_value) {
     gates.min_angle_deg = parse_number("--require min-angle", value);
     check_range("--require min-angle", *gates.min_angle_deg, 0, 60);
@@ -183,7 +189,8 @@ std::string lower_extension(std::string format) {
 
 std::string extension_of(const std::string& path) {
   const size_t slash = path.find_last_of('/'), dot = path.find_last_of('.');
-  return dot == std::string::npos || (slash != std::string::npos && dot < slash) ? "" : lower_extension(path.substr(dot));
+  return dot == std::string::npos || (slash != std::string::npos && dot < slash) ? ""
+                                                                                 : lower_extension(path.substr(dot));
 }
 
 /// Formats by name or option; "-" has no name to go by.
@@ -233,8 +240,10 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
                                      {{"shell", StopAfter::shell}, {"voronoi", StopAfter::voronoi}});
   if (!raw.progress.empty())
     a.progress = chosen<ProgressMode>("--progress", raw.progress,
-                                      {{"auto", ProgressMode::automatic}, {"always", ProgressMode::always},
-                                       {"never", ProgressMode::never}, {"json", ProgressMode::json}});
+                                      {{"auto", ProgressMode::automatic},
+                                       {"always", ProgressMode::always},
+                                       {"never", ProgressMode::never},
+                                       {"json", ProgressMode::json}});
   if (!raw.max_memory.empty()) a.max_memory_bytes = parse_size_bytes(raw.max_memory);
   std::istringstream gates(raw.require);
   for (std::string gate; std::getline(gates, gate, ',');) set_gate(gate, a.gates);
@@ -262,11 +271,21 @@ bool Arguments::was_given(const std::string& option) const {
 int64_t parse_size_bytes(const std::string& text) {
   const size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
   const std::string unit = lower_extension(text.substr(end));
-  const int64_t scale =
-      chosen<int64_t>("the unit of a size", unit.empty() ? "bytes" : unit,
-                      {{"bytes", 1}, {"b", 1}, {"k", 1ll << 10}, {"kb", 1ll << 10}, {"kib", 1ll << 10},
-                       {"m", 1ll << 20}, {"mb", 1ll << 20}, {"mib", 1ll << 20}, {"g", 1ll << 30}, {"gb", 1ll << 30},
-                       {"gib", 1ll << 30}, {"t", 1ll << 40}, {"tb", 1ll << 40}, {"tib", 1ll << 40}});
+  const int64_t scale = chosen<int64_t>("the unit of a size", unit.empty() ? "bytes" : unit,
+                                        {{"bytes", 1},
+                                         {"b", 1},
+                                         {"k", 1ll << 10},
+                                         {"kb", 1ll << 10},
+                                         {"kib", 1ll << 10},
+                                         {"m", 1ll << 20},
+                                         {"mb", 1ll << 20},
+                                         {"mib", 1ll << 20},
+                                         {"g", 1ll << 30},
+                                         {"gb", 1ll << 30},
+                                         {"gib", 1ll << 30},
+                                         {"t", 1ll << 40},
+                                         {"tb", 1ll << 40},
+                                         {"tib", 1ll << 40}});
   const double bytes = parse_number("the size", text.substr(0, end)) * double(scale);
   if (!(bytes >= 1) || bytes > 9e18) refuse("the size '" + text + "' must be more than 0");
   return int64_t(bytes);

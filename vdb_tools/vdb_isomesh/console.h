@@ -8,8 +8,8 @@
 
 namespace isoshell::tool {
 
-/// Messages of one run. Errors always, warnings and results unless quiet, details when verbose. No colour unless standard
-/// error is a terminal and NO_COLOR is not set.
+/// Messages of one run. Errors always, warnings and results unless quiet, details when verbose. No colour unless
+/// standard error is a terminal and NO_COLOR is not set.
 class Console {
  public:
   Console(ProgressMode progress, int verbosity);

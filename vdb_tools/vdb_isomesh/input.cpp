@@ -46,10 +46,14 @@ bool is_ply_without_faces(const std::string& path) {
 
 const char* kind_name(InputKind kind) {
   switch (kind) {
-    case InputKind::mesh: return "mesh";
-    case InputKind::points: return "points";
-    case InputKind::volume: return "volume";
-    case InputKind::stage: return "stage";
+    case InputKind::mesh:
+      return "mesh";
+    case InputKind::points:
+      return "points";
+    case InputKind::volume:
+      return "volume";
+    case InputKind::stage:
+      return "stage";
   }
   return "";
 }

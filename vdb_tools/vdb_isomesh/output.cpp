@@ -26,7 +26,8 @@ void check_output(const std::string& path, bool force) {
   if (fs::exists(status) && !force) refuse(path + ": exists already; --force replaces it");
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) refuse(path + ": there is no folder " + folder.string());
-  if (access(folder.c_str(), W_OK) != 0) refuse(path + ": cannot write in " + folder.string() + ": " + std::strerror(errno));
+  if (access(folder.c_str(), W_OK) != 0)
+    refuse(path + ": cannot write in " + folder.string() + ": " + std::strerror(errno));
 }
 
 void put(std::FILE* file, const std::string& path, const std::string& text) {
@@ -42,7 +43,8 @@ void check_outputs(const Arguments& a) {
     if (files[i].empty() || files[i] == "-") continue;
     check_output(files[i], a.force);
     for (size_t j = 0; j < i; ++j)
-      if (files[i] == files[j]) throw Error(ErrorCode::usage, "write", files[i] + " is named twice; every result needs its own file");
+      if (files[i] == files[j])
+        throw Error(ErrorCode::usage, "write", files[i] + " is named twice; every result needs its own file");
   }
 }
 

@@ -87,8 +87,12 @@ class Run {
     record_.input.kind = classify_input(a_.input, a_.input_format);
     Source source;
     switch (record_.input.kind) {
-      case InputKind::mesh: read_soup(source.soup); break;
-      case InputKind::stage: read_stage_file(source); break;
+      case InputKind::mesh:
+        read_soup(source.soup);
+        break;
+      case InputKind::stage:
+        read_stage_file(source);
+        break;
       default:
         throw Error(ErrorCode::unreadable_input, "read",
                     a_.input + ": " + (record_.input.kind == InputKind::points ? "point clouds" : "volumes") +
@@ -106,7 +110,8 @@ class Run {
     bounding_box(soup, lo, hi);
     facts.box_min = lo;
     facts.box_max = hi;
-    console_.detail(a_.input + ": " + counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
+    console_.detail(a_.input + ": " + counted(facts.vertices, "vertex", "vertices") + ", " +
+                    counted(facts.faces, "face"));
   }
 
   void read_stage_file(Source& source) {
@@ -131,7 +136,8 @@ class Run {
 
   Prepared prepare_from(Source& source) {
     if (!source.stage) return prepare(source.soup, options_, record_.report, context_);
-    return prepare(std::move(source.stage->surface), source.stage->info.closing_vox, options_, record_.report, context_);
+    return prepare(std::move(source.stage->surface), source.stage->info.closing_vox, options_, record_.report,
+                   context_);
   }
 
   SeedSet relaxed_seeds(Source& source, const Prepared& prepared) {
@@ -150,8 +156,7 @@ class Run {
 
   void save_shell_if_asked(const Prepared& p) {
     for (const std::string& path : {a_.save_shell, a_.stop_after == StopAfter::shell ? a_.output : std::string()})
-      if (!path.empty())
-        step("save-shell", [&] { save_shell(path, p.surface, p.samples, p.shell, stage_options(p)); });
+      if (!path.empty()) step("save-shell", [&] { save_shell(path, p.surface, p.samples, p.shell, stage_options(p)); });
   }
 
   void save_voronoi_if_asked(const Prepared& p, const SeedSet& seeds) {
@@ -160,7 +165,8 @@ class Run {
     if (options_.want_digests) record_.report.digests["labels"] = digest_text(digest(labels));
     for (const std::string& path : {a_.save_voronoi, a_.stop_after == StopAfter::voronoi ? a_.output : std::string()})
       if (!path.empty())
-        step("save-voronoi", [&] { save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p)); });
+        step("save-voronoi",
+             [&] { save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p)); });
   }
 
   /// On the triangles alone: no stage's word is taken for it.
@@ -191,19 +197,21 @@ class Run {
     note(d.nonmanifold_edges, "edges that more than two faces share");
     note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
     const InputTopology& t = record_.report.input;
-    if (!t.closed && t.boundary_loops > 0) note(t.boundary_loops, "open boundaries; the result closes them or follows both sides");
+    if (!t.closed && t.boundary_loops > 0)
+      note(t.boundary_loops, "open boundaries; the result closes them or follows both sides");
   }
 
   void print_estimate(const Source& source) {
     if (source.stage)
-      throw Error(ErrorCode::usage, "command line", "--dry-run needs a mesh as INPUT, a stage file has its grid already");
+      throw Error(ErrorCode::usage, "command line",
+                  "--dry-run needs a mesh as INPUT, a stage file has its grid already");
     DirtCounts dirt;
     const RunEstimate e = estimate_run(source.soup, measure_topology(source.soup, dirt, context_), options_);
     std::ostringstream text;
     text << "estimate: resolution " << e.resolution << ", voxel size " << e.voxel_size_world << ", "
-         << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices") << ", "
-         << counted(e.vertices, "vertex", "vertices") << " in the result, about " << readable_bytes(e.bytes) << " of "
-         << readable_bytes(context_.memory_limit_bytes) << " allowed";
+         << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices")
+         << ", " << counted(e.vertices, "vertex", "vertices") << " in the result, about " << readable_bytes(e.bytes)
+         << " of " << readable_bytes(context_.memory_limit_bytes) << " allowed";
     console_.result(text.str());
     if (context_.memory_limit_bytes > 0 && e.bytes > context_.memory_limit_bytes)
       throw Error(ErrorCode::out_of_memory, "memory",
@@ -219,11 +227,12 @@ class Run {
     const auto gate = [&](bool passed, const std::string& text) {
       if (!passed) failed.push_back(text);
     };
-    if (g.closed) gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
+    if (g.closed)
+      gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
     if (g.manifold) gate(t.is_closed_manifold(), "manifold: the mesh is not a closed 2-manifold");
     if (g.genus)
       gate(t.genus == *g.genus, "genus=" + std::to_string(*g.genus) + ": the mesh has " +
-                                         (t.genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(t.genus)));
+                                    (t.genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(t.genus)));
     if (g.components)
       gate(t.components == *g.components,
            "components=" + std::to_string(*g.components) + ": the mesh has " + std::to_string(t.components));
@@ -245,12 +254,15 @@ class Run {
     std::ostringstream text;
     text.precision(1);
     text << std::fixed << (a_.output == "-" ? "standard output" : a_.output) << ": ";
-    if (record_.vertices >= 0) text << counted(record_.vertices, "vertex", "vertices") << ", " << counted(record_.triangles, "triangle") << ", ";
-    else text << counted(record_.report.active_voxels, "active voxel") << ", ";
+    if (record_.vertices >= 0)
+      text << counted(record_.vertices, "vertex", "vertices") << ", " << counted(record_.triangles, "triangle") << ", ";
+    else
+      text << counted(record_.report.active_voxels, "active voxel") << ", ";
     if (record_.topology) {
       const MeshTopology& t = *record_.topology;
       text << counted(t.components, "component") << ", "
-           << (t.is_closed_manifold() ? "closed 2-manifold of genus " + std::to_string(t.genus) : "not a closed 2-manifold")
+           << (t.is_closed_manifold() ? "closed 2-manifold of genus " + std::to_string(t.genus)
+                                      : "not a closed 2-manifold")
            << ", ";
     }
     if (record_.quality) text << "smallest angle " << record_.quality->theta_min_deg << ", ";
@@ -279,6 +291,8 @@ class Run {
 
 }  // namespace
 
-int run(const Arguments& arguments, Context& context, Console& console) { return Run(arguments, context, console).go(); }
+int run(const Arguments& arguments, Context& context, Console& console) {
+  return Run(arguments, context, console).go();
+}
 
 }  // namespace isoshell::tool

@@ -60,11 +60,19 @@ Json counts_json(const RunRecord& r) {
 }
 
 Json topology_json(const RunRecord& r) {
-  Json j = {{"components", nullptr}, {"genus", nullptr}, {"closed", nullptr}, {"manifold", nullptr},
-            {"boundary_loops", nullptr}, {"nonmanifold_edges", nullptr}, {"nonmanifold_vertices", nullptr}, {"self_intersections", nullptr},
-            {"sheet_components", r.report.sheet.components}, {"sheet_genus", r.report.sheet.genus},
+  Json j = {{"components", nullptr},
+            {"genus", nullptr},
+            {"closed", nullptr},
+            {"manifold", nullptr},
+            {"boundary_loops", nullptr},
+            {"nonmanifold_edges", nullptr},
+            {"nonmanifold_vertices", nullptr},
+            {"self_intersections", nullptr},
+            {"sheet_components", r.report.sheet.components},
+            {"sheet_genus", r.report.sheet.genus},
             {"agrees_with_input", r.report.topology_compared ? Json(r.report.topology_agrees) : Json()},
-            {"failed_cells", r.report.dual.failed_cells}, {"inserted_seeds", r.report.dual.inserted_seeds}};
+            {"failed_cells", r.report.dual.failed_cells},
+            {"inserted_seeds", r.report.dual.inserted_seeds}};
   if (!r.topology) return j;
   const MeshTopology& t = *r.topology;
   j["components"] = t.components;
@@ -114,11 +122,14 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   j["counts"] = counts_json(r);
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
-  j["distance"] = {{"to_input_mean", nullptr}, {"to_input_max", nullptr}, {"from_input_max", nullptr}, {"unit", "world"}};
+  j["distance"] = {
+      {"to_input_mean", nullptr}, {"to_input_max", nullptr}, {"from_input_max", nullptr}, {"unit", "world"}};
   j["energy"] = r.report.relax.energy;
   j["timings_ms"] = timings_json(r);
-  j["memory_bytes"] = {{"host_peak", r.host_peak_bytes}, {"device_peak", nullptr},
-                       {"estimate", r.report.memory_estimate_bytes > 0 ? Json(r.report.memory_estimate_bytes) : Json()}};
+  j["memory_bytes"] = {
+      {"host_peak", r.host_peak_bytes},
+      {"device_peak", nullptr},
+      {"estimate", r.report.memory_estimate_bytes > 0 ? Json(r.report.memory_estimate_bytes) : Json()}};
   j["device"] = known(r.device);
   j["digests"] = r.report.digests.empty() ? Json::object() : Json(r.report.digests);
   j["warnings"] = r.warnings.empty() ? Json::array() : Json(r.warnings);
@@ -126,9 +137,10 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
 }
 
 std::string options_json(const RemeshOptions& o) {
-  const Json j = {{"vertices", o.vertices}, {"edge-length", o.edge_length_world}, {"band", o.band_vox},
-                  {"method", method_name(o.method)}, {"iterations", o.max_passes}, {"tolerance", o.tolerance},
-                  {"step", o.max_step_vox}, {"seed", o.seed}};
+  const Json j = {{"vertices", o.vertices},     {"edge-length", o.edge_length_world},
+                  {"band", o.band_vox},         {"method", method_name(o.method)},
+                  {"iterations", o.max_passes}, {"tolerance", o.tolerance},
+                  {"step", o.max_step_vox},     {"seed", o.seed}};
   return j.dump();
 }
 

@@ -40,6 +40,7 @@ std::string stats_json(const Arguments& arguments, const RunRecord& record);
 std::string options_json(const RemeshOptions& options);
 
 /// Takes from a stage file's options those that were not given on the command line. Throws: unreadable_input.
-void adopt_options(const std::string& json, const std::string& path, const Arguments& arguments, RemeshOptions& options);
+void adopt_options(const std::string& json, const std::string& path, const Arguments& arguments,
+                   RemeshOptions& options);
 
 }  // namespace isoshell::tool
