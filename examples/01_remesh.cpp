@@ -3,7 +3,8 @@
 
 #include "isoshell/isoshell.h"
 
-int main(int, char* argv[]) {
+int main(int argc, char* argv[]) {
+  if (argc < 3) return 2;
   try {
     isoshell::Context context;  // threads, device, memory limit, progress, cancel
     isoshell::RemeshOptions options;

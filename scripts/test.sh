@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs all tests. An argument names another preset: cpu-asan, cpu-tsan, strict, cuda.
+# Sets up, builds and runs all tests. An argument names another preset: cpu-asan, cpu-tsan, strict.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-cpu}

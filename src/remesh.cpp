@@ -1,4 +1,5 @@
-// Algorithm 1 of the paper, readable as such: prepare (lines 2 and 3), relax (1 and 4 to 9), triangulate (10 and 11).
+// Algorithm 1 of the paper, readable as such: prepare (line 2, and 3 where the shell is wanted), relax (1 and 4 to 9),
+// triangulate (11). Line 10, flood_shell, makes the Voronoi volume that is saved; the dual is taken on the sheet.
 #include "isoshell/remesh.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
+#include "voxel/exact_int.h"
 #include "isoshell/memory_estimate.h"
 
 namespace isoshell {
@@ -53,15 +55,17 @@ int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology
   return int64_t(4 * cell_vox * 65536);
 }
 
-/// Volume inside the sheet in voxels. Serial, so the sum has one order.
-double volume_inside(const Sheet& sheet) {
-  double six = 0;
+/// Six times the volume inside the sheet, in whole voxels. Exact up to that last rounding: it decides the closing.
+int64_t six_volume_vox(const Sheet& sheet) {
+  __extension__ typedef __int128 Wide;  // a product of three coordinates takes 66 bits
+  Wide six = 0;
   for (TriangleIndices t : sheet.triangles) {
-    const PointQ8 a = sheet.position[t.a], b = sheet.position[t.b], c = sheet.position[t.c];
-    six += double(a.x) * (double(b.y) * c.z - double(b.z) * c.y) + double(a.y) * (double(b.z) * c.x - double(b.x) * c.z) +
-           double(a.z) * (double(b.x) * c.y - double(b.y) * c.x);
+    const PointQ8 o = sheet.position[t.a];
+    const Vec64 a = {o.x, o.y, o.z};
+    const Vec64 n = cross(difference(sheet.position[t.b], o), difference(sheet.position[t.c], o));
+    six += Wide(a.x) * n.x + Wide(a.y) * n.y + Wide(a.z) * n.z;
   }
-  return six / 6 / (double(kOneVoxelQ8) * kOneVoxelQ8 * kOneVoxelQ8);
+  return int64_t(six >> (3 * kFractionBits));
 }
 
 /// Sites, samples and sheet of a surface, with the closing that is asked for or found.
@@ -91,13 +95,13 @@ class Preparation {
   }
 
   /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in and
-  /// the solid collapses to a crust (pipeline step 1).
+  /// the solid collapses to a crust.
   void close_leaks(Prepared& p) {
     Sheet widest = sheet(p, kMaxAutoClosingVox);
-    const double enough = 0.9 * volume_inside(widest);
+    const int64_t widest_volume = six_volume_vox(widest);
     for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
       p.sheet = sheet(p, p.closing_vox);
-      if (volume_inside(p.sheet) >= enough) return;
+      if (10 * six_volume_vox(p.sheet) >= 9 * widest_volume) return;
     }
     p.sheet = std::move(widest);
   }
@@ -225,8 +229,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
 }
 
 SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
-  const int64_t area_known = options.edge_length_world > 0 ? 1 : 0;
-  const int64_t target = vertex_target(options, area_known ? sheet_area_world(p.sheet) : 0);
+  const double area_world = options.edge_length_world > 0 ? sheet_area_world(p.sheet) : 0;
+  const int64_t target = vertex_target(options, area_world);
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
@@ -261,6 +265,9 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
       relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context);
     });
   }
+  if (report.dual.failed_cells > 0)
+    report.warnings.push_back(std::to_string(report.dual.failed_cells) +
+                              " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
   if (seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");

@@ -1,4 +1,4 @@
-// Owner and borrower of flat arrays. Kernels see View only; crossing between memory spaces is always a visible call.
+// Owner and borrower of flat arrays. Kernels see View only.
 #pragma once
 
 #include <cstddef>

@@ -46,7 +46,7 @@ struct LatticeFrame {
   int32_t extent_vox[3] = {}; ///< lattice size per axis, a multiple of 8
 
   /// Frame whose longest side spans exactly `resolution` voxels of the box, smallest corner in the middle of a voxel.
-  /// Throws: usage when resolution is outside 1..kMaxResolution or the box is empty or not finite.
+  /// Throws: usage when resolution is outside 1..kMaxResolution, nothing_to_mesh when the box is empty or not finite.
   static LatticeFrame around(WorldPoint box_min, WorldPoint box_max, int32_t resolution);
   /// Nearest fixed-point position, halves up. The only way from world units into the lattice.
   PointQ8 snap(WorldPoint p) const;

@@ -68,14 +68,14 @@ struct Prepared {
 
 /// Chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the
 /// sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
-/// resolution). Throws: nothing_to_mesh, usage, out_of_memory, interrupted.
+/// resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage, out_of_memory, interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context);
 /// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
                  Context& context);
 /// Places and relaxes the seeds.
 SeedSet relax(const Prepared& prepared, const RemeshOptions& options, RemeshReport& report, Context& context);
-/// Dual, repair and the final mesh. Appends to the seeds where the topology needs more.
+/// Dual, repair and the final mesh. Repair may add seeds and drop others to keep the count; ids then change.
 TriangleMesh triangulate(const Prepared& prepared, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
                          Context& context);
 

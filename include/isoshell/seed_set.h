@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-/// Seed ids are indices and never change while relaxing; repair appends.
+/// Seed ids are indices and never change while relaxing. Repair may append, and drop seeds again; ids then close up.
 struct SeedSet {
   Buffer<PointQ8> position;
   Buffer<Normal8> normal;   ///< side of the sheet (method sheet) or of the surface (method shell) the seed sits on

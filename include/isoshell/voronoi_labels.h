@@ -1,4 +1,4 @@
-// Voronoi labels: the seed of every active shell voxel (the volume people inspect) and of every sheet vertex.
+// Voronoi labels: the seed of every active shell voxel (the volume people inspect).
 #pragma once
 
 #include "isoshell/buffer.h"

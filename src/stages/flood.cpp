@@ -1,5 +1,4 @@
-// flood_shell: checks its arguments, then runs on the backend that the context asks for.
-#include "isoshell/error.h"
+// flood_shell: runs on the backend that the context asks for.
 #include "stages/backend_table.h"
 
 namespace isoshell {

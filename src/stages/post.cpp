@@ -1,4 +1,4 @@
-// improve_mesh: checks its arguments, then runs on the backend that the context asks for.
+// improve_mesh: runs on the backend that the context asks for.
 #include "stages/backend_table.h"
 
 namespace isoshell {

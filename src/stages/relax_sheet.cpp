@@ -1,5 +1,4 @@
-// relax_on_sheet: checks its arguments, then runs on the backend that the context asks for.
-#include "isoshell/error.h"
+// relax_on_sheet: runs on the backend that the context asks for.
 #include "stages/backend_table.h"
 
 namespace isoshell {

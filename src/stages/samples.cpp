@@ -1,5 +1,4 @@
-// sample_sites: checks its arguments, then runs on the backend that the context asks for.
-#include "isoshell/error.h"
+// sample_sites: runs on the backend that the context asks for.
 #include "stages/backend_table.h"
 
 namespace isoshell {

@@ -228,7 +228,7 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (ranged("band", double(raw.band), 1, kMaxBandVox)) o.band_vox = int32_t(raw.band);
   if (ranged("iterations", double(raw.iterations), 1, 1000000)) o.max_passes = int32_t(raw.iterations);
   if (ranged("tolerance", raw.tolerance, 0, 1)) o.tolerance = raw.tolerance;
-  if (ranged("step", raw.step, 0, 1000)) o.max_step_vox = raw.step;
+  if (ranged("step", raw.step, 1.0 / kOneVoxelQ8, 1000)) o.max_step_vox = raw.step;
   if (ranged("threads", double(raw.threads), 1, 4096)) a.threads = int(raw.threads);
   o.seed = raw.seed;
   if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);

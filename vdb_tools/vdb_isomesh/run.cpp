@@ -165,8 +165,16 @@ class Run {
     if (options_.want_digests) record_.report.digests["labels"] = digest_text(digest(labels));
     for (const std::string& path : {a_.save_voronoi, a_.stop_after == StopAfter::voronoi ? a_.output : std::string()})
       if (!path.empty())
-        step("save-voronoi",
-             [&] { save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p)); });
+        step("save-voronoi", [&] {
+          save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p));
+          save_preview(preview_path(path), p.surface.frame, p.shell, labels, stage_options(p));
+        });
+  }
+
+  /// mesh.voronoi.vdb has its picture for programs that open float grids only in mesh.voronoi.preview.vdb.
+  static std::string preview_path(const std::string& path) {
+    const size_t dot = path.rfind(".vdb");
+    return path.substr(0, dot) + ".preview.vdb";
   }
 
   /// On the triangles alone: no stage's word is taken for it.
