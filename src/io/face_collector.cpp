@@ -81,6 +81,19 @@ void FaceCollector::add_polygon(const uint32_t* corners, int64_t count) {
   if (triangles_.size() == before) ++dirt_.degenerate_faces;
 }
 
+void FaceCollector::adopt(std::vector<Triangle> triangles) {
+  const int64_t dirty = count_where(int64_t(triangles.size()), [&](int64_t i) {
+    const auto [a, b, c] = triangles[size_t(i)];
+    return a == b || b == c || c == a || (vertices_->nonfinite && !(finite(a) && finite(b) && finite(c)));
+  });
+  if (dirty == 0) {
+    faces_ += int64_t(triangles.size());
+    triangles_ = std::move(triangles);
+  } else {
+    for (const auto& [a, b, c] : triangles) add_triangle(a, b, c);
+  }
+}
+
 void FaceCollector::add_strip(const uint32_t* corners, int64_t count) {
   ++faces_;
   if (count < 3) ++dirt_.short_faces;

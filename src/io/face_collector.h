@@ -47,6 +47,8 @@ class FaceCollector {
   /// A triangle strip; every second triangle is turned. Triangles with equal corners are the strip's way to turn a
   /// corner, not dirt.
   void add_strip(const uint32_t* corners, int64_t count);
+  /// Many triangles at once, to a collector that holds none. Cost: no copy when all of them are clean.
+  void adopt(std::vector<Triangle> triangles);
   void reserve(int64_t triangles) { triangles_.reserve(size_t(triangles)); }
 
  private:

@@ -4,6 +4,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -18,13 +19,14 @@ constexpr int64_t kRowsPerBlock = 1 << 12;
 
 template <class T>
 T load(const char* p, bool big_endian) {
-  unsigned char bytes[sizeof(T)];
-  std::memcpy(bytes, p, sizeof(T));
+  T value;
+  std::memcpy(&value, p, sizeof value);
   const uint16_t one = 1;
   const bool host_is_big_endian = *reinterpret_cast<const unsigned char*>(&one) == 0;
-  if (big_endian != host_is_big_endian) std::reverse(bytes, bytes + sizeof(T));
-  T value;
-  std::memcpy(&value, bytes, sizeof(T));
+  if (big_endian == host_is_big_endian) return value;
+  unsigned char bytes[sizeof value];
+  std::reverse_copy(p, p + sizeof value, bytes);
+  std::memcpy(&value, bytes, sizeof value);
   return value;
 }
 
@@ -68,6 +70,7 @@ class BinaryRows {
     }
   }
 
+  int64_t begin() const { return begin_; }
   int64_t end() const { return end_; }
   int64_t block_count() const { return (element_.count + kRowsPerBlock - 1) / kRowsPerBlock; }
   int64_t stride() const { return stride_; }
@@ -216,8 +219,40 @@ int64_t as_index(T value) {
     return int64_t(value);
 }
 
+// The whole element when its rows are equally long, all faces are triangles and all corners in range: then nothing has
+// to be looked at twice. False: nothing was taken.
+bool take_triangles(const MeshSource& source, const BinaryRows& rows, const PlyElement& element, int list,
+                    const VertexTable& vertices, std::vector<FaceCollector>& faces) {
+  if (rows.stride() == 0 || element.count == 0) return false;
+  const BinaryRows::Place first = rows.find(rows.begin(), list);
+  if (first.length != 3) return false;
+  const uint64_t vertex_count = vertices.points.size();
+  std::vector<Triangle> triangles(static_cast<size_t>(element.count));
+  std::atomic<bool> in_range{true};
+  with_type(element.properties[size_t(list)].type, [&](auto type) {
+    using T = decltype(type);
+    tbb::parallel_for(tbb::blocked_range<int64_t>(0, element.count, kRowsPerBlock), [&](const auto& range) {
+      bool fits = true;
+      for (int64_t row = range.begin(); row < range.end(); ++row) {
+        const char* p = source.begin() + first.offset + row * rows.stride();
+        for (uint32_t& corner : triangles[size_t(row)]) {
+          const uint64_t index = uint64_t(as_index(load<T>(p, rows.big_endian())));
+          fits &= index < vertex_count;
+          corner = uint32_t(index);
+          p += sizeof(T);
+        }
+      }
+      if (!fits) in_range = false;
+    });
+  });
+  if (!in_range) return false;
+  faces.emplace_back(vertices).adopt(std::move(triangles));
+  return true;
+}
+
 void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyElement& element, int list, bool is_strip,
                 const VertexTable& vertices, std::vector<FaceCollector>& faces) {
+  if (!is_strip && take_triangles(source, rows, element, list, vertices, faces)) return;
   const size_t base = faces.size();
   const int64_t vertex_count = int64_t(vertices.points.size());
   faces.resize(base + size_t(rows.block_count()), FaceCollector(vertices));
@@ -232,11 +267,6 @@ void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyEleme
         const BinaryRows::Place place = rows.find(offset, list);
         const char* const p = source.begin() + place.offset;
         const auto corner = [&](int64_t i) { return as_index(load<T>(p + i * int64_t(sizeof(T)), rows.big_endian())); };
-        if (place.length == 3 && !is_strip) {
-          const int64_t a = corner(0), b = corner(1), c = corner(2);
-          const auto in_range = [&](int64_t i) { return uint64_t(i) < uint64_t(vertex_count); };
-          if (in_range(a) && in_range(b) && in_range(c)) return out.add_triangle(uint32_t(a), uint32_t(b), uint32_t(c));
-        }
         corners.resize(size_t(place.length));
         for (int64_t i = 0; i < place.length; ++i) corners[size_t(i)] = corner(i);
         add_ply_row(corners, is_strip, vertex_count, scratch, out,

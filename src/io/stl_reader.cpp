@@ -1,6 +1,4 @@
 // STL, binary and text. Normals are passed over; corners are welded by position.
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "io/face_collector.h"
@@ -11,20 +9,12 @@
 namespace isoshell {
 namespace {
 
-constexpr int64_t kHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50, kNormalBytes = 12;
-constexpr int64_t kFacetsPerPart = 1 << 14;
+constexpr int64_t kHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50;
 
 // Little-endian, on any machine.
 uint32_t load_u32(const char* p) {
   const auto byte = [&](int i) { return uint32_t(static_cast<unsigned char>(p[i])) << 8 * i; };
   return byte(0) | byte(1) | byte(2) | byte(3);
-}
-
-float load_float(const char* p) {
-  const uint32_t bits = load_u32(p);
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
 }
 
 // The word at p in lower-case letters equals `word`; then p moves behind it.
@@ -60,27 +50,10 @@ TriangleSoup read_binary(const MeshSource& source) {
                                          std::to_string(body) + " bytes follow, room for " +
                                          std::to_string(body / kFacetBytes) +
                                          "; the file is truncated or its count is wrong");
-  const char* const facets = source.begin() + kHeaderBytes + kCountBytes;
-  std::vector<WorldPoint> corners(size_t(3 * count));
-  tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, kFacetsPerPart), [&](const tbb::blocked_range<int64_t>& r) {
-    for (int64_t f = r.begin(); f < r.end(); ++f) {
-      const char* p = facets + kFacetBytes * f + kNormalBytes;
-      for (int64_t i = 3 * f; i < 3 * f + 3; ++i, p += 12)
-        corners[size_t(i)] = {load_float(p), load_float(p + 4), load_float(p + 8)};
-    }
-  });
-  WeldedCorners welded = weld_corners(source, corners);
-  std::vector<WorldPoint>().swap(corners);
-  const int64_t part_count = (count + kFacetsPerPart - 1) / kFacetsPerPart;
-  std::vector<FaceCollector> faces(size_t(part_count), FaceCollector(welded.vertices));
-  for_each_chunk(part_count, [&](int64_t part) {
-    const int64_t last = std::min(count, (part + 1) * kFacetsPerPart);
-    faces[size_t(part)].reserve(last - part * kFacetsPerPart);
-    for (int64_t f = part * kFacetsPerPart; f < last; ++f) {
-      const uint32_t* const c = welded.index.data() + 3 * f;
-      faces[size_t(part)].add_triangle(c[0], c[1], c[2]);
-    }
-  });
+  const BinaryStlCorners corners{source.begin() + kHeaderBytes + kCountBytes};
+  WeldedCorners welded = weld_corners(source, 3 * count, corners);
+  std::vector<FaceCollector> faces(1, FaceCollector(welded.vertices));
+  faces[0].adopt(std::move(welded.index));
   return join_soup(source, std::move(welded.vertices), faces);
 }
 
@@ -194,10 +167,10 @@ TriangleSoup read_text(const MeshSource& source) {
     const TextFacets& part = parts[size_t(i)];
     std::copy(part.corners.begin(), part.corners.end(), corners.begin() + part.first_corner);
   });
-  WeldedCorners welded = weld_corners(source, corners);
+  WeldedCorners welded = weld_corners(source, corner_count, CornerArray{corners.data()});
   std::vector<FaceCollector> faces(parts.size(), FaceCollector(welded.vertices));
   for_each_chunk(part_count, [&](int64_t i) {
-    const uint32_t* at = welded.index.data() + parts[size_t(i)].first_corner;
+    const uint32_t* at = reinterpret_cast<const uint32_t*>(welded.index.data()) + parts[size_t(i)].first_corner;
     for (const uint32_t count : parts[size_t(i)].corner_counts) {
       faces[size_t(i)].add_polygon(at, count);
       at += count;

@@ -1,4 +1,7 @@
 // What is written comes back: each format, to the bit where the format can hold it.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "io/mesh_writers.h"
@@ -24,6 +27,23 @@ TriangleMesh rough_torus() {
   mesh.vertices[2] = {5e-324, 0.1, 1.0 / 3};
   return mesh;
 }
+
+// Stands in for a standard stream as long as it lives.
+class StreamInstead {
+ public:
+  StreamInstead(int stream, const std::string& path) : stream_(stream), kept_(dup(stream)) {
+    const int file = open(path.c_str(), O_RDWR | O_CREAT, 0600);
+    dup2(file, stream);
+    close(file);
+  }
+  ~StreamInstead() {
+    dup2(kept_, stream_);
+    close(kept_);
+  }
+
+ private:
+  int stream_, kept_;
+};
 
 void round_to_float(TriangleMesh& mesh) {
   for (WorldPoint& p : mesh.vertices) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
@@ -154,4 +174,39 @@ TEST_CASE("output file: without commit the old file stays and the temporary goes
   put_file(folder / "b", "someone was faster");
   CHECK(error_of([&] { late.commit(); }).code() == ErrorCode::unwritable_output);
   CHECK(get_file(folder / "b") == "someone was faster");
+}
+
+TEST_CASE("mesh files: - is standard output and standard input", "[mesh_file][unit]") {
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = rough_torus();
+  {
+    const StreamInstead out(STDOUT_FILENO, folder / "stream");
+    write_mesh("-", mesh, {MeshFormat::ply, false});
+  }
+  const StreamInstead in(STDIN_FILENO, folder / "stream");
+  check_same(read_mesh("-", MeshFormat::ply), mesh);
+}
+
+TEST_CASE("mesh files: when there is no room, the old file stays and the temporary goes", "[mesh_file][unit]") {
+  const TemporaryFolder folder;
+  put_file(folder / "a.off", "old");
+  rlimit before;
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = signal(SIGXFSZ, SIG_IGN);
+  const rlimit small = {10000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string what;
+  ErrorCode code = ErrorCode::internal;
+  try {
+    write_mesh(folder / "a.off", rough_torus(), {MeshFormat::from_name, true});
+  } catch (const Error& error) {
+    what = error.what();
+    code = error.code();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  CHECK(code == ErrorCode::unwritable_output);
+  CHECK(what.find("what stood there is untouched") != std::string::npos);
+  CHECK(get_file(folder / "a.off") == "old");
+  CHECK(folder.file_count() == 1);
 }
