@@ -67,16 +67,6 @@ inline SeedWriter writer_of(const Sheet& sheet, SeedSet& seeds) {
   return {sheet.position.view(), sheet.normal.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()};
 }
 
-struct StartAlone {
-  View<uint32_t> parent;
-  ISOSHELL_HD void operator()(int64_t i) const { parent[i] = uint32_t(i); }
-};
-/// After all joins; other steps may still shorten paths, so the root is written atomically.
-struct PointAtRoot {
-  View<uint32_t> parent;
-  ISOSHELL_HD void operator()(int64_t i) const { atomic_min(parent[i], find_root(parent, uint32_t(i))); }
-};
-
 /// Hooks the ends of every edge with one label. Each edge is seen twice; the triangle that runs up it counts.
 struct HookEqualLabels {
   View<const TriangleIndices> triangles;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stages/sheet_project_body.h"
+#include "voxel/union_find.h"
 
 namespace isoshell {
 
@@ -27,45 +28,13 @@ ISOSHELL_HD inline int64_t area_q16(TriangleIndices t, const View<const PointQ8>
 
 namespace sheet_steps {
 
-/// Every vertex starts alone.
-struct StartComponents {
-  View<uint32_t> parent;
-  ISOSHELL_HD void operator()(int64_t v) const { parent[v] = uint32_t(v); }
-};
-
-/// Smallest known vertex of v's component; shortens the path on the way.
-ISOSHELL_HD inline uint32_t root_of(const View<uint32_t>& parent, uint32_t v) {
-  for (;;) {
-    const uint32_t up = atomic_load(parent[v]);
-    if (up == v) return v;
-    const uint32_t top = atomic_load(parent[up]);
-    if (top == up) return up;
-    atomic_min(parent[v], top);
-    v = top;
-  }
-}
-
-/// Joins the components of a quad's corners: the larger root always goes under the smaller, so that in the end the root
-/// of a component is its smallest vertex.
+/// Joins the components of a quad's corners.
 struct JoinCorners {
   View<const Quad> quads;
   View<uint32_t> parent;
   ISOSHELL_HD void operator()(int64_t i) const {
-    for (int k = 1; k < 4; ++k) {
-      uint32_t a = root_of(parent, quads[i].corner[0]), b = root_of(parent, quads[i].corner[k]);
-      while (a != b) {
-        const uint32_t large = a > b ? a : b, small = a > b ? b : a;
-        if (atomic_exchange_if(parent[large], large, small)) break;
-        a = root_of(parent, large);
-        b = root_of(parent, small);
-      }
-    }
+    for (int k = 1; k < 4; ++k) join(parent, quads[i].corner[0], quads[i].corner[k]);
   }
-};
-
-struct FlattenComponents {
-  View<uint32_t> parent;
-  ISOSHELL_HD void operator()(int64_t v) const { parent[v] = root_of(parent, uint32_t(v)); }
 };
 
 struct IsRoot {
@@ -195,9 +164,9 @@ ComponentCount drop_small_components(Exec& exec, QuadMesh& mesh, LaidMesh& laid,
   using namespace sheet_steps;
   const int64_t vertices = laid.position.size();
   Buffer<uint32_t> root = exec.template make<uint32_t>(vertices);
-  exec.for_each("components", vertices, StartComponents{root.view()});
+  exec.for_each("components", vertices, StartAlone{root.view()});
   exec.for_each("join corners", mesh.quads.size(), JoinCorners{mesh.quads.view(), root.view()});
-  exec.for_each("flatten components", vertices, FlattenComponents{root.view()});
+  exec.for_each("flatten components", vertices, PointAtRoot{root.view()});
   const Buffer<uint32_t> roots = exec.select(vertices, IsRoot{root.view()});
   if (min_area_q16 <= 0) return {roots.size(), 0};
 

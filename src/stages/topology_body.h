@@ -138,7 +138,7 @@ EdgeRuns edges_of(Exec& exec, const WeldedMesh& mesh) {
 template <class Exec>
 Buffer<uint32_t> singletons(Exec& exec, int64_t count) {
   Buffer<uint32_t> parent = exec.template make<uint32_t>(count);
-  exec.for_each("make singletons", count, [&](int64_t i) { parent[i] = uint32_t(i); });
+  exec.for_each("make singletons", count, StartAlone{parent.view()});
   return parent;
 }
 template <class Exec>

@@ -34,4 +34,17 @@ ISOSHELL_HD inline void join(View<uint32_t> parent, uint32_t a, uint32_t b) {
   }
 }
 
+/// Step before all joins.
+struct StartAlone {
+  View<uint32_t> parent;
+  ISOSHELL_HD void operator()(int64_t i) const { parent[i] = uint32_t(i); }
+};
+
+/// Step after all joins: every parent becomes the root. Other elements may still shorten paths, so it is written
+/// atomically.
+struct PointAtRoot {
+  View<uint32_t> parent;
+  ISOSHELL_HD void operator()(int64_t i) const { atomic_min(parent[i], find_root(parent, uint32_t(i))); }
+};
+
 }  // namespace isoshell
