@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/voxel_set.h"
+#include "stages/drop_empty_leaves.h"
 #include "stages/sheet_flood_body.h"
 
 namespace isoshell {
@@ -120,13 +121,6 @@ struct CopyMaskOrMakeUniform {
   }
 };
 
-/// Size of the lattice in whole blocks.
-struct BlockExtent {
-  int32_t vox[3];
-  explicit BlockExtent(const VoxelSetView& set)
-      : vox{set.block_dims[0] * 128, set.block_dims[1] * 128, set.block_dims[2] * 128} {}
-};
-
 /// Gives masks to the neighbours in the bits of `wanted`, per leaf; none may have one. Returns whether there were any.
 template <class Exec>
 bool give_masks(Exec& exec, Solid& solid, View<const uint32_t> wanted) {
@@ -148,40 +142,6 @@ bool give_masks(Exec& exec, Solid& solid, View<const uint32_t> wanted) {
   index_leaves(grown, BlockExtent(old.set).vox);
   solid.set = std::move(grown);
   return true;
-}
-
-struct HasVoxels {
-  View<const LeafMask> mask;
-  ISOSHELL_HD bool operator()(int64_t i) const {
-    uint64_t any = 0;
-    for (const uint64_t w : mask[i].word) any |= w;
-    return any != 0;
-  }
-};
-
-struct CopyKeptLeaf {
-  View<const uint32_t> kept;
-  View<const uint64_t> from_key;
-  View<const LeafMask> from_mask;
-  View<uint64_t> key;
-  View<LeafMask> mask;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    key[i] = from_key[kept[i]];
-    mask[i] = from_mask[kept[i]];
-  }
-};
-
-/// The voxel set of these leaves, ascending, less those without voxels.
-template <class Exec>
-VoxelSet voxel_set_of(Exec& exec, View<const uint64_t> key, View<const LeafMask> mask, const int32_t extent_vox[3]) {
-  const Buffer<uint32_t> kept = exec.select(key.size, HasVoxels{mask});
-  VoxelSet set;
-  set.leaf_key = exec.template make<uint64_t>(kept.size());
-  set.mask = exec.template make<LeafMask>(kept.size());
-  exec.for_each("drop empty leaves", kept.size(),
-                CopyKeptLeaf{kept.view(), key, mask, set.leaf_key.view(), set.mask.view()});
-  index_leaves(set, extent_vox);
-  return set;
 }
 
 }  // namespace sheet_steps

@@ -5,8 +5,8 @@
 // The two passes over a leaf come with the backend (see cpu/leaf_lanes.h for what they must compute).
 #pragma once
 
-#include "core/voxel_set.h"
 #include "isoshell/stages.h"
+#include "stages/drop_empty_leaves.h"
 #include "voxel/atomic.h"
 #include "voxel/closest.h"
 
@@ -141,27 +141,6 @@ struct ReachLeaf {
   }
 };
 
-struct IsUsed {
-  View<const LeafMask> mask;
-  ISOSHELL_HD bool operator()(int64_t i) const {
-    uint64_t any = 0;
-    for (uint64_t w : mask[i].word) any |= w;
-    return any != 0;
-  }
-};
-
-struct CopyLeaf {
-  View<const uint32_t> used;
-  View<const uint64_t> from_key;
-  View<const LeafMask> from_mask;
-  View<uint64_t> key;
-  View<LeafMask> mask;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    key[i] = from_key[used[i]];
-    mask[i] = from_mask[used[i]];
-  }
-};
-
 /// Site id of the first voxel of every mask word.
 struct NumberWords {
   VoxelSetView sites;
@@ -222,15 +201,7 @@ VoxelSet reach(Exec& exec, const VoxelSetView& sites, const Ball& ball) {
   const Buffer<uint64_t> key = list_reached_leaves(exec, sites, ball);
   Buffer<LeafMask> mask = exec.template make<LeafMask>(key.size());
   exec.for_each("reach", key.size(), ReachLeaf<LeafPasses>{sites, ball, key.view(), mask.view()});
-  const Buffer<uint32_t> used = exec.select(key.size(), IsUsed{mask.view()});
-  VoxelSet out;
-  out.leaf_key = exec.template make<uint64_t>(used.size());
-  out.mask = exec.template make<LeafMask>(used.size());
-  exec.for_each("drop empty leaves", used.size(),
-                CopyLeaf{used.view(), key.view(), mask.view(), out.leaf_key.view(), out.mask.view()});
-  const int32_t extent_vox[3] = {sites.block_dims[0] * 128, sites.block_dims[1] * 128, sites.block_dims[2] * 128};
-  index_leaves(out, extent_vox);
-  return out;
+  return voxel_set_of(exec, key.view(), mask.view(), BlockExtent(sites).vox);
 }
 
 }  // namespace shell_steps
