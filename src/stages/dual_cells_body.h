@@ -81,25 +81,33 @@ struct HookEqualLabels {
   }
 };
 
-/// Adds a vertex to its piece; a run of vertices of one piece is added at once.
-struct CountPieceSizes {
+/// Counts the elements of every group; a run of elements of one group is added at once.
+template <class T>
+struct CountGroups {
   static constexpr int64_t kRun = 64;
-  View<const uint32_t> piece;
-  View<uint32_t> size;
+  View<const uint32_t> group;  ///< of every element
+  View<T> count;               ///< of every group
   ISOSHELL_HD void operator()(int64_t run) const {
-    const int64_t begin = run * kRun, end = begin + kRun < piece.size ? begin + kRun : piece.size;
-    uint32_t current = piece[begin], count = 0;
+    const int64_t begin = run * kRun, end = begin + kRun < group.size ? begin + kRun : group.size;
+    uint32_t current = group[begin];
+    T length = 0;
     for (int64_t v = begin; v < end; ++v) {
-      if (piece[v] != current) {
-        atomic_add(size[current], count);
-        current = piece[v];
-        count = 0;
+      if (group[v] != current) {
+        atomic_add(count[current], length);
+        current = group[v];
+        length = 0;
       }
-      ++count;
+      ++length;
     }
-    atomic_add(size[current], count);
+    atomic_add(count[current], length);
   }
 };
+/// Sets `count` to the sizes of the groups.
+template <class Exec, class T>
+void count_groups(Exec& exec, const char* name, View<const uint32_t> group, View<T> count) {
+  exec.fill(count, T(0));
+  exec.for_each(name, (group.size + CountGroups<T>::kRun - 1) / CountGroups<T>::kRun, CountGroups<T>{group, count});
+}
 
 /// Larger is better, then the smaller root.
 ISOSHELL_HD inline uint64_t piece_rank(uint32_t size, uint32_t root) { return uint64_t(size) << 32 | uint32_t(~root); }
@@ -134,9 +142,7 @@ Pieces find_pieces(Exec& exec, const Sheet& sheet, View<const uint32_t> label, C
   exec.for_each("hook pieces", sheet.triangles.size(),
                 HookEqualLabels{sheet.triangles.view(), label, pieces.piece.view()});
   exec.for_each("root pieces", n, PointAtRoot{pieces.piece.view()});
-  exec.fill(pieces.size.view(), uint32_t(0));
-  exec.for_each("count pieces", (n + CountPieceSizes::kRun - 1) / CountPieceSizes::kRun,
-                CountPieceSizes{pieces.piece.view(), pieces.size.view()});
+  count_groups(exec, "count pieces", View<const uint32_t>(pieces.piece.view()), pieces.size.view());
   Buffer<uint64_t> best = exec.template make<uint64_t>(cells.count());
   exec.fill(best.view(), uint64_t(0));
   exec.for_each("rank pieces", n, RankMainPieces{pieces.piece.view(), pieces.size.view(), label, best.view()});
@@ -145,25 +151,6 @@ Pieces find_pieces(Exec& exec, const Sheet& sheet, View<const uint32_t> label, C
 }
 
 /// Euler numbers: vertices first, then every triangle adds its own face and the edges that it runs up.
-struct AddVerticesToEuler {
-  static constexpr int64_t kRun = 64;
-  View<const uint32_t> label;
-  View<int32_t> euler;
-  ISOSHELL_HD void operator()(int64_t run) const {
-    const int64_t begin = run * kRun, end = begin + kRun < label.size ? begin + kRun : label.size;
-    uint32_t current = label[begin];
-    int32_t count = 0;
-    for (int64_t v = begin; v < end; ++v) {
-      if (label[v] != current) {
-        atomic_add(euler[current], count);
-        current = label[v];
-        count = 0;
-      }
-      ++count;
-    }
-    atomic_add(euler[current], count);
-  }
-};
 struct AddTrianglesToEuler {
   View<const TriangleIndices> triangles;
   View<const uint32_t> label;
@@ -183,9 +170,7 @@ struct AddTrianglesToEuler {
 };
 template <class Exec>
 void measure_euler(Exec& exec, const Sheet& sheet, View<const uint32_t> label, Cells& cells) {
-  exec.fill(cells.euler.view(), int32_t(0));
-  exec.for_each("count vertices of cells", (label.size + AddVerticesToEuler::kRun - 1) / AddVerticesToEuler::kRun,
-                AddVerticesToEuler{label, cells.euler.view()});
+  count_groups(exec, "count vertices of cells", label, cells.euler.view());
   exec.for_each("count edges and faces of cells", sheet.triangles.size(),
                 AddTrianglesToEuler{sheet.triangles.view(), label, cells.euler.view()});
 }

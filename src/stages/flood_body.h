@@ -143,7 +143,7 @@ struct ListReached {
     for (int n = 0; n < 27; ++n) {
       const uint32_t other = state.neighbours[leaf].leaf[n];
       if (other == kNone || !reaches(mask, n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1)) continue;
-      if (atomic_max(state.due[other], round + 1)) reached[atomic_take_next(count[0])] = other;
+      if (atomic_max(state.due[other], round + 1)) reached[atomic_fetch_add(count[0], 1u)] = other;
     }
   }
 };

@@ -27,15 +27,6 @@ ISOSHELL_HD inline uint32_t atomic_take_one_below(uint32_t& target) {
 #endif
 }
 
-/// Raises the target by one and returns the old value: hands out the places of a list, each once, in any order.
-ISOSHELL_HD inline uint32_t atomic_take_next(uint32_t& target) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(&target, 1u);
-#else
-  return __atomic_fetch_add(&target, 1u, __ATOMIC_RELAXED);
-#endif
-}
-
 template <class T>
 ISOSHELL_HD inline void atomic_or(T& target, T value) {
 #if defined(__CUDA_ARCH__)
