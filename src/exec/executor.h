@@ -1,5 +1,6 @@
 // What an executor must offer. Stage bodies are templates over one; they see nothing else of the machine.
 //
+//   Context& context();                                              // of the run: options, progress, cancellation
 //   template <class T> Buffer<T> make(int64_t count);               // not initialised
 //   template <class T> void fill(View<T> out, T value);
 //   template <class Step> void for_each(const char* name, int64_t count, Step step);   // step(int64_t i), any order

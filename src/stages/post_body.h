@@ -216,6 +216,10 @@ struct MarkHarmed {
     atomic_or(harmed[i.c], 1u);
   }
 };
+struct IsHarmed {
+  View<const uint32_t> harmed;
+  ISOSHELL_HD int64_t operator()(int64_t v) const { return harmed[v]; }
+};
 struct RestoreHarmed {
   View<const PointQ8> before;
   View<const uint32_t> home_before;
@@ -318,7 +322,7 @@ class Improvement {
       exec_.fill(harmed_.view(), 0u);
       exec_.for_each("mark harmed", mesh_.triangles.size(),
                      MarkHarmed{mesh_.triangles.view(), mesh_.position.view(), moved_.view(), harmed_.view()});
-      if (exec_.sum(vertices_, [harmed = harmed_.view()](int64_t v) { return int64_t(harmed[v]); }) == 0) return;
+      if (exec_.sum(vertices_, IsHarmed{harmed_.view()}) == 0) return;
       exec_.for_each("restore harmed", vertices_,
                      RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
     }
