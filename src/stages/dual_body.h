@@ -1,4 +1,4 @@
-// triangulate_dual (see stages.h), written once over an executor. Paper section 3.5; pipeline step 7.
+// triangulate_dual (see stages.h), written once over an executor. Paper section 3.4.
 //
 // The labels of the sheet's vertices cut the sheet into cells; a sheet triangle with three labels is a face of the
 // dual. When every cell is a disk in one piece, two cells meet in at most one arc, and every component of the sheet has

@@ -1,5 +1,5 @@
-// Output faces of the dual, the pairs of cells they join, and what is wrong with them (pipeline step 7, checks iii,
-// iv).
+// Output faces of the dual, the pairs of cells they join, and what is wrong with them: pairs that meet twice and
+// components of too few cells. Paper section 3.4.
 #pragma once
 
 #include "stages/dual_cells_body.h"
@@ -73,7 +73,7 @@ Buffer<uint64_t> face_pairs(Exec& exec, View<const TriangleIndices> faces) {
 constexpr uint32_t kNoSplit = kNone;
 constexpr uint32_t kSplitAnywhere = kNone - 1;
 
-/// Check ii.
+/// A cell that is not a disk is split anywhere.
 struct RequestNonDisks {
   CellsView cells;
   View<uint32_t> request;
@@ -82,7 +82,7 @@ struct RequestNonDisks {
   }
 };
 
-/// Check iii: of a pair that more than two faces see, the larger cell is split where it touches the other, ties by the
+/// Of a pair that more than two faces see, the larger cell is split where it touches the other, ties by the
 /// smaller id; of several requests to one cell the smallest wins.
 struct RequestDoublePairs {
   View<const uint64_t> pair;  ///< sorted
@@ -97,7 +97,7 @@ struct RequestDoublePairs {
   }
 };
 
-/// Check iv, on the graph of the cells: components as sets, their number of cells and their largest cell.
+/// On the graph of the cells: components as sets, their number of cells and their largest cell.
 struct HookPairs {
   View<const uint64_t> pair;
   View<uint32_t> parent;

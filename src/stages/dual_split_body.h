@@ -1,4 +1,4 @@
-// Splitting one cell into two connected halves (pipeline step 7).
+// Splitting one cell into two connected halves. Paper section 3.4.
 #pragma once
 
 #include "stages/dual_cells_body.h"

@@ -1,4 +1,4 @@
-// Stray pieces of cells: large ones become cells of their own, small ones join a neighbour (pipeline step 7).
+// Stray pieces of cells: large ones become cells of their own, small ones join a neighbour. Paper section 3.4.
 //
 // Main pieces never change here, and in every round all strays that touch a main piece are resolved; where strays touch
 // none, the largest of the neighbourhood becomes a cell. So the rounds end, with every cell in one piece.
