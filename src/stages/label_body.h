@@ -7,7 +7,9 @@
 // seeds' largest costs.
 #pragma once
 
-#include "stages/seed_grid_body.h"
+#include "isoshell/seed_set.h"
+#include "isoshell/sheet.h"
+#include "stages/point_grid_body.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {
@@ -85,7 +87,14 @@ ISOSHELL_HD inline CostRange cost_range(const Bounds& b, PointQ8 p, Normal8 n, i
   return {near_sq + (most < kOpposite ? penalty : 0), far_sq + (may ? penalty : 0), may};
 }
 
-ISOSHELL_HD inline int64_t cost(PointQ8 v, Normal8 n, const GridSeed& s, int64_t penalty) {
+/// A seed as labelling compares it.
+struct LabelSeed {
+  PointQ8 position;
+  uint32_t id;
+  Normal8 normal;
+};
+
+ISOSHELL_HD inline int64_t cost(PointQ8 v, Normal8 n, const LabelSeed& s, int64_t penalty) {
   return distance_sq_q16(v, s.position) + (dot(n, s.normal) < kOpposite ? penalty : 0);
 }
 
@@ -95,7 +104,8 @@ struct LabelLeaf {
   VoxelSetView corners;
   View<const PointQ8> position;
   View<const Normal8> normal;
-  SeedGridView grid;
+  PointGridView grid;
+  View<const Normal8> seed_normal;
   SeedSpacing spacing;
   View<uint32_t> out;
 
@@ -103,7 +113,7 @@ struct LabelLeaf {
     const int64_t begin = corners.first[leaf], end = corners.first[leaf + 1];
     Bounds bounds = empty_bounds();
     for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
-    GridSeed candidates[kCapacity];
+    LabelSeed candidates[kCapacity];
     int64_t limit;
     const int count = gather(bounds, candidates, limit);
     if (count > kCapacity) return label_directly(bounds, limit, begin, end);
@@ -118,12 +128,12 @@ struct LabelLeaf {
  private:
   /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
   /// costs, taken over those in reach. Returns more than kCapacity when they do not fit.
-  ISOSHELL_HD int gather(const Bounds& bounds, GridSeed* candidates, int64_t& limit) const {
+  ISOSHELL_HD int gather(const Bounds& bounds, LabelSeed* candidates, int64_t& limit) const {
     const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds.lo, bounds.hi))));
     for (int64_t reach = diagonal + spacing.h_q8 * 3 / 4;; reach *= 2) {
       limit = INT64_MAX;
       int count = 0;
-      for_each_within(bounds, reach * reach, [&](const GridSeed& s) {
+      for_each_within(bounds, reach * reach, [&](const LabelSeed& s) {
         const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
         if (range.hi < limit) limit = range.hi;
         if (count < kCapacity) candidates[count] = s;
@@ -133,7 +143,7 @@ struct LabelLeaf {
       if (limit <= reach * reach && count <= kCapacity) return keep_winnable(bounds, limit, candidates, count);
       // Reached too short or too far; the limit is a bound all the same, and says how far to look.
       count = 0;
-      for_each_within(bounds, limit, [&](const GridSeed& s) {
+      for_each_within(bounds, limit, [&](const LabelSeed& s) {
         if (cost_range(bounds, s.position, s.normal, spacing.penalty_q16).lo > limit) return;
         if (count < kCapacity) candidates[count] = s;
         ++count;
@@ -142,7 +152,7 @@ struct LabelLeaf {
     }
   }
 
-  ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, GridSeed* candidates, int count) const {
+  ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, LabelSeed* candidates, int count) const {
     int kept = 0;
     for (int c = 0; c < count; ++c)
       if (cost_range(bounds, candidates[c].position, candidates[c].normal, spacing.penalty_q16).lo <= limit)
@@ -153,12 +163,13 @@ struct LabelLeaf {
   template <class Visit>
   ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
     const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
-    grid.for_each_in({b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}, visit);
+    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
+    visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
   }
 
-  ISOSHELL_HD static void sort_by_id(GridSeed* c, int count) {
+  ISOSHELL_HD static void sort_by_id(LabelSeed* c, int count) {
     for (int i = 1; i < count; ++i) {
-      const GridSeed here = c[i];
+      const LabelSeed here = c[i];
       int j = i;
       for (; j > 0 && c[j - 1].id > here.id; --j) c[j] = c[j - 1];
       c[j] = here;
@@ -170,7 +181,7 @@ struct LabelLeaf {
     for (int64_t v = begin; v < end; ++v) {
       int64_t best = INT64_MAX;
       uint32_t id = kNone;
-      for_each_within(bounds, limit, [&](const GridSeed& s) {
+      for_each_within(bounds, limit, [&](const LabelSeed& s) {
         const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
         if (c < best || (c == best && s.id < id)) best = c, id = s.id;
       });
@@ -179,7 +190,7 @@ struct LabelLeaf {
   }
 
   /// The eight 4^3 quarters of the leaf in turn.
-  ISOSHELL_HD void label_quarters(int64_t leaf, const GridSeed* candidates, int count) const {
+  ISOSHELL_HD void label_quarters(int64_t leaf, const LabelSeed* candidates, int count) const {
     for (int q = 0; q < 8; ++q) {
       int64_t member[64];
       int members = 0;
@@ -199,14 +210,14 @@ struct LabelLeaf {
     }
   }
 
-  ISOSHELL_HD void label_quarter(const int64_t* member, int members, const GridSeed* candidates, int count) const {
+  ISOSHELL_HD void label_quarter(const int64_t* member, int members, const LabelSeed* candidates, int count) const {
     Bounds bounds = empty_bounds();
     for (int m = 0; m < members; ++m) include(bounds, position[member[m]], normal[member[m]]);
     int64_t least[kCapacity];
     int64_t limit = INT64_MAX;
     bool may_oppose = false;
     for (int c = 0; c < count; ++c) {
-      const GridSeed& s = candidates[c];
+      const LabelSeed& s = candidates[c];
       const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
       least[c] = range.lo;
       if (range.hi < limit) limit = range.hi;
@@ -220,7 +231,7 @@ struct LabelLeaf {
     else label_wide(member, members, candidates, count, least, limit);
   }
 
-  ISOSHELL_HD void label_wide(const int64_t* member, int members, const GridSeed* candidates, int count,
+  ISOSHELL_HD void label_wide(const int64_t* member, int members, const LabelSeed* candidates, int count,
                               const int64_t* least, int64_t limit) const {
     for (int m = 0; m < members; ++m) {
       int64_t best = INT64_MAX;
@@ -234,7 +245,7 @@ struct LabelLeaf {
     }
   }
 
-  ISOSHELL_HD void label_narrow(const int64_t* member, int members, const GridSeed* candidates, int count,
+  ISOSHELL_HD void label_narrow(const int64_t* member, int members, const LabelSeed* candidates, int count,
                                 const int64_t* least, int64_t limit, PointQ8 origin) const {
     uint32_t x[64], y[64], z[64], best[64], id[64];
     for (int m = 0; m < members; ++m) {
@@ -247,7 +258,7 @@ struct LabelLeaf {
     }
     for (int c = 0; c < count; ++c) {
       if (least[c] > limit) continue;
-      const GridSeed& s = candidates[c];
+      const LabelSeed& s = candidates[c];
       const uint32_t sx = uint32_t(s.position.x - origin.x), sy = uint32_t(s.position.y - origin.y),
                      sz = uint32_t(s.position.z - origin.z), seed = s.id;
       for (int m = 0; m < members; ++m) {
@@ -278,12 +289,22 @@ int64_t doubled_area_q16(Exec& exec, const Sheet& sheet) {
   return exec.sum(sheet.triangles.size(), label::DoubledArea{sheet.position.view(), sheet.triangles.view()});
 }
 
+/// Grid of the current seeds, with cells about as wide as seeds are apart.
+template <class Exec>
+PointGrid grid_of_seeds(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing) {
+  const int64_t spacing_vox = (spacing.h_q8 + kOneVoxelQ8 - 1) / kOneVoxelQ8;
+  PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, spacing_vox, seeds.size());
+  fill_point_grid(exec, grid, seeds.position.view());
+  return grid;
+}
+
 /// Labels of all sheet vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
 template <class Exec>
 void label_sheet(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing, View<uint32_t> labels) {
-  const SeedGrid grid = build_seed_grid(exec, sheet.frame.extent_vox, seeds, spacing.h_q8);
+  const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
-                label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(), spacing, labels});
+                label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
+                                  seeds.normal.view(), spacing, labels});
 }
 
 }  // namespace isoshell

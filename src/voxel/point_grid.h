@@ -47,6 +47,16 @@ ISOSHELL_HD inline void visit_row(const PointGridView& grid, int32_t cx, int32_t
   for (uint32_t i = grid.cell_first[first]; i < end; ++i) visit(grid.points[i]);
 }
 
+/// Calls visit(const GridPoint&) for the points of the cells that meet the box.
+template <class Visit>
+ISOSHELL_HD inline void visit_box(const PointGridView& grid, const BoxQ8& box, Visit& visit) {
+  const int32_t x_hi = grid_coordinate(grid, box.hi.x, 0), y_hi = grid_coordinate(grid, box.hi.y, 1),
+                z_lo = grid_coordinate(grid, box.lo.z, 2), z_hi = grid_coordinate(grid, box.hi.z, 2);
+  for (int32_t cx = grid_coordinate(grid, box.lo.x, 0); cx <= x_hi; ++cx)
+    for (int32_t cy = grid_coordinate(grid, box.lo.y, 1); cy <= y_hi; ++cy)
+      visit_row(grid, cx, cy, z_lo, z_hi, visit);
+}
+
 /// Calls visit(const GridPoint&) outwards from the box until every point at squared distance <= visit.bound_q16() of it
 /// was visited; the bound may fall on the way, and points that are farther may be visited too.
 template <class Visit>

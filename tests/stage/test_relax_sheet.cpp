@@ -53,11 +53,11 @@ std::vector<uint32_t> brute_force_labels(const Sheet& sheet, const SeedSet& seed
 template <int kCapacity>
 std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing, Context& context) {
   TbbExecutor exec(context, "test");
-  const SeedGrid grid = build_seed_grid(exec, sheet.frame.extent_vox, seeds, spacing.h_q8);
+  const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   std::vector<uint32_t> labels(size_t(sheet.vertex_count()));
   exec.for_each("label", sheet.corners.leaf_count(),
                 label::LabelLeaf<kCapacity>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
-                                            spacing, {labels.data(), int64_t(labels.size())}});
+                                            seeds.normal.view(), spacing, {labels.data(), int64_t(labels.size())}});
   return labels;
 }
 
