@@ -50,7 +50,7 @@ struct ShadowSide {
 };
 ISOSHELL_HD inline ShadowSide shadow_side(int64_t p, int64_t q, int64_t k) {
   // Without Q, the bound is beyond every cell where the side holds, and -1 or less where it does not.
-  if (q == 0) return {p << 15, (k << 15) + 0x7fff, 1, false};
+  if (q == 0) return {p * 32768, k * 32768 + 0x7fff, 1, false};
   return {p, k, q < 0 ? -q : q, q > 0};
 }
 

@@ -54,7 +54,7 @@ inline std::vector<Fraction3> clip(const std::vector<Fraction3>& polygon, int ax
 inline bool meets_by_clipping(const TriangleQ8& t, Voxel cell, int shift) {
   std::vector<Fraction3> polygon;
   for (const auto& p : t.at) polygon.push_back({{p[0], p[1], p[2]}, 1});
-  const int64_t lo[3] = {int64_t(cell.x) << shift, int64_t(cell.y) << shift, int64_t(cell.z) << shift};
+  const int64_t side = int64_t(1) << shift, lo[3] = {cell.x * side, cell.y * side, cell.z * side};
   for (int axis = 0; axis < 3; ++axis) {
     polygon = clip(polygon, axis, lo[axis], 1);
     polygon = clip(polygon, axis, lo[axis] + (int64_t(1) << shift), -1);
@@ -65,7 +65,7 @@ inline bool meets_by_clipping(const TriangleQ8& t, Voxel cell, int shift) {
 /// By the thirteen separating axes, both sides of each, one cell at a time.
 inline bool meets_by_axes(const TriangleQ8& t, Voxel cell, int shift) {
   Wide p[3][3], edge[3][3];
-  const int64_t lo[3] = {int64_t(cell.x) << shift, int64_t(cell.y) << shift, int64_t(cell.z) << shift};
+  const int64_t side = int64_t(1) << shift, lo[3] = {cell.x * side, cell.y * side, cell.z * side};
   for (int i = 0; i < 3; ++i)
     for (int a = 0; a < 3; ++a) {
       p[i][a] = t.at[i][a] - lo[a];
