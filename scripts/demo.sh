@@ -7,8 +7,9 @@ scripts/build.sh cpu vdb_isomesh
 out=demo-output
 mkdir -p "$out"
 build/cpu/vdb_isomesh tests/data/nefertiti.ply "$out/nefertiti.ply" --vertices 10000 --force \
-  --stats "$out/nefertiti.json" --require closed,manifold
+  --save-voronoi "$out/nefertiti.voronoi.vdb" --stats "$out/nefertiti.json" --require closed,manifold
 echo
 echo "The scan tests/data/nefertiti.ply was remeshed. Look at:"
 echo "  $PWD/$out/nefertiti.ply   the mesh"
-echo "  $PWD/$out/nefertiti.json  everything that was measured"
+echo "  $PWD/$out/nefertiti.voronoi.vdb   shell and Voronoi cells, for OpenVDB viewers; a run can resume from it"
+echo "  $PWD/$out/nefertiti.json   everything that was measured"
