@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+
+#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
@@ -11,8 +14,21 @@ constexpr double kVoxelsPerSpacing = 6;  // default grid: a cell is about this m
 constexpr int32_t kMinDefaultResolution = 64;
 constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
 
+constexpr int32_t kMinResolution = 8;
+constexpr int64_t kMaxVertices = 2147483647;
+
 int32_t resolution_for_voxel(double longest, double voxel_size) {
   return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
+}
+
+int32_t asked_voxel_resolution(double longest, double voxel_size) {
+  const int32_t resolution = resolution_for_voxel(longest, voxel_size);
+  if (resolution >= kMinResolution && resolution <= kMaxResolution) return resolution;
+  std::ostringstream text;
+  text << "a voxel size of " << voxel_size << " gives " << (resolution < kMinResolution ? "fewer than " : "more than ")
+       << (resolution < kMinResolution ? kMinResolution : kMaxResolution) << " voxels along the longest side of "
+       << longest << "; use " << longest / (kMaxResolution - 1) << " to " << longest / (kMinResolution - 1);
+  throw Error(ErrorCode::usage, "grid", text.str());
 }
 
 }  // namespace
@@ -20,13 +36,20 @@ int32_t resolution_for_voxel(double longest, double voxel_size) {
 int64_t vertex_target(const RemeshOptions& options, double area_world) {
   if (options.edge_length_world <= 0) return options.vertices;
   const double per_vertex = kAreaPerEdgeSq * options.edge_length_world * options.edge_length_world;
-  return std::max<int64_t>(4, std::llround(area_world / per_vertex));
+  const double vertices = area_world / per_vertex;
+  if (!(vertices <= double(kMaxVertices))) {  // a tiny length squares to 0
+    std::ostringstream text;
+    text << "an edge length of " << options.edge_length_world << " asks for more than " << kMaxVertices
+         << " vertices; use at least " << std::sqrt(area_world / double(kMaxVertices) / kAreaPerEdgeSq);
+    throw Error(ErrorCode::usage, "grid", text.str());
+  }
+  return std::max<int64_t>(4, std::llround(vertices));
 }
 
 int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint lo, WorldPoint hi) {
   if (options.resolution > 0) return options.resolution;
   const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
-  if (options.voxel_size_world > 0) return resolution_for_voxel(longest, options.voxel_size_world);
+  if (options.voxel_size_world > 0) return asked_voxel_resolution(longest, options.voxel_size_world);
   const double spacing = std::sqrt(area_world / double(vertex_target(options, area_world)));
   if (!(spacing > 0)) return kMinDefaultResolution;
   return std::clamp(resolution_for_voxel(longest, spacing / kVoxelsPerSpacing), kMinDefaultResolution, kMaxResolution);

@@ -5,10 +5,11 @@
 
 namespace isoshell {
 
-/// Target count of a surface of this area.
+/// Target count of a surface of this area. Throws: usage when an edge length asks for more than 2^31 - 1.
 int64_t vertex_target(const RemeshOptions& options, double area_world);
 
 /// Voxels along the longest side of the box: the user's, or so many that a cell is about six voxels wide.
+/// Throws: usage when a voxel size does not give 8 to 8192.
 int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint box_min, WorldPoint box_max);
 
 }  // namespace isoshell

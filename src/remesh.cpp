@@ -130,6 +130,13 @@ int32_t asked_closing(const RemeshOptions& options, const InputTopology& input, 
   return options.closing_vox < 0 && input.closed ? 0 : options.closing_vox;
 }
 
+/// A surface of slivers alone gives a sheet around a line, not a mesh that anyone asked for.
+void check_area(const InputTopology& input) {
+  if (!(input.area_world > 0))
+    throw Error(ErrorCode::nothing_to_mesh, "topology",
+                "no face has an area: the surface is a line or a point; give one with faces that span an area");
+}
+
 /// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made yet.
 bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
   report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
@@ -199,6 +206,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   const InputTopology input = timed(report, "topology", [&] { return measure_topology(soup, report.dirt, context); });
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
+  check_area(input);
   const bool compare = input.closed && input.oriented && input.genus >= 0;
   const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
   const int32_t first = first_resolution(options, input.area_world, lo, hi);

@@ -1,0 +1,100 @@
+// What a hostile or unlucky user gives the command: damaged files, surfaces that are hardly surfaces, absurd sizes.
+#include "cli/command.h"
+#include "support/catch.h"
+
+using namespace isoshell;
+using namespace isoshell::cli;
+
+namespace {
+
+const std::string kSmall = " --vertices 60 --resolution 24 --force ";
+
+std::string malformed(const std::string& name) { return "'" ISOSHELL_TEST_DATA "/malformed/" + name + "' "; }
+
+/// The file as a closed mesh of the asked size.
+bool becomes_closed(Folder& folder, const std::string& input) {
+  return folder.run(input + " out.ply --require closed,manifold" + kSmall).status == 0;
+}
+
+TriangleSoup ball_at(WorldPoint centre, double radius) { return shapes::sphere(centre, radius, 24); }
+
+}  // namespace
+
+TEST_CASE("hostile: a file that lies is refused with 3, one without triangles with 5, and named", "[cli][hostile]") {
+  Folder folder;
+  struct Expected {
+    const char* name;
+    int status;
+  };
+  for (const Expected& e : {Expected{"assimp_OutOfMemory.off", 3},
+                            {"assimp_crash-30d6d0f7c529b3b66b4131700b7a4580cd7082df.ply", 3},
+                            {"assimp_empty.obj", 5},
+                            {"assimp_invalid.off", 3},
+                            {"assimp_malformed.obj", 3},
+                            {"tinyobj_invalid-face-definition.obj", 5},
+                            {"tinyobj_issue-140-zero-face-idx.obj", 3},
+                            {"tinyobj_test-nan.obj", 0},
+                            {"trimesh_notenoughindices.obj", 0},
+                            {"trimesh_ply_empty_header.ply", 5},
+                            {"trimesh_stl_empty_bin.stl", 5}}) {
+    const auto r = folder.run(malformed(e.name) + "out.ply" + kSmall);
+    INFO(e.name << ": " << r.err);
+    CHECK(r.status == e.status);
+    CHECK(contains(r.err, e.name));
+    CHECK(folder.has("out.ply") == (e.status == 0));
+    fs::remove(folder / "out.ply");
+  }
+}
+
+TEST_CASE("hostile: one triangle, a flat quad and twins become closed meshes", "[cli][hostile]") {
+  Folder folder;
+  folder.write("triangle.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  folder.write("quad.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
+  folder.write("twins.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n");
+  CHECK(becomes_closed(folder, "triangle.off"));
+  CHECK(becomes_closed(folder, "quad.off"));
+  CHECK(becomes_closed(folder, "twins.off"));
+}
+
+TEST_CASE("hostile: a surface without area is nothing to mesh", "[cli][hostile]") {
+  Folder folder;
+  folder.write("line.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
+  folder.write("point.off", "OFF\n3 1 0\n5 5 5\n5 5 5\n5 5 5\n3 0 1 2\n");
+  const auto line = folder.run("line.off out.ply" + kSmall);
+  CHECK(line.status == 5);
+  CHECK(contains(line.err, "area"));
+  CHECK(folder.run("point.off out.ply" + kSmall).status == 5);
+  CHECK_FALSE(folder.has("out.ply"));
+}
+
+TEST_CASE("hostile: far from the origin, tiny and huge surfaces are meshed where they are", "[cli][hostile]") {
+  Folder folder;
+  folder.write_off("tiny.off", ball_at({0, 0, 0}, 1e-6));
+  folder.write_off("huge.off", ball_at({0, 0, 0}, 1e6));
+  CHECK(becomes_closed(folder, "tiny.off"));
+  CHECK(becomes_closed(folder, "huge.off"));
+  std::string far = "OFF\n4 4 0\n";  // of unit size, a million away: more digits than a float has
+  far += "1000000.125 1000000 1000000\n1000001 1000000 1000000\n1000000 1000001 1000000\n1000000 1000000 1000001\n";
+  folder.write("far.off", far + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  CHECK(becomes_closed(folder, "far.off"));
+}
+
+TEST_CASE("hostile: absurd sizes are refused with a size that would do", "[cli][hostile]") {
+  Folder folder;
+  folder.write_off("ball.off", ball_at({0, 0, 0}, 1));
+  for (const char* run : {"ball.off out.ply --edge-length 1e-9", "ball.off --dry-run --edge-length 1e-9",
+                          "ball.off out.ply --edge-length 1e-300"}) {
+    const auto tiny = folder.run(run);
+    CHECK(tiny.status == 2);
+    CHECK(contains(tiny.err, "2147483647"));
+    CHECK(contains(tiny.err, "use at least"));
+  }
+  const auto fine = folder.run("ball.off out.ply --voxel-size 1e-9");
+  CHECK(fine.status == 2);
+  CHECK(contains(fine.err, "a voxel size of 1e-09 gives more than 8192 voxels"));
+  const auto coarse = folder.run("ball.off out.ply --voxel-size 1e9");
+  CHECK(coarse.status == 2);
+  CHECK(contains(coarse.err, "a voxel size of 1e+09 gives fewer than 8 voxels"));
+  CHECK(folder.run("ball.off out.ply --vertices 10000000 --resolution 16").status == 2);
+  CHECK_FALSE(folder.has("out.ply"));
+}
