@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "stages/seed_count.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -92,6 +93,7 @@ void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_
 
 SeedSet relax_by_levels(const Sheet& sheet, const SeedOptions& options, const RelaxOptions& relax, RelaxReport& report,
                         Context& context) {
+  require_seed_count(sheet, options.count);
   const std::vector<int64_t> counts = level_counts(options.count, sheet.topology);
   const RelaxOptions coarse{kCoarsePasses, relax.tolerance_ppb, relax.max_step_q8};
   SeedSet seeds;

@@ -50,7 +50,7 @@ void note_digest(const RemeshOptions& options, RemeshReport& report, const char*
 /// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose.
 int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
   if (input.closed && input.oriented) return 0;
-  const double cell_world = input.area_world / double(std::max<int64_t>(1, vertex_target(options, input.area_world)));
+  const double cell_world = input.area_world / double(std::max<int64_t>(64, vertex_target(options, input.area_world)));
   const double cell_vox = cell_world / (frame.voxel_size * frame.voxel_size);
   return int64_t(4 * cell_vox * 65536);
 }
@@ -100,6 +100,7 @@ class Preparation {
     Sheet widest = sheet(p, kMaxAutoClosingVox);
     const int64_t widest_volume = six_volume_vox(widest);
     for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
+      p.sheet = {};
       p.sheet = sheet(p, p.closing_vox);
       if (10 * six_volume_vox(p.sheet) >= 9 * widest_volume) return;
     }
@@ -215,7 +216,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   Prepared best;
   int64_t best_gap = INT64_MAX;
   int fruitless = 0;
-  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2; resolution += resolution / 2) {
+  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2; resolution += std::max(1, resolution / 2)) {
     if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
     LatticeSurface surface = timed(report, "snap", [&] { return snap_surface(soup, frame, context); });
@@ -279,7 +280,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   if (seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
-  timed(report, "post", [&] { improve_mesh(p.sheet, {}, seeds, dual, context); });
+  if (report.dual.failed_cells == 0) timed(report, "post", [&] { improve_mesh(p.sheet, {}, seeds, dual, context); });
   TriangleMesh mesh = to_world(dual, p.surface.frame);
   note_digest(options, report, "mesh", mesh);
   return mesh;

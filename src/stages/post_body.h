@@ -210,6 +210,7 @@ struct MarkHarmed {
   ISOSHELL_HD void operator()(int64_t t) const {
     const TriangleIndices i = triangles[t];
     const PointQ8 a = before[i.a], b = before[i.b], c = before[i.c], d = after[i.a], e = after[i.b], f = after[i.c];
+    if (a == d && b == e && c == f) return;
     if (within_45_degrees(normal_of(a, b, c), normal_of(d, e, f)) && !harms_shape(shape_of(a, b, c), shape_of(d, e, f))) return;
     atomic_or(harmed[i.a], 1u);
     atomic_or(harmed[i.b], 1u);
@@ -231,6 +232,13 @@ struct RestoreHarmed {
     after[v] = before[v];
     home_after[v] = home_before[v];
   }
+};
+
+struct TakeNormal {
+  View<const Normal8> sheet_normal;
+  View<const uint32_t> home;
+  View<Normal8> normal;
+  ISOSHELL_HD void operator()(int64_t v) const { normal[v] = sheet_normal[home[v]]; }
 };
 
 template <class T>
@@ -300,6 +308,7 @@ class Improvement {
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
     exec_.sort(mesh_.triangles.view(), ByIndices{});
     exec_.for_each("seed positions", vertices_, CopyValue<PointQ8>{mesh_.position.view(), seeds_.position.view()});
+    exec_.for_each("seed normals", vertices_, TakeNormal{walk_.normal, seeds_.home.view(), seeds_.normal.view()});
   }
 
  private:
@@ -315,10 +324,9 @@ class Improvement {
     exec_.for_each("count valences", half_edges_, CountValence{view()});
   }
 
-  /// Undoes the step where it would harm a triangle; a restored vertex can harm another, so up to a fixed point.
+  /// Undoes the step where it would harm a triangle (ends: what is restored stays so); a restored vertex can harm another, so up to a fixed point.
   void undo_harm() {
-    constexpr int kMaxRounds = 20;
-    for (int r = 0; r < kMaxRounds; ++r) {
+    for (;;) {
       exec_.fill(harmed_.view(), 0u);
       exec_.for_each("mark harmed", mesh_.triangles.size(),
                      MarkHarmed{mesh_.triangles.view(), mesh_.position.view(), moved_.view(), harmed_.view()});

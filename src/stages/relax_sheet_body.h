@@ -17,11 +17,19 @@ namespace isoshell {
 namespace relax_sheet {
 
 /// Area, centre and energy of a cell relative to its seed: mass is the doubled area (q16), first three times the doubled
-/// first moment, energy_12 twelve times the doubled second moment, shifted down by kEnergyShift.
+/// first moment, energy_12 twelve times the doubled second moment, shifted down by energy_shift().
 struct CellSum {
   int64_t mass, first_x, first_y, first_z, energy_12;
 };
-constexpr int kEnergyShift = 8;
+
+/// Bits that cell energies lose, so that their sum (about 2^6 times area times h^2 at the worst) stays below 2^60: 8 on
+/// all but the largest sheets with the fewest seeds.
+inline int energy_shift(int64_t area2_q16, int64_t h_sq_q16) {
+  int bits = 6;
+  for (int64_t rest = area2_q16; rest > 0; rest >>= 1) ++bits;
+  for (int64_t rest = h_sq_q16; rest > 0; rest >>= 1) ++bits;
+  return bits - 64 > 8 ? bits - 64 : 8;
+}
 
 /// A sheet triangle with its doubled area.
 struct PatchTriangle {
@@ -130,6 +138,7 @@ struct SumLeaf {
   View<const uint32_t> label;
   View<const PointQ8> seed;
   View<CellSum> cell;
+  int shift = 8;
 
   ISOSHELL_HD void operator()(int64_t leaf) const {
     const Voxel v = leaf_of_key(leaf_key[leaf]);
@@ -162,16 +171,18 @@ struct SumLeaf {
     else split.three_cells(add_piece);
   }
 
-  /// Moves the sums from the leaf's origin to the seed: d = seed - origin.
+  /// Moves the sums from the leaf's origin to the seed: d = seed - origin. Far seeds take the energy past 64 bits.
   ISOSHELL_HD void flush(uint32_t id, const PieceSum& s, PointQ8 origin) const {
     const Local d = local(seed[id], origin);
-    const int64_t energy = s.second - 8 * (s.first_x * d.x + s.first_y * d.y + s.first_z * d.z) + 12 * square(d) * s.mass;
+    __extension__ typedef __int128 Wide;
+    const Wide energy = Wide(s.second) - 8 * (Wide(s.first_x) * d.x + Wide(s.first_y) * d.y + Wide(s.first_z) * d.z) +
+                        Wide(12 * square(d)) * s.mass;
     CellSum& c = cell[id];
     atomic_add(c.mass, s.mass);
     atomic_add(c.first_x, s.first_x - 3 * s.mass * d.x);
     atomic_add(c.first_y, s.first_y - 3 * s.mass * d.y);
     atomic_add(c.first_z, s.first_z - 3 * s.mass * d.z);
-    atomic_add(c.energy_12, energy >> kEnergyShift);
+    atomic_add(c.energy_12, int64_t(energy >> shift));
   }
 };
 
@@ -262,7 +273,9 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   using namespace relax_sheet;
   const int64_t count = seeds.size();
   const Patches patches = make_patches(exec, sheet);
-  const SeedSpacing spacing = seed_spacing(doubled_area_q16(exec, sheet), count);
+  const int64_t area2 = doubled_area_q16(exec, sheet);
+  const SeedSpacing spacing = seed_spacing(area2, count);
+  const int shift = energy_shift(area2, spacing.h_sq_q16);
   Buffer<uint32_t> labels = exec.template make<uint32_t>(sheet.vertex_count());
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
@@ -281,7 +294,7 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
     exec.fill(cells.view(), CellSum{0, 0, 0, 0, 0});
     exec.for_each("sum cells", sheet.corners.leaf_count(),
                   SumLeaf<>{sheet.corners.leaf_key.view(), patches.first.view(), patches.triangles.view(),
-                            sheet.position.view(), labels.view(), seeds.position.view(), cells.view()});
+                            sheet.position.view(), labels.view(), seeds.position.view(), cells.view(), shift});
     exec.for_each("move to centre", count, MoveToCentre{moving, cells.view()});
     const double energy = double(exec.sum(count, CellEnergy{cells.view()}));
     if (!report.energy.empty() && energy > report.energy.back()) momentum.restart();

@@ -5,6 +5,7 @@
 
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
+#include "stages/seed_count.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {
@@ -29,20 +30,24 @@ int32_t resolution_of(const VoxelSet& sites) {
 
 }  // namespace
 
-SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& context) {
+void require_seed_count(const Sheet& sheet, int64_t count) {
   const int64_t fewest = 4 * std::max<int64_t>(1, sheet.topology.components), most = sheet.vertex_count() / 2;
-  if (options.count < fewest)
+  if (count < fewest)
     throw Error(ErrorCode::usage, "seeds",
-                std::to_string(options.count) + " vertices are too few: the surface's " +
+                std::to_string(count) + " vertices are too few: the surface's " +
                     std::to_string(sheet.topology.components) + " components need at least " + std::to_string(fewest));
-  if (options.count > most) {
-    const double factor = std::sqrt(double(options.count) / double(std::max<int64_t>(1, most)));
+  if (count > most) {
+    const double factor = std::sqrt(double(count) / double(std::max<int64_t>(1, most)));
     throw Error(ErrorCode::usage, "seeds",
-                std::to_string(options.count) + " vertices are too many for resolution " +
+                std::to_string(count) + " vertices are too many for resolution " +
                     std::to_string(sheet.frame.resolution) + ", which can carry " + std::to_string(most) +
                     "; use a resolution of at least " +
                     std::to_string(int64_t(std::ceil(sheet.frame.resolution * factor))));
   }
+}
+
+SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& context) {
+  require_seed_count(sheet, options.count);
   return backend_for(context).place_seeds_on_sheet(sheet, options, context);
 }
 

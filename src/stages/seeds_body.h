@@ -31,7 +31,7 @@ struct PlaceOnSheet {
   ISOSHELL_HD void operator()(int64_t i) const {
     const uint64_t r = random_bits(seed, uint64_t(i));
     const int64_t width = total / count, rest = total % count;
-    const int64_t target = width * i + rest * i / count + (width * int64_t(r >> 40) >> 24);
+    const int64_t target = width * i + rest * i / count + share_of(width, int64_t(r >> 40));
     const TriangleIndices t = triangles[triangle_at(target)];
     // Two 20-bit fractions; folding the parallelogram onto the triangle keeps the density even.
     int64_t u = int64_t(r & 0xfffff), v = int64_t(r >> 20 & 0xfffff);
@@ -45,6 +45,11 @@ struct PlaceOnSheet {
     out_position[i] = p;
     out_normal[i] = vertex_normal[home];
     out_home[i] = home;
+  }
+
+  /// width * fraction / 2^24, without a product beyond 63 bits.
+  ISOSHELL_HD static int64_t share_of(int64_t width, int64_t fraction_24) {
+    return (width >> 24) * fraction_24 + ((width & 0xffffff) * fraction_24 >> 24);
   }
 
   /// The triangle whose share of the running area holds the target.

@@ -116,7 +116,7 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
     if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);  // an addition may wall up a pocket
     mesh = list_boundary(exec, solid);
   }
-  const SurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
+  const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
                                     samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
   mesh.edges = {};

@@ -49,7 +49,7 @@ struct SmoothCorners {
 
 /// Puts every vertex on the nearest triangle. Only with `may_bridge` a vertex farther than two voxels stays in place.
 struct ProjectVertex {
-  SurfaceView surface;
+  SitedSurfaceView surface;
   bool may_bridge;
   View<const PointQ8> smooth;
   View<PointQ8> position;
@@ -136,7 +136,7 @@ struct LaidMesh {
 };
 
 template <class Exec>
-LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SurfaceView& surface, bool may_bridge) {
+LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
   using namespace sheet_steps;
   LaidMesh laid;
   const int64_t vertices = mesh.position.size();

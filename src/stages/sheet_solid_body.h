@@ -67,8 +67,6 @@ ISOSHELL_HD inline bool is_mixed(const SolidWindow& window) {
   return any != 0 && all != kWindowRow;
 }
 
-/// Number of a leaf among its 27 neighbours; 13 is the leaf itself.
-ISOSHELL_HD inline int neighbour_number(int dx, int dy, int dz) { return (dx + 1) * 9 + (dy + 1) * 3 + dz + 1; }
 ISOSHELL_HD inline Voxel neighbour_leaf(Voxel l, int number) {
   return {l.x + number / 9 - 1, l.y + number / 3 % 3 - 1, l.z + number % 3 - 1};
 }

@@ -55,7 +55,7 @@ struct MarkLeaves {
                         const int bit = (leaf.x & 15) << 8 | (leaf.y & 15) << 4 | (leaf.z & 15);
                         const uint64_t flag = uint64_t(1) << (bit & 63);
                         uint64_t& word = block.word[bit >> 6];
-                        if (!(word & flag)) atomic_or(word, flag);
+                        if (!(atomic_load(word) & flag)) atomic_or(word, flag);
                       });
   }
 };

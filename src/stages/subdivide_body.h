@@ -57,7 +57,7 @@ struct MeasureTriangle {
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = triangles[i];
     const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
-    out[i] = {int64_t(isqrt(uint64_t(dot(n, n)))), uint32_t(i)};
+    out[i] = {int64_t(__builtin_sqrt(double(n.x) * double(n.x) + double(n.y) * double(n.y) + double(n.z) * double(n.z))), uint32_t(i)};
   }
 };
 

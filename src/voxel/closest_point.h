@@ -15,6 +15,16 @@ ISOSHELL_HD inline int32_t round_to_int(double x) {
   return int32_t(cut - (double(cut) > shifted));
 }
 
+/// The point of the segment ab closest to p, rounded to q8.
+ISOSHELL_HD inline PointQ8 closest_point_on_segment(PointQ8 p, PointQ8 a, PointQ8 b) {
+  const Vec64 e = difference(b, a);
+  const double at = double(dot(e, difference(p, a))), length_sq = double(dot(e, e));
+  if (at <= 0) return a;
+  if (at >= length_sq) return b;
+  const double t = at / length_sq;
+  return {a.x + round_to_int(t * double(e.x)), a.y + round_to_int(t * double(e.y)), a.z + round_to_int(t * double(e.z))};
+}
+
 /// The point of the closed triangle abc closest to p, rounded to q8; triangles without area are segments or points.
 /// The six dot products are exact (differences < 2^24), so only ratios round. After Ericson, Real-Time Collision Detection, 5.1.5.
 ISOSHELL_HD inline PointQ8 closest_point_on_triangle(PointQ8 p, PointQ8 a, PointQ8 b, PointQ8 c) {
@@ -36,6 +46,13 @@ ISOSHELL_HD inline PointQ8 closest_point_on_triangle(PointQ8 p, PointQ8 a, Point
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
     return along(b, difference(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
   const double sum = va + vb + vc;
+  // A needle: what is left of the cancelling products is noise, and its edges are as near as its inside.
+  if (sum <= 0x1p-40 * double(dot(ab, ab)) * double(dot(ac, ac))) {
+    PointQ8 best = closest_point_on_segment(p, a, b);
+    for (const PointQ8 q : {closest_point_on_segment(p, b, c), closest_point_on_segment(p, c, a)})
+      if (distance_sq_q16(p, q) < distance_sq_q16(p, best)) best = q;
+    return best;
+  }
   const double v = vb / sum, w = vc / sum;
   return {a.x + round_to_int(v * double(ab.x) + w * double(ac.x)), a.y + round_to_int(v * double(ab.y) + w * double(ac.y)),
           a.z + round_to_int(v * double(ab.z) + w * double(ac.z))};

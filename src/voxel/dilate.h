@@ -5,9 +5,6 @@
 
 namespace isoshell {
 
-/// Number of the neighbour at (dx, dy, dz), each -1..1, in arrays of 27 (13 is the leaf itself).
-ISOSHELL_HD inline int neighbour_number(int dx, int dy, int dz) { return (dx + 1) * 9 + (dy + 1) * 3 + dz + 1; }
-
 /// Slice grown by one voxel along z; `below` and `above` are the same slice of the leaves at dz = -1 and 1.
 ISOSHELL_HD inline uint64_t dilate_z(uint64_t slice, uint64_t below, uint64_t above) {
   constexpr uint64_t kFirst = 0x0101010101010101ull, kLast = kFirst << 7;

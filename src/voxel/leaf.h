@@ -37,6 +37,9 @@ ISOSHELL_HD inline PointQ8 voxel_centre(Voxel v) {
 }
 ISOSHELL_HD inline Voxel voxel_of(PointQ8 p) { return {p.x >> kFractionBits, p.y >> kFractionBits, p.z >> kFractionBits}; }
 
+/// Place of the neighbour at (dx, dy, dz), each -1 to 1, among the 27: x-major.
+ISOSHELL_HD inline int neighbour_number(int dx, int dy, int dz) { return (dx + 1) * 9 + (dy + 1) * 3 + dz + 1; }
+
 ISOSHELL_HD inline int popcount64(uint64_t w) {
 #if defined(__CUDA_ARCH__)
   return __popcll(w);

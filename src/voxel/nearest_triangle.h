@@ -8,7 +8,7 @@
 namespace isoshell {
 
 /// The surface as its sites see it.
-struct SurfaceView {
+struct SitedSurfaceView {
   View<const PointQ8> points;
   View<const TriangleIndices> triangles;
   VoxelSetView sites;
@@ -26,7 +26,7 @@ struct NearestTriangle {
 /// Looks at every site in a cube of voxels around a position, nearest voxels first, and skips those that cannot matter.
 class NearestTriangleSearch {
  public:
-  ISOSHELL_HD NearestTriangleSearch(const SurfaceView& surface, PointQ8 p) : surface_(surface), p_(p) {
+  ISOSHELL_HD NearestTriangleSearch(const SitedSurfaceView& surface, PointQ8 p) : surface_(surface), p_(p) {
     for (uint32_t& t : seen_) t = kNone;
   }
 
@@ -90,7 +90,7 @@ class NearestTriangleSearch {
   }
 
   static constexpr uint32_t kSeen = 16;
-  SurfaceView surface_;
+  SitedSurfaceView surface_;
   PointQ8 p_;
   NearestTriangle best_;
   uint32_t seen_[kSeen];  ///< triangles share voxels: most would be met again at once

@@ -261,7 +261,7 @@ TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet]
   Solid solid = close_sites(exec, p.sites, 0);
   if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);
   QuadMesh mesh = list_boundary(exec, solid);
-  const SurfaceView view = {p.surface.points.view(), p.surface.triangles.view(), p.sites.voxels.view(),
+  const SitedSurfaceView view = {p.surface.points.view(), p.surface.triangles.view(), p.sites.voxels.view(),
                             p.samples.first.view(), p.samples.triangles.view()};
   const LaidMesh laid = lay_onto_surface(exec, mesh, view, false);
   int64_t wrong = 0, far = 0;
