@@ -105,6 +105,19 @@ TEST_CASE("args: values outside their range are named with the range", "[cli][ar
   CHECK(contains(refusal({"a.obj", "b.ply", "--method", "best"}), "sheet, shell"));
 }
 
+TEST_CASE("args: what is no number is refused by name, with what it must be", "[cli][args]") {
+  CHECK(refusal({"a.obj", "b.ply", "--vertices", "nan"}) == "--vertices is 'nan'; it must be a whole number");
+  CHECK(refusal({"a.obj", "b.ply", "--band", "1.5"}) == "--band is '1.5'; it must be a whole number");
+  CHECK(refusal({"a.obj", "b.ply", "--step", "far"}) == "--step is 'far'; it must be a number");
+  CHECK(contains(refusal({"a.obj", "b.ply", "--edge-length", "nan"}), "--edge-length is nan; it must be more than 0"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--tolerance", "nan"}), "0 to 1"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--step", "-1"}), "--step is -1; it must be"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--close-gaps", "nan"}), "must be a number"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--require", "min-angle=nan"}), "must be a number"));
+  for (const char* seed : {"-1", "1.5", "18446744073709551616", "nan"})
+    CHECK(contains(refusal({"a.obj", "b.ply", "--seed", seed}), "it must be a whole number, 0 to 18446744073709551615"));
+}
+
 TEST_CASE("args: what excludes each other is refused", "[cli][args]") {
   CHECK_FALSE(refusal({"a.obj", "b.ply", "--vertices", "10", "--edge-length", "1"}).empty());
   CHECK_FALSE(refusal({"a.obj", "b.ply", "--resolution", "64", "--voxel-size", "1"}).empty());

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -28,8 +29,7 @@ struct Raw {
   int64_t vertices = 0;
   double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
-  uint64_t seed = 0;
-  std::string close_gaps, method, device, stop_after, require, max_memory, progress;
+  std::string seed, close_gaps, method, device, stop_after, require, max_memory, progress;
   bool verbose = false, quiet = false, help = false, version = false;
 };
 
@@ -120,6 +120,15 @@ int64_t parse_count(const std::string& option, const std::string& text) {
   if (value != std::floor(value) || value < 0 || value > 1e15)
     refuse(option + " is '" + text + "'; it must be a whole number, 0 or more");
   return int64_t(value);
+}
+
+/// All 64 bits, which a double does not hold.
+uint64_t parse_seed(const std::string& text) {
+  uint64_t value = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failed != std::errc() || end != text.data() + text.size())
+    refuse("--seed is '" + text + "'; it must be a whole number, 0 to 18446744073709551615");
+  return value;
 }
 
 void check_range(const std::string& option, double value, double low, double high) {
@@ -230,7 +239,7 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (ranged("tolerance", raw.tolerance, 0, 1)) o.tolerance = raw.tolerance;
   if (ranged("step", raw.step, 1.0 / kOneVoxelQ8, 1000)) o.max_step_vox = raw.step;
   if (ranged("threads", double(raw.threads), 1, 4096)) a.threads = int(raw.threads);
-  o.seed = raw.seed;
+  if (!raw.seed.empty()) o.seed = parse_seed(raw.seed);
   if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);
   if (!raw.method.empty())
     o.method = chosen<Method>("--method", raw.method, {{"sheet", Method::sheet}, {"shell", Method::shell}});
@@ -291,6 +300,20 @@ int64_t parse_size_bytes(const std::string& text) {
   return int64_t(bytes);
 }
 
+namespace {
+
+/// CLI11 names neither the kind of number nor the remedy, and takes "-1" for the largest unsigned number.
+[[noreturn]] void refuse_conversion(const CLI::ConversionError& e) {
+  const std::string text = e.what();
+  const size_t dashes = text.find("--"), equals = text.find(" = ");
+  if (dashes == std::string::npos || equals == std::string::npos || equals < dashes) refuse(text + "; see --help");
+  const std::string option = text.substr(dashes, equals - dashes);
+  const bool real = option == "--edge-length" || option == "--voxel-size" || option == "--tolerance" || option == "--step";
+  refuse(option + " is '" + text.substr(equals + 3) + "'; it must be a " + (real ? "number" : "whole number"));
+}
+
+}  // namespace
+
 CommandLine parse_command_line(int argc, const char* const* argv) {
   Arguments a;
   Raw raw;
@@ -305,6 +328,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   }
   try {
     app.parse(words);
+  } catch (const CLI::ConversionError& e) {
+    refuse_conversion(e);
   } catch (const CLI::ParseError& e) {
     refuse(std::string(e.what()) + "; see --help");
   }
