@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "stages/seed_count.h"
+#include "core/seed_count.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "isoshell/error.h"
+#include "core/seed_count.h"
 #include "stages/backend_table.h"
-#include "stages/seed_count.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {
@@ -29,22 +29,6 @@ int32_t resolution_of(const VoxelSet& sites) {
 }
 
 }  // namespace
-
-void require_seed_count(const Sheet& sheet, int64_t count) {
-  const int64_t fewest = 4 * std::max<int64_t>(1, sheet.topology.components), most = sheet.vertex_count() / 2;
-  if (count < fewest)
-    throw Error(ErrorCode::usage, "seeds",
-                std::to_string(count) + " vertices are too few: the surface's " +
-                    std::to_string(sheet.topology.components) + " components need at least " + std::to_string(fewest));
-  if (count > most) {
-    const double factor = std::sqrt(double(count) / double(std::max<int64_t>(1, most)));
-    throw Error(ErrorCode::usage, "seeds",
-                std::to_string(count) + " vertices are too many for resolution " +
-                    std::to_string(sheet.frame.resolution) + ", which can carry " + std::to_string(most) +
-                    "; use a resolution of at least " +
-                    std::to_string(int64_t(std::ceil(sheet.frame.resolution * factor))));
-  }
-}
 
 SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& context) {
   require_seed_count(sheet, options.count);
