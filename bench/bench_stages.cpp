@@ -25,7 +25,8 @@ struct Arguments {
 Arguments parse(int argc, char** argv) {
   Arguments a;
   if (argc < 2) {
-    std::fprintf(stderr, "usage: bench_stages MESH [--resolution R] [--band D] [--vertices K] [--threads T] [--repeats N]\n");
+    std::fprintf(stderr,
+                 "usage: bench_stages MESH [--resolution R] [--band D] [--vertices K] [--threads T] [--repeats N]\n");
     std::exit(2);
   }
   a.mesh = argv[1];
@@ -55,8 +56,13 @@ class Rows {
     std::sort(ms.begin(), ms.end());
     const double median = ms[ms.size() / 2];
     const int64_t items = count(product);
-    rows_.push_back({{"stage", name}, {unit, items}, {"ms_median", median}, {"ms_min", ms.front()}, {"ms_max", ms.back()},
-                     {"million_per_second", double(items) / median / 1000}, {"peak_bytes", host_memory_peak_bytes()}});
+    rows_.push_back({{"stage", name},
+                     {unit, items},
+                     {"ms_median", median},
+                     {"ms_min", ms.front()},
+                     {"ms_max", ms.back()},
+                     {"million_per_second", double(items) / median / 1000},
+                     {"peak_bytes", host_memory_peak_bytes()}});
     return product;
   }
   const json& rows() const { return rows_; }
@@ -83,21 +89,30 @@ int main(int argc, char** argv) try {
   context.threads = args.threads;
   Rows rows(args.repeats);
 
-  const TriangleSoup soup = rows.run("read", "triangles", [&] { return read_mesh(args.mesh); },
-                                     [](const TriangleSoup& s) { return int64_t(s.triangles.size()); });
+  const TriangleSoup soup = rows.run(
+      "read", "triangles", [&] { return read_mesh(args.mesh); },
+      [](const TriangleSoup& s) { return int64_t(s.triangles.size()); });
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, args.resolution);
-  const LatticeSurface surface = rows.run("snap", "triangles", [&] { return snap_surface(soup, frame, context); },
-                                          [](const LatticeSurface& s) { return s.triangles.size(); });
-  const SiteSet sites = rows.run("voxelize", "sites", [&] { return voxelize(surface, context); },
-                                 [](const SiteSet& s) { return s.voxels.voxel_count(); });
-  const SiteSamples samples = rows.run("samples", "sites", [&] { return sample_sites(surface, sites, context); },
-                                       [](const SiteSamples& s) { return s.sample.size(); });
-  const Shell shell = rows.run("shell", "active_voxels", [&] { return build_shell(sites, {args.band_vox}, context); },
-                               [](const Shell& s) { return s.voxels.voxel_count(); });
-  const Sheet sheet = rows.run("sheet", "sheet_vertices", [&] { return build_sheet(surface, sites, samples, {0, 0}, context); },
-                               [](const Sheet& s) { return s.vertex_count(); });
+  const LatticeSurface surface = rows.run(
+      "snap", "triangles", [&] { return snap_surface(soup, frame, context); },
+      [](const LatticeSurface& s) { return s.triangles.size(); });
+  const SiteSet sites = rows.run(
+      "voxelize", "sites", [&] { return voxelize(surface, context); },
+      [](const SiteSet& s) { return s.voxels.voxel_count(); });
+  const SiteSamples samples = rows.run(
+      "samples", "sites", [&] { return sample_sites(surface, sites, context); },
+      [](const SiteSamples& s) { return s.sample.size(); });
+  const Shell shell = rows.run(
+      "shell", "active_voxels", [&] { return build_shell(sites, {args.band_vox}, context); },
+      [](const Shell& s) { return s.voxels.voxel_count(); });
+  const Sheet sheet = rows.run(
+      "sheet", "sheet_vertices",
+      [&] {
+        return build_sheet(surface, sites, samples, {0, 0}, context);
+      },
+      [](const Sheet& s) { return s.vertex_count(); });
   constexpr int32_t kPasses = 20;
   const auto relaxed_on_sheet = [&] {
     SeedSet seeds = place_seeds(sheet, {args.vertices, 0}, context);
@@ -113,18 +128,23 @@ int main(int argc, char** argv) try {
   };
   rows.run("relax_in_shell", "voxel_passes", relaxed_in_shell,
            [&](const SeedSet&) { return kPasses * shell.voxels.voxel_count(); });
-  rows.run("flood", "active_voxels", [&] { return flood_shell(shell, seeds, context); },
-           [&](const VoronoiLabels& l) { return l.voxel_seed.size(); });
+  rows.run(
+      "flood", "active_voxels", [&] { return flood_shell(shell, seeds, context); },
+      [&](const VoronoiLabels& l) { return l.voxel_seed.size(); });
   const auto dual = [&] {
     DualReport report;
     return triangulate_dual(sheet, seeds, {}, report, context);
   };
   rows.run("dual", "triangles", dual, [](const DualMesh& m) { return m.triangles.size(); });
 
-  const json out = {{"bench", "stages"},      {"mesh", args.mesh.substr(args.mesh.find_last_of('/') + 1)},
-                    {"resolution", args.resolution}, {"band_vox", args.band_vox},
-                    {"vertices", args.vertices},     {"threads", args.threads},
-                    {"repeats", args.repeats},       {"machine", bench::machine()},
+  const json out = {{"bench", "stages"},
+                    {"mesh", args.mesh.substr(args.mesh.find_last_of('/') + 1)},
+                    {"resolution", args.resolution},
+                    {"band_vox", args.band_vox},
+                    {"vertices", args.vertices},
+                    {"threads", args.threads},
+                    {"repeats", args.repeats},
+                    {"machine", bench::machine()},
                     {"rows", rows.rows()}};
   std::printf("%s\n", out.dump(1).c_str());
 } catch (const std::exception& e) {

@@ -11,11 +11,11 @@ namespace isoshell {
 namespace {
 
 constexpr int kMaxLevels = 3;
-constexpr int64_t kFewestSeeds = 64;          // of a level
+constexpr int64_t kFewestSeeds = 64;  // of a level
 constexpr int64_t kFewestPerComponent = 12;
 constexpr int64_t kMostRepairPerMille = 15;
 constexpr int32_t kCoarsePasses = 60;
-constexpr int32_t kFinestPasses = 40;         // after a coarser level; without one the caller's own number
+constexpr int32_t kFinestPasses = 40;  // after a coarser level; without one the caller's own number
 
 /// Counts from coarse to fine. A triangulation with V vertices and Euler number chi has 4 V - 3 chi after one split.
 std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
@@ -43,7 +43,7 @@ DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
 
 struct DualEdge {
   int64_t length_sq;
-  uint32_t a, b;   ///< a < b
+  uint32_t a, b;  ///< a < b
 };
 
 /// Each edge once, shortest first, then by its ends.
@@ -104,8 +104,10 @@ SeedSet relax_by_levels(const Sheet& sheet, const SeedOptions& options, const Re
     seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
   }
   RelaxOptions finest = relax;
-  if (seeds.size() == 0) seeds = place_seeds(sheet, options, context);
-  else finest.max_passes = std::min(finest.max_passes, kFinestPasses);
+  if (seeds.size() == 0)
+    seeds = place_seeds(sheet, options, context);
+  else
+    finest.max_passes = std::min(finest.max_passes, kFinestPasses);
   report = relax_on_sheet(sheet, seeds, finest, context);
   return seeds;
 }

@@ -10,8 +10,8 @@
 #include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
-#include "voxel/exact_int.h"
 #include "isoshell/memory_estimate.h"
+#include "voxel/exact_int.h"
 
 namespace isoshell {
 namespace {
@@ -91,11 +91,13 @@ class Preparation {
  private:
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
     const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    return timed(report_, "sheet", [&] { return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest}, context_); });
+    return timed(report_, "sheet", [&] {
+      return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest}, context_);
+    });
   }
 
-  /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in and
-  /// the solid collapses to a crust.
+  /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in
+  /// and the solid collapses to a crust.
   void close_leaks(Prepared& p) {
     Sheet widest = sheet(p, kMaxAutoClosingVox);
     const int64_t widest_volume = six_volume_vox(widest);
@@ -138,7 +140,8 @@ void check_area(const InputTopology& input) {
                 "no face has an area: the surface is a line or a point; give one with faces that span an area");
 }
 
-/// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made yet.
+/// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
+/// yet.
 bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
   report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
   if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) return true;
@@ -186,8 +189,10 @@ double sheet_area_world(const Sheet& sheet) {
 
 RelaxOptions relax_options(const RemeshOptions& options) {
   RelaxOptions relax;
-  if (options.max_passes > 0) relax.max_passes = options.max_passes;
-  else relax.max_passes = options.method == Method::shell ? 200 : 100;
+  if (options.max_passes > 0)
+    relax.max_passes = options.max_passes;
+  else
+    relax.max_passes = options.method == Method::shell ? 200 : 100;
   if (options.tolerance >= 0) relax.tolerance_ppb = int32_t(std::min(options.tolerance, 1.0) * 1e9);
   relax.max_step_q8 = int32_t(options.max_step_vox * kOneVoxelQ8);
   return relax;
@@ -216,7 +221,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   Prepared best;
   int64_t best_gap = INT64_MAX;
   int fruitless = 0;
-  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2; resolution += std::max(1, resolution / 2)) {
+  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
+       resolution += std::max(1, resolution / 2)) {
     if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
     LatticeSurface surface = timed(report, "snap", [&] { return snap_surface(soup, frame, context); });
@@ -233,7 +239,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   if (report.topology_compared && !report.topology_agrees)
     report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +
                               std::to_string(report.sheet.genus) + ", the input " + std::to_string(input.components) +
-                              " and " + std::to_string(input.genus) + "; a higher --resolution may tell near parts apart");
+                              " and " + std::to_string(input.genus) +
+                              "; a higher --resolution may tell near parts apart");
   return best;
 }
 
@@ -243,8 +250,9 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
-    seeds = timed(report, "relax",
-                  [&] { return relax_by_levels(p.sheet, seed_options, relax_options(options), report.relax, context); });
+    seeds = timed(report, "relax", [&] {
+      return relax_by_levels(p.sheet, seed_options, relax_options(options), report.relax, context);
+    });
   } else {
     seeds = timed(report, "seeds", [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
     report.relax = timed(report, "relax", [&] {
@@ -275,8 +283,9 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     });
   }
   if (report.dual.failed_cells > 0)
-    report.warnings.push_back(std::to_string(report.dual.failed_cells) +
-                              " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
+    report.warnings.push_back(
+        std::to_string(report.dual.failed_cells) +
+        " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
   if (seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");

@@ -24,7 +24,8 @@ struct View {
 
 enum class MemorySpace { host, cuda };
 
-/// Raw host memory, 64-byte aligned and not initialised. Throws Error{out_of_memory}; counted in host_memory_peak_bytes().
+/// Raw host memory, 64-byte aligned and not initialised. Throws Error{out_of_memory}; counted in
+/// host_memory_peak_bytes().
 void* allocate_host(int64_t bytes);
 void free_host(void* data, int64_t bytes);
 

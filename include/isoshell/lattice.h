@@ -38,12 +38,13 @@ struct WorldPoint {
   double x, y, z;
 };
 
-/// Where the lattice lies in the world. `origin` is the corner of voxel (0,0,0); the surface starts kMarginVox + 1/2 voxels in.
+/// Where the lattice lies in the world. `origin` is the corner of voxel (0,0,0); the surface starts kMarginVox + 1/2
+/// voxels in.
 struct LatticeFrame {
   WorldPoint origin{0, 0, 0};
-  double voxel_size = 1;      ///< world units
-  int32_t resolution = 0;     ///< voxels along the longest side of the surface
-  int32_t extent_vox[3] = {}; ///< lattice size per axis, a multiple of 8
+  double voxel_size = 1;       ///< world units
+  int32_t resolution = 0;      ///< voxels along the longest side of the surface
+  int32_t extent_vox[3] = {};  ///< lattice size per axis, a multiple of 8
 
   /// Frame whose longest side spans exactly `resolution` voxels of the box, smallest corner in the middle of a voxel.
   /// Throws: usage when resolution is outside 1..kMaxResolution, nothing_to_mesh when the box is empty or not finite.

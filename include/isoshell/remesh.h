@@ -24,12 +24,12 @@ struct RemeshOptions {
   int32_t closing_vox = -1;      ///< r; -1 chooses (0 for a closed surface)
   double closing_world = -1;     ///< width of gaps to close, world units; -1 means by closing_vox
   Method method = Method::sheet;
-  int32_t max_passes = 0;        ///< 0 means the method's own
-  double tolerance = -1;         ///< relative fall of the energy a pass; negative means the method's own
-  double max_step_vox = 0;       ///< u; 0 means the method's own
+  int32_t max_passes = 0;   ///< 0 means the method's own
+  double tolerance = -1;    ///< relative fall of the energy a pass; negative means the method's own
+  double max_step_vox = 0;  ///< u; 0 means the method's own
   uint64_t seed = 0;
-  bool want_shell = false;       ///< build the shell even when the method does not need it, to keep it
-  bool want_digests = false;     ///< fill RemeshReport::digests
+  bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
+  bool want_digests = false;  ///< fill RemeshReport::digests
 };
 
 struct StageTime {
@@ -51,7 +51,7 @@ struct RemeshReport {
   RelaxReport relax;
   DualReport dual;
   int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was tried; see memory_estimate.h
-  std::vector<StageTime> times;    ///< in order; a stage that ran more than once has one entry
+  std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry
   std::map<std::string, std::string> digests;
   std::vector<std::string> warnings;
 };
@@ -68,7 +68,8 @@ struct Prepared {
 
 /// Chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the
 /// sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
-/// resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage, out_of_memory, interrupted.
+/// resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage, out_of_memory,
+/// interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context);
 /// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,

@@ -9,9 +9,9 @@ namespace isoshell {
 /// Topology of the sheet, which is a closed orientable 2-manifold by construction.
 struct SheetTopology {
   int64_t components = 0;
-  int64_t genus = 0;              ///< sum over the components
-  int64_t dropped_components = 0; ///< smaller than the area limit
-  int64_t bridged_vertices = 0;   ///< farther than two voxels from the surface
+  int64_t genus = 0;               ///< sum over the components
+  int64_t dropped_components = 0;  ///< smaller than the area limit
+  int64_t bridged_vertices = 0;    ///< farther than two voxels from the surface
 };
 
 /// Result: vertex i is lattice corner i of `corners` in canonical order. Triangles come from the boundary faces of the
@@ -23,8 +23,8 @@ struct Sheet {
   Buffer<Normal8> normal;            ///< outward, per vertex
   Buffer<uint32_t> source_triangle;  ///< of the surface, nearest to the vertex; kNone on a bridge
   Buffer<TriangleIndices> triangles;
-  Buffer<int64_t> vertex_first;      ///< vertex_count + 1 offsets into vertex_triangles
-  Buffer<uint32_t> vertex_triangles; ///< ascending per vertex
+  Buffer<int64_t> vertex_first;       ///< vertex_count + 1 offsets into vertex_triangles
+  Buffer<uint32_t> vertex_triangles;  ///< ascending per vertex
   SheetTopology topology;
 
   int64_t vertex_count() const { return position.size(); }

@@ -13,16 +13,16 @@ struct SiteSet {
 
 /// The surface point a site stands for.
 struct SiteSample {
-  int16_t dx, dy, dz;   ///< q8, from the voxel's centre, at most half its diagonal (222) long; may leave the voxel
-  Normal8 normal;       ///< of the triangle, as oriented in the input
-  uint32_t triangle;    ///< index in LatticeSurface::triangles
+  int16_t dx, dy, dz;  ///< q8, from the voxel's centre, at most half its diagonal (222) long; may leave the voxel
+  Normal8 normal;      ///< of the triangle, as oriented in the input
+  uint32_t triangle;   ///< index in LatticeSurface::triangles
 };
 
 /// Result: for every site the ascending list of triangles that overlap it, and its sample: the point of the smallest
 /// (squared distance from the voxel's centre, triangle index), with the point as closest_point_on_triangle gives it.
 struct SiteSamples {
-  Buffer<SiteSample> sample;     ///< per site
-  Buffer<int64_t> first;         ///< site_count + 1 offsets into `triangles`
+  Buffer<SiteSample> sample;  ///< per site
+  Buffer<int64_t> first;      ///< site_count + 1 offsets into `triangles`
   Buffer<uint32_t> triangles;
 };
 

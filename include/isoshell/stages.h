@@ -15,9 +15,10 @@
 
 namespace isoshell {
 
-/// Welds and measures a soup, and adds the dirt it finds to what a reader counted (degenerate and duplicate faces, edges).
-/// Faces with fewer than three distinct positions, and repeats in the same orientation, are left out of the topology.
-/// Independent of any lattice and of the order of vertices and faces. Cost: sorts of the vertices, faces and edges.
+/// Welds and measures a soup, and adds the dirt it finds to what a reader counted (degenerate and duplicate faces,
+/// edges). Faces with fewer than three distinct positions, and repeats in the same orientation, are left out of the
+/// topology. Independent of any lattice and of the order of vertices and faces. Cost: sorts of the vertices, faces and
+/// edges.
 InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context);
 
 /// Smallest and largest coordinates of the vertices that triangles use. Throws: nothing_to_mesh without triangles.
@@ -48,8 +49,8 @@ Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const Sit
                   const SheetOptions& options, Context& context);
 
 struct SeedOptions {
-  int64_t count = 0;   ///< k
-  uint64_t seed = 0;   ///< start of the counter-based generator
+  int64_t count = 0;  ///< k
+  uint64_t seed = 0;  ///< start of the counter-based generator
 };
 /// k seeds spread over the sheet, one at random in each of k strata of equal area along the canonical order.
 /// Throws: usage when k is below 4 a component or above half the sheet's vertices (names the resolution that would do).
@@ -59,8 +60,8 @@ SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const Seed
 
 struct RelaxOptions {
   int32_t max_passes = 100;
-  int32_t tolerance_ppb = 10000;   ///< stop when the energy falls by less than this part in 10^9 a pass, over 5 passes
-  int32_t max_step_q8 = 0;         ///< u, bound of a seed's move in a pass; 0 chooses (sheet: 0.4 h; shell: 1 voxel)
+  int32_t tolerance_ppb = 10000;  ///< stop when the energy falls by less than this part in 10^9 a pass, over 5 passes
+  int32_t max_step_q8 = 0;        ///< u, bound of a seed's move in a pass; 0 chooses (sheet: 0.4 h; shell: 1 voxel)
 };
 /// Energy of every pass: integer units of that method, comparable within one run.
 struct RelaxReport {
@@ -80,50 +81,51 @@ RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteS
 /// Moves seeds of method shell onto the sheet: nearest point of the sheet, its home vertex and outward normal.
 void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context);
 
-/// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in space
-/// but far along the shell never share a cell. Result: a seed starts in its voxel, or in the active voxel of the smallest
-/// (squared distance to its centre, index) when that is not active; of several seeds in a voxel the one of the smallest
-/// (squared distance from the centre, id) starts. Then in synchronous rounds every voxel without a label takes, among the
-/// labels that its 26 neighbours got in earlier rounds, the one of the smallest (squared distance from its centre to the
-/// seed, seed id). First come, first served: a voxel keeps its label even if a nearer seed arrives a round later. Voxels
-/// of components without a seed hold kNone. Cost: O(active voxels), plus 1.4 KB a leaf.
+/// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in
+/// space but far along the shell never share a cell. Result: a seed starts in its voxel, or in the active voxel of the
+/// smallest (squared distance to its centre, index) when that is not active; of several seeds in a voxel the one of the
+/// smallest (squared distance from the centre, id) starts. Then in synchronous rounds every voxel without a label
+/// takes, among the labels that its 26 neighbours got in earlier rounds, the one of the smallest (squared distance from
+/// its centre to the seed, seed id). First come, first served: a voxel keeps its label even if a nearer seed arrives a
+/// round later. Voxels of components without a seed hold kNone. Cost: O(active voxels), plus 1.4 KB a leaf.
 VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, Context& context);
 
 /// Connectivity of the result while positions are still on the lattice.
 struct DualMesh {
-  Buffer<PointQ8> position;              ///< per seed
-  Buffer<TriangleIndices> triangles;     ///< smallest index first, sorted, outward
+  Buffer<PointQ8> position;           ///< per seed
+  Buffer<TriangleIndices> triangles;  ///< smallest index first, sorted, outward
 };
 struct DualReport {
-  int64_t inserted_seeds = 0;        ///< appended to the seeds
-  int64_t relabelled_vertices = 0;   ///< in stray pieces that joined a neighbouring cell
+  int64_t inserted_seeds = 0;       ///< appended to the seeds
+  int64_t relabelled_vertices = 0;  ///< in stray pieces that joined a neighbouring cell
   int64_t repair_rounds = 0;
-  int64_t failed_cells = 0;     ///< left after the last round; 0 means the guarantee holds
+  int64_t failed_cells = 0;  ///< left after the last round; 0 means the guarantee holds
 };
 struct DualOptions {
-  int32_t max_repair_rounds = 64;   ///< 0 only checks
+  int32_t max_repair_rounds = 64;  ///< 0 only checks
 };
-/// DualTriangulation(V_k) on the sheet: a sheet triangle whose vertices carry three labels is a face. Four checks (cells
-/// in one piece, cells are disks, pairs meet in one arc, four cells a component) are repaired by splitting cells; ids are
-/// kept, and a seed that owns nothing moves to the next split before seeds are appended.
-/// Result: when report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the sheet that uses every seed.
-/// Cost: labels, then O(sheet) and O(split cells) a round; 14 bytes a sheet vertex. Throws: usage when there are no
-/// seeds or more than sheet vertices.
+/// DualTriangulation(V_k) on the sheet: a sheet triangle whose vertices carry three labels is a face. Four checks
+/// (cells in one piece, cells are disks, pairs meet in one arc, four cells a component) are repaired by splitting
+/// cells; ids are kept, and a seed that owns nothing moves to the next split before seeds are appended. Result: when
+/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the sheet that uses every seed. Cost:
+/// labels, then O(sheet) and O(split cells) a round; 14 bytes a sheet vertex. Throws: usage when there are no seeds or
+/// more than sheet vertices.
 DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
                           Context& context);
 
 /// Seeds of the next finer level: the given ones, the middles of the dual's edges (the longest, if there are more than
 /// needed) in canonical order, then the middles of the largest triangles. `target` seeds in all, at most
 /// seeds + edges + triangles.
-SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target, Context& context);
+SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+                        Context& context);
 
 struct PostOptions {
-  int32_t rounds = 3;            ///< of flips, then smoothing
-  int32_t flip_rounds = 6;       ///< independent sets a round
-  int32_t smoothing_steps = 3;   ///< a round
+  int32_t rounds = 3;           ///< of flips, then smoothing
+  int32_t flip_rounds = 6;      ///< independent sets a round
+  int32_t smoothing_steps = 3;  ///< a round
 };
-/// Valence flips and tangential smoothing of a closed mesh whose vertices are the seeds; homes and positions of the seeds
-/// follow. Result: still closed and 2-manifold, same genus. Returns the number of flips.
+/// Valence flips and tangential smoothing of a closed mesh whose vertices are the seeds; homes and positions of the
+/// seeds follow. Result: still closed and 2-manifold, same genus. Returns the number of flips.
 int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context);
 
 /// Final positions in the world.

@@ -12,14 +12,14 @@ namespace isoshell {
 
 /// What a reader or the first look at the geometry dropped or found, by kind. Every kind with a count is one warning.
 struct DirtCounts {
-  int64_t nonfinite_vertices = 0;     ///< NaN or infinite; their faces are dropped
+  int64_t nonfinite_vertices = 0;  ///< NaN or infinite; their faces are dropped
   int64_t dropped_faces_nonfinite = 0;
-  int64_t short_faces = 0;            ///< faces of fewer than three corners, dropped
-  int64_t degenerate_faces = 0;       ///< repeated corner or zero area in the file, dropped
-  int64_t duplicate_faces = 0;        ///< same corners as another face, in whatever order; kept once per orientation
+  int64_t short_faces = 0;       ///< faces of fewer than three corners, dropped
+  int64_t degenerate_faces = 0;  ///< repeated corner or zero area in the file, dropped
+  int64_t duplicate_faces = 0;   ///< same corners as another face, in whatever order; kept once per orientation
   int64_t unreferenced_vertices = 0;
-  int64_t nonmanifold_edges = 0;      ///< shared by more than two faces
-  int64_t inconsistent_edges = 0;     ///< shared by two faces that disagree about the orientation
+  int64_t nonmanifold_edges = 0;   ///< shared by more than two faces
+  int64_t inconsistent_edges = 0;  ///< shared by two faces that disagree about the orientation
 };
 
 /// Triangles in world units. Indices are in range; positions are finite for every referenced vertex.

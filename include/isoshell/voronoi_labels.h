@@ -8,7 +8,7 @@ namespace isoshell {
 
 /// Seed ids; kNone where no seed reaches.
 struct VoronoiLabels {
-  Buffer<uint32_t> voxel_seed;   ///< active-voxel order of the shell
+  Buffer<uint32_t> voxel_seed;  ///< active-voxel order of the shell
 };
 
 }  // namespace isoshell

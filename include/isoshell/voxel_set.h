@@ -18,19 +18,19 @@ struct LeafMask {
 
 /// Which leaves exist in one block of 16x16x16 leaves (128^3 voxels).
 struct LeafBlock {
-  uint64_t word[64];      ///< bit per leaf, in key order
-  uint32_t first_leaf;    ///< number of the block's first leaf
-  uint16_t before[64];    ///< leaves of this block in words before this one
+  uint64_t word[64];    ///< bit per leaf, in key order
+  uint32_t first_leaf;  ///< number of the block's first leaf
+  uint16_t before[64];  ///< leaves of this block in words before this one
 };
 
 /// What a kernel sees of a VoxelSet. Lookups cost one table read, one bit test and one popcount.
 struct VoxelSetView {
-  int32_t block_dims[3];            ///< blocks per axis of the dense table
-  View<const uint32_t> block_table; ///< x-major; number of the block or kNone
+  int32_t block_dims[3];             ///< blocks per axis of the dense table
+  View<const uint32_t> block_table;  ///< x-major; number of the block or kNone
   View<const LeafBlock> blocks;
-  View<const uint64_t> leaf_key;    ///< canonical order, see voxel/leaf.h
+  View<const uint64_t> leaf_key;  ///< canonical order, see voxel/leaf.h
   View<const LeafMask> mask;
-  View<const int64_t> first;        ///< leaf_count + 1 entries: index of each leaf's first active voxel, then the total
+  View<const int64_t> first;  ///< leaf_count + 1 entries: index of each leaf's first active voxel, then the total
 };
 
 /// Owner of the arrays of a VoxelSetView. Immutable once made.
@@ -46,11 +46,16 @@ struct VoxelSet {
   int64_t leaf_count() const { return leaf_key.size(); }
   int64_t voxel_count() const { return first.empty() ? 0 : first[first.size() - 1]; }
   int64_t size_bytes() const {
-    return block_table.size_bytes() + blocks.size_bytes() + leaf_key.size_bytes() + mask.size_bytes() + first.size_bytes();
+    return block_table.size_bytes() + blocks.size_bytes() + leaf_key.size_bytes() + mask.size_bytes() +
+           first.size_bytes();
   }
   VoxelSetView view() const {
-    return {{block_dims[0], block_dims[1], block_dims[2]}, block_table.view(), blocks.view(),
-            leaf_key.view(), mask.view(), first.view()};
+    return {{block_dims[0], block_dims[1], block_dims[2]},
+            block_table.view(),
+            blocks.view(),
+            leaf_key.view(),
+            mask.view(),
+            first.view()};
   }
 };
 

@@ -15,8 +15,9 @@ class Digest {
  public:
   template <class Array>
   Digest& array(const Array& values) {
-    static_assert(std::has_unique_object_representations_v<std::remove_cv_t<std::remove_reference_t<decltype(*values.data())>>> ||
-                  std::is_same_v<std::remove_cv_t<std::remove_reference_t<decltype(*values.data())>>, WorldPoint>);
+    static_assert(
+        std::has_unique_object_representations_v<std::remove_cv_t<std::remove_reference_t<decltype(*values.data())>>> ||
+        std::is_same_v<std::remove_cv_t<std::remove_reference_t<decltype(*values.data())>>, WorldPoint>);
     return value(hash_bytes(values.data(), int64_t(values.size()) * int64_t(sizeof(*values.data()))));
   }
   Digest& value(uint64_t v) {
@@ -45,10 +46,21 @@ uint64_t digest(const SiteSamples& s) {
   return Digest().array(packed).array(s.first).array(s.triangles).get();
 }
 uint64_t digest(const Shell& s) {
-  return Digest().value(digest(s.voxels)).value(uint64_t(s.band_vox)).array(s.closest_site).array(s.distance_sq_vox).get();
+  return Digest()
+      .value(digest(s.voxels))
+      .value(uint64_t(s.band_vox))
+      .array(s.closest_site)
+      .array(s.distance_sq_vox)
+      .get();
 }
 uint64_t digest(const Sheet& s) {
-  return Digest().value(digest(s.corners)).array(s.position).array(s.normal).array(s.source_triangle).array(s.triangles).get();
+  return Digest()
+      .value(digest(s.corners))
+      .array(s.position)
+      .array(s.normal)
+      .array(s.source_triangle)
+      .array(s.triangles)
+      .get();
 }
 uint64_t digest(const SeedSet& s) { return Digest().array(s.position).array(s.normal).array(s.home).get(); }
 uint64_t digest(const VoronoiLabels& l) { return Digest().array(l.voxel_seed).get(); }

@@ -10,12 +10,13 @@ namespace isoshell {
 
 LatticeFrame LatticeFrame::around(WorldPoint lo, WorldPoint hi, int32_t resolution) {
   if (resolution < 1 || resolution > kMaxResolution)
-    throw Error(ErrorCode::usage, "lattice", "resolution is " + std::to_string(resolution) + "; it must be 1 to " +
-                                                 std::to_string(kMaxResolution));
+    throw Error(ErrorCode::usage, "lattice",
+                "resolution is " + std::to_string(resolution) + "; it must be 1 to " + std::to_string(kMaxResolution));
   const double side[3] = {hi.x - lo.x, hi.y - lo.y, hi.z - lo.z};
   const double longest = std::max({side[0], side[1], side[2]});
   if (!(longest > 0) || !std::isfinite(longest))
-    throw Error(ErrorCode::nothing_to_mesh, "lattice", "the surface's box has no extent; a mesh needs at least one side");
+    throw Error(ErrorCode::nothing_to_mesh, "lattice",
+                "the surface's box has no extent; a mesh needs at least one side");
   LatticeFrame frame;
   frame.resolution = resolution;
   frame.voxel_size = resolution > 1 ? longest / (resolution - 1) : longest * 2;

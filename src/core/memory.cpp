@@ -19,8 +19,8 @@ void* allocate_host(int64_t bytes) {
   if (bytes <= 0) return nullptr;
   void* data = std::aligned_alloc(64, size_t(rounded(bytes)));
   if (!data)
-    throw Error(ErrorCode::out_of_memory, "memory", "out of memory: " + std::to_string(bytes) +
-                                                        " bytes more were refused; lower the resolution");
+    throw Error(ErrorCode::out_of_memory, "memory",
+                "out of memory: " + std::to_string(bytes) + " bytes more were refused; lower the resolution");
   const int64_t held = held_bytes += bytes;
   int64_t peak = peak_bytes.load();
   while (held > peak && !peak_bytes.compare_exchange_weak(peak, held)) {

@@ -5,7 +5,8 @@
 
 namespace isoshell {
 
-DualMesh cpu_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report, Context& context) {
+DualMesh cpu_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
+                              Context& context) {
   TbbExecutor exec(context, "dual");
   return run_with_threads(context, [&] { return triangulate_dual_body(exec, sheet, seeds, options, report); });
 }

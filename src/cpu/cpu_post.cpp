@@ -5,7 +5,8 @@
 
 namespace isoshell {
 
-int64_t cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context) {
+int64_t cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                         Context& context) {
   TbbExecutor exec(context, "post");
   return run_with_threads(context, [&] { return improve_mesh_body(exec, sheet, options, seeds, mesh); });
 }

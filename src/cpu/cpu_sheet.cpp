@@ -5,7 +5,8 @@
 
 namespace isoshell {
 
-Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples, const SheetOptions& options, Context& context) {
+Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                      const SheetOptions& options, Context& context) {
   TbbExecutor exec(context, "sheet");
   return run_with_threads(context, [&] { return build_sheet_body(exec, surface, sites, samples, options); });
 }

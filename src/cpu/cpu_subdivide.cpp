@@ -5,7 +5,8 @@
 
 namespace isoshell {
 
-SeedSet cpu_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target, Context& context) {
+SeedSet cpu_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+                            Context& context) {
   TbbExecutor exec(context, "subdivide");
   return run_with_threads(context, [&] { return subdivide_seeds_body(exec, sheet, mesh, seeds, target); });
 }

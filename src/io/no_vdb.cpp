@@ -11,7 +11,8 @@ namespace {
 
 }  // namespace
 
-void save_shell(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&, const StageWriteOptions&) {
+void save_shell(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&,
+                const StageWriteOptions&) {
   throw_without_openvdb(ErrorCode::unwritable_output, path);
 }
 void save_voronoi(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&, const SeedSet&,

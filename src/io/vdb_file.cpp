@@ -21,7 +21,8 @@ Buffer<char> read_file_start(const std::string& path, int64_t max_bytes) {
   Buffer<char> bytes(std::min(size, max_bytes));
   in.seekg(0);
   if (!bytes.empty() && !in.read(bytes.data(), std::streamsize(bytes.size())))
-    throw_unreadable_vdb(path, "only " + std::to_string(in.gcount()) + " of " + std::to_string(size) + " bytes could be read");
+    throw_unreadable_vdb(
+        path, "only " + std::to_string(in.gcount()) + " of " + std::to_string(size) + " bytes could be read");
   return bytes;
 }
 

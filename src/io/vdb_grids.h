@@ -55,8 +55,8 @@ void add_vdb_leaves(GridT& grid, int64_t count, LeafAt leaf_at, Fill fill) {
 
 /// A grid whose active voxels are `voxels`, each with value_at(its index).
 template <class GridT, class ValueAt>
-typename GridT::Ptr make_voxel_grid(const char* name, const typename GridT::ValueType& background, const VoxelSet& voxels,
-                                    ValueAt value_at) {
+typename GridT::Ptr make_voxel_grid(const char* name, const typename GridT::ValueType& background,
+                                    const VoxelSet& voxels, ValueAt value_at) {
   auto grid = new_vdb_grid<GridT>(name, background);
   const VoxelSetView view = voxels.view();
   add_vdb_leaves(
@@ -68,8 +68,8 @@ typename GridT::Ptr make_voxel_grid(const char* name, const typename GridT::Valu
   return grid;
 }
 
-/// An array as a grid: element i is voxel (i & 511) of leaf (i >> 9), leaves numbered by leaf key, so that they fill the
-/// nodes of the tree one after another. T has the size of the grid's value.
+/// An array as a grid: element i is voxel (i & 511) of leaf (i >> 9), leaves numbered by leaf key, so that they fill
+/// the nodes of the tree one after another. T has the size of the grid's value.
 template <class GridT, class T>
 typename GridT::Ptr make_table_grid(const char* name, View<const T> elements) {
   using Value = typename GridT::ValueType;

@@ -11,7 +11,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kMagic = 0x56444220;
-constexpr uint32_t kOldestFormat = 222;  // from here on the header ends with the tag
+constexpr uint32_t kOldestFormat = 222;          // from here on the header ends with the tag
 constexpr char kTagStart[] = "69736f73-6865-8";  // "isoshe" in ASCII, then the version digit of a custom UUID
 
 std::map<std::string, std::string> read_metadata(VdbCursor& in) {
@@ -32,13 +32,15 @@ VdbGridSpan read_grid_span(const std::string& path, View<const char> bytes, int6
   grid.name = in.text("name of a grid");
   grid.type = in.text("type of a grid");
   grid.instance = !in.text("parent of a grid").empty();
-  const int64_t content = in.value<int64_t>("offset of a grid"), blocks = in.value<int64_t>("offset of a grid's blocks");
+  const int64_t content = in.value<int64_t>("offset of a grid"),
+                blocks = in.value<int64_t>("offset of a grid's blocks");
   grid.end = in.value<int64_t>("end of a grid");
   grid.content = in.at();
   if (content != grid.content || grid.end < content || (!grid.instance && (blocks < content || blocks > grid.end)))
     throw_unreadable_vdb(path, "grid \"" + grid.name + "\" has offsets " + std::to_string(content) + ", " +
-                                   std::to_string(blocks) + ", " + std::to_string(grid.end) + " where the first must be " +
-                                   std::to_string(grid.content) + " and they must rise: the file is damaged");
+                                   std::to_string(blocks) + ", " + std::to_string(grid.end) +
+                                   " where the first must be " + std::to_string(grid.content) +
+                                   " and they must rise: the file is damaged");
   if (grid.end > bytes.size)
     throw_unreadable_vdb(path, "grid \"" + grid.name + "\" ends at byte " + std::to_string(grid.end) + " of " +
                                    std::to_string(bytes.size) + ": the file is truncated");
@@ -61,8 +63,8 @@ VdbLayout read_vdb_header(const std::string& path, View<const char> bytes) {
     throw_unreadable_vdb(path, "is not a .vdb file: it does not start with the bytes of one");
   const uint32_t format = in.value<uint32_t>("header");
   if (format < kOldestFormat)
-    throw_unreadable_vdb(path, ".vdb format " + std::to_string(format) + " is older than " + std::to_string(kOldestFormat) +
-                                   "; save it again with a newer program");
+    throw_unreadable_vdb(path, ".vdb format " + std::to_string(format) + " is older than " +
+                                   std::to_string(kOldestFormat) + "; save it again with a newer program");
   in.take(8, "header");
   VdbLayout layout;
   layout.has_offsets = in.value<char>("header") != 0;
@@ -83,8 +85,8 @@ VdbLayout read_vdb_layout(const std::string& path, View<const char> bytes) {
     at = layout.grids.back().end;
   }
   if (at != bytes.size)
-    throw_unreadable_vdb(path, "its " + std::to_string(count) + " grids end at byte " + std::to_string(at) + ", the file at " +
-                                   std::to_string(bytes.size) + ": it is damaged");
+    throw_unreadable_vdb(path, "its " + std::to_string(count) + " grids end at byte " + std::to_string(at) +
+                                   ", the file at " + std::to_string(bytes.size) + ": it is damaged");
   return layout;
 }
 

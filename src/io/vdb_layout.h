@@ -18,12 +18,12 @@ constexpr int64_t kVdbHeaderBytes = kVdbTagBegin + kVdbTagBytes;
 /// One grid in the file. Offsets in bytes from the start of the file.
 struct VdbGridSpan {
   std::string name, type;
-  bool instance = false;    ///< shares the tree of another grid
-  uint32_t compression = 0; ///< OpenVDB's flags
+  bool instance = false;                     ///< shares the tree of another grid
+  uint32_t compression = 0;                  ///< OpenVDB's flags
   std::map<std::string, std::string> texts;  ///< its metadata of type string
-  int64_t begin = 0;        ///< of its descriptor
-  int64_t content = 0;      ///< of its compression flags and metadata; the descriptor ends here
-  int64_t transform = 0;    ///< of its transform, which the tree follows
+  int64_t begin = 0;                         ///< of its descriptor
+  int64_t content = 0;                       ///< of its compression flags and metadata; the descriptor ends here
+  int64_t transform = 0;                     ///< of its transform, which the tree follows
   int64_t end = 0;
 };
 

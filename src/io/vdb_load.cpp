@@ -13,8 +13,8 @@
 #include "io/vdb_cursor.h"
 #include "io/vdb_format.h"
 #include "io/vdb_grids.h"
-#include "io/vdb_stream.h"
 #include "io/vdb_layout.h"
+#include "io/vdb_stream.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
@@ -95,7 +95,10 @@ LatticeFrame read_frame(const StageReader& file) {
   LatticeFrame f;
   const std::string text = file.text(kKeyFrame);
   KeyValueReader in(text);
-  in.get("origin_x", f.origin.x).get("origin_y", f.origin.y).get("origin_z", f.origin.z).get("voxel_size", f.voxel_size);
+  in.get("origin_x", f.origin.x)
+      .get("origin_y", f.origin.y)
+      .get("origin_z", f.origin.z)
+      .get("voxel_size", f.voxel_size);
   in.get("resolution", f.resolution);
   in.get("extent_x", f.extent_vox[0]).get("extent_y", f.extent_vox[1]).get("extent_z", f.extent_vox[2]);
   bool good = in.ok() && std::isfinite(f.origin.x) && std::isfinite(f.origin.y) && std::isfinite(f.origin.z) &&
@@ -111,7 +114,10 @@ InputTopology read_topology(const StageReader& file) {
   const std::string text = file.text(kKeyTopology);
   KeyValueReader in(text);
   in.get("closed", t.closed).get("oriented", t.oriented).get("components", t.components);
-  in.get("boundary_loops", t.boundary_loops).get("euler", t.euler).get("genus", t.genus).get("area_world", t.area_world);
+  in.get("boundary_loops", t.boundary_loops)
+      .get("euler", t.euler)
+      .get("genus", t.genus)
+      .get("area_world", t.area_world);
   if (!in.ok()) file.fail("metadata \"" + std::string(kKeyTopology) + "\" is not complete: " + text);
   return t;
 }
@@ -166,7 +172,8 @@ VoxelSet voxels_of(const StageReader& file, const char* name, const GridT& grid,
 template <class T, class GridT>
 Buffer<T> values_of(const StageReader& file, const char* name, const GridT& grid, const VoxelSet& set) {
   const auto leaves = leaves_of(file, name, grid);
-  file.require(int64_t(leaves.size()) == set.leaf_count(), name, int64_t(leaves.size()), "has other voxels than the shell");
+  file.require(int64_t(leaves.size()) == set.leaf_count(), name, int64_t(leaves.size()),
+               "has other voxels than the shell");
   const VoxelSetView view = set.view();
   Buffer<T> values(set.voxel_count());
   tbb::parallel_for(int64_t(0), set.leaf_count(), [&](int64_t l) {
@@ -222,10 +229,9 @@ void check_points(const StageReader& file, const char* name, View<const PointQ8>
 }
 
 void read_surface(const StageReader& file, LatticeSurface& surface) {
-  tbb::parallel_invoke(
-      [&] { surface.points = table_of<PointQ8, VdbVec3iGrid>(file, kSurfacePoints); },
-      [&] { surface.triangles = table_of<TriangleIndices, VdbVec3iGrid>(file, kSurfaceTriangles); },
-      [&] { surface.source_face = table_of<uint32_t, VdbIntGrid>(file, kSurfaceSource); });
+  tbb::parallel_invoke([&] { surface.points = table_of<PointQ8, VdbVec3iGrid>(file, kSurfacePoints); },
+                       [&] { surface.triangles = table_of<TriangleIndices, VdbVec3iGrid>(file, kSurfaceTriangles); },
+                       [&] { surface.source_face = table_of<uint32_t, VdbIntGrid>(file, kSurfaceSource); });
   check_points(file, kSurfacePoints, surface.points.view(), surface.frame);
   const int64_t points = surface.points.size();
   check_all(surface.triangles.size(), [&](int64_t i) {
@@ -248,7 +254,8 @@ void check_shell(const StageReader& file, const Shell& shell, const SiteSet& sit
       file.require(id < site.size(), kClosestSite, i, "names a site that is not there");
       const Voxel v = voxel_at(leaf, offset);
       const int64_t dx = v.x - site[id].x, dy = v.y - site[id].y, dz = v.z - site[id].z;
-      file.require(dx * dx + dy * dy + dz * dz == shell.distance_sq_vox[i], kDistanceSq, i, "is not the distance to its site");
+      file.require(dx * dx + dy * dy + dz * dz == shell.distance_sq_vox[i], kDistanceSq, i,
+                   "is not the distance to its site");
     });
   });
 }
@@ -294,7 +301,8 @@ VoronoiLabels read_labels(const StageReader& file, const Shell& shell, int64_t s
   VoronoiLabels labels;
   labels.voxel_seed = values_of<uint32_t>(file, kSeedId, *file.grid<VdbIntGrid>(kSeedId), shell.voxels);
   check_all(labels.voxel_seed.size(), [&](int64_t i) {
-    file.require(labels.voxel_seed[i] < seeds || labels.voxel_seed[i] == kNone, kSeedId, i, "names a seed that is not there");
+    file.require(labels.voxel_seed[i] < seeds || labels.voxel_seed[i] == kNone, kSeedId, i,
+                 "names a seed that is not there");
   });
   file.check_digest("labels", labels);
   return labels;

@@ -28,22 +28,34 @@ constexpr char kCreator[] = "vdb_isomesh " ISOSHELL_VERSION;
 
 void check_fits(int64_t have, int64_t want, const char* what) {
   if (have != want)
-    throw Error(ErrorCode::usage, "write", std::string(what) + " has " + std::to_string(have) + " values; it must have " +
-                                               std::to_string(want) + ", one for each of what it belongs to");
+    throw Error(ErrorCode::usage, "write",
+                std::string(what) + " has " + std::to_string(have) + " values; it must have " + std::to_string(want) +
+                    ", one for each of what it belongs to");
 }
 
 std::string frame_text(const LatticeFrame& f) {
   return KeyValueWriter()
-      .add("origin_x", f.origin.x).add("origin_y", f.origin.y).add("origin_z", f.origin.z)
-      .add("voxel_size", f.voxel_size).add("resolution", f.resolution)
-      .add("extent_x", f.extent_vox[0]).add("extent_y", f.extent_vox[1]).add("extent_z", f.extent_vox[2]).text();
+      .add("origin_x", f.origin.x)
+      .add("origin_y", f.origin.y)
+      .add("origin_z", f.origin.z)
+      .add("voxel_size", f.voxel_size)
+      .add("resolution", f.resolution)
+      .add("extent_x", f.extent_vox[0])
+      .add("extent_y", f.extent_vox[1])
+      .add("extent_z", f.extent_vox[2])
+      .text();
 }
 
 std::string topology_text(const InputTopology& t) {
   return KeyValueWriter()
-      .add("closed", t.closed).add("oriented", t.oriented).add("components", t.components)
-      .add("boundary_loops", t.boundary_loops).add("euler", t.euler).add("genus", t.genus)
-      .add("area_world", t.area_world).text();
+      .add("closed", t.closed)
+      .add("oriented", t.oriented)
+      .add("components", t.components)
+      .add("boundary_loops", t.boundary_loops)
+      .add("euler", t.euler)
+      .add("genus", t.genus)
+      .add("area_world", t.area_world)
+      .text();
 }
 
 /// Voxel (0,0,0) has its centre where index (0,0,0) is mapped to.
@@ -59,8 +71,9 @@ class StageWriter {
  public:
   StageWriter(const LatticeFrame& frame, const char* stage, const StageWriteOptions& options) : frame_(frame) {
     if (options.options_json.size() > size_t(kMaxOptionsBytes))
-      throw Error(ErrorCode::usage, "write", "options_json has " + std::to_string(options.options_json.size()) +
-                                                 " bytes; it must have at most " + std::to_string(kMaxOptionsBytes));
+      throw Error(ErrorCode::usage, "write",
+                  "options_json has " + std::to_string(options.options_json.size()) + " bytes; it must have at most " +
+                      std::to_string(kMaxOptionsBytes));
     text(kKeyCreator, kCreator);
     text(kKeyFrame, frame_text(frame));
     text(kKeyOptions, options.options_json);
@@ -155,18 +168,16 @@ void add_shell(StageWriter& file, const LatticeFrame& frame, const SiteSamples& 
   const VoxelSet& set = shell.voxels;
   if (view_grids) {
     sites = list_voxels(site_set.voxels);
-    const auto distance = [distance_sq = shell.distance_sq_vox.view(), size = frame.voxel_size](int64_t, int, int64_t i) {
-      return float(std::sqrt(double(distance_sq[i])) * size);
-    };
+    const auto distance = [distance_sq = shell.distance_sq_vox.view(), size = frame.voxel_size](
+                              int64_t, int, int64_t i) { return float(std::sqrt(double(distance_sq[i])) * size); };
     file.voxels<VdbFloatGrid>("shell_distance", set, float(shell.band_vox * frame.voxel_size), distance);
     file.voxels<VdbVec3fGrid>("closest_offset", set, openvdb::Vec3f(0),
                               ClosestOffset{set.view(), sites.view(), samples.sample.view(), shell.closest_site.view(),
                                             frame.voxel_size / kOneVoxelQ8},
                               openvdb::GRID_UNKNOWN, openvdb::VEC_CONTRAVARIANT_RELATIVE);
   }
-  file.voxels<VdbIntGrid>(kClosestSite, set, -1, [site = shell.closest_site.view()](int64_t, int, int64_t i) {
-    return int32_t(site[i]);
-  });
+  file.voxels<VdbIntGrid>(kClosestSite, set, -1,
+                          [site = shell.closest_site.view()](int64_t, int, int64_t i) { return int32_t(site[i]); });
   file.voxels<VdbIntGrid>(kDistanceSq, set, -1, [distance_sq = shell.distance_sq_vox.view()](int64_t, int, int64_t i) {
     return int32_t(distance_sq[i]);
   });
@@ -198,8 +209,9 @@ void save_shell(const std::string& path, const LatticeSurface& surface, const Si
   file.write(path, options.overwrite);
 }
 
-void save_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
-                  const SeedSet& seeds, const VoronoiLabels& labels, const StageWriteOptions& options) {
+void save_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples,
+                  const Shell& shell, const SeedSet& seeds, const VoronoiLabels& labels,
+                  const StageWriteOptions& options) {
   check_shell(shell);
   check_fits(labels.voxel_seed.size(), shell.voxels.voxel_count(), "VoronoiLabels::voxel_seed");
   check_fits(seeds.normal.size(), seeds.size(), "SeedSet::normal");
@@ -208,9 +220,8 @@ void save_voronoi(const std::string& path, const LatticeSurface& surface, const 
   StageWriter file(surface.frame, "voronoi", options);
   file.digest_of("seeds", seeds);
   file.digest_of("labels", labels);
-  file.voxels<VdbIntGrid>(kSeedId, shell.voxels, -1, [seed = labels.voxel_seed.view()](int64_t, int, int64_t i) {
-    return int32_t(seed[i]);
-  });
+  file.voxels<VdbIntGrid>(kSeedId, shell.voxels, -1,
+                          [seed = labels.voxel_seed.view()](int64_t, int, int64_t i) { return int32_t(seed[i]); });
   Buffer<Voxel> sites;
   add_shell(file, surface.frame, samples, shell, sites, options.view_grids);
   add_surface(file, surface);
@@ -227,13 +238,13 @@ void save_preview(const std::string& path, const LatticeFrame& frame, const Shel
   const VoxelSet& set = shell.voxels;
   initialize_openvdb();
   StageWriter file(frame, nullptr, options);
-  file.voxels<VdbFloatGrid>("density", set, 0.0f, [](int64_t, int, int64_t) { return 1.0f; }, openvdb::GRID_FOG_VOLUME);
+  file.voxels<VdbFloatGrid>(
+      "density", set, 0.0f, [](int64_t, int, int64_t) { return 1.0f; }, openvdb::GRID_FOG_VOLUME);
   if (!labels.voxel_seed.empty()) {
     check_fits(labels.voxel_seed.size(), set.voxel_count(), "VoronoiLabels::voxel_seed");
     const View<const uint32_t> seed = labels.voxel_seed.view();
-    file.voxels<VdbFloatGrid>("seed_rand", set, 0.0f, [seed](int64_t, int, int64_t i) {
-      return seed[i] == kNone ? 0.0f : seed_rand(seed[i]);
-    });
+    file.voxels<VdbFloatGrid>("seed_rand", set, 0.0f,
+                              [seed](int64_t, int, int64_t i) { return seed[i] == kNone ? 0.0f : seed_rand(seed[i]); });
     file.voxels<VdbVec3fGrid>("color", set, openvdb::Vec3f(0), [seed](int64_t, int, int64_t i) {
       return seed[i] == kNone ? openvdb::Vec3f(0) : seed_color(seed[i]);
     });

@@ -95,7 +95,8 @@ void write_vdb_file(const std::string& path, const std::vector<std::function<ope
     const std::vector<char> file = join_grids(makers, meta);
     out.write(file.data(), int64_t(file.size()));
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::out_of_memory, "write", path + ": out of memory while packing its grids; lower the resolution");
+    throw Error(ErrorCode::out_of_memory, "write",
+                path + ": out of memory while packing its grids; lower the resolution");
   }
   out.commit();
 }
@@ -108,9 +109,10 @@ openvdb::GridBase::Ptr read_vdb_grid(const std::string& path, View<const char> b
   std::memcpy(&format, bytes.data + sizeof(int64_t), sizeof format);
   if (format > openvdb::OPENVDB_FILE_VERSION)
     throw_unreadable_vdb(path, ".vdb format " + std::to_string(format) + " is newer than " +
-                                   std::to_string(openvdb::OPENVDB_FILE_VERSION) + ", the newest that this build reads");
-  const std::string head = std::string(bytes.data, size_t(kVdbTagBegin)) + kSomeTag + raw(uint32_t(0)) + raw(uint32_t(1)) +
-                           std::string(bytes.data + grid.begin, size_t(grid.content - grid.begin)) +
+                                   std::to_string(openvdb::OPENVDB_FILE_VERSION) +
+                                   ", the newest that this build reads");
+  const std::string head = std::string(bytes.data, size_t(kVdbTagBegin)) + kSomeTag + raw(uint32_t(0)) +
+                           raw(uint32_t(1)) + std::string(bytes.data + grid.begin, size_t(grid.content - grid.begin)) +
                            raw(grid.compression) + metadata_bytes(grid);
   MemorySource source({head.data(), int64_t(head.size())}, {bytes.data + grid.transform, grid.end - grid.transform});
   std::istream in(&source);

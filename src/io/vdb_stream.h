@@ -19,8 +19,8 @@ void initialize_openvdb();
 void write_vdb_file(const std::string& path, const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
                     const openvdb::MetaMap& meta, bool overwrite);
 
-/// The grid that a layout names, with its metadata of type string. Damage is found before OpenVDB sees the bytes. Throws:
-/// unreadable_input, std::bad_alloc.
+/// The grid that a layout names, with its metadata of type string. Damage is found before OpenVDB sees the bytes.
+/// Throws: unreadable_input, std::bad_alloc.
 openvdb::GridBase::Ptr read_vdb_grid(const std::string& path, View<const char> bytes, const VdbGridSpan& grid);
 
 }  // namespace isoshell

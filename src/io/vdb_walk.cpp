@@ -1,4 +1,5 @@
-// A dry run through the tree of a grid as it lies in a file: root, two levels of internal nodes, leaf masks, leaf values.
+// A dry run through the tree of a grid as it lies in a file: root, two levels of internal nodes, leaf masks, leaf
+// values.
 #include <algorithm>
 #include <array>
 
@@ -15,8 +16,8 @@ constexpr int64_t kCoordBytes = 12;
 
 /// How values are stored in front of a block: see OpenVDB's io/Compression.h for the meaning of 0 to 6.
 struct InactiveCode {
-  int values;       // stored inactive values
-  bool selection;   // a second mask follows
+  int values;      // stored inactive values
+  bool selection;  // a second mask follows
 };
 constexpr InactiveCode kInactive[] = {{0, false}, {0, false}, {1, false}, {0, true}, {1, true}, {2, true}, {0, false}};
 constexpr int kAllValues = 6;
@@ -26,8 +27,8 @@ struct ValueType {
   int64_t bytes;
   int64_t half_bytes;  // in a grid saved as half
 };
-constexpr ValueType kTypes[] = {{"Tree_float_5_4_3", 4, 2},  {"Tree_double_5_4_3", 8, 2}, {"Tree_int32_5_4_3", 4, 4},
-                                {"Tree_int64_5_4_3", 8, 8},  {"Tree_vec3s_5_4_3", 12, 6}, {"Tree_vec3d_5_4_3", 24, 6},
+constexpr ValueType kTypes[] = {{"Tree_float_5_4_3", 4, 2},   {"Tree_double_5_4_3", 8, 2}, {"Tree_int32_5_4_3", 4, 4},
+                                {"Tree_int64_5_4_3", 8, 8},   {"Tree_vec3s_5_4_3", 12, 6}, {"Tree_vec3d_5_4_3", 24, 6},
                                 {"Tree_vec3i_5_4_3", 12, 12}, {"Tree_bool_5_4_3", 1, 1}};
 constexpr char kHalfSuffix[] = "_HalfFloat";
 
@@ -60,8 +61,12 @@ class TreeWalk {
  private:
   void skip_transform() {
     const std::string type = in_.text("type of a transform");
-    constexpr std::array<std::pair<const char*, int>, 6> kMaps = {{{"UniformScaleMap", 15}, {"ScaleMap", 15},
-        {"UniformScaleTranslateMap", 18}, {"ScaleTranslateMap", 18}, {"TranslationMap", 3}, {"AffineMap", 16}}};
+    constexpr std::array<std::pair<const char*, int>, 6> kMaps = {{{"UniformScaleMap", 15},
+                                                                   {"ScaleMap", 15},
+                                                                   {"UniformScaleTranslateMap", 18},
+                                                                   {"ScaleTranslateMap", 18},
+                                                                   {"TranslationMap", 3},
+                                                                   {"AffineMap", 16}}};
     const auto map = std::find_if(kMaps.begin(), kMaps.end(), [&](const auto& m) { return type == m.first; });
     if (map == kMaps.end()) in_.fail("unknown transform \"" + type + "\"; only linear ones are read");
     in_.take(map->second * int64_t(sizeof(double)), "transform");
@@ -110,7 +115,8 @@ class TreeWalk {
     const int64_t packed_bytes = in_.value<int64_t>("size of values");
     if (packed_bytes <= 0) {
       if (packed_bytes != -plain_bytes)
-        in_.fail("values take " + std::to_string(packed_bytes) + " bytes where " + std::to_string(-plain_bytes) + " are due");
+        in_.fail("values take " + std::to_string(packed_bytes) + " bytes where " + std::to_string(-plain_bytes) +
+                 " are due");
       in_.take(plain_bytes, "values");
       return;
     }

@@ -18,7 +18,8 @@ struct BackendTable {
   SeedSet (*place_seeds_on_sheet)(const Sheet&, const SeedOptions&, Context&);
   SeedSet (*place_seeds_on_sites)(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
   RelaxReport (*relax_on_sheet)(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
-  RelaxReport (*relax_in_shell)(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&, Context&);
+  RelaxReport (*relax_in_shell)(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
+                                Context&);
   void (*attach_to_sheet)(const Sheet&, SeedSet&, Context&);
   VoronoiLabels (*flood_shell)(const Shell&, const SeedSet&, Context&);
   DualMesh (*triangulate_dual)(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);

@@ -20,9 +20,9 @@ int64_t doubled_area_q16(Exec& exec, const Sheet& sheet);
 
 /// Seed spacing and what follows from it.
 struct SeedSpacing {
-  int64_t h_sq_q16;      ///< area per seed
-  int64_t h_q8;          ///< its square root
-  int64_t penalty_q16;   ///< 16 h^2
+  int64_t h_sq_q16;     ///< area per seed
+  int64_t h_q8;         ///< its square root
+  int64_t penalty_q16;  ///< 16 h^2
 };
 inline SeedSpacing seed_spacing(int64_t area2_q16, int64_t seeds) {
   const int64_t h_sq = area2_q16 / 2 / (seeds > 0 ? seeds : 1);
@@ -31,8 +31,8 @@ inline SeedSpacing seed_spacing(int64_t area2_q16, int64_t seeds) {
 
 namespace label {
 
-constexpr int32_t kOpposite = -127 * 127 / 4;   ///< dot products below this are opposite sides
-constexpr int kMaxCandidates = 256;             ///< per leaf; more take the exact slow path
+constexpr int32_t kOpposite = -127 * 127 / 4;  ///< dot products below this are opposite sides
+constexpr int kMaxCandidates = 256;            ///< per leaf; more take the exact slow path
 
 /// Smallest and largest of the vertices' positions and normals.
 struct Bounds {
@@ -227,8 +227,10 @@ struct LabelLeaf {
     // Differences below 2^15 keep squared distances below 3 * 2^30: 32 bits do.
     const bool narrow = !may_oppose && limit < int64_t(1) << 29 && bounds.hi.x - origin.x < 1 << 13 &&
                         bounds.hi.y - origin.y < 1 << 13 && bounds.hi.z - origin.z < 1 << 13;
-    if (narrow) label_narrow(member, members, candidates, count, least, limit, origin);
-    else label_wide(member, members, candidates, count, least, limit);
+    if (narrow)
+      label_narrow(member, members, candidates, count, least, limit, origin);
+    else
+      label_wide(member, members, candidates, count, least, limit);
   }
 
   ISOSHELL_HD void label_wide(const int64_t* member, int members, const LabelSeed* candidates, int count,
@@ -300,11 +302,12 @@ PointGrid grid_of_seeds(Exec& exec, const Sheet& sheet, const SeedSet& seeds, co
 
 /// Labels of all sheet vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
 template <class Exec>
-void label_sheet(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing, View<uint32_t> labels) {
+void label_sheet(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+                 View<uint32_t> labels) {
   const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
                 label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
-                                  seeds.normal.view(), spacing, labels});
+                                   seeds.normal.view(), spacing, labels});
 }
 
 }  // namespace isoshell

@@ -20,7 +20,7 @@ struct MeshView {
   View<TriangleIndices> triangles;
   View<uint32_t> twin;
   View<uint32_t> valence;
-  View<uint32_t> outgoing;   ///< some half-edge that starts at the vertex
+  View<uint32_t> outgoing;  ///< some half-edge that starts at the vertex
 
   ISOSHELL_HD uint32_t from(uint32_t h) const { return corner(triangles[h / 3], int(h % 3)); }
   ISOSHELL_HD uint32_t to(uint32_t h) const { return from(next_half_edge(h)); }
@@ -37,7 +37,7 @@ struct MeshView {
 };
 
 struct DirectedEdge {
-  uint64_t ends;   ///< smaller vertex << 32 | larger vertex
+  uint64_t ends;  ///< smaller vertex << 32 | larger vertex
   uint32_t half_edge;
 };
 struct ByEnds {
@@ -115,7 +115,8 @@ struct FlipKey {
     const PointQ8 pa = position[a], pb = position[b], pc = position[c], pd = position[d];
     const Direction before_1 = normal_of(pa, pb, pc), before_2 = normal_of(pb, pa, pd);
     const Direction before = {before_1.x + before_2.x, before_1.y + before_2.y, before_1.z + before_2.z};
-    if (!within_45_degrees(before, normal_of(pa, pd, pc)) || !within_45_degrees(before, normal_of(pd, pb, pc))) return 0;
+    if (!within_45_degrees(before, normal_of(pa, pd, pc)) || !within_45_degrees(before, normal_of(pd, pb, pc)))
+      return 0;
     const double shape_1 = shape_of(pa, pb, pc), shape_2 = shape_of(pb, pa, pd), flipped_1 = shape_of(pa, pd, pc),
                  flipped_2 = shape_of(pd, pb, pc);
     if (harms_shape(shape_1 < shape_2 ? shape_1 : shape_2, flipped_1 < flipped_2 ? flipped_1 : flipped_2)) return 0;
@@ -211,7 +212,8 @@ struct MarkHarmed {
     const TriangleIndices i = triangles[t];
     const PointQ8 a = before[i.a], b = before[i.b], c = before[i.c], d = after[i.a], e = after[i.b], f = after[i.c];
     if (a == d && b == e && c == f) return;
-    if (within_45_degrees(normal_of(a, b, c), normal_of(d, e, f)) && !harms_shape(shape_of(a, b, c), shape_of(d, e, f))) return;
+    if (within_45_degrees(normal_of(a, b, c), normal_of(d, e, f)) && !harms_shape(shape_of(a, b, c), shape_of(d, e, f)))
+      return;
     atomic_or(harmed[i.a], 1u);
     atomic_or(harmed[i.b], 1u);
     atomic_or(harmed[i.c], 1u);
@@ -252,7 +254,9 @@ struct RotateTriangle {
   View<TriangleIndices> triangles;
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = triangles[i];
-    triangles[i] = t.a < t.b && t.a < t.c ? t : (t.b < t.c && t.b < t.a ? TriangleIndices{t.b, t.c, t.a} : TriangleIndices{t.c, t.a, t.b});
+    triangles[i] = t.a < t.b && t.a < t.c
+                       ? t
+                       : (t.b < t.c && t.b < t.a ? TriangleIndices{t.b, t.c, t.a} : TriangleIndices{t.c, t.a, t.b});
   }
 };
 struct ByIndices {
@@ -266,7 +270,11 @@ template <class Exec>
 class Improvement {
  public:
   Improvement(Exec& exec, const Sheet& sheet, SeedSet& seeds, DualMesh& mesh)
-      : exec_(exec), seeds_(seeds), mesh_(mesh), vertices_(mesh.position.size()), half_edges_(3 * mesh.triangles.size()),
+      : exec_(exec),
+        seeds_(seeds),
+        mesh_(mesh),
+        vertices_(mesh.position.size()),
+        half_edges_(3 * mesh.triangles.size()),
         walk_{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
               sheet.vertex_triangles.view()} {
     twin_ = exec.template make<uint32_t>(half_edges_);
@@ -297,7 +305,8 @@ class Improvement {
   void smooth(int steps) {
     for (int s = 0; s < steps; ++s) {
       exec_.for_each("copy homes", vertices_, CopyValue<uint32_t>{seeds_.home.view(), moved_home_.view()});
-      exec_.for_each("smooth", vertices_, SmoothVertex{view(), walk_, mesh_.position.view(), moved_home_.view(), moved_.view()});
+      exec_.for_each("smooth", vertices_,
+                     SmoothVertex{view(), walk_, mesh_.position.view(), moved_home_.view(), moved_.view()});
       undo_harm();
       exec_.for_each("take positions", vertices_, CopyValue<PointQ8>{moved_.view(), mesh_.position.view()});
       exec_.for_each("take homes", vertices_, CopyValue<uint32_t>{moved_home_.view(), seeds_.home.view()});
@@ -324,15 +333,17 @@ class Improvement {
     exec_.for_each("count valences", half_edges_, CountValence{view()});
   }
 
-  /// Undoes the step where it would harm a triangle (ends: what is restored stays so); a restored vertex can harm another, so up to a fixed point.
+  /// Undoes the step where it would harm a triangle (ends: what is restored stays so); a restored vertex can harm
+  /// another, so up to a fixed point.
   void undo_harm() {
     for (;;) {
       exec_.fill(harmed_.view(), 0u);
       exec_.for_each("mark harmed", mesh_.triangles.size(),
                      MarkHarmed{mesh_.triangles.view(), mesh_.position.view(), moved_.view(), harmed_.view()});
       if (exec_.sum(vertices_, IsHarmed{harmed_.view()}) == 0) return;
-      exec_.for_each("restore harmed", vertices_,
-                     RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
+      exec_.for_each(
+          "restore harmed", vertices_,
+          RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
     }
   }
 

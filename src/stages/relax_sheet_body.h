@@ -2,7 +2,8 @@
 // sheet in place of the shell and cells clipped by their bisectors instead of counted in voxels).
 //
 // A pass: look ahead along the last move (Nesterov), label the sheet, sum area and moments of every clipped cell in
-// integers, move each seed to its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy rose.
+// integers, move each seed to its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy
+// rose.
 #pragma once
 
 #include <cmath>
@@ -16,8 +17,8 @@
 namespace isoshell {
 namespace relax_sheet {
 
-/// Area, centre and energy of a cell relative to its seed: mass is the doubled area (q16), first three times the doubled
-/// first moment, energy_12 twelve times the doubled second moment, shifted down by energy_shift().
+/// Area, centre and energy of a cell relative to its seed: mass is the doubled area (q16), first three times the
+/// doubled first moment, energy_12 twelve times the doubled second moment, shifted down by energy_shift().
 struct CellSum {
   int64_t mass, first_x, first_y, first_z, energy_12;
 };
@@ -38,7 +39,7 @@ struct PatchTriangle {
 
 /// Triangles by the leaf of their smallest vertex: so all of a leaf's triangles are close to it.
 struct Patches {
-  Buffer<int64_t> first;             ///< leaf_count + 1
+  Buffer<int64_t> first;  ///< leaf_count + 1
   Buffer<PatchTriangle> triangles;
 };
 
@@ -85,7 +86,8 @@ struct FillPatch {
 template <class Exec>
 Patches make_patches(Exec& exec, const Sheet& sheet) {
   const int64_t leaves = sheet.corners.leaf_count();
-  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
+                         sheet.vertex_triangles.view()};
   Patches patches;
   patches.first = exec.template make<int64_t>(leaves + 1);
   patches.first[leaves] = 0;
@@ -142,14 +144,17 @@ struct SumLeaf {
 
   ISOSHELL_HD void operator()(int64_t leaf) const {
     const Voxel v = leaf_of_key(leaf_key[leaf]);
-    const PointQ8 origin = {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
+    const PointQ8 origin = {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits,
+                            (v.z * 8 + 4) << kFractionBits};
     LocalSums<kSlots> sums;
     uint32_t last = kNone;
     PieceSum* last_sum = nullptr;
     const auto add = [&](uint32_t id, const PieceSum& piece) {
       if (id != last) last = id, last_sum = sums.of(id);
-      if (last_sum) *last_sum = *last_sum + piece;
-      else flush(id, piece, origin);
+      if (last_sum)
+        *last_sum = *last_sum + piece;
+      else
+        flush(id, piece, origin);
     };
     for (int64_t t = first[leaf]; t < first[leaf + 1]; ++t) add_triangle(triangles[t], origin, add);
     sums.for_each([&](uint32_t id, const PieceSum& sum) { flush(id, sum, origin); });
@@ -165,10 +170,14 @@ struct SumLeaf {
                               {local(seed[id[0]], origin), local(seed[id[1]], origin), local(seed[id[2]], origin)},
                               t.area2};
     const auto add_piece = [&](int corner, const PieceSum& piece) { add(id[corner], piece); };
-    if (id[1] == id[2]) split.two_cells(0, add_piece);
-    else if (id[2] == id[0]) split.two_cells(1, add_piece);
-    else if (id[0] == id[1]) split.two_cells(2, add_piece);
-    else split.three_cells(add_piece);
+    if (id[1] == id[2])
+      split.two_cells(0, add_piece);
+    else if (id[2] == id[0])
+      split.two_cells(1, add_piece);
+    else if (id[0] == id[1])
+      split.two_cells(2, add_piece);
+    else
+      split.three_cells(add_piece);
   }
 
   /// Moves the sums from the leaf's origin to the seed: d = seed - origin. Far seeds take the energy past 64 bits.
@@ -232,7 +241,8 @@ struct MoveToCentre {
   ISOSHELL_HD void operator()(int64_t i) const {
     const CellSum c = cell[i];
     if (c.mass <= 0) return;
-    const Vec64 step = {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass), round_div(c.first_z, 3 * c.mass)};
+    const Vec64 step = {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass),
+                        round_div(c.first_z, 3 * c.mass)};
     seeds.here[i] = seeds.settle(i, seeds.moved(seeds.here[i], step));
   }
 };
@@ -281,8 +291,8 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
   for (int64_t i = 0; i < count; ++i) last[i] = seeds.position[i];
 
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-                           sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
+                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
   const int64_t max_step = options.max_step_q8 > 0 ? options.max_step_q8 : spacing.h_q8 * 2 / 5;
   const MovingSeeds moving{walk, seeds.position.view(), last.view(), seeds.home.view(), seeds.normal.view(), max_step};
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "isoshell/error.h"
 #include "core/seed_count.h"
+#include "isoshell/error.h"
 #include "stages/backend_table.h"
 #include "voxel/leaf.h"
 
@@ -38,7 +38,8 @@ SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& con
 SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options, Context& context) {
   const int64_t most = sites.voxels.voxel_count() / 2;
   if (options.count < 4)
-    throw Error(ErrorCode::usage, "seeds", std::to_string(options.count) + " vertices are too few; it takes at least 4");
+    throw Error(ErrorCode::usage, "seeds",
+                std::to_string(options.count) + " vertices are too few; it takes at least 4");
   if (options.count > most) {
     const int32_t resolution = resolution_of(sites.voxels);
     const double factor = std::sqrt(double(options.count) / double(std::max<int64_t>(1, most)));

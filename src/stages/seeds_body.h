@@ -21,7 +21,7 @@ struct PlaceOnSheet {
   View<const PointQ8> position;
   View<const Normal8> vertex_normal;
   View<const TriangleIndices> triangles;
-  View<const int64_t> area_before;   ///< exclusive prefix sum of the doubled areas
+  View<const int64_t> area_before;  ///< exclusive prefix sum of the doubled areas
   int64_t total, count;
   uint64_t seed;
   View<PointQ8> out_position;
@@ -39,7 +39,8 @@ struct PlaceOnSheet {
     if (u + v > kOne) u = kOne - u, v = kOne - v;
     const Vec64 e = difference(position[t.b], position[t.a]), f = difference(position[t.c], position[t.a]);
     const PointQ8 a = position[t.a];
-    const PointQ8 p = {a.x + int32_t((e.x * u + f.x * v + kOne / 2) >> 20), a.y + int32_t((e.y * u + f.y * v + kOne / 2) >> 20),
+    const PointQ8 p = {a.x + int32_t((e.x * u + f.x * v + kOne / 2) >> 20),
+                       a.y + int32_t((e.y * u + f.y * v + kOne / 2) >> 20),
                        a.z + int32_t((e.z * u + f.z * v + kOne / 2) >> 20)};
     const uint32_t home = 2 * u > kOne ? t.b : (2 * v > kOne ? t.c : t.a);
     out_position[i] = p;
@@ -57,8 +58,10 @@ struct PlaceOnSheet {
     int64_t lo = 0, hi = triangles.size;
     while (hi - lo > 1) {
       const int64_t mid = lo + (hi - lo) / 2;
-      if (area_before[mid] <= target) lo = mid;
-      else hi = mid;
+      if (area_before[mid] <= target)
+        lo = mid;
+      else
+        hi = mid;
     }
     return lo;
   }
@@ -77,10 +80,10 @@ SeedSet place_seeds_body(Exec& exec, const Sheet& sheet, const SeedOptions& opti
   out.position = exec.template make<PointQ8>(options.count);
   out.normal = exec.template make<Normal8>(options.count);
   out.home = exec.template make<uint32_t>(options.count);
-  exec.for_each("place seeds", options.count,
-                seeds::PlaceOnSheet{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), area_before.view(),
-                                    total, options.count, options.seed, out.position.view(), out.normal.view(),
-                                    out.home.view()});
+  exec.for_each(
+      "place seeds", options.count,
+      seeds::PlaceOnSheet{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), area_before.view(), total,
+                          options.count, options.seed, out.position.view(), out.normal.view(), out.home.view()});
   return out;
 }
 

@@ -4,7 +4,8 @@
 
 namespace isoshell {
 
-Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples, const SheetOptions& options, Context& context) {
+Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                  const SheetOptions& options, Context& context) {
   if (options.closing_vox < 0 || options.closing_vox > kMaxClosingVox)
     throw Error(ErrorCode::usage, "sheet",
                 "closing_vox is " + std::to_string(options.closing_vox) + "; it must be 0 to " +

@@ -97,9 +97,9 @@ void list_triangles_around(Exec& exec, Sheet& sheet) {
   exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
   exec.exclusive_scan(sheet.vertex_first.view());
   sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
-  exec.for_each("list triangles around", sheet.triangles.size(),
-                TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(),
-                           sheet.vertex_triangles.view()});
+  exec.for_each(
+      "list triangles around", sheet.triangles.size(),
+      TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(), sheet.vertex_triangles.view()});
   exec.for_each("sort triangles around", vertices,
                 SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
 }
@@ -117,7 +117,7 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
     mesh = list_boundary(exec, solid);
   }
   const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
-                                    samples.first.view(), samples.triangles.view()};
+                                         samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
   mesh.edges = {};
   const ComponentCount components = drop_small_components(exec, mesh, laid, options.min_component_area_q16);

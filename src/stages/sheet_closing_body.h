@@ -1,5 +1,5 @@
-// The part of build_sheet that closes the sites by r: the solid is what the outside does not reach when it keeps farther
-// than r from the sites and is then thickened by r.
+// The part of build_sheet that closes the sites by r: the solid is what the outside does not reach when it keeps
+// farther than r from the sites and is then thickened by r.
 #pragma once
 
 #include "isoshell/stages.h"
@@ -142,7 +142,8 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   band.band_vox = closing_vox;
   solid.blocked = build_shell(sites, band, exec.context()).voxels;
   solid.outside = find_outside(exec, solid.blocked.view());
-  // The voxel of the outside nearest to any other voxel is one of its rim: a step towards that voxel leaves the outside.
+  // The voxel of the outside nearest to any other voxel is one of its rim: a step towards that voxel leaves the
+  // outside.
   solid.set = build_shell(rim_of_outside(exec, solid.outside.view()), band, exec.context()).voxels;
   exec.for_each("remove the thickened outside", solid.set.leaf_count(),
                 RemoveThickenedOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});

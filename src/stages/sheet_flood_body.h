@@ -1,6 +1,7 @@
 // The part of build_sheet that finds the outside: every voxel that a path of face neighbours joins to the border of the
-// lattice without entering a blocked voxel. Nodes are empty blocks of 128^3 voxels, empty leaves and leaves with blocked
-// voxels, so nothing is ever as large as the lattice. Bits are only ever set: the fixed point does not depend on order.
+// lattice without entering a blocked voxel. Nodes are empty blocks of 128^3 voxels, empty leaves and leaves with
+// blocked voxels, so nothing is ever as large as the lattice. Bits are only ever set: the fixed point does not depend
+// on order.
 #pragma once
 
 #include "isoshell/buffer.h"
@@ -18,9 +19,9 @@ struct BlockMask {
 /// The outside of a set of blocked voxels, as kernels see it.
 struct OutsideView {
   VoxelSetView blocked;
-  View<LeafMask> leaf;      ///< per blocked leaf: its outside voxels
-  View<BlockMask> empty;    ///< per block with blocked leaves: which of its empty leaves are outside
-  View<uint32_t> block;     ///< per entry of the block table without blocked leaves: 1 when outside
+  View<LeafMask> leaf;    ///< per blocked leaf: its outside voxels
+  View<BlockMask> empty;  ///< per block with blocked leaves: which of its empty leaves are outside
+  View<uint32_t> block;   ///< per entry of the block table without blocked leaves: 1 when outside
 
   /// Outside voxels of the leaf at these leaf coordinates; beyond the lattice all are.
   ISOSHELL_HD LeafMask at(Voxel l) const {
@@ -111,7 +112,10 @@ struct FloodState {
     const int32_t fixed = face & 1 ? 0 : 15;
     for (int32_t i = 0; i < 16; ++i)
       for (int32_t j = 0; j < 16; ++j)
-        enter({first_leaf.x + (face < 2 ? fixed : i), first_leaf.y + (face >> 1 == 1 ? fixed : face < 2 ? i : j),
+        enter({first_leaf.x + (face < 2 ? fixed : i),
+               first_leaf.y + (face >> 1 == 1 ? fixed
+                               : face < 2     ? i
+                                              : j),
                first_leaf.z + (face >> 1 == 2 ? fixed : j)},
               voxels);
   }
@@ -159,8 +163,7 @@ struct FloodBlock {
       for (uint64_t bits = fresh[w]; bits; bits &= bits - 1) {
         const int bit = w * 64 + lowest_bit(bits);
         const Voxel l = {first.x + (bit >> 8), first.y + ((bit >> 4) & 15), first.z + (bit & 15)};
-        for (int face = 0; face < 6; ++face)
-          state.enter(step_through(l, face), crossing(uniform_leaf(true), face));
+        for (int face = 0; face < 6; ++face) state.enter(step_through(l, face), crossing(uniform_leaf(true), face));
       }
   }
 };
@@ -203,9 +206,7 @@ struct FloodQueue {
     exec.fill(left.view(), uint32_t(capacity));
   }
   /// Where the next round's nodes go.
-  FloodList next() {
-    return {stamp.view(), node[1 - current].view(), {left.data() + (1 - current), 1}};
-  }
+  FloodList next() { return {stamp.view(), node[1 - current].view(), {left.data() + (1 - current), 1}}; }
   /// Makes the next round current and returns its nodes.
   View<const uint32_t> advance() {
     left[current] = uint32_t(stamp.size());

@@ -8,15 +8,16 @@
 
 namespace isoshell {
 
-constexpr int kSheetSmoothingSteps = 2;   ///< before projection
-constexpr int kBridgeSteps = 60;          ///< for vertices over a gap, after projection
+constexpr int kSheetSmoothingSteps = 2;                 ///< before projection
+constexpr int kBridgeSteps = 60;                        ///< for vertices over a gap, after projection
 constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther from the surface are over a gap
 
 namespace sheet_steps {
 
 /// Calls visit(neighbour) for the vertices that lattice edges of the boundary join to the corner at `offset` of `leaf`.
 template <class Visit>
-ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, Voxel l, int offset, uint8_t edges, Visit visit) {
+ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, Voxel l, int offset, uint8_t edges,
+                                           Visit visit) {
   const Voxel c = voxel_at(l, offset);
   for (int f = 0; f < 6; ++f)
     if (edges >> f & 1) visit(uint32_t(find_voxel(corners, step_through(c, f))));
@@ -130,7 +131,7 @@ void smooth_bridges(Exec& exec, const QuadMesh& mesh, View<const uint32_t> sourc
 
 /// The quad mesh with its vertices where they belong.
 struct LaidMesh {
-  Buffer<PointQ8> smooth;     ///< before projection: sides are plain here
+  Buffer<PointQ8> smooth;  ///< before projection: sides are plain here
   Buffer<PointQ8> position;
   Buffer<uint32_t> source_triangle;
 };
@@ -148,8 +149,9 @@ LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& su
     std::swap(laid.smooth, laid.position);
   }
   laid.source_triangle = exec.template make<uint32_t>(vertices);
-  exec.for_each("project", vertices, ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(),
-                                                   laid.source_triangle.view()});
+  exec.for_each(
+      "project", vertices,
+      ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
   smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
   return laid;
 }

@@ -201,9 +201,9 @@ QuadMesh list_boundary(Exec& exec, Solid& solid) {
   mesh.position = exec.template make<PointQ8>(vertices);
   mesh.edges = exec.template make<uint8_t>(vertices);
   mesh.lattice_normal = exec.template make<Normal8>(vertices);
-  exec.for_each("describe corners", mesh.corners.leaf_count(),
-                DescribeCorners{view, mesh.corners.view(), mesh.position.view(), mesh.edges.view(),
-                                mesh.lattice_normal.view()});
+  exec.for_each(
+      "describe corners", mesh.corners.leaf_count(),
+      DescribeCorners{view, mesh.corners.view(), mesh.position.view(), mesh.edges.view(), mesh.lattice_normal.view()});
   Buffer<int64_t> first = exec.template make<int64_t>(leaves + 1);
   first[leaves] = 0;
   exec.for_each("count faces", leaves, CountFaces{view, first.view()});

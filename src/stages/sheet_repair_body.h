@@ -12,9 +12,9 @@ struct WindowAdditions {
 };
 
 /// What one round adds for the configurations that lie wholly in the window. Axes come in the order x, y, z.
-/// Square of four voxels, two opposite solid and two opposite empty: the empty one with the smaller coordinates (smaller
-/// first axis of the square). Cube of eight: only two opposite corners p, q solid (p.x < q.x): (q.x, p.y, p.z) and
-/// (q.x, q.y, p.z), which join them by faces. Only two opposite corners empty: the one with the smaller x.
+/// Square of four voxels, two opposite solid and two opposite empty: the empty one with the smaller coordinates
+/// (smaller first axis of the square). Cube of eight: only two opposite corners p, q solid (p.x < q.x): (q.x, p.y, p.z)
+/// and (q.x, q.y, p.z), which join them by faces. Only two opposite corners empty: the one with the smaller x.
 ISOSHELL_HD inline void find_additions(const SolidWindow& window, WindowAdditions& add) {
   constexpr uint32_t kPairs = kWindowRow >> 1;  // rows of voxels z that have a z + 1
   for (auto& layer : add.row)
@@ -60,8 +60,8 @@ namespace sheet_steps {
 struct FindAdditions {
   SolidView solid;
   View<const uint32_t> list;
-  View<LeafMask> added;     ///< per entry of the list
-  View<uint32_t> wanted;    ///< per leaf
+  View<LeafMask> added;   ///< per entry of the list
+  View<uint32_t> wanted;  ///< per leaf
   ISOSHELL_HD void operator()(int64_t i) const {
     added[i] = LeafMask{};
     const Voxel l = leaf_of_key(solid.set.leaf_key[list[i]]);
@@ -136,8 +136,7 @@ int64_t make_well_composed(Exec& exec, Solid& solid) {
     Buffer<LeafMask> added = exec.template make<LeafMask>(list.size());
     Buffer<uint32_t> wanted = exec.template make<uint32_t>(solid.set.leaf_count());
     exec.fill(wanted.view(), 0u);
-    exec.for_each("find additions", list.size(),
-                  FindAdditions{solid.view(), list.view(), added.view(), wanted.view()});
+    exec.for_each("find additions", list.size(), FindAdditions{solid.view(), list.view(), added.view(), wanted.view()});
     if (give_masks(exec, solid, wanted.view())) {  // the same round again, with room for all it adds
       look = exec.template make<uint32_t>(solid.set.leaf_count());
       exec.fill(look.view(), 1u);

@@ -8,7 +8,8 @@
 namespace isoshell {
 namespace {
 
-// Cells beyond the lattice would be cut off without a word, and larger coordinates exceed the budget of voxel/overlap.h.
+// Cells beyond the lattice would be cut off without a word, and larger coordinates exceed the budget of
+// voxel/overlap.h.
 void require_inside(const LatticeSurface& surface) {
   if (surface.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "sites", "the surface has 0 triangles; a mesh needs at least 1");

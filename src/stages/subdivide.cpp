@@ -4,7 +4,8 @@
 
 namespace isoshell {
 
-SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target, Context& context) {
+SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+                        Context& context) {
   const int64_t most = seeds.size() + mesh.triangles.size() / 2 * 5;
   if (target < seeds.size() || target > most)
     throw Error(ErrorCode::usage, "subdivide",

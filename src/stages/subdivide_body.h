@@ -57,7 +57,9 @@ struct MeasureTriangle {
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = triangles[i];
     const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
-    out[i] = {int64_t(__builtin_sqrt(double(n.x) * double(n.x) + double(n.y) * double(n.y) + double(n.z) * double(n.z))), uint32_t(i)};
+    out[i] = {
+        int64_t(__builtin_sqrt(double(n.x) * double(n.x) + double(n.y) * double(n.y) + double(n.z) * double(n.z))),
+        uint32_t(i)};
   }
 };
 
@@ -117,7 +119,8 @@ struct PutInTriangle {
 }  // namespace subdivide
 
 template <class Exec>
-SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target) {
+SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds,
+                             int64_t target) {
   using namespace subdivide;
   const StandsForEdge stands{mesh.triangles.view()};
   const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), stands);
@@ -129,13 +132,14 @@ SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mes
   out.position = exec.template make<PointQ8>(target);
   out.normal = exec.template make<Normal8>(target);
   out.home = exec.template make<uint32_t>(target);
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-                           sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
+                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
   const NewSeeds put{walk, out.position.view(), out.normal.view(), out.home.view()};
   exec.for_each("keep seeds", old, KeepSeed{seeds.position.view(), seeds.normal.view(), seeds.home.view(), put});
 
   Buffer<Place> edges = exec.template make<Place>(half_edges.size());
-  exec.for_each("measure edges", edges.size(), MeasureEdge{stands, half_edges.view(), seeds.position.view(), edges.view()});
+  exec.for_each("measure edges", edges.size(),
+                MeasureEdge{stands, half_edges.view(), seeds.position.view(), edges.view()});
   if (on_edges < edges.size()) exec.sort(edges.view(), LargestFirst{});
   const View<Place> chosen{edges.data(), on_edges};
   exec.sort(chosen, ByIndex{});

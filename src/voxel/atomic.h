@@ -11,8 +11,10 @@ template <class T>
 ISOSHELL_HD inline void atomic_add(T& target, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = unsigned long long;
-  if constexpr (sizeof(T) == 8) atomicAdd(reinterpret_cast<Word*>(&target), Word(value));
-  else atomicAdd(&target, value);
+  if constexpr (sizeof(T) == 8)
+    atomicAdd(reinterpret_cast<Word*>(&target), Word(value));
+  else
+    atomicAdd(&target, value);
 #else
   __atomic_fetch_add(&target, value, __ATOMIC_RELAXED);
 #endif
@@ -31,8 +33,10 @@ template <class T>
 ISOSHELL_HD inline void atomic_or(T& target, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = unsigned long long;
-  if constexpr (sizeof(T) == 8) atomicOr(reinterpret_cast<Word*>(&target), Word(value));
-  else atomicOr(&target, value);
+  if constexpr (sizeof(T) == 8)
+    atomicOr(reinterpret_cast<Word*>(&target), Word(value));
+  else
+    atomicOr(&target, value);
 #else
   __atomic_fetch_or(&target, value, __ATOMIC_RELAXED);
 #endif
@@ -62,8 +66,10 @@ template <class T>
 ISOSHELL_HD inline T atomic_fetch_add(T& target, T value) {
 #if defined(__CUDA_ARCH__)
   using Word = unsigned long long;
-  if constexpr (sizeof(T) == 8) return T(atomicAdd(reinterpret_cast<Word*>(&target), Word(value)));
-  else return atomicAdd(&target, value);
+  if constexpr (sizeof(T) == 8)
+    return T(atomicAdd(reinterpret_cast<Word*>(&target), Word(value)));
+  else
+    return atomicAdd(&target, value);
 #else
   return __atomic_fetch_add(&target, value, __ATOMIC_RELAXED);
 #endif

@@ -33,7 +33,8 @@ ISOSHELL_HD inline int64_t square(Local u) { return int64_t(u.x) * u.x + int64_t
 
 ISOSHELL_HD inline PieceSum piece_sum(int64_t area2, Local a, Local b, Local c) {
   const Local sum = {a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z};
-  return {area2, area2 * sum.x, area2 * sum.y, area2 * sum.z, area2 * (square(a) + square(b) + square(c) + square(sum))};
+  return {area2, area2 * sum.x, area2 * sum.y, area2 * sum.z,
+          area2 * (square(a) + square(b) + square(c) + square(sum))};
 }
 
 /// |v - a|^2 - |v - b|^2: negative where a is nearer. Exact, and linear in v.
@@ -70,8 +71,8 @@ ISOSHELL_HD inline PieceSum corner_piece(int64_t area2, Local p, Local q, Local 
 /// have equal `same` flags below). Adds the piece of corner i through add(i, piece).
 ///
 /// Two cells: the bisector cuts one corner off. Three cells: when the third seed wins where the bisector of two corners
-/// meets their edge, it separates them and each of the two keeps a corner; else the three bisectors meet inside in X and
-/// each cell is the quadrilateral (corner, crossing, X, crossing).
+/// meets their edge, it separates them and each of the two keeps a corner; else the three bisectors meet inside in X
+/// and each cell is the quadrilateral (corner, crossing, X, crossing).
 struct SplitTriangle {
   Local p[3];
   Local s[3];

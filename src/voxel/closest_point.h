@@ -1,5 +1,6 @@
 // Closest point of a triangle to a position, on the lattice. Floating point follows here and decides nothing: every
-// operation is + - * / on doubles in a fixed order, hence the same bits everywhere, and the result is rounded to q8 once.
+// operation is + - * / on doubles in a fixed order, hence the same bits everywhere, and the result is rounded to q8
+// once.
 #pragma once
 
 #include "isoshell/lattice.h"
@@ -22,13 +23,16 @@ ISOSHELL_HD inline PointQ8 closest_point_on_segment(PointQ8 p, PointQ8 a, PointQ
   if (at <= 0) return a;
   if (at >= length_sq) return b;
   const double t = at / length_sq;
-  return {a.x + round_to_int(t * double(e.x)), a.y + round_to_int(t * double(e.y)), a.z + round_to_int(t * double(e.z))};
+  return {a.x + round_to_int(t * double(e.x)), a.y + round_to_int(t * double(e.y)),
+          a.z + round_to_int(t * double(e.z))};
 }
 
 /// The point of the closed triangle abc closest to p, rounded to q8; triangles without area are segments or points.
-/// The six dot products are exact (differences < 2^24), so only ratios round. After Ericson, Real-Time Collision Detection, 5.1.5.
+/// The six dot products are exact (differences < 2^24), so only ratios round. After Ericson, Real-Time Collision
+/// Detection, 5.1.5.
 ISOSHELL_HD inline PointQ8 closest_point_on_triangle(PointQ8 p, PointQ8 a, PointQ8 b, PointQ8 c) {
-  const Vec64 ab = difference(b, a), ac = difference(c, a), ap = difference(p, a), bp = difference(p, b), cp = difference(p, c);
+  const Vec64 ab = difference(b, a), ac = difference(c, a), ap = difference(p, a), bp = difference(p, b),
+              cp = difference(p, c);
   const double d1 = double(dot(ab, ap)), d2 = double(dot(ac, ap)), d3 = double(dot(ab, bp)), d4 = double(dot(ac, bp)),
                d5 = double(dot(ab, cp)), d6 = double(dot(ac, cp));
   const auto along = [&](PointQ8 from, Vec64 e, double t) {
@@ -43,8 +47,7 @@ ISOSHELL_HD inline PointQ8 closest_point_on_triangle(PointQ8 p, PointQ8 a, Point
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return along(a, ac, d2 / (d2 - d6));
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return along(b, difference(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return along(b, difference(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
   const double sum = va + vb + vc;
   // A needle: what is left of the cancelling products is noise, and its edges are as near as its inside.
   if (sum <= 0x1p-40 * double(dot(ab, ab)) * double(dot(ac, ac))) {
@@ -54,7 +57,8 @@ ISOSHELL_HD inline PointQ8 closest_point_on_triangle(PointQ8 p, PointQ8 a, Point
     return best;
   }
   const double v = vb / sum, w = vc / sum;
-  return {a.x + round_to_int(v * double(ab.x) + w * double(ac.x)), a.y + round_to_int(v * double(ab.y) + w * double(ac.y)),
+  return {a.x + round_to_int(v * double(ab.x) + w * double(ac.x)),
+          a.y + round_to_int(v * double(ab.y) + w * double(ac.y)),
           a.z + round_to_int(v * double(ab.z) + w * double(ac.z))};
 }
 

@@ -59,6 +59,8 @@ ISOSHELL_HD inline Normal8 normal8(Vec64 v) {
   return {int8_t(round_div(127 * s.x, length)), int8_t(round_div(127 * s.y, length)),
           int8_t(round_div(127 * s.z, length))};
 }
-ISOSHELL_HD inline int32_t dot(Normal8 a, Normal8 b) { return int32_t(a.x) * b.x + int32_t(a.y) * b.y + int32_t(a.z) * b.z; }
+ISOSHELL_HD inline int32_t dot(Normal8 a, Normal8 b) {
+  return int32_t(a.x) * b.x + int32_t(a.y) * b.y + int32_t(a.z) * b.z;
+}
 
 }  // namespace isoshell

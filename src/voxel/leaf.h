@@ -35,7 +35,9 @@ ISOSHELL_HD inline PointQ8 voxel_centre(Voxel v) {
   const int32_t half = kOneVoxelQ8 / 2;
   return {v.x * kOneVoxelQ8 + half, v.y * kOneVoxelQ8 + half, v.z * kOneVoxelQ8 + half};
 }
-ISOSHELL_HD inline Voxel voxel_of(PointQ8 p) { return {p.x >> kFractionBits, p.y >> kFractionBits, p.z >> kFractionBits}; }
+ISOSHELL_HD inline Voxel voxel_of(PointQ8 p) {
+  return {p.x >> kFractionBits, p.y >> kFractionBits, p.z >> kFractionBits};
+}
 
 /// Place of the neighbour at (dx, dy, dz), each -1 to 1, among the 27: x-major.
 ISOSHELL_HD inline int neighbour_number(int dx, int dy, int dz) { return (dx + 1) * 9 + (dy + 1) * 3 + dz + 1; }
@@ -97,8 +99,10 @@ ISOSHELL_HD inline Voxel voxel_of_index(const VoxelSetView& set, int64_t index) 
   int64_t lo = 0, hi = set.leaf_key.size;
   while (hi - lo > 1) {
     const int64_t mid = lo + (hi - lo) / 2;
-    if (set.first[mid] <= index) lo = mid;
-    else hi = mid;
+    if (set.first[mid] <= index)
+      lo = mid;
+    else
+      hi = mid;
   }
   int rank = int(index - set.first[lo]), w = 0;
   for (; rank >= popcount64(set.mask[lo].word[w]); ++w) rank -= popcount64(set.mask[lo].word[w]);

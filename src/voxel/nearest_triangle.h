@@ -12,7 +12,7 @@ struct SitedSurfaceView {
   View<const PointQ8> points;
   View<const TriangleIndices> triangles;
   VoxelSetView sites;
-  View<const int64_t> site_first;           ///< see SiteSamples::first
+  View<const int64_t> site_first;  ///< see SiteSamples::first
   View<const uint32_t> site_triangles;
 };
 
@@ -83,8 +83,8 @@ class NearestTriangleSearch {
     if (seen == t) return;
     seen = t;
     const TriangleIndices& corner = surface_.triangles[t];
-    const PointQ8 q = closest_point_on_triangle(p_, surface_.points[corner.a], surface_.points[corner.b],
-                                                surface_.points[corner.c]);
+    const PointQ8 q =
+        closest_point_on_triangle(p_, surface_.points[corner.a], surface_.points[corner.b], surface_.points[corner.c]);
     const int64_t d = distance_sq_q16(p_, q);
     if (d < best_.distance_sq_q16 || (d == best_.distance_sq_q16 && t < best_.triangle)) best_ = {d, t, q};
   }

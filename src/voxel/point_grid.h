@@ -53,8 +53,7 @@ ISOSHELL_HD inline void visit_box(const PointGridView& grid, const BoxQ8& box, V
   const int32_t x_hi = grid_coordinate(grid, box.hi.x, 0), y_hi = grid_coordinate(grid, box.hi.y, 1),
                 z_lo = grid_coordinate(grid, box.lo.z, 2), z_hi = grid_coordinate(grid, box.hi.z, 2);
   for (int32_t cx = grid_coordinate(grid, box.lo.x, 0); cx <= x_hi; ++cx)
-    for (int32_t cy = grid_coordinate(grid, box.lo.y, 1); cy <= y_hi; ++cy)
-      visit_row(grid, cx, cy, z_lo, z_hi, visit);
+    for (int32_t cy = grid_coordinate(grid, box.lo.y, 1); cy <= y_hi; ++cy) visit_row(grid, cx, cy, z_lo, z_hi, visit);
 }
 
 /// Calls visit(const GridPoint&) outwards from the box until every point at squared distance <= visit.bound_q16() of it

@@ -115,7 +115,8 @@ TEST_CASE("args: what is no number is refused by name, with what it must be", "[
   CHECK(contains(refusal({"a.obj", "b.ply", "--close-gaps", "nan"}), "must be a number"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--require", "min-angle=nan"}), "must be a number"));
   for (const char* seed : {"-1", "1.5", "18446744073709551616", "nan"})
-    CHECK(contains(refusal({"a.obj", "b.ply", "--seed", seed}), "it must be a whole number, 0 to 18446744073709551615"));
+    CHECK(
+        contains(refusal({"a.obj", "b.ply", "--seed", seed}), "it must be a whole number, 0 to 18446744073709551615"));
 }
 
 TEST_CASE("args: what excludes each other is refused", "[cli][args]") {

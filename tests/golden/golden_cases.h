@@ -16,7 +16,8 @@ struct Case {
   RemeshOptions options;
 };
 
-inline RemeshOptions options(int64_t vertices, int32_t resolution, Method method = Method::sheet, int32_t closing_vox = -1) {
+inline RemeshOptions options(int64_t vertices, int32_t resolution, Method method = Method::sheet,
+                             int32_t closing_vox = -1) {
   RemeshOptions o;
   o.vertices = vertices;
   o.resolution = resolution;
@@ -46,7 +47,9 @@ inline std::string run(const Case& c, Context& context) {
   const RemeshResult result = remesh(c.shape(), c.options, context);
   const RemeshReport& r = result.report;
   std::string text = "case " + c.name + "\n";
-  const auto count = [&](const char* name, int64_t value) { text += std::string("  ") + name + " " + std::to_string(value) + "\n"; };
+  const auto count = [&](const char* name, int64_t value) {
+    text += std::string("  ") + name + " " + std::to_string(value) + "\n";
+  };
   count("sites", r.sites);
   count("active_voxels", r.active_voxels);
   count("sheet_vertices", r.sheet_vertices);

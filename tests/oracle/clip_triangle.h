@@ -1,4 +1,5 @@
-// Oracle: the part of a triangle that is nearest to one of a few seeds, by clipping the polygon plane by plane in double.
+// Oracle: the part of a triangle that is nearest to one of a few seeds, by clipping the polygon plane by plane in
+// double.
 #pragma once
 
 #include <array>
@@ -31,9 +32,9 @@ inline std::vector<Point> clip_nearer(const std::vector<Point>& polygon, const P
 }
 
 struct Moments {
-  double area2 = 0;          ///< doubled area
-  Point first = {0, 0, 0};   ///< doubled integral of x
-  double second = 0;         ///< doubled integral of |x|^2
+  double area2 = 0;         ///< doubled area
+  Point first = {0, 0, 0};  ///< doubled integral of x
+  double second = 0;        ///< doubled integral of |x|^2
 };
 
 inline Moments moments(const std::vector<Point>& polygon) {

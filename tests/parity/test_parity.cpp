@@ -15,11 +15,13 @@ TriangleSoup shuffled(const TriangleSoup& soup, uint64_t seed) {
   const auto by_hash = [&](size_t count, uint64_t salt) {
     std::vector<uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return random_bits(seed + salt, a) < random_bits(seed + salt, b); });
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return random_bits(seed + salt, a) < random_bits(seed + salt, b); });
     return order;
   };
   TriangleSoup out = soup;
-  const std::vector<uint32_t> vertex_at = by_hash(soup.vertices.size(), 0), triangle_at = by_hash(soup.triangles.size(), 1);
+  const std::vector<uint32_t> vertex_at = by_hash(soup.vertices.size(), 0),
+                              triangle_at = by_hash(soup.triangles.size(), 1);
   for (size_t i = 0; i < vertex_at.size(); ++i) out.vertices[vertex_at[i]] = soup.vertices[i];
   for (size_t i = 0; i < triangle_at.size(); ++i) {
     std::array<uint32_t, 3> t = soup.triangles[i];

@@ -51,13 +51,19 @@ std::vector<uint32_t> brute_force_labels(const Sheet& sheet, const SeedSet& seed
 }
 
 template <int kCapacity>
-std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing, Context& context) {
+std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+                                           Context& context) {
   TbbExecutor exec(context, "test");
   const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   std::vector<uint32_t> labels(size_t(sheet.vertex_count()));
   exec.for_each("label", sheet.corners.leaf_count(),
-                label::LabelLeaf<kCapacity>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
-                                            seeds.normal.view(), spacing, {labels.data(), int64_t(labels.size())}});
+                label::LabelLeaf<kCapacity>{sheet.corners.view(),
+                                            sheet.position.view(),
+                                            sheet.normal.view(),
+                                            grid.view(),
+                                            seeds.normal.view(),
+                                            spacing,
+                                            {labels.data(), int64_t(labels.size())}});
   return labels;
 }
 
@@ -122,8 +128,13 @@ TEST_CASE("relax: full tables of local sums change nothing, and the cells add up
   const auto sums = [&](auto like) {
     Buffer<relax_sheet::CellSum> cells(seeds.size());
     exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0, 0});
-    like = {sheet.corners.leaf_key.view(), patches.first.view(),  patches.triangles.view(), sheet.position.view(),
-            labels.view(),                 seeds.position.view(), cells.view()};
+    like = {sheet.corners.leaf_key.view(),
+            patches.first.view(),
+            patches.triangles.view(),
+            sheet.position.view(),
+            labels.view(),
+            seeds.position.view(),
+            cells.view()};
     exec.for_each("sum", sheet.corners.leaf_count(), like);
     std::vector<int64_t> out;
     for (const auto& c : cells) out.insert(out.end(), {c.mass, c.first_x, c.first_y, c.first_z});

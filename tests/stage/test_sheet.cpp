@@ -23,8 +23,8 @@ struct Named {
   std::vector<Voxel> voxels;
 };
 
-const Extent kExtent = {56, 52, 60};          // of the dense lattice
-const Voxel kOffset = {100, 104, 96};         // of the dense lattice in the sparse one, so that blocks of 128 meet inside
+const Extent kExtent = {56, 52, 60};   // of the dense lattice
+const Voxel kOffset = {100, 104, 96};  // of the dense lattice in the sparse one, so that blocks of 128 meet inside
 const Extent kSparseExtent = {256, 256, 256};
 
 /// Voxels of the middle of the lattice, 12 off its border, for which inside(x, y, z) holds, relative to the centre.
@@ -55,7 +55,8 @@ std::vector<Named> all_blobs() {
   std::vector<Named> out;
   for (uint64_t percent : {1, 5, 20, 50, 80}) out.push_back(noise(percent, percent));
   for (int width : {0, 1, 2, 3, 5, 7, 9}) out.push_back(holed_sphere(width));
-  out.push_back(filled("diagonal wires", [](int x, int y, int z) { return (x == y && y == z) || (x == -y && z == 3); }));
+  out.push_back(
+      filled("diagonal wires", [](int x, int y, int z) { return (x == y && y == z) || (x == -y && z == 3); }));
   out.push_back(filled("diagonal tunnels", [](int x, int y, int z) {
     return !((x == y && y == z) || (x == -y && z == 3) || (x == 5 && y == z));
   }));
@@ -262,14 +263,15 @@ TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet]
   if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);
   QuadMesh mesh = list_boundary(exec, solid);
   const SitedSurfaceView view = {p.surface.points.view(), p.surface.triangles.view(), p.sites.voxels.view(),
-                            p.samples.first.view(), p.samples.triangles.view()};
+                                 p.samples.first.view(), p.samples.triangles.view()};
   const LaidMesh laid = lay_onto_surface(exec, mesh, view, false);
   int64_t wrong = 0, far = 0;
   for (int64_t v = 0; v < sheet.vertex_count(); ++v) {
     NearestTriangle best;
     for (int64_t t = 0; t < p.surface.triangles.size(); ++t) {
       const TriangleIndices c = p.surface.triangles[t];
-      const PointQ8 q = closest_point_on_triangle(laid.smooth[v], p.surface.points[c.a], p.surface.points[c.b], p.surface.points[c.c]);
+      const PointQ8 q = closest_point_on_triangle(laid.smooth[v], p.surface.points[c.a], p.surface.points[c.b],
+                                                  p.surface.points[c.c]);
       const int64_t d = distance_sq_q16(laid.smooth[v], q);
       if (d < best.distance_sq_q16) best = {d, uint32_t(t), q};
     }

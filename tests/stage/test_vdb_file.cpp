@@ -25,7 +25,8 @@ namespace {
 /// A file name of its own in the folder for temporary files, removed at the end.
 struct TemporaryFile {
   explicit TemporaryFile(const std::string& name)
-      : path((std::filesystem::temp_directory_path() / ("isoshell_test_" + std::to_string(::getpid()) + "_" + name)).string()) {}
+      : path((std::filesystem::temp_directory_path() / ("isoshell_test_" + std::to_string(::getpid()) + "_" + name))
+                 .string()) {}
   ~TemporaryFile() {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
@@ -86,7 +87,11 @@ Products make_products(int64_t site_count, int64_t point_count, int64_t seed_cou
   const int64_t sites = p.sites.voxels.voxel_count();
   p.samples.sample = Buffer<SiteSample>(sites);
   for (auto& s : p.samples.sample)
-    s = {int16_t(int(random(257)) - 128), int16_t(int(random(257)) - 128), int16_t(int(random(257)) - 128), {0, 0, 127}, 0};
+    s = {int16_t(int(random(257)) - 128),
+         int16_t(int(random(257)) - 128),
+         int16_t(int(random(257)) - 128),
+         {0, 0, 127},
+         0};
 
   p.surface.points = Buffer<PointQ8>(point_count);
   for (auto& q : p.surface.points)

@@ -11,13 +11,14 @@
 
 namespace isoshell::shapes {
 
-inline void add_triangle(TriangleSoup& soup, uint32_t a, uint32_t b, uint32_t c) { soup.triangles.push_back({a, b, c}); }
+inline void add_triangle(TriangleSoup& soup, uint32_t a, uint32_t b, uint32_t c) {
+  soup.triangles.push_back({a, b, c});
+}
 
 /// Axis-aligned box, 12 outward triangles.
 inline TriangleSoup box(WorldPoint lo, WorldPoint hi) {
   TriangleSoup s;
-  for (int i = 0; i < 8; ++i)
-    s.vertices.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
+  for (int i = 0; i < 8; ++i) s.vertices.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
   const uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (const auto& q : quads) {
     add_triangle(s, q[0], q[1], q[2]);
@@ -102,7 +103,8 @@ inline TriangleSoup random_soup(uint32_t count, double side, double reach, uint6
   const auto unit = [&] { return double(random_bits(seed, next++) >> 11) / 9007199254740992.0; };
   for (uint32_t i = 0; i < count; ++i) {
     const WorldPoint at = {unit() * side, unit() * side, unit() * side};
-    for (int k = 0; k < 3; ++k) s.vertices.push_back({at.x + unit() * reach, at.y + unit() * reach, at.z + unit() * reach});
+    for (int k = 0; k < 3; ++k)
+      s.vertices.push_back({at.x + unit() * reach, at.y + unit() * reach, at.z + unit() * reach});
     add_triangle(s, 3 * i, 3 * i + 1, 3 * i + 2);
   }
   s.faces_in_file = count;

@@ -41,7 +41,8 @@ inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t
     const Voxel at = voxel_of(sheet.frame.snap(soup.vertices[v]));
     order.push_back({leaf_key(leaf_of_voxel(at)), offset_in_leaf(at), v});
   }
-  std::sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) { return a.leaf != b.leaf ? a.leaf < b.leaf : a.offset < b.offset; });
+  std::sort(order.begin(), order.end(),
+            [](const Entry& a, const Entry& b) { return a.leaf != b.leaf ? a.leaf < b.leaf : a.offset < b.offset; });
   std::vector<uint32_t> index(order.size());
   std::vector<uint64_t> keys;
   std::vector<LeafMask> masks;
@@ -69,7 +70,8 @@ inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t
   std::vector<std::vector<uint32_t>> around(order.size());
   for (uint32_t t = 0; t < triangles.size(); ++t) {
     const TriangleIndices i = triangles[t];
-    const Vec64 n = cross(difference(sheet.position[i.b], sheet.position[i.a]), difference(sheet.position[i.c], sheet.position[i.a]));
+    const Vec64 n = cross(difference(sheet.position[i.b], sheet.position[i.a]),
+                          difference(sheet.position[i.c], sheet.position[i.a]));
     for (uint32_t v : {i.a, i.b, i.c}) {
       normal[v] = normal[v] + n;
       around[v].push_back(t);

@@ -29,7 +29,8 @@ int64_t doubled_area(Local a, Local b, Local c) {
 
 }  // namespace
 
-TEST_CASE("cell sum: every cell of a triangle gets the area, moment and energy that polygon clipping gives it", "[relax][unit]") {
+TEST_CASE("cell sum: every cell of a triangle gets the area, moment and energy that polygon clipping gives it",
+          "[relax][unit]") {
   uint64_t counter = 0;
   int cases[3] = {0, 0, 0};
   while (cases[1] < 3000 || cases[2] < 3000) {
@@ -63,10 +64,14 @@ TEST_CASE("cell sum: every cell of a triangle gets the area, moment and energy t
 
     PieceSum got[3] = {};
     const auto add = [&](int corner, const PieceSum& piece) { got[owner[corner]] = got[owner[corner]] + piece; };
-    if (owner[1] == owner[2]) split.two_cells(0, add);
-    else if (owner[2] == owner[0]) split.two_cells(1, add);
-    else if (owner[0] == owner[1]) split.two_cells(2, add);
-    else split.three_cells(add);
+    if (owner[1] == owner[2])
+      split.two_cells(0, add);
+    else if (owner[2] == owner[0])
+      split.two_cells(1, add);
+    else if (owner[0] == owner[1])
+      split.two_cells(2, add);
+    else
+      split.three_cells(add);
     for (int o = 0; o < 3; ++o) {
       // Crossings are cut to 1/32768 of an edge and points to whole q8: a few parts in a thousand of the triangle.
       const double slack = 0.004 * double(split.area2);
@@ -79,7 +84,8 @@ TEST_CASE("cell sum: every cell of a triangle gets the area, moment and energy t
 }
 
 TEST_CASE("cell sum: pieces of a split triangle add up to the whole", "[relax][unit]") {
-  const SplitTriangle split{{{0, 0, 0}, {256, 0, 0}, {0, 256, 0}}, {{-10, -10, 30}, {300, 20, 5}, {10, 280, -8}}, 65536};
+  const SplitTriangle split{
+      {{0, 0, 0}, {256, 0, 0}, {0, 256, 0}}, {{-10, -10, 30}, {300, 20, 5}, {10, 280, -8}}, 65536};
   PieceSum sum = {};
   split.three_cells([&](int, const PieceSum& piece) { sum = sum + piece; });
   CHECK(std::abs(sum.mass - 65536) <= 8);

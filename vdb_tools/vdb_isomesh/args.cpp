@@ -308,7 +308,8 @@ namespace {
   const size_t dashes = text.find("--"), equals = text.find(" = ");
   if (dashes == std::string::npos || equals == std::string::npos || equals < dashes) refuse(text + "; see --help");
   const std::string option = text.substr(dashes, equals - dashes);
-  const bool real = option == "--edge-length" || option == "--voxel-size" || option == "--tolerance" || option == "--step";
+  const bool real =
+      option == "--edge-length" || option == "--voxel-size" || option == "--tolerance" || option == "--step";
   refuse(option + " is '" + text.substr(equals + 3) + "'; it must be a " + (real ? "number" : "whole number"));
 }
 

@@ -10,10 +10,10 @@ namespace isoshell {
 
 enum class MeshFormat { from_name, ply, obj, stl, off };
 
-/// Reads a mesh. `path` "-" reads standard input and needs a format. Polygons are split by ear clipping, triangle strips
-/// unrolled; dirty geometry is dropped and counted in the result, a file that lies throws.
-/// Throws: unreadable_input (names file and line, element or byte, the value and the remedy), nothing_to_mesh when the
-/// file is sound but holds no usable triangle.
+/// Reads a mesh. `path` "-" reads standard input and needs a format. Polygons are split by ear clipping, triangle
+/// strips unrolled; dirty geometry is dropped and counted in the result, a file that lies throws. Throws:
+/// unreadable_input (names file and line, element or byte, the value and the remedy), nothing_to_mesh when the file is
+/// sound but holds no usable triangle.
 TriangleSoup read_mesh(const std::string& path, MeshFormat format = MeshFormat::from_name);
 
 struct MeshWriteOptions {

@@ -16,16 +16,16 @@ namespace isoshell {
 
 /// What the caller wants to be written beside the products.
 struct StageWriteOptions {
-  std::string options_json;   ///< options of the run, kept as given; at most 256 KiB
-  std::string input_sha256;   ///< of the input file; empty when unknown
-  int32_t closing_vox = -1;   ///< closing radius r of the run; -1 when not chosen yet
-  bool overwrite = false;     ///< replace an existing file
-  bool view_grids = true;     ///< also write the grids that are only there to be looked at
+  std::string options_json;  ///< options of the run, kept as given; at most 256 KiB
+  std::string input_sha256;  ///< of the input file; empty when unknown
+  int32_t closing_vox = -1;  ///< closing radius r of the run; -1 when not chosen yet
+  bool overwrite = false;    ///< replace an existing file
+  bool view_grids = true;    ///< also write the grids that are only there to be looked at
 };
 
 /// What a stage file says about itself.
 struct StageInfo {
-  std::string stage;         ///< "shell" or "voronoi"
+  std::string stage;  ///< "shell" or "voronoi"
   int32_t format_version = 0;
   std::string creator;
   std::string options_json;
@@ -40,8 +40,8 @@ struct StageFile {
   LatticeSurface surface;
   SiteSet sites;
   Shell shell;
-  std::optional<SeedSet> seeds;          ///< stage voronoi
-  std::optional<VoronoiLabels> labels;   ///< stage voronoi
+  std::optional<SeedSet> seeds;         ///< stage voronoi
+  std::optional<VoronoiLabels> labels;  ///< stage voronoi
 };
 
 /// Sites of a shell: its voxels at distance 0, in canonical order, which is the order of their ids.
@@ -53,8 +53,9 @@ void save_shell(const std::string& path, const LatticeSurface& surface, const Si
                 const StageWriteOptions& options = {});
 
 /// The same with the seeds and the Voronoi labels of the shell's voxels.
-void save_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
-                  const SeedSet& seeds, const VoronoiLabels& labels, const StageWriteOptions& options = {});
+void save_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples,
+                  const Shell& shell, const SeedSet& seeds, const VoronoiLabels& labels,
+                  const StageWriteOptions& options = {});
 
 /// Writes float grids only, which every program opens: `density` 1 in the shell and, with labels, `seed_rand` and
 /// `color` by a hash of the seed id. Not a stage file. Throws as save_shell.
@@ -65,8 +66,8 @@ void save_preview(const std::string& path, const LatticeFrame& frame, const Shel
 /// file that cannot be read is none.
 bool is_stage_file(const std::string& path);
 
-/// Reads a stage file. Damage is found before anything is trusted: the file carries a checksum of itself, a file without
-/// ours (saved again by another program) is held to its products' digests, and every value to its range; only
+/// Reads a stage file. Damage is found before anything is trusted: the file carries a checksum of itself, a file
+/// without ours (saved again by another program) is held to its products' digests, and every value to its range; only
 /// SeedSet::home is left to the stage that knows its limit.
 /// Throws: unreadable_input (names file, part and value), out_of_memory.
 StageFile read_stage(const std::string& path);
