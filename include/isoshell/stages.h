@@ -96,7 +96,7 @@ struct DualMesh {
   Buffer<TriangleIndices> triangles;  ///< smallest index first, sorted, outward
 };
 struct DualReport {
-  int64_t inserted_seeds = 0;       ///< appended to the seeds
+  int64_t inserted_seeds = 0;       ///< appended to the seeds, in every round; a run may drop others afterwards
   int64_t relabelled_vertices = 0;  ///< in stray pieces that joined a neighbouring cell
   int64_t repair_rounds = 0;
   int64_t failed_cells = 0;  ///< left after the last round; 0 means the guarantee holds
