@@ -12,10 +12,17 @@
 
 #include "isoshell/io/mesh_file.h"
 #include "support/shapes.h"
+#include "support/source_folder.h"
 
 namespace isoshell::cli {
 
 namespace fs = std::filesystem;
+
+/// The environment variable VDB_ISOMESH, or the command of this build.
+inline std::string command_path() {
+  const char* path = std::getenv("VDB_ISOMESH");
+  return path ? path : VDB_ISOMESH_BUILT;
+}
 
 inline std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -41,7 +48,7 @@ class Folder {
   };
 
   /// Runs `vdb_isomesh <arguments>` through the shell; redirections and pipes may follow the arguments.
-  Result run(const std::string& arguments) { return shell("'" VDB_ISOMESH "' " + arguments); }
+  Result run(const std::string& arguments) { return shell("'" + command_path() + "' " + arguments); }
 
   Result shell(const std::string& command) {
     const std::string line = "cd '" + path_.string() + "' && ( " + command + " ) >.stdout 2>.stderr </dev/null";

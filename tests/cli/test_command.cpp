@@ -20,16 +20,16 @@ TEST_CASE("command: help goes to standard output and is README's option table", 
   const auto help = folder.run("--help");
   CHECK(help.status == 0);
   CHECK(help.err.empty());
-  const auto table = folder.shell("'" ISOSHELL_SOURCE "/scripts/option_table.sh' '" VDB_ISOMESH "'");
+  const auto table = folder.shell("'" + source_folder() + "/scripts/option_table.sh' '" + command_path() + "'");
   REQUIRE(table.status == 0);
   CHECK(contains(table.out, "| `--vertices K` |"));
-  CHECK(contains(content(ISOSHELL_SOURCE "/README.md"),
+  CHECK(contains(content(source_folder() + "/README.md"),
                  "<!-- options: begin -->\n" + table.out + "<!-- options: end -->"));
 }
 
 TEST_CASE("command: README's program is the first example", "[cli]") {
-  CHECK(contains(content(ISOSHELL_SOURCE "/README.md"),
-                 "```cpp\n" + content(ISOSHELL_SOURCE "/examples/01_remesh.cpp") + "```"));
+  CHECK(contains(content(source_folder() + "/README.md"),
+                 "```cpp\n" + content(source_folder() + "/examples/01_remesh.cpp") + "```"));
 }
 
 TEST_CASE("command: wrong usage exits with 2 and one line", "[cli]") {

@@ -9,7 +9,9 @@ namespace {
 
 const std::string kSmall = " --vertices 60 --resolution 24 --force ";
 
-std::string malformed(const std::string& name) { return "'" ISOSHELL_TEST_DATA "/malformed/" + name + "' "; }
+std::string malformed(const std::string& name) {
+  return "'" + source_folder() + "/tests/data/malformed/" + name + "' ";
+}
 
 /// The file as a closed mesh of the asked size.
 bool becomes_closed(Folder& folder, const std::string& input) {

@@ -83,7 +83,7 @@ TEST_CASE("run: standard input and output carry meshes, and the same bytes as fi
   write_ball(folder);
   REQUIRE(folder.run("ball.off file.off" + kQuick).status == 0);
   const auto piped =
-      folder.shell("cat ball.off | '" VDB_ISOMESH "' - - --input-format off --output-format off" + kQuick);
+      folder.shell("cat ball.off | '" + command_path() + "' - - --input-format off --output-format off" + kQuick);
   CHECK(piped.status == 0);
   CHECK(piped.out == folder.content("file.off"));
   CHECK_FALSE(piped.out.empty());
@@ -151,7 +151,7 @@ TEST_CASE("run: an interrupted run exits with 130 and leaves nothing", "[cli]") 
   Folder folder;
   folder.write_off("ball.off", shapes::sphere({1, 2, 3}, 5, 200));
   // In the foreground: otherwise timeout also signals its group, and a second signal ends the run without a word.
-  const auto r = folder.shell("timeout --foreground --preserve-status -s INT 1.5 '" VDB_ISOMESH
+  const auto r = folder.shell("timeout --foreground --preserve-status -s INT 1.5 '" + command_path() +
                               "' ball.off out.ply --vertices 60000 --stats out.json --save-shell shell.vdb");
   CHECK(r.status == 130);
   CHECK(contains(r.err, "interrupted"));

@@ -1,12 +1,13 @@
 // Files that lie are refused with a place and a reason; dirty geometry is dropped and counted.
 #include "support/mesh_files.h"
+#include "support/source_folder.h"
 
 using namespace isoshell;
 
 namespace {
 
 TriangleSoup read_malformed(const std::string& name) {
-  return read_mesh(std::string(ISOSHELL_TEST_DATA) + "/malformed/" + name);
+  return read_mesh(source_folder() + "/tests/data/malformed/" + name);
 }
 
 Error refusal_of(const std::string& name) {

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# Makes a folder, and a packed copy of it, that runs on a machine without compilers and libraries: the command, the tests
+# with what they read, the benches, and the shared libraries that they need. A GPU machine needs its driver, nothing more.
+#   scripts/bundle.sh [--no-build] [--without-tests] [PRESET [FOLDER]]
+# PRESET is cuda unless named; FOLDER is build/PRESET/isoshell-bundle. --no-build takes what is built already.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=1 with_tests=1
+while [[ ${1:-} == --* ]]; do
+  case $1 in
+    --no-build) build=0 ;;
+    --without-tests) with_tests=0 ;;
+    *) echo "bundle: unknown option $1" >&2; exit 2 ;;
+  esac
+  shift
+done
+preset=${1:-cuda}
+from=$PWD/build/$preset
+folder=${2:-$from/isoshell-bundle}
+[ "$build" -eq 0 ] || scripts/build.sh "$preset"
+[ -x "$from/vdb_isomesh" ] || { echo "bundle: $from/vdb_isomesh is not built" >&2; exit 1; }
+limit_mb=60
+
+rm -rf "$folder" "$folder.tar.xz"
+mkdir -p "$folder/lib" "$folder/tests" "$folder/bench"
+script=$(mktemp)
+trap 'rm -f "$script"' EXIT
+
+# Executable, folder. Without symbols, and without the colon that CMake leaves at the end of a path: it would mean the
+# folder that the user happens to be in.
+copy() {
+  local to=$2/${1##*/}
+  cp "$1" "$to"
+  strip --strip-unneeded "$to"
+  echo "file(RPATH_SET FILE \"$to\" NEW_RPATH \"\$ORIGIN/lib:\$ORIGIN/../lib\")" > "$script"
+  cmake -P "$script"
+}
+
+copy "$from/vdb_isomesh" "$folder"
+if [ "$with_tests" -eq 1 ]; then
+  while read -r name executable arguments; do
+    path=$(find "$from/tests" -name "$executable" -type f -perm -u+x)
+    [ -n "$path" ] || { echo "bundle: left out $name, it is not built" >&2; continue; }
+    [ -e "$folder/tests/$executable" ] || copy "$path" "$folder/tests"
+    echo "$name $executable $arguments" >> "$folder/tests/list.txt"
+  done < "$from/tests/list.txt"
+  cp scripts/run_tests.sh "$folder"
+  mkdir -p "$folder/tests/golden" "$folder/scripts" "$folder/examples"
+  cp tests/golden/golden.txt "$folder/tests/golden"
+  cp -r tests/data "$folder/tests"
+  cp README.md "$folder"  # three more files that tests of the command read
+  cp examples/01_remesh.cpp "$folder/examples"
+  cp scripts/option_table.sh "$folder/scripts"
+fi
+find "$from/bench" -maxdepth 1 -name 'bench_*' -type f -perm -u+x | while read -r bench; do copy "$bench" "$folder/bench"; done
+cp LICENSE "$folder"
+
+# Everything but the C library, which is the target's own (2.36 or newer), and the driver.
+find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + |
+  sed -nE 's/.* => (\/[^ ]+) .*/\1/p' | sort -u |
+  grep -vE '/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|mvec)|libcuda|libnvidia[^/]*)\.so[^/]*$' |
+  while read -r library; do
+    cp -L "$library" "$folder/lib"
+    strip --strip-unneeded "$folder/lib/${library##*/}"
+  done
+missing=$(find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + | grep 'not found' | sort -u || true)
+[ -z "$missing" ] || { echo "bundle: not found: $missing" >&2; exit 1; }
+{
+  echo "isoshell $(git describe --always --dirty 2>/dev/null || echo '(no git)'), preset $preset"
+  ldd --version | head -n 1 | sed 's/^ldd/built against/'
+} > "$folder/VERSION"
+
+# The tests share most of their machine code, so a window as large as the folder packs it once.
+tar -C "$(dirname "$folder")" -cf - "$(basename "$folder")" | xz -T2 --lzma2=preset=6,dict=512MiB > "$folder.tar.xz"
+bytes=$(stat -c %s "$folder.tar.xz")
+echo "bundle: $folder ($(du -sm "$folder" | cut -f1) MB), packed $folder.tar.xz ($((bytes / 1000000)) MB)"
+[ "$bytes" -le $((limit_mb * 1000000)) ] || { echo "bundle: over $limit_mb MB packed" >&2; exit 1; }
