@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/copy_product.h"
 #include "core/seed_count.h"
 #include "voxel/exact_int.h"
 
@@ -47,7 +48,9 @@ struct DualEdge {
 };
 
 /// Each edge once, shortest first, then by its ends.
-std::vector<DualEdge> edges_by_length(const DualMesh& mesh) {
+std::vector<DualEdge> edges_by_length(const DualMesh& on_any_side) {
+  const OnHost<DualMesh> on_host(on_any_side);
+  const DualMesh& mesh = *on_host;
   std::vector<DualEdge> edges;
   edges.reserve(size_t(mesh.triangles.size()) * 3 / 2);
   const auto add = [&](uint32_t a, uint32_t b) {
@@ -67,6 +70,7 @@ std::vector<DualEdge> edges_by_length(const DualMesh& mesh) {
 }  // namespace
 
 void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds) {
+  on_host(seeds);
   const int64_t count = seeds.size();
   std::vector<char> settled(size_t(count), 0), dropped(size_t(count), 0);
   std::fill(settled.end() - protected_count, settled.end(), char(1));

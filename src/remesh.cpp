@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "choose_grid.h"
+#include "core/copy_product.h"
 #include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
@@ -56,7 +57,9 @@ int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology
 }
 
 /// Six times the volume inside the sheet, in whole voxels. Exact up to that last rounding: it decides the closing.
-int64_t six_volume_vox(const Sheet& sheet) {
+int64_t six_volume_vox(const Sheet& on_any_side) {
+  const OnHost<Sheet> on_host(on_any_side);
+  const Sheet& sheet = *on_host;
   __extension__ typedef __int128 Wide;  // a product of three coordinates takes 66 bits
   Wide six = 0;
   for (TriangleIndices t : sheet.triangles) {
@@ -175,7 +178,9 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   note_digest(options, report, "sheet", p.sheet);
 }
 
-double sheet_area_world(const Sheet& sheet) {
+double sheet_area_world(const Sheet& on_any_side) {
+  const OnHost<Sheet> on_host(on_any_side);
+  const Sheet& sheet = *on_host;
   double area = 0;
   for (TriangleIndices t : sheet.triangles) {
     const WorldPoint a = sheet.frame.to_world(sheet.position[t.a]), b = sheet.frame.to_world(sheet.position[t.b]),

@@ -4,12 +4,13 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 namespace isoshell {
 
 enum class Backend { best, cpu, cuda };
 
-/// Passed to every stage. Not copied; outlives the call.
+/// Passed to every stage, by one thread at a time. Not copied; outlives the call.
 struct Context {
   Backend backend = Backend::best;
   int device = 0;                  ///< CUDA device number
@@ -19,6 +20,8 @@ struct Context {
   std::function<void(const char* stage, double fraction)> progress;
   /// Set from any thread or a signal handler; the stage throws Error{interrupted} soon after.
   std::atomic<bool> cancel{false};
+  /// What the backend keeps from call to call, a CUDA stream for one. Made at first use; not for callers.
+  std::shared_ptr<void> backend_state;
 };
 
 /// "cpu" or "cuda": where this context's stages run. Throws: no_device when it asks for CUDA and there is none.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "isoshell/host_device.h"
@@ -19,44 +20,63 @@ struct View {
   ISOSHELL_HD T* begin() const { return data; }
   ISOSHELL_HD T* end() const { return data + size; }
   ISOSHELL_HD bool empty() const { return size == 0; }
-  ISOSHELL_HD operator View<const T>() const { return {data, size}; }
+  /// `count` elements from `begin` on.
+  ISOSHELL_HD View part(int64_t begin, int64_t count) const { return {data + begin, count}; }
+  template <class U, class = std::enable_if_t<!std::is_const_v<T> && std::is_same_v<U, const T>>>
+  ISOSHELL_HD operator View<U>() const {
+    return {data, size};
+  }
 };
 
 enum class MemorySpace { host, cuda };
 
-/// Raw host memory, 64-byte aligned and not initialised. Throws Error{out_of_memory}; counted in
-/// host_memory_peak_bytes().
-void* allocate_host(int64_t bytes);
-void free_host(void* data, int64_t bytes);
+/// Where the bytes of Buffers lie. A Memory outlives every Buffer that it serves.
+class Memory {
+ public:
+  virtual MemorySpace space() const = 0;
+  /// At least 64-byte aligned, not initialised; null for 0 bytes. Throws Error{out_of_memory}.
+  virtual void* allocate(int64_t bytes) = 0;
+  virtual void free(void* data, int64_t bytes) noexcept = 0;
+  /// Returns when the bytes have arrived.
+  virtual void copy_to_host(void* to, const void* from, int64_t bytes) = 0;
+
+ protected:
+  ~Memory() = default;
+};
+Memory& host_memory();
 
 /// Largest number of bytes that host Buffers held at one time since the last reset.
 int64_t host_memory_peak_bytes();
 void reset_host_memory_peak();
 
-/// Owns an array of trivially copyable T in one memory space. Moves, never copies.
+/// Owns an array of trivially copyable T in one memory space. Moves, never copies. Elements may be reached from the
+/// host only in host memory: see to_host.h.
 template <class T>
 class Buffer {
  public:
-  using Free = void (*)(void* data, int64_t bytes);
-
   Buffer() = default;
-  /// Host array of `size` elements, not initialised.
-  explicit Buffer(int64_t size)
-      : Buffer(static_cast<T*>(allocate_host(size * int64_t(sizeof(T)))), size, MemorySpace::host, free_host) {}
-  Buffer(T* data, int64_t size, MemorySpace space, Free free) : data_(data), size_(size), space_(space), free_(free) {}
+  /// Array of `size` elements, not initialised.
+  explicit Buffer(int64_t size, Memory& memory = host_memory())
+      : data_(static_cast<T*>(memory.allocate(size * int64_t(sizeof(T))))), size_(size), memory_(&memory) {}
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
     Buffer(std::move(other)).swap(*this);
     return *this;
   }
   ~Buffer() {
-    if (data_) free_(data_, size_ * int64_t(sizeof(T)));
+    if (data_) memory_->free(data_, size_ * int64_t(sizeof(T)));
   }
 
   int64_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  MemorySpace space() const { return space_; }
+  MemorySpace space() const { return memory_ ? memory_->space() : MemorySpace::host; }
   int64_t size_bytes() const { return size_ * int64_t(sizeof(T)); }
+  /// A copy in host memory.
+  Buffer to_host() const {
+    Buffer copy(size_);
+    if (size_ > 0) memory_->copy_to_host(copy.data_, data_, size_bytes());
+    return copy;
+  }
   T* data() { return data_; }
   const T* data() const { return data_; }
   View<T> view() { return {data_, size_}; }
@@ -72,14 +92,12 @@ class Buffer {
   void swap(Buffer& other) {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
-    std::swap(space_, other.space_);
-    std::swap(free_, other.free_);
+    std::swap(memory_, other.memory_);
   }
 
   T* data_ = nullptr;
   int64_t size_ = 0;
-  MemorySpace space_ = MemorySpace::host;
-  Free free_ = nullptr;
+  Memory* memory_ = nullptr;
 };
 
 }  // namespace isoshell

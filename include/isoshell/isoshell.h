@@ -10,3 +10,4 @@
 #include "isoshell/quality.h"
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"
+#include "isoshell/to_host.h"

@@ -42,9 +42,10 @@ struct VoxelSet {
   Buffer<uint64_t> leaf_key;
   Buffer<LeafMask> mask;
   Buffer<int64_t> first;
+  int64_t active = 0;  ///< number of active voxels
 
   int64_t leaf_count() const { return leaf_key.size(); }
-  int64_t voxel_count() const { return first.empty() ? 0 : first[first.size() - 1]; }
+  int64_t voxel_count() const { return active; }
   int64_t size_bytes() const {
     return block_table.size_bytes() + blocks.size_bytes() + leaf_key.size_bytes() + mask.size_bytes() +
            first.size_bytes();

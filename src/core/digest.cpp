@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/copy_product.h"
 #include "core/hash_bytes.h"
 #include "voxel/random.h"
 
@@ -32,38 +33,53 @@ class Digest {
 
 }  // namespace
 
-uint64_t digest(const LatticeSurface& s) { return Digest().array(s.points).array(s.triangles).get(); }
-uint64_t digest(const VoxelSet& v) { return Digest().array(v.leaf_key).array(v.mask).get(); }
+uint64_t digest(const LatticeSurface& surface) {
+  const OnHost<LatticeSurface> s(surface);
+  return Digest().array(s->points).array(s->triangles).get();
+}
+uint64_t digest(const VoxelSet& voxels) {
+  const OnHost<VoxelSet> v(voxels);
+  return Digest().array(v->leaf_key).array(v->mask).get();
+}
 uint64_t digest(const SiteSet& s) { return digest(s.voxels); }
-uint64_t digest(const SiteSamples& s) {
-  std::vector<uint64_t> packed(size_t(s.sample.size()) * 2);
-  for (int64_t i = 0; i < s.sample.size(); ++i) {
-    const SiteSample& p = s.sample[i];
+uint64_t digest(const SiteSamples& samples) {
+  const OnHost<SiteSamples> s(samples);
+  std::vector<uint64_t> packed(size_t(s->sample.size()) * 2);
+  for (int64_t i = 0; i < s->sample.size(); ++i) {
+    const SiteSample& p = s->sample[i];
     packed[size_t(2 * i)] = uint64_t(uint16_t(p.dx)) | uint64_t(uint16_t(p.dy)) << 16 | uint64_t(uint16_t(p.dz)) << 32;
     packed[size_t(2 * i + 1)] = uint64_t(p.triangle) | uint64_t(uint8_t(p.normal.x)) << 32 |
                                 uint64_t(uint8_t(p.normal.y)) << 40 | uint64_t(uint8_t(p.normal.z)) << 48;
   }
-  return Digest().array(packed).array(s.first).array(s.triangles).get();
+  return Digest().array(packed).array(s->first).array(s->triangles).get();
 }
-uint64_t digest(const Shell& s) {
+uint64_t digest(const Shell& shell) {
+  const OnHost<Shell> s(shell);
   return Digest()
-      .value(digest(s.voxels))
-      .value(uint64_t(s.band_vox))
-      .array(s.closest_site)
-      .array(s.distance_sq_vox)
+      .value(digest(s->voxels))
+      .value(uint64_t(s->band_vox))
+      .array(s->closest_site)
+      .array(s->distance_sq_vox)
       .get();
 }
-uint64_t digest(const Sheet& s) {
+uint64_t digest(const Sheet& sheet) {
+  const OnHost<Sheet> s(sheet);
   return Digest()
-      .value(digest(s.corners))
-      .array(s.position)
-      .array(s.normal)
-      .array(s.source_triangle)
-      .array(s.triangles)
+      .value(digest(s->corners))
+      .array(s->position)
+      .array(s->normal)
+      .array(s->source_triangle)
+      .array(s->triangles)
       .get();
 }
-uint64_t digest(const SeedSet& s) { return Digest().array(s.position).array(s.normal).array(s.home).get(); }
-uint64_t digest(const VoronoiLabels& l) { return Digest().array(l.voxel_seed).get(); }
+uint64_t digest(const SeedSet& seeds) {
+  const OnHost<SeedSet> s(seeds);
+  return Digest().array(s->position).array(s->normal).array(s->home).get();
+}
+uint64_t digest(const VoronoiLabels& labels) {
+  const OnHost<VoronoiLabels> l(labels);
+  return Digest().array(l->voxel_seed).get();
+}
 uint64_t digest(const TriangleMesh& m) { return Digest().array(m.vertices).array(m.triangles).get(); }
 
 std::string digest_text(uint64_t digest) {

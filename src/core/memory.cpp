@@ -1,7 +1,8 @@
 // Host memory of Buffers, counted.
 #include <atomic>
 #include <cstdlib>
-#include <new>
+#include <cstring>
+#include <string>
 
 #include "isoshell/buffer.h"
 #include "isoshell/error.h"
@@ -13,24 +14,36 @@ std::atomic<int64_t> held_bytes{0}, peak_bytes{0};
 
 int64_t rounded(int64_t bytes) { return (bytes + 63) / 64 * 64; }
 
+class HostMemory final : public Memory {
+ public:
+  MemorySpace space() const override { return MemorySpace::host; }
+
+  void* allocate(int64_t bytes) override {
+    if (bytes <= 0) return nullptr;
+    void* data = std::aligned_alloc(64, size_t(rounded(bytes)));
+    if (!data)
+      throw Error(ErrorCode::out_of_memory, "memory",
+                  "out of memory: " + std::to_string(bytes) + " bytes more were refused; lower the resolution");
+    const int64_t held = held_bytes += bytes;
+    int64_t peak = peak_bytes.load();
+    while (held > peak && !peak_bytes.compare_exchange_weak(peak, held)) {
+    }
+    return data;
+  }
+
+  void free(void* data, int64_t bytes) noexcept override {
+    std::free(data);
+    held_bytes -= bytes;
+  }
+
+  void copy_to_host(void* to, const void* from, int64_t bytes) override { std::memcpy(to, from, size_t(bytes)); }
+};
+
 }  // namespace
 
-void* allocate_host(int64_t bytes) {
-  if (bytes <= 0) return nullptr;
-  void* data = std::aligned_alloc(64, size_t(rounded(bytes)));
-  if (!data)
-    throw Error(ErrorCode::out_of_memory, "memory",
-                "out of memory: " + std::to_string(bytes) + " bytes more were refused; lower the resolution");
-  const int64_t held = held_bytes += bytes;
-  int64_t peak = peak_bytes.load();
-  while (held > peak && !peak_bytes.compare_exchange_weak(peak, held)) {
-  }
-  return data;
-}
-
-void free_host(void* data, int64_t bytes) {
-  std::free(data);
-  if (data) held_bytes -= bytes;
+Memory& host_memory() {
+  static HostMemory memory;
+  return memory;
 }
 
 int64_t host_memory_peak_bytes() { return peak_bytes; }

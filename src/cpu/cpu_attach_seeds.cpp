@@ -1,4 +1,5 @@
 // The CPU's attach_to_sheet.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/attach_seeds_body.h"
@@ -7,7 +8,7 @@ namespace isoshell {
 
 void cpu_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context) {
   TbbExecutor exec(context, "attach");
-  run_with_threads(context, [&] { attach_to_sheet_body(exec, sheet, seeds); });
+  run_with_threads(context, [&] { attach_to_sheet_body(exec, *OnHost(sheet), on_host(seeds)); });
 }
 
 }  // namespace isoshell

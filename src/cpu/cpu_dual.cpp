@@ -1,4 +1,5 @@
 // The CPU's triangulate_dual.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/dual_body.h"
@@ -8,7 +9,8 @@ namespace isoshell {
 DualMesh cpu_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
                               Context& context) {
   TbbExecutor exec(context, "dual");
-  return run_with_threads(context, [&] { return triangulate_dual_body(exec, sheet, seeds, options, report); });
+  return run_with_threads(context,
+                          [&] { return triangulate_dual_body(exec, *OnHost(sheet), on_host(seeds), options, report); });
 }
 
 }  // namespace isoshell

@@ -1,4 +1,5 @@
 // The CPU's flood_shell.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/flood_body.h"
@@ -7,7 +8,7 @@ namespace isoshell {
 
 VoronoiLabels cpu_flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) {
   TbbExecutor exec(context, "flood");
-  return run_with_threads(context, [&] { return flood_shell_body(exec, shell, seeds); });
+  return run_with_threads(context, [&] { return flood_shell_body(exec, *OnHost(shell), *OnHost(seeds)); });
 }
 
 }  // namespace isoshell

@@ -1,4 +1,5 @@
 // The CPU's relax_on_sheet.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/relax_sheet_body.h"
@@ -7,7 +8,7 @@ namespace isoshell {
 
 RelaxReport cpu_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
   TbbExecutor exec(context, "relax_sheet");
-  return run_with_threads(context, [&] { return relax_on_sheet_body(exec, sheet, seeds, options); });
+  return run_with_threads(context, [&] { return relax_on_sheet_body(exec, *OnHost(sheet), on_host(seeds), options); });
 }
 
 }  // namespace isoshell

@@ -1,4 +1,5 @@
 // The CPU's sample_sites.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/samples_body.h"
@@ -7,7 +8,7 @@ namespace isoshell {
 
 SiteSamples cpu_sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) {
   TbbExecutor exec(context, "samples");
-  return run_with_threads(context, [&] { return sample_sites_body(exec, surface, sites); });
+  return run_with_threads(context, [&] { return sample_sites_body(exec, *OnHost(surface), *OnHost(sites)); });
 }
 
 }  // namespace isoshell

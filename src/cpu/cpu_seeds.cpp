@@ -1,4 +1,5 @@
 // The CPU's place_seeds.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/seeds_body.h"
@@ -7,13 +8,13 @@ namespace isoshell {
 
 SeedSet cpu_place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) {
   TbbExecutor exec(context, "seeds");
-  return run_with_threads(context, [&] { return place_seeds_body(exec, sheet, options); });
+  return run_with_threads(context, [&] { return place_seeds_body(exec, *OnHost(sheet), options); });
 }
 
 SeedSet cpu_place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,
                                  Context& context) {
   TbbExecutor exec(context, "seeds");
-  return run_with_threads(context, [&] { return place_seeds_body(exec, sites, samples, options); });
+  return run_with_threads(context, [&] { return place_seeds_body(exec, *OnHost(sites), *OnHost(samples), options); });
 }
 
 }  // namespace isoshell

@@ -1,4 +1,5 @@
 // The CPU's build_sheet.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/sheet_body.h"
@@ -8,7 +9,8 @@ namespace isoshell {
 Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                       const SheetOptions& options, Context& context) {
   TbbExecutor exec(context, "sheet");
-  return run_with_threads(context, [&] { return build_sheet_body(exec, surface, sites, samples, options); });
+  return run_with_threads(
+      context, [&] { return build_sheet_body(exec, *OnHost(surface), *OnHost(sites), *OnHost(samples), options); });
 }
 
 }  // namespace isoshell

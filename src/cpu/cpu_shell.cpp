@@ -1,4 +1,5 @@
 // The CPU's build_shell.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "cpu/leaf_lanes.h"
@@ -8,7 +9,7 @@ namespace isoshell {
 
 Shell cpu_build_shell(const SiteSet& sites, const ShellOptions& options, Context& context) {
   TbbExecutor exec(context, "shell");
-  return run_with_threads(context, [&] { return build_shell_body<LeafLanes>(exec, sites, options); });
+  return run_with_threads(context, [&] { return build_shell_body<LeafLanes>(exec, *OnHost(sites), options); });
 }
 
 }  // namespace isoshell

@@ -1,4 +1,5 @@
 // The CPU's voxelize.
+#include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/sites_body.h"
@@ -7,7 +8,7 @@ namespace isoshell {
 
 SiteSet cpu_voxelize(const LatticeSurface& surface, Context& context) {
   TbbExecutor exec(context, "sites");
-  return run_with_threads(context, [&] { return voxelize_body(exec, surface); });
+  return run_with_threads(context, [&] { return voxelize_body(exec, *OnHost(surface)); });
 }
 
 }  // namespace isoshell

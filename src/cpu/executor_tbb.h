@@ -38,6 +38,16 @@ class TbbExecutor {
     for_each("fill", out.size, [=](int64_t i) { out[i] = value; });
   }
 
+  template <class T>
+  void copy(View<const T> from, View<T> to) {
+    for_each("copy", from.size, [=](int64_t i) { to[i] = from[i]; });
+  }
+
+  template <class T>
+  T value(View<const T> values, int64_t i) {
+    return values[i];
+  }
+
   template <class Step>
   void for_each(const char*, int64_t count, Step step) {
     check_cancel(context_, stage_);

@@ -3,6 +3,8 @@
 //   Context& context();                                              // of the run: options, progress, cancellation
 //   template <class T> Buffer<T> make(int64_t count);               // not initialised
 //   template <class T> void fill(View<T> out, T value);
+//   template <class T> void copy(View<const T> from, View<T> to);    // equal sizes, no overlap
+//   template <class T> T value(View<const T> values, int64_t i);     // one element, on the host: waits for the steps
 //   template <class Step> void for_each(const char* name, int64_t count, Step step);   // step(int64_t i), any order
 //   template <class T> T exclusive_scan(View<T> counts);             // in place; returns the total
 //   template <class T> void inclusive_scan(View<T> counts);          // in place

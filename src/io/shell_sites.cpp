@@ -3,13 +3,16 @@
 
 #include <tbb/parallel_for.h>
 
+#include "core/copy_product.h"
 #include "core/voxel_set.h"
 #include "isoshell/io/vdb_file.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {
 
-SiteSet sites_of_shell(const Shell& shell, const LatticeFrame& frame) {
+SiteSet sites_of_shell(const Shell& on_any_side, const LatticeFrame& frame) {
+  const OnHost<Shell> on_host(on_any_side);
+  const Shell& shell = *on_host;
   const VoxelSetView view = shell.voxels.view();
   const int64_t leaves = shell.voxels.leaf_count();
   Buffer<LeafMask> mask(leaves);

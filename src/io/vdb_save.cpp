@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/copy_product.h"
 #include "io/key_values.h"
 #include "io/shell_sites.h"
 #include "io/vdb_format.h"
@@ -196,10 +197,8 @@ openvdb::Vec3f seed_color(uint32_t seed) {
   return openvdb::Vec3f(part(0), part(8), part(16));
 }
 
-}  // namespace
-
-void save_shell(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
-                const StageWriteOptions& options) {
+void write_shell(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
+                 const StageWriteOptions& options) {
   check_shell(shell);
   initialize_openvdb();
   StageWriter file(surface.frame, "shell", options);
@@ -209,9 +208,9 @@ void save_shell(const std::string& path, const LatticeSurface& surface, const Si
   file.write(path, options.overwrite);
 }
 
-void save_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples,
-                  const Shell& shell, const SeedSet& seeds, const VoronoiLabels& labels,
-                  const StageWriteOptions& options) {
+void write_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples,
+                   const Shell& shell, const SeedSet& seeds, const VoronoiLabels& labels,
+                   const StageWriteOptions& options) {
   check_shell(shell);
   check_fits(labels.voxel_seed.size(), shell.voxels.voxel_count(), "VoronoiLabels::voxel_seed");
   check_fits(seeds.normal.size(), seeds.size(), "SeedSet::normal");
@@ -233,8 +232,8 @@ void save_voronoi(const std::string& path, const LatticeSurface& surface, const 
   file.write(path, options.overwrite);
 }
 
-void save_preview(const std::string& path, const LatticeFrame& frame, const Shell& shell, const VoronoiLabels& labels,
-                  const StageWriteOptions& options) {
+void write_preview(const std::string& path, const LatticeFrame& frame, const Shell& shell, const VoronoiLabels& labels,
+                   const StageWriteOptions& options) {
   const VoxelSet& set = shell.voxels;
   initialize_openvdb();
   StageWriter file(frame, nullptr, options);
@@ -250,6 +249,24 @@ void save_preview(const std::string& path, const LatticeFrame& frame, const Shel
     });
   }
   file.write(path, options.overwrite);
+}
+
+}  // namespace
+
+void save_shell(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
+                const StageWriteOptions& options) {
+  write_shell(path, *OnHost(surface), *OnHost(samples), *OnHost(shell), options);
+}
+
+void save_voronoi(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples,
+                  const Shell& shell, const SeedSet& seeds, const VoronoiLabels& labels,
+                  const StageWriteOptions& options) {
+  write_voronoi(path, *OnHost(surface), *OnHost(samples), *OnHost(shell), *OnHost(seeds), *OnHost(labels), options);
+}
+
+void save_preview(const std::string& path, const LatticeFrame& frame, const Shell& shell, const VoronoiLabels& labels,
+                  const StageWriteOptions& options) {
+  write_preview(path, frame, *OnHost(shell), *OnHost(labels), options);
 }
 
 }  // namespace isoshell

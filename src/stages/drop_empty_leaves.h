@@ -1,7 +1,7 @@
 // Makes a VoxelSet of leaves that may turn out empty.
 #pragma once
 
-#include "core/voxel_set.h"
+#include "stages/index_leaves.h"
 
 namespace isoshell {
 
@@ -42,7 +42,7 @@ VoxelSet voxel_set_of(Exec& exec, View<const uint64_t> key, View<const LeafMask>
   set.mask = exec.template make<LeafMask>(kept.size());
   exec.for_each("drop empty leaves", kept.size(),
                 CopyKeptLeaf{kept.view(), key, mask, set.leaf_key.view(), set.mask.view()});
-  index_leaves(set, extent_vox);
+  index_leaves(exec, set, extent_vox);
   return set;
 }
 

@@ -122,13 +122,6 @@ struct HasSeat {
   ISOSHELL_HD bool operator()(int64_t leaf) const { return state.front[0].round[leaf] == 0; }
 };
 
-/// Makes the voxels of round 0 the first front.
-struct CopyMask {
-  View<const LeafMask> from;
-  View<LeafMask> to;
-  ISOSHELL_HD void operator()(int64_t leaf) const { to[leaf] = from[leaf]; }
-};
-
 /// Lists the leaves that the voxels of this round can reach, each once.
 struct ListReached {
   State state;
@@ -256,7 +249,7 @@ VoronoiLabels flood_shell_body(Exec& exec, const Shell& shell, const SeedSet& se
   exec.fill(done.view(), LeafMask{});
   exec.fill(due.view(), uint32_t(0));
   exec.for_each("seat seeds", seeds.size(), Seat{state, start.view()});
-  exec.for_each("first front", leaves, CopyMask{done.view(), mask[0].view()});
+  exec.copy(View<const LeafMask>(done.view()), mask[0].view());  // the voxels of round 0 are the first front
 
   const Buffer<uint32_t> seated = exec.select(leaves, HasSeat{state});
   View<const uint32_t> here = seated.view();
@@ -264,7 +257,7 @@ VoronoiLabels flood_shell_body(Exec& exec, const Shell& shell, const SeedSet& se
     const View<uint32_t> next = list[~round & 1].view();
     exec.fill(count.view(), uint32_t(0));
     exec.for_each("list reached leaves", here.size, ListReached{state, round, here, next, count.view()});
-    here = {next.data, int64_t(count[0])};
+    here = {next.data, int64_t(exec.value(View<const uint32_t>(count.view()), 0))};
     exec.for_each("spread", here.size, Spread{state, round + 1, here});
   }
   return out;

@@ -113,12 +113,6 @@ struct FillLeafTriangles {
   }
 };
 
-struct CopyOffsets {
-  View<const int64_t> from;
-  View<int64_t> to;
-  ISOSHELL_HD void operator()(int64_t i) const { to[i] = from[i]; }
-};
-
 /// The lists' order depends on the schedule: take it as a set, or sort it.
 template <class Exec>
 LeafTriangles find_leaf_triangles(Exec& exec, const LatticeSurface& surface, const BlockGrid& grid,
@@ -131,7 +125,7 @@ LeafTriangles find_leaf_triangles(Exec& exec, const LatticeSurface& surface, con
                 CountLeafTriangles{view_of(surface), grid, tiles, leaves, lists.first.view()});
   lists.triangle = exec.template make<uint32_t>(exec.exclusive_scan(lists.first.view()));
   Buffer<int64_t> cursor = exec.template make<int64_t>(count);
-  exec.for_each("copy offsets", count, CopyOffsets{lists.first.view(), cursor.view()});
+  exec.copy(View<const int64_t>(lists.first.view().part(0, count)), cursor.view());
   exec.for_each("fill leaf triangles", tiles.size,
                 FillLeafTriangles{view_of(surface), grid, tiles, leaves, cursor.view(), lists.triangle.view()});
   return lists;

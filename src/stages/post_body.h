@@ -243,13 +243,6 @@ struct TakeNormal {
   ISOSHELL_HD void operator()(int64_t v) const { normal[v] = sheet_normal[home[v]]; }
 };
 
-template <class T>
-struct CopyValue {
-  View<const T> from;
-  View<T> to;
-  ISOSHELL_HD void operator()(int64_t i) const { to[i] = from[i]; }
-};
-
 struct RotateTriangle {
   View<TriangleIndices> triangles;
   ISOSHELL_HD void operator()(int64_t i) const {
@@ -304,19 +297,19 @@ class Improvement {
 
   void smooth(int steps) {
     for (int s = 0; s < steps; ++s) {
-      exec_.for_each("copy homes", vertices_, CopyValue<uint32_t>{seeds_.home.view(), moved_home_.view()});
+      exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
       exec_.for_each("smooth", vertices_,
                      SmoothVertex{view(), walk_, mesh_.position.view(), moved_home_.view(), moved_.view()});
       undo_harm();
-      exec_.for_each("take positions", vertices_, CopyValue<PointQ8>{moved_.view(), mesh_.position.view()});
-      exec_.for_each("take homes", vertices_, CopyValue<uint32_t>{moved_home_.view(), seeds_.home.view()});
+      exec_.copy(View<const PointQ8>(moved_.view()), mesh_.position.view());
+      exec_.copy(View<const uint32_t>(moved_home_.view()), seeds_.home.view());
     }
   }
 
   void finish() {
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
     exec_.sort(mesh_.triangles.view(), ByIndices{});
-    exec_.for_each("seed positions", vertices_, CopyValue<PointQ8>{mesh_.position.view(), seeds_.position.view()});
+    exec_.copy(View<const PointQ8>(mesh_.position.view()), seeds_.position.view());
     exec_.for_each("seed normals", vertices_, TakeNormal{walk_.normal, seeds_.home.view(), seeds_.normal.view()});
   }
 

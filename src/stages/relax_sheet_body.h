@@ -90,7 +90,7 @@ Patches make_patches(Exec& exec, const Sheet& sheet) {
                          sheet.vertex_triangles.view()};
   Patches patches;
   patches.first = exec.template make<int64_t>(leaves + 1);
-  patches.first[leaves] = 0;
+  exec.fill(patches.first.view().part(leaves, 1), int64_t(0));
   exec.for_each("count patch triangles", leaves, CountPatch{visit, patches.first.view()});
   exec.exclusive_scan(patches.first.view());
   patches.triangles = exec.template make<PatchTriangle>(sheet.triangles.size());
@@ -289,7 +289,7 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   Buffer<uint32_t> labels = exec.template make<uint32_t>(sheet.vertex_count());
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
-  for (int64_t i = 0; i < count; ++i) last[i] = seeds.position[i];
+  exec.copy(View<const PointQ8>(seeds.position.view()), last.view());
 
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};

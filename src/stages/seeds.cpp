@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/copy_product.h"
 #include "core/seed_count.h"
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
@@ -12,7 +13,9 @@ namespace isoshell {
 namespace {
 
 /// Longest side of the sites' box in voxels: that is what resolution means. Only asked for in a message.
-int32_t resolution_of(const VoxelSet& sites) {
+int32_t resolution_of(const VoxelSet& voxels) {
+  const OnHost<VoxelSet> on_host(voxels);
+  const VoxelSet& sites = *on_host;
   int32_t lo[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, hi[3] = {-1, -1, -1}, longest = 0;
   const VoxelSetView view = sites.view();
   for (int64_t l = 0; l < sites.leaf_count(); ++l)

@@ -93,7 +93,7 @@ void list_triangles_around(Exec& exec, Sheet& sheet) {
   exec.for_each("count triangles around", sheet.triangles.size(),
                 CountTrianglesAround{sheet.triangles.view(), count.view()});
   sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
-  sheet.vertex_first[vertices] = 0;
+  exec.fill(sheet.vertex_first.view().part(vertices, 1), int64_t(0));
   exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
   exec.exclusive_scan(sheet.vertex_first.view());
   sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());

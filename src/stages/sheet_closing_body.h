@@ -122,7 +122,7 @@ Solid complement_of_outside(Exec& exec, const VoxelSetView& walls) {
   solid.set.mask = exec.template make<LeafMask>(walls.leaf_key.size);
   exec.for_each("solid", walls.leaf_key.size,
                 ComplementOfOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
-  index_leaves(solid.set, BlockExtent(walls).vox);
+  index_leaves(exec, solid.set, BlockExtent(walls).vox);
   return solid;
 }
 
@@ -147,7 +147,7 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   solid.set = build_shell(rim_of_outside(exec, solid.outside.view()), band, exec.context()).voxels;
   exec.for_each("remove the thickened outside", solid.set.leaf_count(),
                 RemoveThickenedOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
-  index_leaves(solid.set, BlockExtent(site_view).vox);
+  index_leaves(exec, solid.set, BlockExtent(site_view).vox);
   // Where the thickened outside ends on a leaf's border, the solid beyond shows faces too.
   Buffer<uint32_t> wanted = exec.template make<uint32_t>(solid.set.leaf_count());
   exec.for_each("leaves inside", wanted.size(), WantInsideNeighbours{solid.view(), wanted.view()});

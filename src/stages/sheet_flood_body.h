@@ -208,10 +208,11 @@ struct FloodQueue {
   /// Where the next round's nodes go.
   FloodList next() { return {stamp.view(), node[1 - current].view(), {left.data() + (1 - current), 1}}; }
   /// Makes the next round current and returns its nodes.
-  View<const uint32_t> advance() {
-    left[current] = uint32_t(stamp.size());
+  View<const uint32_t> advance(Exec& exec) {
+    exec.fill(left.view().part(current, 1), uint32_t(stamp.size()));
     current = 1 - current;
-    return {node[current].data() + left[current], stamp.size() - int64_t(left[current])};
+    const int64_t begin = exec.value(View<const uint32_t>(left.view()), current);
+    return {node[current].data() + begin, stamp.size() - begin};
   }
 };
 
@@ -237,7 +238,7 @@ Outside find_outside(Exec& exec, const VoxelSetView& blocked) {
   FloodState state = {outside.view(), passed_on.view(), leaves.next(), blocks.next(), 1};
   exec.for_each("enter from the border", blocked.block_table.size, EnterFromBorder{state});
   for (;;) {
-    const View<const uint32_t> leaf_list = leaves.advance(), block_list = blocks.advance();
+    const View<const uint32_t> leaf_list = leaves.advance(exec), block_list = blocks.advance(exec);
     if (leaf_list.empty() && block_list.empty()) return outside;
     state.leaves = leaves.next();
     state.blocks = blocks.next();

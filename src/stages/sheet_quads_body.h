@@ -205,7 +205,7 @@ QuadMesh list_boundary(Exec& exec, Solid& solid) {
       "describe corners", mesh.corners.leaf_count(),
       DescribeCorners{view, mesh.corners.view(), mesh.position.view(), mesh.edges.view(), mesh.lattice_normal.view()});
   Buffer<int64_t> first = exec.template make<int64_t>(leaves + 1);
-  first[leaves] = 0;
+  exec.fill(first.view().part(leaves, 1), int64_t(0));
   exec.for_each("count faces", leaves, CountFaces{view, first.view()});
   const int64_t faces = exec.exclusive_scan(first.view());
   mesh.quads = exec.template make<Quad>(faces);

@@ -148,7 +148,7 @@ int64_t make_well_composed(Exec& exec, Solid& solid) {
                   AddVoxels{solid.view(), list.view(), added.view(), solid.set.mask.view(), look.view()});
   }
   const BlockExtent extent(solid.set.view());
-  index_leaves(solid.set, extent.vox);
+  index_leaves(exec, solid.set, extent.vox);
   return total;
 }
 

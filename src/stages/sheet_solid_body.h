@@ -2,7 +2,6 @@
 // every other leaf is wholly inside or wholly outside and is looked up in the outside. See sheet_closing_body.h.
 #pragma once
 
-#include "core/voxel_set.h"
 #include "stages/drop_empty_leaves.h"
 #include "stages/sheet_flood_body.h"
 
@@ -137,7 +136,7 @@ bool give_masks(Exec& exec, Solid& solid, View<const uint32_t> wanted) {
   grown.mask = exec.template make<LeafMask>(kept.size());
   exec.for_each("masks", kept.size(),
                 CopyMaskOrMakeUniform{old, kept.view(), key.view(), grown.leaf_key.view(), grown.mask.view()});
-  index_leaves(grown, BlockExtent(old.set).vox);
+  index_leaves(exec, grown, BlockExtent(old.set).vox);
   solid.set = std::move(grown);
   return true;
 }

@@ -20,6 +20,7 @@ void require_inside(const LatticeSurface& surface) {
     throw Error(
         ErrorCode::usage, "sites",
         "the lattice is " + std::to_string(largest) + " voxels wide; each side must be 1 to " + std::to_string(limit));
+  if (surface.points.space() != MemorySpace::host) return;  // made by snap_surface, which keeps inside
   for (PointQ8 p : surface.points)
     if (p.x < 1 || p.y < 1 || p.z < 1 || p.x >= extent[0] * kOneVoxelQ8 || p.y >= extent[1] * kOneVoxelQ8 ||
         p.z >= extent[2] * kOneVoxelQ8)

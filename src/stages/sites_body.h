@@ -150,7 +150,7 @@ SiteSet voxelize_body(Exec& exec, const LatticeSurface& surface) {
   exec.for_each("mark voxels", leaves,
                 MarkVoxels{view_of(surface), set.leaf_key.view(), lists.first.view(), lists.triangle.view(),
                            set.mask.view(), set.first.view()});
-  exec.exclusive_scan(set.first.view());
+  set.active = exec.exclusive_scan(set.first.view());
   return sites;
 }
 

@@ -79,7 +79,11 @@ ISOSHELL_HD inline T atomic_fetch_add(T& target, T value) {
 template <class T>
 ISOSHELL_HD inline bool atomic_min(T& target, T value) {
 #if defined(__CUDA_ARCH__)
-  return atomicMin(&target, value) > value;
+  using Word = unsigned long long;
+  if constexpr (sizeof(T) == 8)
+    return T(atomicMin(reinterpret_cast<Word*>(&target), Word(value))) > value;  // unsigned values only
+  else
+    return atomicMin(&target, value) > value;
 #else
   T seen = __atomic_load_n(&target, __ATOMIC_RELAXED);
   while (value < seen)
@@ -91,7 +95,11 @@ ISOSHELL_HD inline bool atomic_min(T& target, T value) {
 template <class T>
 ISOSHELL_HD inline bool atomic_max(T& target, T value) {
 #if defined(__CUDA_ARCH__)
-  return atomicMax(&target, value) < value;
+  using Word = unsigned long long;
+  if constexpr (sizeof(T) == 8)
+    return T(atomicMax(reinterpret_cast<Word*>(&target), Word(value))) < value;  // unsigned values only
+  else
+    return atomicMax(&target, value) < value;
 #else
   T seen = __atomic_load_n(&target, __ATOMIC_RELAXED);
   while (value > seen)

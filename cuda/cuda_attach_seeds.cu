@@ -1,0 +1,13 @@
+// CUDA's attach_to_sheet.
+#include "cuda/cuda_backend.h"
+#include "cuda/executor_cuda.cuh"
+#include "stages/attach_seeds_body.h"
+
+namespace isoshell {
+
+void cuda_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context) {
+  CudaExecutor exec(context, "attach");
+  attach_to_sheet_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds));
+}
+
+}  // namespace isoshell

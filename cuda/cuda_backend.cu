@@ -1,0 +1,30 @@
+// The CUDA backend's table.
+#include "cuda/cuda_backend.h"
+#include "cuda/device_stream.h"
+
+namespace isoshell {
+
+const BackendTable* cuda_backend() {
+  static const BackendTable table = {
+      "cuda",
+      cpu_backend().measure_topology,
+      cpu_backend().snap_surface,
+      cuda_voxelize,
+      cuda_sample_sites,
+      cuda_build_shell,
+      cuda_build_sheet,
+      cuda_place_seeds_on_sheet,
+      cuda_place_seeds_on_sites,
+      cuda_relax_on_sheet,
+      cuda_relax_in_shell,
+      cuda_attach_to_sheet,
+      cuda_flood_shell,
+      cuda_triangulate_dual,
+      cuda_subdivide_seeds,
+      cuda_improve_mesh,
+  };
+  static const bool some = device_count() > 0;
+  return some ? &table : nullptr;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,23 @@
+// What the CUDA backend provides; one file cuda_<stage>.cu instantiates or replaces each body.
+#pragma once
+
+#include "stages/backend_table.h"
+
+namespace isoshell {
+
+SiteSet cuda_voxelize(const LatticeSurface&, Context&);
+SiteSamples cuda_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
+Shell cuda_build_shell(const SiteSet&, const ShellOptions&, Context&);
+Sheet cuda_build_sheet(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+SeedSet cuda_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
+SeedSet cuda_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
+RelaxReport cuda_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
+RelaxReport cuda_relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
+                                Context&);
+void cuda_attach_to_sheet(const Sheet&, SeedSet&, Context&);
+VoronoiLabels cuda_flood_shell(const Shell&, const SeedSet&, Context&);
+DualMesh cuda_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
+SeedSet cuda_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
+int64_t cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
+
+}  // namespace isoshell

@@ -1,0 +1,14 @@
+// CUDA's triangulate_dual.
+#include "cuda/cuda_backend.h"
+#include "cuda/executor_cuda.cuh"
+#include "stages/dual_body.h"
+
+namespace isoshell {
+
+DualMesh cuda_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
+                               Context& context) {
+  CudaExecutor exec(context, "dual");
+  return triangulate_dual_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), options, report);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,13 @@
+// CUDA's flood_shell.
+#include "cuda/cuda_backend.h"
+#include "cuda/executor_cuda.cuh"
+#include "stages/flood_body.h"
+
+namespace isoshell {
+
+VoronoiLabels cuda_flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) {
+  CudaExecutor exec(context, "flood");
+  return flood_shell_body(exec, *OnDevice<Shell>(exec, shell), *OnDevice<SeedSet>(exec, seeds));
+}
+
+}  // namespace isoshell

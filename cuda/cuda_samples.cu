@@ -1,0 +1,13 @@
+// CUDA's sample_sites.
+#include "cuda/cuda_backend.h"
+#include "cuda/executor_cuda.cuh"
+#include "stages/samples_body.h"
+
+namespace isoshell {
+
+SiteSamples cuda_sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) {
+  CudaExecutor exec(context, "samples");
+  return sample_sites_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, sites));
+}
+
+}  // namespace isoshell

@@ -1,0 +1,140 @@
+// Streams and device memory.
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "cuda/device_stream.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+std::atomic<int64_t> held_bytes{0}, peak_bytes{0};
+
+/// One pool a device, made at first use and never destroyed.
+cudaMemPool_t pool_of(int device) {
+  static std::mutex mutex;
+  static std::vector<cudaMemPool_t> pools;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (int(pools.size()) <= device) pools.resize(size_t(device) + 1, nullptr);
+  cudaMemPool_t& pool = pools[size_t(device)];
+  if (pool) return pool;
+  cudaMemPoolProps properties = {};
+  properties.allocType = cudaMemAllocationTypePinned;
+  properties.location = {cudaMemLocationTypeDevice, device};
+  require_success(cudaMemPoolCreate(&pool, &properties), "cudaMemPoolCreate");
+  uint64_t keep_all = UINT64_MAX;
+  require_success(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &keep_all), "cudaMemPoolSetAttribute");
+  return pool;
+}
+
+/// Streams that no context uses at the moment.
+struct FreeStreams {
+  std::mutex mutex;
+  std::vector<DeviceStream*> streams;
+};
+FreeStreams& free_streams() {
+  static FreeStreams* all = new FreeStreams;  // contexts may end after static objects do
+  return *all;
+}
+
+DeviceStream* take_stream(int device) {
+  {
+    FreeStreams& all = free_streams();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    for (DeviceStream*& s : all.streams)
+      if (s->device() == device) {
+        DeviceStream* taken = s;
+        s = all.streams.back();
+        all.streams.pop_back();
+        return taken;
+      }
+  }
+  cudaStream_t stream;
+  require_success(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
+  void* pinned;
+  require_success(cudaMallocHost(&pinned, DeviceStream::kPinnedBytes), "cudaMallocHost");
+  return new DeviceStream(device, stream, pinned);
+}
+
+void return_stream(void* stream) {
+  FreeStreams& all = free_streams();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  all.streams.push_back(static_cast<DeviceStream*>(stream));
+}
+
+}  // namespace
+
+void require_success(cudaError_t status, const char* call) {
+  if (status == cudaSuccess) return;
+  throw Error(ErrorCode::internal, "cuda", std::string(call) + " failed: " + cudaGetErrorString(status));
+}
+
+int device_count() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+  cudaGetLastError();
+  return 0;
+}
+
+DeviceStream& DeviceStream::of(Context& context) {
+  if (!context.backend_state) {
+    const int devices = device_count();
+    if (context.device < 0 || context.device >= devices)
+      throw Error(ErrorCode::no_device, "device",
+                  "there is no CUDA device " + std::to_string(context.device) + "; this machine has " +
+                      std::to_string(devices) + ", numbered from 0");
+    require_success(cudaSetDevice(context.device), "cudaSetDevice");
+    context.backend_state = std::shared_ptr<void>(take_stream(context.device), return_stream);
+  }
+  DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());
+  require_success(cudaSetDevice(stream.device_), "cudaSetDevice");
+  stream.set_limit(context.memory_limit_bytes);
+  return stream;
+}
+
+DeviceStream::DeviceStream(int device, cudaStream_t stream, void* pinned)
+    : device_(device), stream_(stream), pinned_(pinned) {}
+
+void* DeviceStream::allocate(int64_t bytes) {
+  if (bytes <= 0) return nullptr;
+  void* data = nullptr;
+  const bool allowed = limit_ <= 0 || held_bytes + bytes <= limit_;
+  if (!allowed || cudaMallocFromPoolAsync(&data, size_t(bytes), pool_of(device_), stream_) != cudaSuccess) {
+    cudaGetLastError();
+    throw Error(ErrorCode::out_of_memory, "memory",
+                "out of device memory: " + std::to_string(bytes >> 20) + " MiB more than the " +
+                    std::to_string(held_bytes >> 20) + " MiB in use were refused" +
+                    (allowed ? "" : " by the limit of " + std::to_string(limit_ >> 20) + " MiB") +
+                    "; lower the resolution, or use --device cpu");
+  }
+  const int64_t held = held_bytes += bytes;
+  int64_t peak = peak_bytes.load();
+  while (held > peak && !peak_bytes.compare_exchange_weak(peak, held)) {
+  }
+  return data;
+}
+
+void DeviceStream::free(void* data, int64_t bytes) noexcept {
+  cudaFreeAsync(data, stream_);
+  held_bytes -= bytes;
+}
+
+void DeviceStream::copy_to_host(void* to, const void* from, int64_t bytes) {
+  if (bytes <= 0) return;
+  require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+  synchronize();
+}
+
+void DeviceStream::copy_to_device(void* to, const void* from, int64_t bytes) {
+  if (bytes <= 0) return;
+  require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyHostToDevice, stream_), "cudaMemcpyAsync");
+}
+
+void DeviceStream::synchronize() { require_success(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+int64_t device_memory_peak_bytes() { return peak_bytes; }
+void reset_device_memory_peak() { peak_bytes = held_bytes.load(); }
+
+}  // namespace isoshell

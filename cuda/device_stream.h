@@ -1,0 +1,54 @@
+// The CUDA side of a Context: a stream on one device and the memory that is allocated in that stream's order.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "isoshell/backend.h"
+#include "isoshell/buffer.h"
+
+namespace isoshell {
+
+/// Throws Error{internal} that names the call when `status` is an error.
+void require_success(cudaError_t status, const char* call);
+
+/// Number of CUDA devices; 0 without a driver.
+int device_count();
+
+/// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Lives as
+/// long as the process: contexts borrow it, and Buffers may outlive them.
+class DeviceStream final : public Memory {
+ public:
+  /// The context's own; made, and its device chosen, at first use. Throws: no_device.
+  static DeviceStream& of(Context& context);
+
+  DeviceStream(int device, cudaStream_t stream, void* pinned);
+  MemorySpace space() const override { return MemorySpace::cuda; }
+  void* allocate(int64_t bytes) override;
+  void free(void* data, int64_t bytes) noexcept override;
+  void copy_to_host(void* to, const void* from, int64_t bytes) override;
+
+  void copy_to_device(void* to, const void* from, int64_t bytes);
+  int device() const { return device_; }
+  cudaStream_t stream() const { return stream_; }
+  /// Waits for everything in the stream.
+  void synchronize();
+  /// A few words of pinned host memory for read-backs.
+  static constexpr int64_t kPinnedBytes = 4096;
+  void* pinned() const { return pinned_; }
+  /// Allocations beyond this many bytes at one time throw out_of_memory; 0 means no limit.
+  void set_limit(int64_t bytes) { limit_ = bytes; }
+
+ private:
+  int device_;
+  cudaStream_t stream_;
+  void* pinned_;
+  int64_t limit_ = 0;
+};
+
+/// Largest number of bytes that Buffers held on all devices at one time since the last reset.
+int64_t device_memory_peak_bytes();
+void reset_device_memory_peak();
+
+}  // namespace isoshell

@@ -1,0 +1,211 @@
+// The CUDA executor: exec/executor.h over a stream. Steps run one a thread; words that return a value to the host wait
+// for the stream, all others only enqueue.
+#pragma once
+
+#include <cub/device/device_merge_sort.cuh>
+#include <functional>
+#include <string>
+#include <type_traits>
+
+#include "core/copy_product.h"
+#include "cuda/device_stream.h"
+#include "cuda/primitives.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace cuda_steps {
+
+constexpr int kThreads = 128;
+inline unsigned blocks_for(int64_t count) { return unsigned((count + kThreads - 1) / kThreads); }
+__device__ inline int64_t thread_number() { return int64_t(blockIdx.x) * blockDim.x + threadIdx.x; }
+
+template <class Step>
+__global__ void run_step(int64_t count, Step step) {
+  const int64_t i = thread_number();
+  if (i < count) step(i);
+}
+
+template <class T>
+__global__ void fill_values(View<T> out, T value) {
+  const int64_t i = thread_number();
+  if (i < out.size) out[i] = value;
+}
+
+/// One ballot a warp: bit l of words[w] says whether element 32 w + l is kept.
+template <class Keep>
+__global__ void mark_kept(int64_t count, Keep keep, View<uint32_t> words) {
+  const int64_t i = thread_number();
+  const uint32_t word = __ballot_sync(0xffffffffu, i < count && bool(keep(i)));
+  if ((threadIdx.x & 31) == 0 && i < count) words[i >> 5] = word;
+}
+
+template <class Term>
+__global__ void sum_terms(int64_t count, Term term, int64_t* total) {
+  int64_t part = 0;
+  for (int64_t i = thread_number(); i < count; i += int64_t(gridDim.x) * blockDim.x) part += int64_t(term(i));
+  for (int offset = 16; offset > 0; offset >>= 1) part += __shfl_down_sync(0xffffffffu, part, offset);
+  if ((threadIdx.x & 31) == 0 && part != 0)
+    atomicAdd(reinterpret_cast<unsigned long long*>(total), (unsigned long long)part);
+}
+
+}  // namespace cuda_steps
+
+/// One per stage call.
+class CudaExecutor {
+ public:
+  CudaExecutor(Context& context, const char* stage)
+      : context_(context), stage_(stage), stream_(DeviceStream::of(context)) {}
+
+  Context& context() { return context_; }
+  DeviceStream& device() { return stream_; }
+  cudaStream_t stream() const { return stream_.stream(); }
+
+  /// Throws what went wrong with the launches so far, and Error{interrupted} when the context was cancelled.
+  void check(const char* name) {
+    if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
+      throw Error(ErrorCode::internal, stage_,
+                  std::string(name) + " failed on the device: " + cudaGetErrorString(status));
+    if (context_.cancel.load(std::memory_order_relaxed))
+      throw Error(ErrorCode::interrupted, stage_, "interrupted; nothing was written");
+  }
+
+  template <class T>
+  Buffer<T> make(int64_t count) {
+    return Buffer<T>(count, stream_);
+  }
+
+  template <class T>
+  void fill(View<T> out, T value) {
+    if (out.empty()) return;
+    cuda_steps::fill_values<<<cuda_steps::blocks_for(out.size), cuda_steps::kThreads, 0, stream()>>>(out, value);
+    check("fill");
+  }
+
+  template <class T>
+  void copy(View<const T> from, View<T> to) {
+    if (from.empty()) return;
+    require_success(
+        cudaMemcpyAsync(to.data, from.data, size_t(from.size) * sizeof(T), cudaMemcpyDeviceToDevice, stream()), "copy");
+  }
+
+  template <class T>
+  T value(View<const T> values, int64_t i) {
+    read_back(values.data + i, 0, sizeof(T));
+    stream_.synchronize();
+    return *static_cast<const T*>(stream_.pinned());
+  }
+
+  template <class Step>
+  void for_each(const char* name, int64_t count, Step step) {
+    if (count <= 0) return;
+    cuda_steps::run_step<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, step);
+    check(name);
+  }
+
+  template <class T>
+  T exclusive_scan(View<T> counts) {
+    if (counts.empty()) return 0;
+    read_back(counts.data + counts.size - 1, 0, sizeof(T));
+    exclusive_scan_async(stream_, counts);
+    read_back(counts.data + counts.size - 1, sizeof(T), sizeof(T));
+    stream_.synchronize();
+    const T* last = static_cast<const T*>(stream_.pinned());
+    return T(last[0] + last[1]);
+  }
+
+  template <class T>
+  void inclusive_scan(View<T> counts) {
+    inclusive_scan_async(stream_, counts);
+  }
+
+  template <class T, class Less = std::less<T>>
+  void sort(View<T> keys, Less less = {}) {
+    if (keys.size < 2) return;
+    if constexpr (std::is_same_v<T, uint64_t> && std::is_same_v<Less, std::less<T>>) {
+      sort_keys_async(stream_, keys);
+    } else {
+      size_t bytes = 0;
+      require_success(cub::DeviceMergeSort::SortKeys(nullptr, bytes, keys.data, keys.size, less, stream()), "sort");
+      Buffer<uint8_t> scratch = make<uint8_t>(int64_t(bytes));
+      require_success(cub::DeviceMergeSort::SortKeys(scratch.data(), bytes, keys.data, keys.size, less, stream()),
+                      "sort");
+    }
+    check("sort");
+  }
+
+  template <class Keep>
+  Buffer<uint32_t> select(int64_t count, Keep keep) {
+    if (count <= 0) return {};
+    Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32), rank = make<uint32_t>(words.size() + 1);
+    cuda_steps::mark_kept<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, keep,
+                                                                                                words.view());
+    check("select");
+    rank_kept_async(stream_, words.view(), rank.view());
+    Buffer<uint32_t> out = make<uint32_t>(value(View<const uint32_t>(rank.view()), words.size()));
+    if (!out.empty()) list_kept_async(stream_, words.view(), rank.view(), out.view());
+    return out;
+  }
+
+  template <class Term>
+  int64_t sum(int64_t count, Term term) {
+    if (count <= 0) return 0;
+    Buffer<int64_t> total = make<int64_t>(1);
+    fill(total.view(), int64_t(0));
+    const unsigned most = 1024;
+    const unsigned blocks = cuda_steps::blocks_for(count) < most ? cuda_steps::blocks_for(count) : most;
+    cuda_steps::sum_terms<<<blocks, cuda_steps::kThreads, 0, stream()>>>(count, term, total.data());
+    check("sum");
+    return value(View<const int64_t>(total.view()), 0);
+  }
+
+  /// A copy of any Buffer in this device's memory.
+  template <class T>
+  Buffer<T> to_device(const Buffer<T>& from) {
+    Buffer<T> copy = make<T>(from.size());
+    if (from.space() == MemorySpace::host)
+      stream_.copy_to_device(copy.data(), from.data(), from.size_bytes());
+    else
+      this->copy(from.view(), copy.view());
+    return copy;
+  }
+
+ private:
+  /// To the pinned memory; complete after the stream was waited for.
+  void read_back(const void* from, int64_t at, size_t bytes) {
+    require_success(
+        cudaMemcpyAsync(static_cast<char*>(stream_.pinned()) + at, from, bytes, cudaMemcpyDeviceToHost, stream()),
+        "cudaMemcpyAsync");
+  }
+
+  Context& context_;
+  const char* stage_;
+  DeviceStream& stream_;
+};
+
+/// A product where the device can read it: itself, or a copy that lives as long as this.
+template <class Product>
+class OnDevice {
+ public:
+  OnDevice(CudaExecutor& exec, const Product& product) : product_(&product) {
+    if (space_of(product) == MemorySpace::cuda) return;
+    copy_ = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
+    product_ = &copy_;
+  }
+  OnDevice(const OnDevice&) = delete;
+  const Product& operator*() const { return *product_; }
+  const Product* operator->() const { return product_; }
+
+ private:
+  const Product* product_;
+  Product copy_;
+};
+
+/// Brings a product that a stage changes to the device.
+template <class Product>
+Product& on_device(CudaExecutor& exec, Product& product) {
+  if (space_of(product) != MemorySpace::cuda)
+    product = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
+  return product;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,116 @@
+// Scans, sorts and compaction.
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+
+#include "cuda/primitives.h"
+
+namespace isoshell {
+namespace {
+
+/// Scratch for the time of one call.
+class Scratch {
+ public:
+  Scratch(DeviceStream& stream, size_t bytes)
+      : stream_(stream), bytes_(int64_t(bytes)), data_(stream.allocate(bytes_)) {}
+  ~Scratch() {
+    if (data_) stream_.free(data_, bytes_);
+  }
+  Scratch(const Scratch&) = delete;
+  void* data() const { return data_; }
+
+ private:
+  DeviceStream& stream_;
+  int64_t bytes_;
+  void* data_;
+};
+
+/// Calls algorithm(scratch, bytes) twice, as CUB wants it: for the size, then to work.
+template <class Algorithm>
+void run_cub(DeviceStream& stream, const char* name, Algorithm algorithm) {
+  size_t bytes = 0;
+  require_success(algorithm(nullptr, bytes), name);
+  const Scratch scratch(stream, bytes > 0 ? bytes : 1);
+  require_success(algorithm(scratch.data(), bytes), name);
+}
+
+template <class T>
+void exclusive_scan(DeviceStream& stream, View<T> values) {
+  if (values.empty()) return;
+  run_cub(stream, "exclusive scan", [&](void* scratch, size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, values.data, values.data, values.size, stream.stream());
+  });
+}
+template <class T>
+void inclusive_scan(DeviceStream& stream, View<T> values) {
+  if (values.empty()) return;
+  run_cub(stream, "inclusive scan", [&](void* scratch, size_t& bytes) {
+    return cub::DeviceScan::InclusiveSum(scratch, bytes, values.data, values.data, values.size, stream.stream());
+  });
+}
+
+__global__ void count_kept(View<const uint32_t> words, View<uint32_t> rank) {
+  const int64_t w = int64_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (w < words.size) rank[w] = uint32_t(__popc(words[w]));
+  if (w == words.size) rank[w] = 0;
+}
+
+__global__ void list_kept(View<const uint32_t> words, View<const uint32_t> rank, View<uint32_t> out) {
+  const int64_t i = int64_t(blockIdx.x) * blockDim.x + threadIdx.x, w = i >> 5;
+  if (w >= words.size) return;
+  const uint32_t word = words[w], bit = 1u << (i & 31);
+  if (word & bit) out[rank[w] + uint32_t(__popc(word & (bit - 1)))] = uint32_t(i);
+}
+
+constexpr int kThreads = 256;
+unsigned blocks_for(int64_t count) { return unsigned((count + kThreads - 1) / kThreads); }
+
+}  // namespace
+
+void exclusive_scan_async(DeviceStream& stream, View<int64_t> values) { exclusive_scan(stream, values); }
+void exclusive_scan_async(DeviceStream& stream, View<uint32_t> values) { exclusive_scan(stream, values); }
+void inclusive_scan_async(DeviceStream& stream, View<int64_t> values) { inclusive_scan(stream, values); }
+void inclusive_scan_async(DeviceStream& stream, View<uint32_t> values) { inclusive_scan(stream, values); }
+
+void sort_keys_async(DeviceStream& stream, View<uint64_t> keys, int bits) {
+  if (keys.size < 2) return;
+  const Scratch other(stream, size_t(keys.size) * sizeof(uint64_t));
+  cub::DoubleBuffer<uint64_t> both(keys.data, static_cast<uint64_t*>(other.data()));
+  run_cub(stream, "sort", [&](void* scratch, size_t& bytes) {
+    return cub::DeviceRadixSort::SortKeys(scratch, bytes, both, keys.size, 0, bits, stream.stream());
+  });
+  if (both.Current() != keys.data)
+    require_success(cudaMemcpyAsync(keys.data, both.Current(), size_t(keys.size) * sizeof(uint64_t),
+                                    cudaMemcpyDeviceToDevice, stream.stream()),
+                    "cudaMemcpyAsync");
+}
+
+void sort_pairs_async(DeviceStream& stream, View<uint64_t> keys, View<uint32_t> values, int bits) {
+  if (keys.size < 2) return;
+  const Scratch other_keys(stream, size_t(keys.size) * sizeof(uint64_t));
+  const Scratch other_values(stream, size_t(keys.size) * sizeof(uint32_t));
+  cub::DoubleBuffer<uint64_t> both_keys(keys.data, static_cast<uint64_t*>(other_keys.data()));
+  cub::DoubleBuffer<uint32_t> both_values(values.data, static_cast<uint32_t*>(other_values.data()));
+  run_cub(stream, "sort", [&](void* scratch, size_t& bytes) {
+    return cub::DeviceRadixSort::SortPairs(scratch, bytes, both_keys, both_values, keys.size, 0, bits, stream.stream());
+  });
+  const auto take = [&](void* to, const void* from, size_t bytes) {
+    if (to != from)
+      require_success(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, stream.stream()), "cudaMemcpyAsync");
+  };
+  take(keys.data, both_keys.Current(), size_t(keys.size) * sizeof(uint64_t));
+  take(values.data, both_values.Current(), size_t(values.size) * sizeof(uint32_t));
+}
+
+void rank_kept_async(DeviceStream& stream, View<const uint32_t> words, View<uint32_t> rank) {
+  count_kept<<<blocks_for(words.size + 1), kThreads, 0, stream.stream()>>>(words, rank);
+  require_success(cudaGetLastError(), "count kept");
+  exclusive_scan_async(stream, rank);
+}
+
+void list_kept_async(DeviceStream& stream, View<const uint32_t> words, View<const uint32_t> rank, View<uint32_t> out) {
+  if (words.empty()) return;
+  list_kept<<<blocks_for(words.size * 32), kThreads, 0, stream.stream()>>>(words, rank, out);
+  require_success(cudaGetLastError(), "list kept");
+}
+
+}  // namespace isoshell

@@ -1,0 +1,99 @@
+// Copies of products from memory to memory: the one list of the arrays that each product has.
+#pragma once
+
+#include "isoshell/stages.h"
+
+namespace isoshell {
+
+// `copy` makes a Buffer<T> of a const Buffer<T>&.
+
+template <class Copy>
+VoxelSet copy_product(const VoxelSet& v, Copy copy) {
+  VoxelSet out;
+  for (int axis = 0; axis < 3; ++axis) out.block_dims[axis] = v.block_dims[axis];
+  out.block_table = copy(v.block_table);
+  out.blocks = copy(v.blocks);
+  out.leaf_key = copy(v.leaf_key);
+  out.mask = copy(v.mask);
+  out.first = copy(v.first);
+  out.active = v.active;
+  return out;
+}
+template <class Copy>
+LatticeSurface copy_product(const LatticeSurface& s, Copy copy) {
+  return {s.frame, copy(s.points), copy(s.triangles), copy(s.source_face), s.topology};
+}
+template <class Copy>
+SiteSet copy_product(const SiteSet& s, Copy copy) {
+  return {copy_product(s.voxels, copy)};
+}
+template <class Copy>
+SiteSamples copy_product(const SiteSamples& s, Copy copy) {
+  return {copy(s.sample), copy(s.first), copy(s.triangles)};
+}
+template <class Copy>
+Shell copy_product(const Shell& s, Copy copy) {
+  return {copy_product(s.voxels, copy), s.band_vox, copy(s.closest_site), copy(s.distance_sq_vox)};
+}
+template <class Copy>
+Sheet copy_product(const Sheet& s, Copy copy) {
+  return {s.frame,
+          copy_product(s.corners, copy),
+          copy(s.position),
+          copy(s.normal),
+          copy(s.source_triangle),
+          copy(s.triangles),
+          copy(s.vertex_first),
+          copy(s.vertex_triangles),
+          s.topology};
+}
+template <class Copy>
+SeedSet copy_product(const SeedSet& s, Copy copy) {
+  return {copy(s.position), copy(s.normal), copy(s.home)};
+}
+template <class Copy>
+VoronoiLabels copy_product(const VoronoiLabels& l, Copy copy) {
+  return {copy(l.voxel_seed)};
+}
+template <class Copy>
+DualMesh copy_product(const DualMesh& m, Copy copy) {
+  return {copy(m.position), copy(m.triangles)};
+}
+
+inline MemorySpace space_of(const VoxelSet& v) { return v.leaf_key.space(); }
+inline MemorySpace space_of(const LatticeSurface& s) { return s.points.space(); }
+inline MemorySpace space_of(const SiteSet& s) { return space_of(s.voxels); }
+inline MemorySpace space_of(const SiteSamples& s) { return s.sample.space(); }
+inline MemorySpace space_of(const Shell& s) { return space_of(s.voxels); }
+inline MemorySpace space_of(const Sheet& s) { return s.position.space(); }
+inline MemorySpace space_of(const SeedSet& s) { return s.position.space(); }
+inline MemorySpace space_of(const VoronoiLabels& l) { return l.voxel_seed.space(); }
+inline MemorySpace space_of(const DualMesh& m) { return m.position.space(); }
+
+/// Brings a product that a stage changes to the host.
+template <class Product>
+Product& on_host(Product& product) {
+  if (space_of(product) != MemorySpace::host)
+    product = copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
+  return product;
+}
+
+/// A product where the host can read it: itself, or a copy that lives as long as this.
+template <class Product>
+class OnHost {
+ public:
+  explicit OnHost(const Product& product) : product_(&product) {
+    if (space_of(product) == MemorySpace::host) return;
+    copy_ = copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
+    product_ = &copy_;
+  }
+  OnHost(const OnHost&) = delete;
+  const Product& operator*() const { return *product_; }
+  const Product* operator->() const { return product_; }
+
+ private:
+  const Product* product_;
+  Product copy_;
+};
+
+}  // namespace isoshell

@@ -1,0 +1,25 @@
+// Products to the host.
+#include "isoshell/to_host.h"
+
+#include "core/copy_product.h"
+
+namespace isoshell {
+namespace {
+
+template <class Product>
+Product host_copy(const Product& product) {
+  return copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
+}
+
+}  // namespace
+
+LatticeSurface to_host(const LatticeSurface& surface) { return host_copy(surface); }
+SiteSet to_host(const SiteSet& sites) { return host_copy(sites); }
+SiteSamples to_host(const SiteSamples& samples) { return host_copy(samples); }
+Shell to_host(const Shell& shell) { return host_copy(shell); }
+Sheet to_host(const Sheet& sheet) { return host_copy(sheet); }
+SeedSet to_host(const SeedSet& seeds) { return host_copy(seeds); }
+VoronoiLabels to_host(const VoronoiLabels& labels) { return host_copy(labels); }
+DualMesh to_host(const DualMesh& mesh) { return host_copy(mesh); }
+
+}  // namespace isoshell
