@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 preset=${1:-cpu}
 [ $# -gt 0 ] && shift
 launcher=()
-command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
 cmake --preset "$preset" "${launcher[@]}" >&2
 targets=()
 [ $# -gt 0 ] && targets=(--target "$@")

@@ -4,6 +4,7 @@
 
 #include "golden/golden_cases.h"
 #include "support/catch.h"
+#include "support/test_context.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
@@ -33,7 +34,7 @@ TriangleSoup shuffled(const TriangleSoup& soup, uint64_t seed) {
 }
 
 std::string run_with_threads(const golden::Case& c, int threads) {
-  Context context;
+  TestContext context;
   context.threads = threads;
   return golden::run(c, context);
 }

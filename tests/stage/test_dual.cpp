@@ -9,6 +9,7 @@
 #include "support/shapes.h"
 #include "support/solid_soup.h"
 #include "support/soup_sheet.h"
+#include "support/test_context.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
@@ -75,7 +76,7 @@ struct Labelled {
   DualReport report;
 };
 Labelled partition(const Sheet& sheet, SeedSet& seeds, int32_t max_rounds) {
-  Context context;
+  TestContext context;
   context.threads = kThreads;
   TbbExecutor exec(context, "dual");
   return run_with_threads(context, [&] {
@@ -97,7 +98,7 @@ bool same(const DualMesh& a, const DualMesh& b) {
 }  // namespace
 
 TEST_CASE("dual: any seeds on any sheet give a closed manifold of the sheet's topology", "[dual][stage]") {
-  Context context;
+  TestContext context;
   context.threads = kThreads;
   int64_t most_rounds = 0;
   for (const NamedSheet& named : ugly_sheets()) {
@@ -160,7 +161,7 @@ TEST_CASE("dual: without rounds nothing is changed and failures are found exactl
 }
 
 TEST_CASE("dual: evenly relaxed seeds on smooth sheets need no repair", "[dual][stage]") {
-  Context context;
+  TestContext context;
   const Sheet sheet = sheet_of_soup(shapes::torus(2, 0.7, 160, 70), 256, 1, 1);
   SeedSet seeds = place_seeds(sheet, {400, 1}, context);
   relax_on_sheet(sheet, seeds, {40}, context);
@@ -173,7 +174,7 @@ TEST_CASE("dual: evenly relaxed seeds on smooth sheets need no repair", "[dual][
 }
 
 TEST_CASE("dual: thin walls of a voxelised surface keep their genus with few seeds", "[dual][stage]") {
-  Context context;
+  TestContext context;
   context.threads = kThreads;
   const TriangleSoup soups[] = {shapes::torus(2, 0.25, 90, 24), shapes::sieve(3, 3, 2, 1), shapes::cube_frame(14, 2)};
   for (const TriangleSoup& soup : soups) {
@@ -199,7 +200,7 @@ TEST_CASE("dual: thin walls of a voxelised surface keep their genus with few see
 }
 
 TEST_CASE("dual: seeds that own nothing are given a place before new ones are made", "[dual][stage]") {
-  Context context;
+  TestContext context;
   const Sheet sheet = sheet_of_soup(shapes::sphere({0, 0, 0}, 1, 40), 320, 1, 0);
   SeedSet seeds = random_seeds(sheet, 40, 3, false);
   for (int64_t s = 20; s < 40; ++s) {
@@ -218,7 +219,7 @@ TEST_CASE("dual: seeds that own nothing are given a place before new ones are ma
 TEST_CASE("dual: one and two threads give the same bytes, and so does a second run", "[dual][parity]") {
   for (const NamedSheet& named : ugly_sheets()) {
     const SeedSet start = random_seeds(named.sheet, std::min<int64_t>(40, named.sheet.vertex_count()), 9, true);
-    Context one, two;
+    TestContext one, two;
     one.threads = 1;
     two.threads = 2;
     DualReport report;
@@ -232,7 +233,7 @@ TEST_CASE("dual: one and two threads give the same bytes, and so does a second r
 }
 
 TEST_CASE("dual: more seeds than vertices, or none, is a usage error", "[dual][stage]") {
-  Context context;
+  TestContext context;
   const Sheet sheet = sheet_of_soup(shapes::rod(3), 20, 1, 0);
   DualReport report;
   SeedSet none, many = random_seeds(sheet, sheet.vertex_count() + 1, 1, false);

@@ -3,6 +3,7 @@
 #include "oracle/lloyd.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
+#include "support/test_context.h"
 #include "voxel/dilate.h"
 
 using namespace isoshell;
@@ -10,7 +11,7 @@ using namespace isoshell;
 namespace {
 
 std::vector<uint32_t> flood_of(const Shell& shell, const SeedSet& seeds, int threads = 0) {
-  Context context;
+  TestContext context;
   context.threads = threads;
   const VoronoiLabels labels = flood_shell(shell, seeds, context);
   return {labels.voxel_seed.data(), labels.voxel_seed.data() + labels.voxel_seed.size()};
@@ -19,7 +20,7 @@ std::vector<uint32_t> flood_of(const Shell& shell, const SeedSet& seeds, int thr
 }  // namespace
 
 TEST_CASE("flood: equals the synchronous rounds of its definition", "[flood][stage]") {
-  Context context;
+  TestContext context;
   for (const auto& shape : voxel_shapes::all(16)) {
     for (const int32_t band_vox : {1, 3}) {
       const PaperSetup setup = paper_setup(shape, band_vox);
@@ -66,7 +67,7 @@ TEST_CASE("flood: labels follow the shell, not the straight line", "[flood][stag
 }
 
 TEST_CASE("flood: the same for any number of threads", "[flood][stage]") {
-  Context context;
+  TestContext context;
   const PaperSetup setup = paper_setup(ball_skin(60), 3);
   const SeedSet seeds = place_seeds(setup.sites, setup.samples, {300, 2}, context);
   const std::vector<uint32_t> one = flood_of(setup.shell, seeds, 1);

@@ -6,6 +6,7 @@
 #include "isoshell/remesh.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "support/test_context.h"
 
 using namespace isoshell;
 
@@ -38,7 +39,7 @@ TEST_CASE("method shell: a torus gets the asked vertices, its genus, and good tr
   options.max_passes = 60;
   uint64_t one = 0;
   for (const int threads : {1, 2}) {
-    Context context;
+    TestContext context;
     context.threads = threads;
     const RemeshResult result = remesh(shapes::torus(3, 1.2, 96, 48), options, context);
     const TriangleMesh& mesh = result.mesh;

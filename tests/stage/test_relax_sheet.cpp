@@ -10,6 +10,7 @@
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
+#include "support/test_context.h"
 
 using namespace isoshell;
 
@@ -52,7 +53,7 @@ std::vector<uint32_t> brute_force_labels(const Sheet& sheet, const SeedSet& seed
 
 template <int kCapacity>
 std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
-                                           Context& context) {
+                                           TestContext& context) {
   TbbExecutor exec(context, "test");
   const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   std::vector<uint32_t> labels(size_t(sheet.vertex_count()));
@@ -67,7 +68,7 @@ std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& se
   return labels;
 }
 
-SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, Context& context) {
+SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
   TbbExecutor exec(context, "test");
   return seed_spacing(doubled_area_q16(exec, sheet), seeds.size());
 }
@@ -75,7 +76,7 @@ SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, Context& contex
 }  // namespace
 
 TEST_CASE("seeds: every stratum of the sheet's area gets one, near its home", "[seeds][stage]") {
-  Context context;
+  TestContext context;
   const Sheet sheet = torus_sheet();
   const SeedSet seeds = place_seeds(sheet, {900, 3}, context);
   REQUIRE(seeds.size() == 900);
@@ -88,7 +89,7 @@ TEST_CASE("seeds: every stratum of the sheet's area gets one, near its home", "[
 }
 
 TEST_CASE("labels: each sheet vertex has its nearest seed, the penalty counted, at any density", "[relax][stage]") {
-  Context context;
+  TestContext context;
   for (const bool plate : {false, true})
     for (int64_t count : {8, 30, 400, 1600}) {
       const Sheet sheet = plate ? plate_sheet() : torus_sheet();
@@ -102,7 +103,7 @@ TEST_CASE("labels: each sheet vertex has its nearest seed, the penalty counted, 
 }
 
 TEST_CASE("relax: the energy falls towards that of hexagons", "[relax][stage]") {
-  Context context;
+  TestContext context;
   const Sheet sheet = torus_sheet();
   SeedSet seeds = place_seeds(sheet, {400, 0}, context);
   const RelaxReport report = relax_on_sheet(sheet, seeds, {60, 0, 0}, context);
@@ -118,7 +119,7 @@ TEST_CASE("relax: the energy falls towards that of hexagons", "[relax][stage]") 
 }
 
 TEST_CASE("relax: full tables of local sums change nothing, and the cells add up to the sheet", "[relax][stage]") {
-  Context context;
+  TestContext context;
   TbbExecutor exec(context, "test");
   const Sheet sheet = torus_sheet();
   const SeedSet seeds = place_seeds(sheet, {1500, 0}, context);
@@ -151,7 +152,7 @@ TEST_CASE("relax: threads do not change a bit", "[relax][parity]") {
   const Sheet sheet = torus_sheet();
   uint64_t expected = 0;
   for (int threads : {1, 2, 4}) {
-    Context context;
+    TestContext context;
     context.threads = threads;
     SeedSet seeds = place_seeds(sheet, {600, 0}, context);
     relax_on_sheet(sheet, seeds, {30, 0, 0}, context);

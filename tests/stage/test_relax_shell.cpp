@@ -7,13 +7,14 @@
 #include "stages/relax_shell_body.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
+#include "support/test_context.h"
 
 using namespace isoshell;
 
 namespace {
 
 std::vector<uint32_t> labels_of(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int64_t spacing, int edge) {
-  Context context;
+  TestContext context;
   TbbExecutor exec(context, "test");
   PointGrid grid = make_point_grid(exec, voxels.block_dims, spacing, int64_t(seeds.size()));
   std::vector<PointQ8> copy = seeds;
@@ -29,7 +30,7 @@ void check_labels(const VoxelSet& voxels, const std::vector<PointQ8>& seeds) {
 
 /// How many cubes of this edge have too many candidates for a list.
 int64_t overflows(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int edge) {
-  Context context;
+  TestContext context;
   TbbExecutor exec(context, "test");
   PointGrid grid = make_point_grid(exec, voxels.block_dims, 4, int64_t(seeds.size()));
   std::vector<PointQ8> copy = seeds;
@@ -51,7 +52,7 @@ int64_t overflows(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int
 }  // namespace
 
 TEST_CASE("nearest seed: equals brute force, ties to the smaller id", "[relax_shell][stage]") {
-  Context context;
+  TestContext context;
   for (const auto& shape : voxel_shapes::all(12)) {
     const PaperSetup setup = paper_setup(shape, 2);
     for (const int64_t k : {int64_t(4), int64_t(60), setup.sites.voxels.voxel_count() / 2}) {
@@ -87,7 +88,7 @@ TEST_CASE("nearest seed: exact when seeds are hundreds of voxels away", "[relax_
 }
 
 TEST_CASE("relax in shell: one pass moves every seed to the mean of its voxels, at most u", "[relax_shell][stage]") {
-  Context context;
+  TestContext context;
   for (const auto& shape : {ball_skin(17), voxel_shapes::all(20)[1]}) {
     const PaperSetup setup = paper_setup(shape, 3);
     for (const int32_t most : {1 << 20, 256, 40}) {
@@ -123,7 +124,7 @@ TEST_CASE("relax in shell: one pass moves every seed to the mean of its voxels, 
 
 TEST_CASE("relax in shell: a seed that leaves the shell goes to a sample of a site near by", "[relax_shell][stage]") {
   const PaperSetup setup = paper_setup(ball_skin(17), 1);
-  Context context;
+  TestContext context;
   SeedSet seeds = place_seeds(setup.sites, setup.samples, {6, 9}, context);
   relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, {1, 0, 1 << 20}, context);
   const std::vector<Voxel> voxel = voxels_of(setup.sites.voxels);
@@ -138,7 +139,7 @@ TEST_CASE("relax in shell: a seed that leaves the shell goes to a sample of a si
 
 TEST_CASE("relax in shell: the energy falls, and the tolerance stops the loop", "[relax_shell][stage]") {
   const PaperSetup setup = paper_setup(ball_skin(40), 2);
-  Context context;
+  TestContext context;
   SeedSet seeds = place_seeds(setup.sites, setup.samples, {150, 3}, context);
   const RelaxReport report = relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, {400, 100000, 0}, context);
   CHECK(report.converged);
@@ -155,7 +156,7 @@ TEST_CASE("relax in shell: the same for any number of threads", "[relax_shell][s
   const PaperSetup setup = paper_setup(ball_skin(40), 2);
   uint64_t one = 0;
   for (const int threads : {1, 2, 3}) {
-    Context context;
+    TestContext context;
     context.threads = threads;
     SeedSet seeds = place_seeds(setup.sites, setup.samples, {400, 3}, context);
     relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, {25, 0, 0}, context);
@@ -166,7 +167,7 @@ TEST_CASE("relax in shell: the same for any number of threads", "[relax_shell][s
 
 TEST_CASE("relax in shell: an empty cell keeps its seed", "[relax_shell][stage]") {
   const PaperSetup setup = paper_setup(ball_skin(17), 2);
-  Context context;
+  TestContext context;
   SeedSet seeds = place_seeds(setup.sites, setup.samples, {10, 3}, context);
   seeds.position[7] = seeds.position[2];
   const PointQ8 before = seeds.position[7];

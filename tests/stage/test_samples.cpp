@@ -6,6 +6,7 @@
 #include "oracle/overlap_oracle.h"
 #include "support/catch.h"
 #include "support/site_shapes.h"
+#include "support/test_context.h"
 #include "voxel/closest_point.h"
 #include "voxel/leaf.h"
 
@@ -78,7 +79,7 @@ Faults faults_of(const LatticeSurface& s, const SiteSet& sites, const SiteSample
 }  // namespace
 
 TEST_CASE("samples: every site lists its triangles and holds the point nearest to its centre", "[samples][stage]") {
-  Context context;
+  TestContext context;
   for (const auto& [name, soup] : shapes::ugly_soups())
     for (int32_t resolution : {5, 21}) {
       INFO(name << " at " << resolution);
@@ -96,7 +97,7 @@ TEST_CASE("samples: every site lists its triangles and holds the point nearest t
 
 TEST_CASE("samples: the point may leave the voxel, but not by more than half a diagonal from the centre",
           "[samples][stage]") {
-  Context context;
+  TestContext context;
   const LatticeSurface s = shapes::snapped(shapes::torus(2, .7, 48, 24), 80, context);
   const SiteSet sites = voxelize(s, context);
   const SiteSamples samples = sample_sites(s, sites, context);
@@ -118,7 +119,7 @@ TEST_CASE("samples: order of the file and threads change nothing", "[samples][st
   for (const auto& [name, soup] : shapes::ugly_soups()) {
     INFO(name);
     const auto run = [](const TriangleSoup& input, int threads) {
-      Context context;
+      TestContext context;
       context.threads = threads;
       const LatticeSurface s = shapes::snapped(input, 90, context);
       return digest(sample_sites(s, voxelize(s, context), context));

@@ -3,6 +3,7 @@
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
+#include "support/test_context.h"
 #include "voxel/closest_point.h"
 
 using namespace isoshell;
@@ -11,7 +12,7 @@ TEST_CASE("seeds: one site in each of k strata, placed at its sample", "[seeds][
   const PaperSetup setup = paper_setup(ball_skin(20), 2);
   const int64_t sites = setup.sites.voxels.voxel_count();
   const std::vector<Voxel> voxel = voxels_of(setup.sites.voxels);
-  Context context;
+  TestContext context;
   for (const int64_t k : {int64_t(4), int64_t(97), sites / 2}) {
     const SeedSet seeds = place_seeds(setup.sites, setup.samples, {k, 5}, context);
     REQUIRE(seeds.size() == k);
@@ -29,7 +30,7 @@ TEST_CASE("seeds: one site in each of k strata, placed at its sample", "[seeds][
   }
   const uint64_t five = digest(place_seeds(setup.sites, setup.samples, {97, 5}, context));
   CHECK(five != digest(place_seeds(setup.sites, setup.samples, {97, 6}, context)));
-  Context single;
+  TestContext single;
   single.threads = 1;
   CHECK(five == digest(place_seeds(setup.sites, setup.samples, {97, 5}, single)));
 }
@@ -37,7 +38,7 @@ TEST_CASE("seeds: one site in each of k strata, placed at its sample", "[seeds][
 TEST_CASE("seeds: more than half the sites is a usage error that names the resolution that would do",
           "[seeds][stage]") {
   const PaperSetup setup = paper_setup(ball_skin(20), 2);
-  Context context;
+  TestContext context;
   const int64_t most = setup.sites.voxels.voxel_count() / 2;
   for (const int64_t k : {int64_t(3), most + 1, 4 * most}) {
     try {
@@ -81,7 +82,7 @@ TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex th
     from.push_back({int32_t(8000 + r % 6000), int32_t(8000 + (r >> 20) % 6000), int32_t(8000 + (r >> 40) % 6000)});
   }
   SeedSet seeds = seeds_at(from);
-  Context context;
+  TestContext context;
   attach_to_sheet(sheet, seeds, context);
   for (int64_t i = 0; i < seeds.size(); ++i) {
     const PointQ8 p = from[size_t(i)];

@@ -11,6 +11,7 @@
 #include "stages/sheet_body.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "support/test_context.h"
 #include "support/voxel_sites.h"
 #include "voxel/random.h"
 
@@ -125,7 +126,7 @@ struct Pipeline {
   SiteSamples samples;
 };
 
-Pipeline sites_of(const TriangleSoup& soup, int32_t resolution, Context& context) {
+Pipeline sites_of(const TriangleSoup& soup, int32_t resolution, TestContext& context) {
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
   Pipeline p;
@@ -136,7 +137,7 @@ Pipeline sites_of(const TriangleSoup& soup, int32_t resolution, Context& context
 }
 
 Sheet sheet_of(const TriangleSoup& soup, int32_t resolution, const SheetOptions& options = {}, int threads = 0) {
-  Context context;
+  TestContext context;
   context.backend = Backend::cpu;
   context.threads = threads;
   const Pipeline p = sites_of(soup, resolution, context);
@@ -183,7 +184,7 @@ double signed_volume(const Sheet& sheet) {
 }  // namespace
 
 TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel", "[sheet][stage]") {
-  Context context;
+  TestContext context;
   TbbExecutor exec(context, "sheet");
   for (const Named& blob : all_blobs())
     for (const int32_t r : {0, 1, 2, 5}) {
@@ -204,7 +205,7 @@ TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel"
 }
 
 TEST_CASE("sheet: holes close as wide as the closing reaches", "[sheet][stage]") {
-  Context context;
+  TestContext context;
   TbbExecutor exec(context, "sheet");
   for (const int width : {1, 3, 5, 7})
     for (const int32_t r : {0, 1, 2, 3, 4}) {
@@ -253,7 +254,7 @@ TEST_CASE("sheet: simple shapes have their components, genus and volume", "[shee
 
 TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet][stage]") {
   const TriangleSoup soup = shapes::together(shapes::torus(2, .7, 40, 20), shapes::box({-.4, -.4, -.4}, {.4, .5, .3}));
-  Context context;
+  TestContext context;
   context.backend = Backend::cpu;
   const Pipeline p = sites_of(soup, 72, context);
   const Sheet sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);

@@ -6,6 +6,7 @@
 #include "isoshell/stages.h"
 #include "oracle/closest_site.h"
 #include "support/catch.h"
+#include "support/test_context.h"
 #include "support/voxel_shapes.h"
 #include "voxel/closest.h"
 
@@ -14,7 +15,7 @@ using namespace isoshell;
 namespace {
 
 Shell shell_of(const SiteSet& sites, int32_t band_vox, int threads = 0) {
-  Context context;
+  TestContext context;
   context.backend = Backend::cpu;
   context.threads = threads;
   ShellOptions options;

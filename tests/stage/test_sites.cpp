@@ -9,6 +9,7 @@
 #include "oracle/overlap_oracle.h"
 #include "support/catch.h"
 #include "support/site_shapes.h"
+#include "support/test_context.h"
 #include "voxel/leaf.h"
 
 using namespace isoshell;
@@ -67,7 +68,7 @@ int64_t index_faults(const VoxelSet& set) {
 }  // namespace
 
 TEST_CASE("sites: exactly the voxels whose closed cube meets a closed triangle", "[sites][stage]") {
-  Context context;
+  TestContext context;
   for (const auto& [name, soup] : shapes::ugly_soups())
     for (int32_t resolution : {1, 9, 40}) {
       INFO(name << " at " << resolution);
@@ -79,7 +80,7 @@ TEST_CASE("sites: exactly the voxels whose closed cube meets a closed triangle",
 }
 
 TEST_CASE("sites: the index equals the one that is built from leaves and masks", "[sites][stage]") {
-  Context context;
+  TestContext context;
   const LatticeSurface s = shapes::snapped(shapes::torus(2, .7, 24, 12), 600, context);
   const SiteSet sites = voxelize(s, context);
   const VoxelSet& got = sites.voxels;
@@ -103,14 +104,14 @@ TEST_CASE("sites: the index equals the one that is built from leaves and masks",
 }
 
 TEST_CASE("sites: triangles on voxel boundaries occupy the voxels on both sides", "[sites][stage]") {
-  Context context;
+  TestContext context;
   const LatticeSurface s = shapes::on_voxel_boundaries(context);
   for (PointQ8 p : s.points) REQUIRE((p.x % 256 == 0 && p.y % 256 == 0 && p.z % 256 == 0));
   CHECK(voxels_of(voxelize(s, context).voxels) == sites_by_axes(s));
 }
 
 TEST_CASE("sites: a surface outside its lattice is refused", "[sites][stage]") {
-  Context context;
+  TestContext context;
   LatticeSurface s = shapes::snapped(shapes::box({0, 0, 0}, {1, 1, 1}), 8, context);
   s.points[0].x = s.frame.extent_vox[0] * kOneVoxelQ8;
   CHECK_THROWS_AS(voxelize(s, context), Error);
@@ -120,7 +121,7 @@ TEST_CASE("sites: a surface outside its lattice is refused", "[sites][stage]") {
 TEST_CASE("sites: order of the file and threads change nothing", "[sites][stage][parity]") {
   for (const auto& [name, soup] : shapes::ugly_soups()) {
     INFO(name);
-    Context one, two;
+    TestContext one, two;
     one.threads = 1;
     two.threads = 2;
     const uint64_t expect = digest(voxelize(shapes::snapped(soup, 150, one), one));
@@ -130,7 +131,7 @@ TEST_CASE("sites: order of the file and threads change nothing", "[sites][stage]
 }
 
 TEST_CASE("sites: triangles across the largest lattice are exact and cost only their voxels", "[sites][stage]") {
-  Context context;
+  TestContext context;
   TriangleSoup soup;
   soup.vertices = {{0, 0, 0}, {1, 1, 1}, {1, .999, .9995}, {.001, .0005, 0}};
   soup.triangles = {{0, 1, 2}, {0, 1, 3}};

@@ -15,6 +15,7 @@
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
+#include "support/test_context.h"
 #include "voxel/leaf.h"
 #include "voxel/random.h"
 
@@ -103,7 +104,7 @@ Products make_products(int64_t site_count, int64_t point_count, int64_t seed_cou
     t = {random(uint32_t(point_count)), random(uint32_t(point_count)), random(uint32_t(point_count))};
   for (auto& f : p.surface.source_face) f = random(0xffffffffu);
 
-  Context context;
+  TestContext context;
   p.shell = build_shell(p.sites, {2}, context);
   p.seeds.position = Buffer<PointQ8>(seed_count);
   p.seeds.normal = Buffer<Normal8>(seed_count);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "isoshell/stages.h"
+#include "support/test_context.h"
 #include "support/voxel_shapes.h"
 #include "voxel/exact_int.h"
 #include "voxel/random.h"
@@ -26,7 +27,7 @@ inline PaperSetup paper_setup(const voxel_shapes::Named& shape, int32_t band_vox
     const auto part = [&](int shift) { return int16_t(int32_t((r >> shift & 0xffff) % 257) - 128); };
     out.samples.sample[i] = {part(0), part(16), part(32), normal8({part(8), part(24), part(40)}), uint32_t(i)};
   }
-  Context context;
+  TestContext context;
   out.shell = build_shell(out.sites, {band_vox}, context);
   return out;
 }

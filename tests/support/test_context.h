@@ -1,7 +1,11 @@
-// The context of tests that run on every backend: on the CPU, or with --cuda on the device.
+// The context of tests that run on every backend: on the CPU, or with --cuda on the device. A stage that is called with
+// it gives its products back in host memory, where tests look at them. Inputs go to the device the same way in the
+// library itself: every stage takes what lies in host memory.
 #pragma once
 
 #include "isoshell/backend.h"
+#include "isoshell/stages.h"
+#include "isoshell/to_host.h"
 
 namespace isoshell {
 
@@ -13,6 +17,64 @@ inline Backend& test_backend() {
 
 struct TestContext : Context {
   TestContext() { backend = test_backend(); }
+  Context& plain() { return *this; }
 };
+
+inline SiteSet voxelize(const LatticeSurface& surface, TestContext& context) {
+  return to_host(voxelize(surface, context.plain()));
+}
+inline SiteSamples sample_sites(const LatticeSurface& surface, const SiteSet& sites, TestContext& context) {
+  return to_host(sample_sites(surface, sites, context.plain()));
+}
+inline Shell build_shell(const SiteSet& sites, const ShellOptions& options, TestContext& context) {
+  return to_host(build_shell(sites, options, context.plain()));
+}
+inline Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                         const SheetOptions& options, TestContext& context) {
+  return to_host(build_sheet(surface, sites, samples, options, context.plain()));
+}
+inline SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, TestContext& context) {
+  return to_host(place_seeds(sheet, options, context.plain()));
+}
+inline SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,
+                           TestContext& context) {
+  return to_host(place_seeds(sites, samples, options, context.plain()));
+}
+inline RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options,
+                                  TestContext& context) {
+  RelaxReport report = relax_on_sheet(sheet, seeds, options, context.plain());
+  seeds = to_host(seeds);
+  return report;
+}
+inline RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
+                                  const RelaxOptions& options, TestContext& context) {
+  RelaxReport report = relax_in_shell(shell, sites, samples, seeds, options, context.plain());
+  seeds = to_host(seeds);
+  return report;
+}
+inline void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, TestContext& context) {
+  attach_to_sheet(sheet, seeds, context.plain());
+  seeds = to_host(seeds);
+}
+inline VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, TestContext& context) {
+  return to_host(flood_shell(shell, seeds, context.plain()));
+}
+inline DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
+                                 TestContext& context) {
+  DualMesh mesh = to_host(triangulate_dual(sheet, seeds, options, report, context.plain()));
+  seeds = to_host(seeds);
+  return mesh;
+}
+inline SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+                               TestContext& context) {
+  return to_host(subdivide_seeds(sheet, mesh, seeds, target, context.plain()));
+}
+inline int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                            TestContext& context) {
+  const int64_t flips = improve_mesh(sheet, options, seeds, mesh, context.plain());
+  seeds = to_host(seeds);
+  mesh = to_host(mesh);
+  return flips;
+}
 
 }  // namespace isoshell
