@@ -1,0 +1,19 @@
+// The words of the CPU's executor.
+#include "cpu/executor_tbb.h"
+
+namespace isoshell::parity {
+
+template <class T>
+Buffer<T> to_executor(TbbExecutor&, Buffer<T> values) {
+  return values;
+}
+
+}  // namespace isoshell::parity
+
+#include "parity/executor_words_body.h"
+
+namespace isoshell::parity {
+
+std::unique_ptr<ExecutorWords> tbb_words(Context& context) { return std::make_unique<WordsOf<TbbExecutor>>(context); }
+
+}  // namespace isoshell::parity

@@ -1,0 +1,326 @@
+// The CPU and the device give the same product at every stage, from inputs in either memory. The stages are called
+// without the help of TestContext, so that products stay where their backend leaves them.
+#include <cstring>
+#include <functional>
+
+#include "golden/golden_cases.h"
+#include "isoshell/error.h"
+#include "parity/product_hash.h"
+#include "support/catch.h"
+#include "support/paper_setup.h"
+#include "support/site_shapes.h"
+#include "support/solid_soup.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+using namespace isoshell::parity;
+
+namespace {
+
+/// What one run of a stage gave: a hash of the product and other facts, or the error it ended with.
+struct Outcome {
+  bool failed = false;
+  std::string text;
+};
+bool operator==(const Outcome& a, const Outcome& b) { return a.failed == b.failed && a.text == b.text; }
+std::ostream& operator<<(std::ostream& out, const Outcome& o) { return out << o.text; }
+
+/// A product and what a stage reports beside it.
+template <class Product>
+struct Made {
+  Product product;
+  std::string facts;
+};
+
+template <class Product>
+Made<Product> made(Product product, std::string facts = "") {
+  return {std::move(product), std::move(facts)};
+}
+
+std::string text_of(const RelaxReport& r) {
+  std::string text = std::to_string(r.passes) + " passes, converged " + std::to_string(r.converged) + ", energy";
+  for (double e : r.energy) {
+    uint64_t bits;
+    std::memcpy(&bits, &e, sizeof bits);
+    text += " " + digest_text(bits);
+  }
+  return text;
+}
+std::string text_of(const DualReport& r) {
+  return std::to_string(r.inserted_seeds) + " inserted, " + std::to_string(r.relabelled_vertices) + " relabelled, " +
+         std::to_string(r.repair_rounds) + " rounds, " + std::to_string(r.failed_cells) + " failed";
+}
+std::string text_of(const SheetTopology& t) {
+  return std::to_string(t.components) + " components, genus " + std::to_string(t.genus) + ", dropped " +
+         std::to_string(t.dropped_components) + ", bridged " + std::to_string(t.bridged_vertices);
+}
+
+/// All products of a run, in one memory.
+struct Products {
+  LatticeSurface surface;
+  SiteSet sites;
+  SiteSamples samples;
+  Shell shell;
+  Sheet sheet;
+  SeedSet seeds, site_seeds;
+  DualMesh dual;
+  VoronoiLabels labels;
+};
+
+/// Runs stages on both backends side by side, and on each with what the other one made.
+class SideBySide {
+ public:
+  SideBySide() {
+    cpu_context_.backend = Backend::cpu;
+    cuda_context_.backend = Backend::cuda;
+  }
+
+  Products cpu, cuda;
+
+  /// The stage reads from the given products and returns Made<Product>. False when it ended with an error everywhere.
+  template <class Product, class Stage>
+  bool stage(const std::string& name, Product Products::*slot, Stage stage) {
+    CAPTURE(name);
+    Product on_cpu, on_cuda, ignored;
+    const Outcome expected = outcome(stage, cpu, cpu_context_, on_cpu);
+    CHECK(outcome(stage, cuda, cuda_context_, on_cuda) == expected);
+    CHECK(outcome(stage, cuda, cuda_context_, ignored) == expected);
+    CHECK(outcome(stage, cpu, cuda_context_, ignored) == expected);
+    CHECK(outcome(stage, cuda, cpu_context_, ignored) == expected);
+    cpu.*slot = std::move(on_cpu);
+    cuda.*slot = std::move(on_cuda);
+    return !expected.failed;
+  }
+
+ private:
+  template <class Product, class Stage>
+  static Outcome outcome(Stage& stage, const Products& inputs, Context& context, Product& product) {
+    try {
+      auto result = stage(inputs, context);
+      product = std::move(result.product);
+      return {false, digest_text(hash_arrays(product)) + " " + result.facts};
+    } catch (const Error& e) {
+      return {true, "error " + std::to_string(int(e.code())) + " in " + e.stage() + ": " + e.what()};
+    }
+  }
+
+  Context cpu_context_, cuda_context_;
+};
+
+/// Stages that change seeds get a copy, so that one input serves all runs.
+template <class Work>
+Made<SeedSet> changed(const SeedSet& seeds, Work work) {
+  SeedSet copy = to_host(seeds);
+  std::string facts = work(copy);
+  return {std::move(copy), std::move(facts)};
+}
+
+struct DualRun {
+  DualMesh mesh;
+  SeedSet seeds;
+  DualReport report;
+};
+DualRun dual_of(const Products& p, const DualOptions& options, Context& context) {
+  DualRun run;
+  run.seeds = to_host(p.seeds);
+  run.mesh = triangulate_dual(p.sheet, run.seeds, options, run.report, context);
+  return run;
+}
+
+bool up_to_samples(SideBySide& both, const LatticeSurface& surface) {
+  both.cpu.surface = to_host(surface);
+  both.cuda.surface = to_host(surface);
+  return both.stage("voxelize", &Products::sites, [](const Products& p, Context& c) {
+    return made(voxelize(p.surface, c));
+  }) && both.stage("samples", &Products::samples, [](const Products& p, Context& c) {
+    return made(sample_sites(p.surface, p.sites, c));
+  });
+}
+
+bool shell_of_band(SideBySide& both, int32_t band_vox) {
+  return both.stage("shell " + std::to_string(band_vox), &Products::shell,
+                    [=](const Products& p, Context& c) { return made(build_shell(p.sites, {band_vox}, c)); });
+}
+
+bool sheet_with_closing(SideBySide& both, int32_t closing_vox) {
+  return both.stage("sheet " + std::to_string(closing_vox), &Products::sheet, [=](const Products& p, Context& c) {
+    Sheet sheet = build_sheet(p.surface, p.sites, p.samples, {closing_vox, 0}, c);
+    const std::string facts = text_of(sheet.topology);
+    return made(std::move(sheet), facts);
+  });
+}
+
+void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
+  if (!both.stage("seeds on the sheet", &Products::seeds, [=](const Products& p, Context& c) {
+        return made(place_seeds(p.sheet, {count, 5}, c));
+      }))
+    return;
+  const auto relax = [](const Products& p, Context& c) {
+    return changed(p.seeds, [&](SeedSet& seeds) { return text_of(relax_on_sheet(p.sheet, seeds, {12, 10000, 0}, c)); });
+  };
+  if (!both.stage("relax on the sheet", &Products::seeds, relax)) return;
+  both.stage("dual, only checked", &Products::dual, [](const Products& p, Context& c) {
+    DualRun run = dual_of(p, {0}, c);
+    return made(std::move(run.mesh), text_of(run.report));
+  });
+  int64_t failed_cells = 0;
+  if (!both.stage("dual", &Products::dual, [&](const Products& p, Context& c) {
+        DualRun run = dual_of(p, {}, c);
+        failed_cells = run.report.failed_cells;
+        return made(std::move(run.mesh), text_of(run.report));
+      }))
+    return;
+  // The mesh's vertices are the seeds that the repair left.
+  both.stage("seeds of the dual", &Products::seeds,
+             [](const Products& p, Context& c) { return made(dual_of(p, {}, c).seeds); });
+  both.stage("subdivided seeds", &Products::site_seeds, [](const Products& p, Context& c) {
+    return made(subdivide_seeds(p.sheet, p.dual, p.seeds, p.seeds.size() * 2, c));
+  });
+  if (failed_cells > 0) return;
+  both.stage("improved mesh", &Products::dual, [](const Products& p, Context& c) {
+    SeedSet seeds = to_host(p.seeds);
+    DualMesh mesh = to_host(p.dual);
+    const int64_t flips = improve_mesh(p.sheet, {}, seeds, mesh, c);
+    return made(std::move(mesh), std::to_string(flips) + " flips, seeds " + digest_text(hash_arrays(seeds)));
+  });
+}
+
+void relax_and_flood_the_shell(SideBySide& both, int64_t count, bool has_sheet) {
+  if (!both.stage("seeds on sites", &Products::site_seeds, [=](const Products& p, Context& c) {
+        return made(place_seeds(p.sites, p.samples, {count, 9}, c));
+      }))
+    return;
+  const auto relax = [](const Products& p, Context& c) {
+    return changed(p.site_seeds, [&](SeedSet& seeds) {
+      return text_of(relax_in_shell(p.shell, p.sites, p.samples, seeds, {8, 10000, 0}, c));
+    });
+  };
+  if (!both.stage("relax in the shell", &Products::site_seeds, relax)) return;
+  both.stage("flood", &Products::labels,
+             [](const Products& p, Context& c) { return made(flood_shell(p.shell, p.site_seeds, c)); });
+  if (!has_sheet) return;
+  const auto attach = [](const Products& p, Context& c) {
+    return changed(p.site_seeds, [&](SeedSet& seeds) {
+      attach_to_sheet(p.sheet, seeds, c);
+      return std::string();
+    });
+  };
+  both.stage("attached seeds", &Products::site_seeds, attach);
+}
+
+void every_stage(const LatticeSurface& surface, int32_t band_vox, int32_t closing_vox) {
+  SideBySide both;
+  if (!up_to_samples(both, surface)) return;
+  shell_of_band(both, band_vox);
+  const bool has_sheet = sheet_with_closing(both, closing_vox);
+  const int64_t sites = both.cpu.sites.voxels.voxel_count();
+  if (has_sheet) relax_and_mesh_the_sheet(both, std::max<int64_t>(4, sites / 40));
+  relax_and_flood_the_shell(both, std::max<int64_t>(4, sites / 60), has_sheet);
+}
+
+std::vector<shapes::NamedSoup> all_soups() {
+  using namespace shapes;
+  std::vector<NamedSoup> out = ugly_soups();
+  out.push_back({"sphere", sphere({0.25, -1, 3}, 1.5, 48)});
+  out.push_back({"torus and sphere", together(torus(2, 0.5, 48, 24), sphere({0, 0, 4}, 1, 32))});
+  out.push_back({"two sheets far apart", two_sheets(4, 0.5)});
+  out.push_back({"frame of a cube", cube_frame(12, 3)});
+  out.push_back({"sieve", sieve(3, 4, 3, 3)});
+  out.push_back({"rod", rod(20)});
+  out.push_back({"cubes in a row", cubes(3, 4)});
+  TriangleSoup triangle;
+  triangle.vertices = {{0, 0, 0}, {1, 0.2, 0.1}, {0.3, 1, 0.7}};
+  add_triangle(triangle, 0, 1, 2);
+  triangle.faces_in_file = 1;
+  out.push_back({"one triangle", triangle});
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("parity: every stage on every shape, whatever memory its inputs lie in", "[parity][cuda]") {
+  int32_t turn = 0;
+  for (const shapes::NamedSoup& shape : all_soups())
+    for (const int32_t resolution : {17, 45, 98}) {
+      CAPTURE(shape.name, resolution);
+      Context context;
+      const int32_t bands[] = {1, 2, 3, 5}, closings[] = {0, 0, 2, 5};
+      every_stage(shapes::snapped(shape.soup, resolution, context), bands[turn % 4], closings[turn / 2 % 4]);
+      ++turn;
+    }
+}
+
+TEST_CASE("parity: corners on voxel boundaries", "[parity][cuda]") {
+  Context context;
+  every_stage(shapes::on_voxel_boundaries(context), 2, 1);
+}
+
+TEST_CASE("parity: the shell of every thickness around every set of voxels", "[parity][cuda]") {
+  std::vector<voxel_shapes::Named> sets = voxel_shapes::all(23);
+  sets.push_back({"none", {}, {64, 64, 64}});
+  sets.push_back({"one voxel", {{40, 33, 31}}, {64, 64, 64}});
+  sets.push_back({"one voxel in the lattice's first corner", {{0, 0, 0}}, {64, 64, 64}});
+  sets.push_back({"one voxel in the lattice's last corner", {{63, 63, 63}}, {64, 64, 64}});
+  sets.push_back({"two voxels far apart", {{5, 5, 5}, {8000, 4300, 4200}}, {8192, 4352, 4224}});
+  for (const voxel_shapes::Named& set : sets)
+    for (int32_t band = 1; band <= kMaxBandVox; band += band < 6 ? 1 : 3) {
+      CAPTURE(set.name, band);
+      SideBySide both;
+      both.cpu.sites = make_site_set(set.voxels, set.extent);
+      both.cuda.sites = make_site_set(set.voxels, set.extent);
+      shell_of_band(both, band);
+    }
+}
+
+TEST_CASE("parity: the paper's loop and the flood on sets of voxels", "[parity][cuda]") {
+  for (const voxel_shapes::Named& set : voxel_shapes::all(17)) {
+    CAPTURE(set.name);
+    SideBySide both;
+    for (Products* p : {&both.cpu, &both.cuda}) {
+      PaperSetup setup = paper_setup(set, 1);
+      p->sites = std::move(setup.sites);
+      p->samples = std::move(setup.samples);
+    }
+    for (const int32_t band : {1, 4}) {
+      if (!shell_of_band(both, band)) continue;
+      for (const int64_t count : {int64_t(1), int64_t(7), both.cpu.sites.voxels.voxel_count() / 9})
+        relax_and_flood_the_shell(both, count, false);
+    }
+  }
+}
+
+TEST_CASE("parity: whole runs, three times, with every digest", "[parity][cuda]") {
+  std::vector<golden::Case> cases = golden::cases();
+  cases.push_back({"sphere, few cells", [] { return shapes::sphere({0, 0, 0}, 1, 24); }, golden::options(4, 40)});
+  cases.push_back({"torus, band 9", [] { return shapes::torus(2, .7, 33, 17); }, golden::options(250, 71)});
+  cases.back().options.band_vox = 9;
+  cases.push_back(
+      {"torus shell, band 6", [] { return shapes::torus(2, .7, 33, 17); }, golden::options(250, 71, Method::shell)});
+  cases.back().options.band_vox = 6;
+  cases.push_back({"confetti", [] { return shapes::random_soup(2000, 4, .05, 2); }, golden::options(300, 60)});
+  cases.push_back({"random soup, shell", [] { return shapes::random_soup(150, 4, 3, 1); },
+                   golden::options(600, 64, Method::shell, 2)});
+  cases.push_back({"sieve", [] { return shapes::sieve(3, 4, 3, 3); }, golden::options(3000, 80)});
+  const auto run = [](const golden::Case& c, Backend backend) {
+    Context context;
+    context.backend = backend;
+    try {
+      return golden::run(c, context);
+    } catch (const Error& e) {
+      return std::string(e.stage()) + ": " + e.what();
+    }
+  };
+  for (const golden::Case& c : cases) {
+    const std::string expected = run(c, Backend::cpu);
+    for (int repeat = 0; repeat < 3; ++repeat) CHECK(run(c, Backend::cuda) == expected);
+  }
+}
+
+TEST_CASE("parity: one context serves run after run, and two contexts do not disturb each other", "[parity][cuda]") {
+  const golden::Case c = golden::cases()[1];
+  Context cpu, one, two;
+  cpu.backend = Backend::cpu;
+  one.backend = two.backend = Backend::cuda;
+  const std::string expected = golden::run(c, cpu);
+  for (Context* context : {&one, &two, &one}) CHECK(golden::run(c, *context) == expected);
+}

@@ -1,0 +1,201 @@
+// Every word of an executor gives its one mathematical answer, on every backend, at sizes around those of warps and
+// blocks, and beyond 32 bits where memory allows. And floating point keeps to IEEE 754.
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <tuple>
+
+#include "isoshell/error.h"
+#include "parity/canary_table.h"
+#include "parity/executor_words.h"
+#include "support/catch.h"
+#include "support/test_context.h"
+#include "voxel/random.h"
+
+using namespace isoshell;
+using namespace isoshell::parity;
+
+namespace {
+
+constexpr int64_t kSizes[] = {0, 1, 2, 31, 32, 33, 127, 128, 129, 1000, 4096, 65537, 1000007};
+constexpr int64_t kBeyond32Bits = (int64_t(1) << 31) + 77;
+
+struct Words {
+  TestContext context;
+  std::unique_ptr<ExecutorWords> words;
+
+  Words() { words = context.backend == Backend::cuda ? cuda_words(context) : tbb_words(context); }
+  ExecutorWords* operator->() { return words.get(); }
+};
+
+template <class T>
+std::vector<T> random_values(int64_t count, uint64_t below, uint64_t seed) {
+  std::vector<T> out = std::vector<T>(size_t(count));
+  for (size_t i = 0; i < out.size(); ++i) out[i] = T(random_bits(seed, i) % below);
+  return out;
+}
+
+template <class T>
+std::vector<T> exclusive_sums(const std::vector<T>& counts, T& total) {
+  std::vector<T> out(counts.size());
+  total = 0;
+  for (size_t i = 0; i < out.size(); ++i) {
+    out[i] = total;
+    total = T(total + counts[i]);
+  }
+  return out;
+}
+
+template <class T>
+std::vector<T> inclusive_sums(std::vector<T> counts) {
+  std::partial_sum(counts.begin(), counts.end(), counts.begin());
+  return counts;
+}
+
+/// Runs `work` unless memory is short. The host's is not tried: these sizes are for devices.
+void with_large_memory(const std::function<void()>& work) {
+  if (test_backend() != Backend::cuda) return;
+  try {
+    work();
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::out_of_memory) throw;
+    WARN("left out: " << e.what());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("words: fill and for_each reach every element", "[parity][words]") {
+  Words words;
+  for (int64_t n : kSizes) {
+    CAPTURE(n);
+    CHECK(words->fill(n, 0xdeadbeefu) == std::vector<uint32_t>(size_t(n), 0xdeadbeefu));
+    CHECK(words->fill_bytes(n, 0xa5) == std::vector<uint8_t>(size_t(n), 0xa5));
+    std::vector<uint64_t> expected(size_t(n), 0);
+    for (size_t i = 0; i < expected.size(); ++i) expected[i] = random_bits(7, i);
+    CHECK(words->for_each(n) == expected);
+  }
+}
+
+TEST_CASE("words: copy and value read what was written", "[parity][words]") {
+  Words words;
+  for (int64_t n : kSizes) {
+    CAPTURE(n);
+    const std::vector<uint64_t> values = random_values<uint64_t>(n, UINT64_MAX, 11);
+    CHECK(words->copy(values) == values);
+    for (int64_t i : {int64_t(0), n / 2, n - 1})
+      if (n > 0) CHECK(words->value(values, i) == values[size_t(i)]);
+  }
+}
+
+TEST_CASE("words: scans add up in both widths", "[parity][words]") {
+  Words words;
+  for (int64_t n : kSizes) {
+    CAPTURE(n);
+    const std::vector<int64_t> wide = random_values<int64_t>(n, uint64_t(1) << 40, 1);
+    int64_t total = -1, expected_total = -1;
+    const std::vector<int64_t> expected = exclusive_sums(wide, expected_total);
+    CHECK(words->exclusive_scan(wide, total) == expected);
+    CHECK(total == expected_total);
+    CHECK(words->inclusive_scan(wide) == inclusive_sums(wide));
+
+    const std::vector<uint32_t> narrow = random_values<uint32_t>(n, 9, 2);
+    uint32_t narrow_total = 1, expected_narrow_total = 1;
+    const std::vector<uint32_t> expected_narrow = exclusive_sums(narrow, expected_narrow_total);
+    CHECK(words->exclusive_scan(narrow, narrow_total) == expected_narrow);
+    CHECK(narrow_total == expected_narrow_total);
+    CHECK(words->inclusive_scan(narrow) == inclusive_sums(narrow));
+  }
+}
+
+TEST_CASE("words: sort orders keys of one, two and three words, repeats included", "[parity][words]") {
+  Words words;
+  for (int64_t n : kSizes) {
+    CAPTURE(n);
+    for (const uint64_t below : {UINT64_MAX, uint64_t(5)}) {
+      const std::vector<uint64_t> keys = random_values<uint64_t>(n, below, 3);
+      std::vector<uint64_t> ordered = keys;
+      std::sort(ordered.begin(), ordered.end());
+      CHECK(words->sort(keys) == ordered);
+      std::reverse(ordered.begin(), ordered.end());
+      CHECK(words->sort_descending(keys) == ordered);
+    }
+    const std::vector<uint32_t> narrow = random_values<uint32_t>(n, uint64_t(1) << 32, 4);
+    std::vector<uint32_t> narrow_ordered = narrow;
+    std::sort(narrow_ordered.begin(), narrow_ordered.end());
+    CHECK(words->sort(narrow) == narrow_ordered);
+
+    std::vector<OddKey> odd = std::vector<OddKey>(size_t(n));
+    for (uint32_t i = 0; i < odd.size(); ++i)
+      odd[i] = {uint32_t(random_bits(5, i) % 7), uint32_t(random_bits(6, i) % 1000), i};
+    std::vector<OddKey> odd_ordered = odd;
+    std::sort(odd_ordered.begin(), odd_ordered.end(), [](const OddKey& a, const OddKey& b) {
+      return std::tie(a.high, a.low, a.tag) < std::tie(b.high, b.low, b.tag);
+    });
+    CHECK(words->sort(odd) == odd_ordered);
+  }
+}
+
+TEST_CASE("words: select keeps what it is told to, in order", "[parity][words]") {
+  Words words;
+  for (int64_t n : kSizes)
+    for (const uint64_t modulus : {uint64_t(1), uint64_t(2), uint64_t(37), uint64_t(1) << 62}) {
+      CAPTURE(n, modulus);
+      std::vector<uint32_t> expected;
+      for (uint32_t i = 0; i < n; ++i)
+        if (random_bits(9, i) % modulus == 0) expected.push_back(i);
+      CHECK(words->select(n, modulus) == expected);
+    }
+}
+
+TEST_CASE("words: sum is exact, with terms of both signs", "[parity][words]") {
+  Words words;
+  for (int64_t n : kSizes) {
+    CAPTURE(n);
+    int64_t expected = 0;
+    for (int64_t i = 0; i < n; ++i) expected += i % 1000 - 499;
+    CHECK(words->sum(n) == expected);
+  }
+}
+
+TEST_CASE("words: arrays of more than two thousand million elements", "[parity][words]") {
+  Words words;
+  const int64_t n = kBeyond32Bits;
+  with_large_memory([&] {
+    const int64_t rest = n % 1000;
+    CHECK(words->sum(n) == n / 1000 * 500 + rest * (rest - 1) / 2 - 499 * rest);
+  });
+  with_large_memory([&] {
+    int64_t expected = n / 251 * (250 * 251 / 2);
+    for (int64_t i = n / 251 * 251; i < n; ++i) expected += i % 251;
+    CHECK(words->write_and_sum(n) == expected);
+  });
+  with_large_memory([&] {
+    CHECK(words->scan_ones(n, {0, 1, n / 2, n - 1}) == std::vector<int64_t>{0, 1, n / 2, n - 1, n});
+  });
+  with_large_memory([&] {
+    CHECK(words->sort_reversed(n, {0, 1, n / 2, n - 1}) ==
+          std::vector<uint64_t>{0, 1, uint64_t(n / 2), uint64_t(n - 1)});
+  });
+  with_large_memory([&] {
+    const int64_t modulus = 1001, kept = n / modulus;
+    CHECK(words->select_multiples(n, modulus) == std::vector<int64_t>{kept, kept * modulus - 1});
+  });
+}
+
+TEST_CASE("words: a cancelled context stops every backend", "[parity][words]") {
+  Words words;
+  words.context.cancel = true;
+  CHECK_THROWS_AS(words->for_each(1000), Error);
+}
+
+TEST_CASE("canary: floating point is that of IEEE 754, bit by bit", "[parity][canary]") {
+  Words words;
+  std::vector<CanaryOperands> operands;
+  for (const CanaryCase& c : kCanaries) operands.push_back(c.operands);
+  const std::vector<uint64_t> bits = words->canary(operands);
+  for (size_t i = 0; i < bits.size(); ++i) {
+    CAPTURE(i, operands[i].operation, operands[i].a, operands[i].b, operands[i].c);
+    CHECK(bits[i] == kCanaries[i].expected);
+  }
+}
