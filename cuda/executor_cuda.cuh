@@ -56,6 +56,9 @@ class CudaExecutor {
   CudaExecutor(Context& context, const char* stage)
       : context_(context), stage_(stage), stream_(DeviceStream::of(context)) {}
 
+  /// Passes of a loop that are enqueued before its state is read, which waits for them.
+  static constexpr int kPassBatch = 16;
+
   Context& context() { return context_; }
   DeviceStream& device() { return stream_; }
   cudaStream_t stream() const { return stream_.stream(); }
@@ -150,12 +153,18 @@ class CudaExecutor {
   int64_t sum(int64_t count, Term term) {
     if (count <= 0) return 0;
     Buffer<int64_t> total = make<int64_t>(1);
-    fill(total.view(), int64_t(0));
+    sum_into(total.view(), count, term);
+    return value(View<const int64_t>(total.view()), 0);
+  }
+
+  template <class Term>
+  void sum_into(View<int64_t> out, int64_t count, Term term) {
+    fill(out, int64_t(0));
+    if (count <= 0) return;
     const unsigned most = 1024;
     const unsigned blocks = cuda_steps::blocks_for(count) < most ? cuda_steps::blocks_for(count) : most;
-    cuda_steps::sum_terms<<<blocks, cuda_steps::kThreads, 0, stream()>>>(count, term, total.data());
+    cuda_steps::sum_terms<<<blocks, cuda_steps::kThreads, 0, stream()>>>(count, term, out.data);
     check("sum");
-    return value(View<const int64_t>(total.view()), 0);
   }
 
   /// A copy of any Buffer in this device's memory.

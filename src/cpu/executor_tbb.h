@@ -26,6 +26,9 @@ class TbbExecutor {
  public:
   explicit TbbExecutor(Context& context, const char* stage) : context_(context), stage_(stage) {}
 
+  /// Passes of a loop that are enqueued before its state is read: no read costs anything here.
+  static constexpr int kPassBatch = 1;
+
   Context& context() { return context_; }
 
   template <class T>
@@ -91,6 +94,11 @@ class TbbExecutor {
           return part;
         },
         std::plus<int64_t>());
+  }
+
+  template <class Term>
+  void sum_into(View<int64_t> out, int64_t count, Term term) {
+    out[0] = sum(count, term);
   }
 
   template <class Keep>

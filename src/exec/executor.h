@@ -11,6 +11,8 @@
 //   template <class T, class Less> void sort(View<T> keys, Less less);   // less must be a total order on the values
 //   template <class Keep> Buffer<uint32_t> select(int64_t count, Keep keep); // ascending i with keep(i)
 //   template <class Term> int64_t sum(int64_t count, Term term);     // integer sum of term(i)
+//   template <class Term> void sum_into(View<int64_t> out, int64_t count, Term term);   // the same, to out[0]
+//   static constexpr int kPassBatch;                                 // passes of a loop between two looks at its state
 //
 // Every operation has one mathematical answer, so no schedule can change a byte. Steps are functors named for what they
 // do. A step may write only to its own elements, or through the integer atomics of voxel/atomic.h.

@@ -6,10 +6,9 @@
 // rose.
 #pragma once
 
-#include <cmath>
-
 #include "isoshell/stages.h"
 #include "stages/label_body.h"
+#include "stages/pass_state.h"
 #include "stages/sheet_walk.h"
 #include "voxel/atomic.h"
 #include "voxel/cell_sum.h"
@@ -17,19 +16,20 @@
 namespace isoshell {
 namespace relax_sheet {
 
-/// Area, centre and energy of a cell relative to its seed: mass is the doubled area (q16), first three times the
-/// doubled first moment, energy_12 twelve times the doubled second moment, shifted down by energy_shift().
+/// Area and centre of a cell relative to its seed: mass is the doubled area (q16), first three times the doubled first
+/// moment.
 struct CellSum {
-  int64_t mass, first_x, first_y, first_z, energy_12;
+  int64_t mass, first_x, first_y, first_z;
 };
 
-/// Bits that cell energies lose, so that their sum (about 2^6 times area times h^2 at the worst) stays below 2^60: 8 on
-/// all but the largest sheets with the fewest seeds.
+/// Bits that the energy loses at last (twelve times the doubled second moments of all cells about their seeds, summed
+/// exactly), so that it (about 2^6 times area times h^2 at the worst) stays below 2^60: 12 on all but the largest
+/// sheets with the fewest seeds.
 inline int energy_shift(int64_t area2_q16, int64_t h_sq_q16) {
   int bits = 6;
   for (int64_t rest = area2_q16; rest > 0; rest >>= 1) ++bits;
   for (int64_t rest = h_sq_q16; rest > 0; rest >>= 1) ++bits;
-  return bits - 64 > 8 ? bits - 64 : 8;
+  return bits - 60 > 12 ? bits - 60 : 12;
 }
 
 /// A sheet triangle with its doubled area.
@@ -130,7 +130,24 @@ class LocalSums {
   PieceSum sum_[kSlots];
 };
 
-/// Adds the pieces of one leaf's triangles to their cells.
+/// Moves sums from an origin to the seed at `d` from it, adds them to the seed's cell, and returns their energy. Far
+/// seeds take that past 64 bits.
+ISOSHELL_HD inline Int128 add_to_cell(CellSum& cell, const PieceSum& s, Local d) {
+  atomic_add(cell.mass, s.mass);
+  atomic_add(cell.first_x, s.first_x - 3 * s.mass * d.x);
+  atomic_add(cell.first_y, s.first_y - 3 * s.mass * d.y);
+  atomic_add(cell.first_z, s.first_z - 3 * s.mass * d.z);
+  return Int128(s.second) - 8 * (Int128(s.first_x) * d.x + Int128(s.first_y) * d.y + Int128(s.first_z) * d.z) +
+         Int128(12 * square(d)) * s.mass;
+}
+
+/// Centre of a leaf: origin of its local coordinates.
+ISOSHELL_HD inline PointQ8 leaf_origin(uint64_t key) {
+  const Voxel v = leaf_of_key(key);
+  return {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
+}
+
+/// Adds the pieces of one leaf's triangles to their cells, and writes the leaf's part of the energy.
 template <int kSlots = 64>
 struct SumLeaf {
   View<const uint64_t> leaf_key;
@@ -140,24 +157,29 @@ struct SumLeaf {
   View<const uint32_t> label;
   View<const PointQ8> seed;
   View<CellSum> cell;
-  int shift = 8;
+  View<SplitSum> energy;
+  View<const PassState> state;
 
   ISOSHELL_HD void operator()(int64_t leaf) const {
-    const Voxel v = leaf_of_key(leaf_key[leaf]);
-    const PointQ8 origin = {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits,
-                            (v.z * 8 + 4) << kFractionBits};
+    if (state[0].converged) return;
+    const PointQ8 origin = leaf_origin(leaf_key[leaf]);
     LocalSums<kSlots> sums;
     uint32_t last = kNone;
     PieceSum* last_sum = nullptr;
+    Int128 leaf_energy = 0;
+    const auto flush = [&](uint32_t id, const PieceSum& sum) {
+      leaf_energy += add_to_cell(cell[id], sum, local(seed[id], origin));
+    };
     const auto add = [&](uint32_t id, const PieceSum& piece) {
       if (id != last) last = id, last_sum = sums.of(id);
       if (last_sum)
         *last_sum = *last_sum + piece;
       else
-        flush(id, piece, origin);
+        flush(id, piece);
     };
     for (int64_t t = first[leaf]; t < first[leaf + 1]; ++t) add_triangle(triangles[t], origin, add);
-    sums.for_each([&](uint32_t id, const PieceSum& sum) { flush(id, sum, origin); });
+    sums.for_each(flush);
+    energy[leaf] = SplitSum::of(leaf_energy);
   }
 
  private:
@@ -178,20 +200,6 @@ struct SumLeaf {
       split.two_cells(2, add_piece);
     else
       split.three_cells(add_piece);
-  }
-
-  /// Moves the sums from the leaf's origin to the seed: d = seed - origin. Far seeds take the energy past 64 bits.
-  ISOSHELL_HD void flush(uint32_t id, const PieceSum& s, PointQ8 origin) const {
-    const Local d = local(seed[id], origin);
-    __extension__ typedef __int128 Wide;
-    const Wide energy = Wide(s.second) - 8 * (Wide(s.first_x) * d.x + Wide(s.first_y) * d.y + Wide(s.first_z) * d.z) +
-                        Wide(12 * square(d)) * s.mass;
-    CellSum& c = cell[id];
-    atomic_add(c.mass, s.mass);
-    atomic_add(c.first_x, s.first_x - 3 * s.mass * d.x);
-    atomic_add(c.first_y, s.first_y - 3 * s.mass * d.y);
-    atomic_add(c.first_z, s.first_z - 3 * s.mass * d.z);
-    atomic_add(c.energy_12, int64_t(energy >> shift));
   }
 };
 
@@ -222,59 +230,84 @@ struct MovingSeeds {
 };
 
 /// here = s + beta (s - last), last = s.
+ISOSHELL_HD inline void look_ahead(const MovingSeeds& seeds, int64_t beta_q15, int64_t i) {
+  const PointQ8 s = seeds.here[i];
+  const Vec64 step = difference(s, seeds.last[i]) * beta_q15;
+  seeds.last[i] = s;
+  if (beta_q15 == 0) return;
+  seeds.here[i] = seeds.settle(i, seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15}));
+}
+
+/// here = centre of the cell measured at here.
+ISOSHELL_HD inline void move_to_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
+  if (c.mass <= 0) return;
+  const Vec64 step = {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass),
+                      round_div(c.first_z, 3 * c.mass)};
+  seeds.here[i] = seeds.settle(i, seeds.moved(seeds.here[i], step));
+}
+
 struct LookAhead {
   MovingSeeds seeds;
-  int64_t beta_q15;
+  View<const PassState> state;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const PointQ8 s = seeds.here[i];
-    const Vec64 step = difference(s, seeds.last[i]) * beta_q15;
-    seeds.last[i] = s;
-    if (beta_q15 == 0) return;
-    seeds.here[i] = seeds.settle(i, seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15}));
+    if (!state[0].converged) look_ahead(seeds, state[0].beta_q15, i);
   }
 };
 
-/// here = centre of the cell measured at here.
 struct MoveToCentre {
   MovingSeeds seeds;
   View<const CellSum> cell;
+  View<const PassState> state;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const CellSum c = cell[i];
-    if (c.mass <= 0) return;
-    const Vec64 step = {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass),
-                        round_div(c.first_z, 3 * c.mass)};
-    seeds.here[i] = seeds.settle(i, seeds.moved(seeds.here[i], step));
+    if (!state[0].converged) move_to_centre(seeds, cell[i], i);
   }
 };
 
-struct CellEnergy {
-  View<const CellSum> cell;
-  ISOSHELL_HD int64_t operator()(int64_t i) const { return cell[i].energy_12 >> 4; }
-};
-
-/// Nesterov's momentum factors, capped. Host only: one square root a pass.
-class Momentum {
- public:
-  void restart() { t_ = 1; }
-  int64_t next_q15() {
-    const double after = (1 + std::sqrt(1 + 4 * t_ * t_)) / 2;
-    const double beta = (t_ - 1) / after;
-    t_ = after;
-    return int64_t((beta < kCap ? beta : kCap) * 32768);
-  }
-
- private:
-  static constexpr double kCap = 0.95;
-  double t_ = 1;
-};
+/// Nesterov's momentum factors, capped: the one for the next pass. One square root a pass.
+ISOSHELL_HD inline void advance_momentum(PassState& state) {
+  constexpr double kCap = 0.95;
+  const double after = (1 + rounded_sqrt(1 + 4 * state.momentum * state.momentum)) / 2;
+  const double beta = (state.momentum - 1) / after;
+  state.momentum = after;
+  state.beta_q15 = int64_t((beta < kCap ? beta : kCap) * 32768);
+}
 
 /// True when the energy fell by less than `tolerance_ppb` of itself a pass over the last five passes.
-inline bool has_converged(const std::vector<double>& energy, int32_t tolerance_ppb) {
-  constexpr size_t kWindow = 5;
-  if (energy.size() <= kWindow) return false;
-  const double before = energy[energy.size() - 1 - kWindow], now = energy.back();
+ISOSHELL_HD inline bool has_converged(const PassState& state, int32_t tolerance_ppb) {
+  constexpr int kWindow = 5;
+  if (state.passes <= kWindow) return false;
+  const double before = double(state.energy_of(state.passes - 1 - kWindow)),
+               now = double(state.energy_of(state.passes - 1));
   return before - now < before * (double(tolerance_ppb) * 1e-9 * kWindow) && now <= before;
 }
+
+/// State before the first pass, which has no momentum.
+struct StartPasses {
+  View<PassState> state;
+  ISOSHELL_HD void operator()(int64_t) const {
+    PassState& s = state[0];
+    s.passes = s.converged = 0;
+    s.momentum = 1;
+    advance_momentum(s);
+  }
+};
+
+/// Ends a pass: notes its energy, starts momentum anew when it rose, stops when it no longer falls.
+struct FinishPass {
+  View<PassState> state;
+  View<const int64_t> energy;  ///< high and low part of a SplitSum
+  int shift;
+  int32_t tolerance_ppb;
+  ISOSHELL_HD void operator()(int64_t) const {
+    PassState& s = state[0];
+    if (s.converged) return;
+    const int64_t now = int64_t(SplitSum{energy[0], energy[1]}.value() >> shift);
+    if (s.passes > 0 && double(now) > double(s.energy_of(s.passes - 1))) s.momentum = 1;
+    s.add(now);
+    s.converged = has_converged(s, tolerance_ppb);
+    advance_momentum(s);
+  }
+};
 
 }  // namespace relax_sheet
 
@@ -285,35 +318,34 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   const Patches patches = make_patches(exec, sheet);
   const int64_t area2 = doubled_area_q16(exec, sheet);
   const SeedSpacing spacing = seed_spacing(area2, count);
-  const int shift = energy_shift(area2, spacing.h_sq_q16);
   Buffer<uint32_t> labels = exec.template make<uint32_t>(sheet.vertex_count());
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
+  Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(sheet.corners.leaf_count());
+  Buffer<int64_t> energy = exec.template make<int64_t>(2);
+  Buffer<PassState> state = exec.template make<PassState>(1);
   exec.copy(View<const PointQ8>(seeds.position.view()), last.view());
+  exec.for_each("start passes", 1, StartPasses{state.view()});
 
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};
   const int64_t max_step = options.max_step_q8 > 0 ? options.max_step_q8 : spacing.h_q8 * 2 / 5;
   const MovingSeeds moving{walk, seeds.position.view(), last.view(), seeds.home.view(), seeds.normal.view(), max_step};
 
-  RelaxReport report;
-  Momentum momentum;
-  while (report.passes < options.max_passes && !report.converged) {
-    exec.for_each("look ahead", count, LookAhead{moving, momentum.next_q15()});
+  const FinishPass finish{state.view(), energy.view(), energy_shift(area2, spacing.h_sq_q16), options.tolerance_ppb};
+
+  return run_passes(exec, state.view(), options.max_passes, [&] {
+    exec.for_each("look ahead", count, LookAhead{moving, state.view()});
     label_sheet(exec, sheet, seeds, spacing, labels.view());
-    exec.fill(cells.view(), CellSum{0, 0, 0, 0, 0});
-    exec.for_each("sum cells", sheet.corners.leaf_count(),
-                  SumLeaf<>{sheet.corners.leaf_key.view(), patches.first.view(), patches.triangles.view(),
-                            sheet.position.view(), labels.view(), seeds.position.view(), cells.view(), shift});
-    exec.for_each("move to centre", count, MoveToCentre{moving, cells.view()});
-    const double energy = double(exec.sum(count, CellEnergy{cells.view()}));
-    if (!report.energy.empty() && energy > report.energy.back()) momentum.restart();
-    report.energy.push_back(energy);
-    ++report.passes;
-    report.converged = has_converged(report.energy, options.tolerance_ppb);
-    if (exec.context().progress) exec.context().progress("relax", double(report.passes) / options.max_passes);
-  }
-  return report;
+    exec.fill(cells.view(), CellSum{0, 0, 0, 0});
+    exec.for_each(
+        "sum cells", sheet.corners.leaf_count(),
+        SumLeaf<>{sheet.corners.leaf_key.view(), patches.first.view(), patches.triangles.view(), sheet.position.view(),
+                  labels.view(), seeds.position.view(), cells.view(), leaf_energy.view(), state.view()});
+    exec.for_each("move to centre", count, MoveToCentre{moving, cells.view(), state.view()});
+    sum_split_into(exec, energy.view(), leaf_energy.view());
+    exec.for_each("finish pass", 1, finish);
+  });
 }
 
 }  // namespace isoshell

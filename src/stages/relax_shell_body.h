@@ -10,16 +10,17 @@
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "stages/nearest_seed_body.h"
+#include "stages/pass_state.h"
 
 namespace isoshell {
 namespace relax_shell {
 
-constexpr int kEnergyShift = 8;  ///< energies are in 1/256 voxel^2: each leaf's share of a cell is cut there
+constexpr int kEnergyShift = 8;  ///< energies are in 1/256 voxel^2: the exact sum is cut there
 constexpr int kStallPasses = 5;  ///< over which the tolerance is measured
 
-/// Sums of one cell. Relative to its seed, so they stay small: moment < 2^28 voxels * 2^21, energy < 2^60 for k >= 4.
+/// Sums of one cell. Relative to its seed, so they stay small: moment < 2^28 voxels * 2^21.
 struct CellSums {
-  int64_t count, x, y, z, energy;
+  int64_t count, x, y, z;
 };
 
 /// What labelling does with its labels: adds them up per cube and candidate, then once per cube to the cells.
@@ -27,6 +28,7 @@ struct SumCells {
   VoxelSetView voxels;
   View<const PointQ8> position;
   View<CellSums> cells;
+  View<SplitSum> energy;  ///< per leaf, zero at first
 
   /// count, x, y, z (voxels from the leaf's voxel 0) in 16 bits each: 512 * 7 fits.
   struct Cube {
@@ -61,14 +63,16 @@ struct SumCells {
     const int64_t n = int64_t(sums & 0xffff);
     const Vec64 first = {int64_t(sums >> 16 & 0xffff), int64_t(sums >> 32 & 0xffff), int64_t(sums >> 48)};
     const Vec64 moment = first * kOneVoxelQ8 - a * n;
-    const int64_t energy =
+    const int64_t share =
         int64_t(squares) * kOneVoxelQ8 * kOneVoxelQ8 - 2 * kOneVoxelQ8 * dot(a, first) + n * dot(a, a);
     CellSums& cell = cells[seed.id];
     atomic_add(cell.count, n);
     atomic_add(cell.x, moment.x);
     atomic_add(cell.y, moment.y);
     atomic_add(cell.z, moment.z);
-    atomic_add(cell.energy, energy >> kEnergyShift);
+    const SplitSum parts = SplitSum::of(share);
+    energy[leaf].high += parts.high;
+    energy[leaf].low += parts.low;
   }
 };
 
@@ -96,10 +100,11 @@ struct MoveSeed {
   View<PointQ8> position;
   View<Normal8> normal;
   View<uint32_t> home;
+  View<const PassState> state;
 
   ISOSHELL_HD void operator()(int64_t i) const {
     const CellSums& cell = cells[i];
-    if (cell.count == 0) return;
+    if (state[0].converged || cell.count == 0) return;
     const Vec64 to_centre = {round_div(cell.x, cell.count), round_div(cell.y, cell.count),
                              round_div(cell.z, cell.count)};
     const Vec64 step = bounded_step(to_centre, most_q8);
@@ -134,19 +139,32 @@ struct MoveSeed {
   }
 };
 
-struct EnergyOf {
-  View<const CellSums> cells;
-  ISOSHELL_HD int64_t operator()(int64_t i) const { return cells[i].energy; }
-};
-
 /// True when the energy fell by less than ppb parts in 10^9 a pass, over the last kStallPasses passes.
-inline bool stalled(const std::vector<int64_t>& energy, int32_t tolerance_ppb) {
-  const int64_t last = int64_t(energy.size()) - 1;
+ISOSHELL_HD inline bool stalled(const PassState& state, int32_t tolerance_ppb) {
+  const int32_t last = state.passes - 1;
   if (last < kStallPasses) return false;
   constexpr int64_t kBillion = 1000000000;
-  const int64_t before = energy[size_t(last - kStallPasses)], part = int64_t(kStallPasses) * tolerance_ppb;
-  return before - energy[size_t(last)] < part * (before / kBillion) + part * (before % kBillion) / kBillion;
+  const int64_t before = state.energy_of(last - kStallPasses), part = int64_t(kStallPasses) * tolerance_ppb;
+  return before - state.energy_of(last) < part * (before / kBillion) + part * (before % kBillion) / kBillion;
 }
+
+struct StartPasses {
+  View<PassState> state;
+  ISOSHELL_HD void operator()(int64_t) const { state[0].passes = state[0].converged = 0; }
+};
+
+/// Ends a pass: notes its energy, stops when it no longer falls.
+struct FinishPass {
+  View<PassState> state;
+  View<const int64_t> energy;  ///< high and low part of a SplitSum
+  int32_t tolerance_ppb;
+  ISOSHELL_HD void operator()(int64_t) const {
+    PassState& s = state[0];
+    if (s.converged) return;
+    s.add(int64_t(SplitSum{energy[0], energy[1]}.value() >> kEnergyShift));
+    s.converged = stalled(s, tolerance_ppb);
+  }
+};
 
 /// Edge of a square that holds one seed, by the count of sites, which are about one a unit of area.
 inline int64_t spacing_vox(int64_t sites, int64_t seeds) {
@@ -163,8 +181,12 @@ RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& s
   const VoxelSetView voxels = shell.voxels.view();
   PointGrid grid = make_point_grid(exec, shell.voxels.block_dims, spacing, k);
   Buffer<CellSums> cells = exec.template make<CellSums>(k);
+  Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(shell.voxels.leaf_count());
+  Buffer<int64_t> energy = exec.template make<int64_t>(2);
+  Buffer<PassState> state = exec.template make<PassState>(1);
+  exec.for_each("start passes", 1, StartPasses{state.view()});
   const LabelLeaf<SumCells> sum_leaf{
-      voxels, grid.view(), {voxels, seeds.position.view(), cells.view()}, cube_edge_for(spacing)};
+      voxels, grid.view(), {voxels, seeds.position.view(), cells.view(), leaf_energy.view()}, cube_edge_for(spacing)};
   const MoveSeed move{voxels,
                       shell.closest_site.view(),
                       sites.voxels.view(),
@@ -173,23 +195,21 @@ RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& s
                       cells.view(),
                       seeds.position.view(),
                       seeds.normal.view(),
-                      seeds.home.view()};
-  RelaxReport report;
+                      seeds.home.view(),
+                      state.view()};
+  const FinishPass finish{state.view(), energy.view(), options.tolerance_ppb};
+  RelaxReport report = run_passes(exec, state.view(), options.max_passes, [&] {
+    fill_point_grid(exec, grid, View<const PointQ8>(seeds.position.view()));
+    exec.fill(cells.view(), CellSums{});
+    exec.fill(leaf_energy.view(), SplitSum{0, 0});
+    exec.for_each("sum cells", shell.voxels.leaf_count(), sum_leaf);
+    exec.for_each("move seeds", k, move);
+    sum_split_into(exec, energy.view(), leaf_energy.view());
+    exec.for_each("finish pass", 1, finish);
+  });
   report.normalised_energy_factor =
       double(k) / (double(1 << (2 * kFractionBits - kEnergyShift)) * double(shell.voxels.voxel_count()) *
                    double(sites.voxels.voxel_count()));
-  std::vector<int64_t> energy;
-  while (report.passes < options.max_passes && !report.converged) {
-    fill_point_grid(exec, grid, View<const PointQ8>(seeds.position.view()));
-    exec.fill(cells.view(), CellSums{});
-    exec.for_each("sum cells", shell.voxels.leaf_count(), sum_leaf);
-    exec.for_each("move seeds", k, move);
-    energy.push_back(exec.sum(k, EnergyOf{cells.view()}));
-    report.energy.push_back(double(energy.back()));
-    report.converged = stalled(energy, options.tolerance_ppb);
-    ++report.passes;
-    if (exec.context().progress) exec.context().progress("relax", double(report.passes) / options.max_passes);
-  }
   return report;
 }
 

@@ -8,6 +8,8 @@
 
 namespace isoshell {
 
+__extension__ typedef __int128 Int128;
+
 /// A vector of 64-bit lattice quantities (differences in q8, cross products, sums).
 struct Vec64 {
   int64_t x, y, z;
@@ -32,13 +34,18 @@ ISOSHELL_HD inline int64_t floor_div(int64_t a, int64_t b) { return a / b - (a %
 /// a / b rounded to nearest, halves up, b > 0.
 ISOSHELL_HD inline int64_t round_div(int64_t a, int64_t b) { return floor_div(2 * a + b, 2 * b); }
 
+/// The correctly rounded square root.
+ISOSHELL_HD inline double rounded_sqrt(double x) {
+#if defined(__CUDA_ARCH__)
+  return __dsqrt_rn(x);
+#else
+  return __builtin_sqrt(x);
+#endif
+}
+
 /// floor(sqrt(n)), exact, for n < 2^62: the rounded root is off by at most one.
 ISOSHELL_HD inline uint64_t isqrt(uint64_t n) {
-#if defined(__CUDA_ARCH__)
-  uint64_t root = uint64_t(__dsqrt_rn(double(n)));
-#else
-  uint64_t root = uint64_t(__builtin_sqrt(double(n)));
-#endif
+  uint64_t root = uint64_t(rounded_sqrt(double(n)));
   root -= root * root > n;
   root += (root + 1) * (root + 1) <= n;
   return root;

@@ -128,23 +128,29 @@ TEST_CASE("relax: full tables of local sums change nothing, and the cells add up
   label_sheet(exec, sheet, seeds, spacing_of(sheet, seeds, context), labels.view());
   const auto sums = [&](auto like) {
     Buffer<relax_sheet::CellSum> cells(seeds.size());
-    exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0, 0});
+    Buffer<SplitSum> energy(sheet.corners.leaf_count());
+    Buffer<PassState> state(1);
+    exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0});
+    exec.for_each("start", 1, relax_sheet::StartPasses{state.view()});
     like = {sheet.corners.leaf_key.view(),
             patches.first.view(),
             patches.triangles.view(),
             sheet.position.view(),
             labels.view(),
             seeds.position.view(),
-            cells.view()};
+            cells.view(),
+            energy.view(),
+            state.view()};
     exec.for_each("sum", sheet.corners.leaf_count(), like);
     std::vector<int64_t> out;
     for (const auto& c : cells) out.insert(out.end(), {c.mass, c.first_x, c.first_y, c.first_z});
+    for (const auto& e : energy) out.insert(out.end(), {e.high, e.low});
     return out;
   };
   const std::vector<int64_t> wide = sums(relax_sheet::SumLeaf<64>{});
   CHECK(sums(relax_sheet::SumLeaf<2>{}) == wide);
   int64_t total = 0;
-  for (size_t i = 0; i < wide.size(); i += 4) total += wide[i];
+  for (size_t i = 0; i < size_t(4 * seeds.size()); i += 4) total += wide[i];
   CHECK(std::abs(total - doubled_area_q16(exec, sheet)) < 8 * sheet.triangles.size());
 }
 

@@ -177,7 +177,11 @@ TEST_CASE("relax in shell: an empty cell keeps its seed", "[relax_shell][stage]"
 }
 
 TEST_CASE("relax in shell: the stop rule compares integers of any size", "[relax_shell][unit]") {
-  using relax_shell::stalled;
+  const auto stalled = [](std::initializer_list<int64_t> energies, int32_t tolerance_ppb) {
+    PassState state{};
+    for (int64_t e : energies) state.add(e);
+    return relax_shell::stalled(state, tolerance_ppb);
+  };
   CHECK_FALSE(stalled({10, 10, 10, 10, 10}, 1));
   CHECK(stalled({10, 10, 10, 10, 10, 10}, 100000000));
   const int64_t big = int64_t(1) << 58;
