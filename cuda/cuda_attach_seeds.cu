@@ -5,9 +5,9 @@
 
 namespace isoshell {
 
-void cuda_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context) {
+void cuda_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) {
   CudaExecutor exec(context, "attach");
-  attach_to_sheet_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds));
+  attach_to_sheet_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), halvings);
 }
 
 }  // namespace isoshell

@@ -13,6 +13,8 @@ const BackendTable* cuda_backend() {
       cuda_sample_sites,
       cuda_build_shell,
       cuda_build_sheet,
+      cuda_coarsen_sites,
+      cuda_build_outline,
       cuda_place_seeds_on_sheet,
       cuda_place_seeds_on_sites,
       cuda_relax_on_sheet,

@@ -11,10 +11,12 @@ Shell cuda_build_shell(const SiteSet&, const ShellOptions&, Context&);
 Sheet cuda_build_sheet(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
 SeedSet cuda_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cuda_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
+SiteSet cuda_coarsen_sites(const SiteSet&, Context&);
+Sheet cuda_build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
 RelaxReport cuda_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
 RelaxReport cuda_relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
                                 Context&);
-void cuda_attach_to_sheet(const Sheet&, SeedSet&, Context&);
+void cuda_attach_to_sheet(const Sheet&, SeedSet&, int, Context&);
 VoronoiLabels cuda_flood_shell(const Shell&, const SeedSet&, Context&);
 DualMesh cuda_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
 SeedSet cuda_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);

@@ -1,6 +1,7 @@
 // CUDA's build_sheet.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
+#include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
 
 namespace isoshell {
@@ -10,6 +11,17 @@ Sheet cuda_build_sheet(const LatticeSurface& surface, const SiteSet& sites, cons
   CudaExecutor exec(context, "sheet");
   return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, sites),
                           *OnDevice<SiteSamples>(exec, samples), options);
+}
+
+SiteSet cuda_coarsen_sites(const SiteSet& sites, Context& context) {
+  CudaExecutor exec(context, "coarsen");
+  return coarsen_sites_body(exec, *OnDevice<SiteSet>(exec, sites));
+}
+
+Sheet cuda_build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                         Context& context) {
+  CudaExecutor exec(context, "outline");
+  return build_outline_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
 }
 
 }  // namespace isoshell

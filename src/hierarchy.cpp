@@ -15,6 +15,7 @@ constexpr int kMaxLevels = 3;
 constexpr int64_t kFewestSeeds = 64;  // of a level
 constexpr int64_t kFewestPerComponent = 12;
 constexpr int64_t kMostRepairPerMille = 15;
+constexpr int64_t kFewestVerticesPerSeed = 45;  // of an outline: cells are five voxels wide or more
 constexpr int32_t kCoarsePasses = 60;
 constexpr int32_t kFinestPasses = 40;  // after a coarser level; without one the caller's own number
 
@@ -67,6 +68,48 @@ std::vector<DualEdge> edges_by_length(const DualMesh& on_any_side) {
   return edges;
 }
 
+/// What the levels relax on: the sheet for the finest, outlines on coarser lattices for the others.
+class Outlines {
+ public:
+  Outlines(const Prepared& prepared, const std::vector<int64_t>& counts, Context& context) : finest_(prepared.sheet) {
+    halvings_.assign(counts.size(), 0);
+    const SiteSet* sites = &prepared.sites;
+    LatticeFrame frame = prepared.sheet.frame;
+    int32_t closing_vox = prepared.closing_vox;
+    for (int64_t level = int64_t(counts.size()) - 2; level >= 0; --level) {
+      halvings_[size_t(level)] = int(outlines_.size());
+      while ((outlines_.empty() ? finest_.vertex_count() : outlines_.back().vertex_count()) >=
+             4 * kFewestVerticesPerSeed * counts[size_t(level)]) {
+        SiteSet coarser = coarsen_sites(*sites, context);
+        frame.voxel_size *= 2;
+        frame.resolution = (frame.resolution + 1) / 2;
+        for (int32_t& extent : frame.extent_vox) extent = (extent / 2 + 7) / 8 * 8;
+        closing_vox = (closing_vox + 1) / 2;
+        Sheet outline = build_outline(coarser, frame, {closing_vox, 0}, context);
+        if (outline.topology.components != finest_.topology.components) {  // near parts have merged
+          std::fill(halvings_.begin(), halvings_.begin() + level + 1, int(outlines_.size()));
+          return;
+        }
+        sites_ = std::move(coarser);
+        sites = &sites_;
+        outlines_.push_back(std::move(outline));
+        halvings_[size_t(level)] = int(outlines_.size());
+      }
+    }
+  }
+  /// How many times the edge of the level's voxels was doubled.
+  int halvings(size_t level) const { return halvings_[level]; }
+  const Sheet& sheet(size_t level) const {
+    return halvings_[level] == 0 ? finest_ : outlines_[size_t(halvings_[level]) - 1];
+  }
+
+ private:
+  const Sheet& finest_;
+  SiteSet sites_;  ///< of the coarsest outline
+  std::vector<Sheet> outlines_;
+  std::vector<int> halvings_;
+};
+
 }  // namespace
 
 void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds) {
@@ -95,24 +138,28 @@ void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_
   seeds = std::move(kept);
 }
 
-SeedSet relax_by_levels(const Sheet& sheet, const SeedOptions& options, const RelaxOptions& relax, RelaxReport& report,
-                        Context& context) {
-  require_seed_count(sheet, options.count);
-  const std::vector<int64_t> counts = level_counts(options.count, sheet.topology);
+SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
+                        RelaxReport& report, Context& context) {
+  require_seed_count(prepared.sheet, options.count);
+  const std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
   const RelaxOptions coarse{kCoarsePasses, relax.tolerance_ppb, relax.max_step_q8};
+  Outlines outlines(prepared, counts, context);
   SeedSet seeds;
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
+    const Sheet& sheet = outlines.sheet(level);
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     relax_on_sheet(sheet, seeds, coarse, context);
     const DualMesh dual = coarse_dual(sheet, seeds, context);
     seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
+    const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
+    if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);
   }
   RelaxOptions finest = relax;
   if (seeds.size() == 0)
-    seeds = place_seeds(sheet, options, context);
+    seeds = place_seeds(prepared.sheet, options, context);
   else
     finest.max_passes = std::min(finest.max_passes, kFinestPasses);
-  report = relax_on_sheet(sheet, seeds, finest, context);
+  report = relax_on_sheet(prepared.sheet, seeds, finest, context);
   return seeds;
 }
 

@@ -1,16 +1,17 @@
 // Seeds from coarse to fine: what makes almost every vertex of the result regular.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/remesh.h"
 
 namespace isoshell {
 
 /// Relaxes `count` seeds on the sheet. Few seeds are relaxed first and triangulated; each edge's middle becomes a seed
 /// of the next level, where it starts with six neighbours; at most three levels, four times the seeds on each. A level
 /// whose dual needs more than 1.5 % of repair is too coarse for the shape and is left out. The report is that
-/// of the finest level.
-SeedSet relax_by_levels(const Sheet& sheet, const SeedOptions& seeds, const RelaxOptions& options, RelaxReport& report,
-                        Context& context);
+/// of the finest level. Coarse levels relax on outlines of the sites on coarser lattices, whose voxels are as large
+/// beside their cells as those of the sheet are beside the finest level's.
+SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& seeds, const RelaxOptions& options,
+                        RelaxReport& report, Context& context);
 
 /// Takes `excess` seeds out again where they are closest together: of the shortest edges of the dual that touch neither
 /// one of the last `protected_count` seeds (those that repair needed) nor each other, the end with the larger id.

@@ -255,9 +255,8 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
-    seeds = timed(report, "relax", [&] {
-      return relax_by_levels(p.sheet, seed_options, relax_options(options), report.relax, context);
-    });
+    seeds = timed(report, "relax",
+                  [&] { return relax_by_levels(p, seed_options, relax_options(options), report.relax, context); });
   } else {
     seeds = timed(report, "seeds", [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
     report.relax = timed(report, "relax", [&] {

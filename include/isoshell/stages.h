@@ -48,6 +48,13 @@ struct SheetOptions {
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                   const SheetOptions& options, Context& context);
 
+/// Sites of the lattice with voxels of twice the edge: those that hold a site. The same as voxelize on that lattice.
+SiteSet coarsen_sites(const SiteSet& sites, Context& context);
+
+/// The sheet of the sites alone, smoothed but not laid onto a surface: at most about two voxels outside of it. What
+/// coarse levels of seeds relax on.
+Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
+
 struct SeedOptions {
   int64_t count = 0;  ///< k
   uint64_t seed = 0;  ///< start of the counter-based generator
@@ -78,8 +85,9 @@ RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOption
 RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
                            const RelaxOptions& options, Context& context);
 
-/// Moves seeds of method shell onto the sheet: nearest point of the sheet, its home vertex and outward normal.
-void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context);
+/// Moves seeds onto a sheet: nearest point of the sheet, its home vertex and outward normal. `halvings`: how many times
+/// the voxels of the seeds' lattice must be halved to give the sheet's.
+void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context, int halvings = 0);
 
 /// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in
 /// space but far along the shell never share a cell. Result: a seed starts in its voxel, or in the active voxel of the

@@ -6,9 +6,9 @@
 
 namespace isoshell {
 
-void cpu_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context) {
+void cpu_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) {
   TbbExecutor exec(context, "attach");
-  run_with_threads(context, [&] { attach_to_sheet_body(exec, *OnHost(sheet), on_host(seeds)); });
+  run_with_threads(context, [&] { attach_to_sheet_body(exec, *OnHost(sheet), on_host(seeds), halvings); });
 }
 
 }  // namespace isoshell

@@ -12,6 +12,8 @@ const BackendTable& cpu_backend() {
       cpu_sample_sites,
       cpu_build_shell,
       cpu_build_sheet,
+      cpu_coarsen_sites,
+      cpu_build_outline,
       cpu_place_seeds_on_sheet,
       cpu_place_seeds_on_sites,
       cpu_relax_on_sheet,

@@ -11,10 +11,12 @@ SiteSet cpu_voxelize(const LatticeSurface&, Context&);
 SiteSamples cpu_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
 Shell cpu_build_shell(const SiteSet&, const ShellOptions&, Context&);
 Sheet cpu_build_sheet(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+SiteSet cpu_coarsen_sites(const SiteSet&, Context&);
+Sheet cpu_build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
 RelaxReport cpu_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
 RelaxReport cpu_relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
                                Context&);
-void cpu_attach_to_sheet(const Sheet&, SeedSet&, Context&);
+void cpu_attach_to_sheet(const Sheet&, SeedSet&, int, Context&);
 VoronoiLabels cpu_flood_shell(const Shell&, const SeedSet&, Context&);
 DualMesh cpu_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
 SeedSet cpu_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);

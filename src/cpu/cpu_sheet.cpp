@@ -2,6 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
 
 namespace isoshell {
@@ -11,6 +12,17 @@ Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const
   TbbExecutor exec(context, "sheet");
   return run_with_threads(
       context, [&] { return build_sheet_body(exec, *OnHost(surface), *OnHost(sites), *OnHost(samples), options); });
+}
+
+SiteSet cpu_coarsen_sites(const SiteSet& sites, Context& context) {
+  TbbExecutor exec(context, "coarsen");
+  return run_with_threads(context, [&] { return coarsen_sites_body(exec, *OnHost(sites)); });
+}
+
+Sheet cpu_build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                        Context& context) {
+  TbbExecutor exec(context, "outline");
+  return run_with_threads(context, [&] { return build_outline_body(exec, *OnHost(sites), frame, options); });
 }
 
 }  // namespace isoshell

@@ -13,28 +13,30 @@ constexpr int32_t kCellVox = 4;  ///< edge of the grid's cells: about 16 sheet v
 struct AttachSeed {
   PointGridView vertices;
   WalkOntoSheet sheet;
+  int halvings;
   View<PointQ8> position;
   View<Normal8> normal;
   View<uint32_t> home;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const uint32_t vertex = nearest_point(vertices, position[i]).id;
+    const PointQ8 p = {position[i].x << halvings, position[i].y << halvings, position[i].z << halvings};
+    const uint32_t vertex = nearest_point(vertices, p).id;
     home[i] = vertex;
     normal[i] = sheet.normal[vertex];
-    position[i] = sheet.closest_around(vertex, position[i]);
+    position[i] = sheet.closest_around(vertex, p);
   }
 };
 
 }  // namespace attach_seeds
 
 template <class Exec>
-void attach_to_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds) {
+void attach_to_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, int halvings) {
   PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, attach_seeds::kCellVox, sheet.vertex_count());
   fill_point_grid(exec, grid, sheet.position.view());
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};
-  exec.for_each(
-      "attach seeds", seeds.size(),
-      attach_seeds::AttachSeed{grid.view(), walk, seeds.position.view(), seeds.normal.view(), seeds.home.view()});
+  exec.for_each("attach seeds", seeds.size(),
+                attach_seeds::AttachSeed{grid.view(), walk, halvings, seeds.position.view(), seeds.normal.view(),
+                                         seeds.home.view()});
 }
 
 }  // namespace isoshell

@@ -15,12 +15,14 @@ struct BackendTable {
   SiteSamples (*sample_sites)(const LatticeSurface&, const SiteSet&, Context&);
   Shell (*build_shell)(const SiteSet&, const ShellOptions&, Context&);
   Sheet (*build_sheet)(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+  SiteSet (*coarsen_sites)(const SiteSet&, Context&);
+  Sheet (*build_outline)(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
   SeedSet (*place_seeds_on_sheet)(const Sheet&, const SeedOptions&, Context&);
   SeedSet (*place_seeds_on_sites)(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
   RelaxReport (*relax_on_sheet)(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
   RelaxReport (*relax_in_shell)(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
                                 Context&);
-  void (*attach_to_sheet)(const Sheet&, SeedSet&, Context&);
+  void (*attach_to_sheet)(const Sheet&, SeedSet&, int, Context&);
   VoronoiLabels (*flood_shell)(const Shell&, const SeedSet&, Context&);
   DualMesh (*triangulate_dual)(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
   SeedSet (*subdivide_seeds)(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);

@@ -4,15 +4,32 @@
 
 namespace isoshell {
 
-Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
-                  const SheetOptions& options, Context& context) {
+namespace {
+
+void require_sheet_options(const SiteSet& sites, const SheetOptions& options) {
   if (options.closing_vox < 0 || options.closing_vox > kMaxClosingVox)
     throw Error(ErrorCode::usage, "sheet",
                 "closing_vox is " + std::to_string(options.closing_vox) + "; it must be 0 to " +
                     std::to_string(kMaxClosingVox));
   if (sites.voxels.voxel_count() == 0)
     throw Error(ErrorCode::nothing_to_mesh, "sheet", "there are no sites; the surface is empty");
+}
+
+}  // namespace
+
+Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                  const SheetOptions& options, Context& context) {
+  require_sheet_options(sites, options);
   return backend_for(context).build_sheet(surface, sites, samples, options, context);
+}
+
+SiteSet coarsen_sites(const SiteSet& sites, Context& context) {
+  return backend_for(context).coarsen_sites(sites, context);
+}
+
+Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context) {
+  require_sheet_options(sites, options);
+  return backend_for(context).build_outline(sites, frame, options, context);
 }
 
 }  // namespace isoshell

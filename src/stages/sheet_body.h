@@ -104,34 +104,31 @@ void list_triangles_around(Exec& exec, Sheet& sheet) {
                 SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
 }
 
-}  // namespace sheet_steps
-
+/// The boundary of the sites' closed, well-composed solid.
 template <class Exec>
-Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
-                       const SheetOptions& options) {
-  using namespace sheet_steps;
-  QuadMesh mesh;
-  {
-    Solid solid = close_sites(exec, sites, options.closing_vox);
-    if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);  // an addition may wall up a pocket
-    mesh = list_boundary(exec, solid);
-  }
-  const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
-                                         samples.first.view(), samples.triangles.view()};
-  LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
+QuadMesh boundary_of_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
+  Solid solid = close_sites(exec, sites, closing_vox);
+  if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);  // an addition may wall up a pocket
+  return list_boundary(exec, solid);
+}
+
+/// Drops small components, splits the quads and finds what belongs to each vertex.
+template <class Exec>
+Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMesh laid,
+                   int64_t min_component_area_q16) {
   mesh.edges = {};
-  const ComponentCount components = drop_small_components(exec, mesh, laid, options.min_component_area_q16);
+  const ComponentCount components = drop_small_components(exec, mesh, laid, min_component_area_q16);
   if (components.kept == 0)
     throw Error(ErrorCode::nothing_to_mesh, "sheet",
                 "all " + std::to_string(components.dropped) + " components are smaller than " +
-                    std::to_string(options.min_component_area_q16 >> 16) + " square voxels; lower the limit");
+                    std::to_string(min_component_area_q16 >> 16) + " square voxels; lower the limit");
   if (mesh.quads.size() * 2 >= int64_t(kNone))
     throw Error(ErrorCode::out_of_memory, "sheet",
                 "the sheet has " + std::to_string(mesh.quads.size() * 2) + " triangles; at most " +
                     std::to_string(kNone) + " can be numbered; lower the resolution");
 
   Sheet sheet;
-  sheet.frame = surface.frame;
+  sheet.frame = frame;
   sheet.corners = std::move(mesh.corners);
   sheet.position = std::move(laid.position);
   sheet.source_triangle = std::move(laid.source_triangle);
@@ -151,6 +148,27 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
   sheet.topology.dropped_components = components.dropped;
   sheet.topology.bridged_vertices = exec.sum(sheet.vertex_count(), IsBridge{sheet.source_triangle.view()});
   return sheet;
+}
+
+}  // namespace sheet_steps
+
+template <class Exec>
+Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
+                       const SheetOptions& options) {
+  using namespace sheet_steps;
+  QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
+  const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
+                                         samples.first.view(), samples.triangles.view()};
+  LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
+  return finish_sheet(exec, surface.frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+}
+
+template <class Exec>
+Sheet build_outline_body(Exec& exec, const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options) {
+  using namespace sheet_steps;
+  QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
+  LaidMesh laid = lay_smooth(exec, mesh);
+  return finish_sheet(exec, frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
 }
 
 }  // namespace isoshell

@@ -136,8 +136,9 @@ struct LaidMesh {
   Buffer<uint32_t> source_triangle;
 };
 
+/// Smooths only: the vertices stay where the solid's boundary is, and have no source.
 template <class Exec>
-LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
+LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
   using namespace sheet_steps;
   LaidMesh laid;
   const int64_t vertices = mesh.position.size();
@@ -148,7 +149,17 @@ LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& su
                   SmoothCorners{mesh.corners.view(), mesh.edges.view(), laid.smooth.view(), laid.position.view()});
     std::swap(laid.smooth, laid.position);
   }
+  exec.copy(View<const PointQ8>(laid.smooth.view()), laid.position.view());
   laid.source_triangle = exec.template make<uint32_t>(vertices);
+  exec.fill(laid.source_triangle.view(), kNone);
+  return laid;
+}
+
+template <class Exec>
+LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
+  using namespace sheet_steps;
+  LaidMesh laid = lay_smooth(exec, mesh);
+  const int64_t vertices = laid.smooth.size();
   exec.for_each(
       "project", vertices,
       ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
