@@ -36,6 +36,7 @@ inline std::vector<Case> cases() {
   const auto wall = [] { return two_sheets(4, 0.5); };
   return {{"sphere", ball, options(500, 64)},
           {"torus", ring, options(1000, 96)},
+          {"torus, coarse levels on outlines", ring, options(600, 160)},
           {"torus shell", ring, options(1000, 96, Method::shell)},
           {"box", block, options(300, 72)},
           {"torus and sphere", pair, options(900, 100)},

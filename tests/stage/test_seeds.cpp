@@ -81,9 +81,14 @@ TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex th
     const uint64_t r = random_bits(3, i);
     from.push_back({int32_t(8000 + r % 6000), int32_t(8000 + (r >> 20) % 6000), int32_t(8000 + (r >> 40) % 6000)});
   }
+  const int halvings = GENERATE(0, 1, 2);  // seeds of coarser lattices lie at the same points of the sheet's
   SeedSet seeds = seeds_at(from);
+  for (PointQ8& p : seeds.position) p = {p.x >> halvings, p.y >> halvings, p.z >> halvings};
+  for (size_t i = 0; i < from.size(); ++i)
+    from[i] = {seeds.position[int64_t(i)].x << halvings, seeds.position[int64_t(i)].y << halvings,
+               seeds.position[int64_t(i)].z << halvings};
   TestContext context;
-  attach_to_sheet(sheet, seeds, context);
+  attach_to_sheet(sheet, seeds, context, halvings);
   for (int64_t i = 0; i < seeds.size(); ++i) {
     const PointQ8 p = from[size_t(i)];
     uint32_t nearest = 0;

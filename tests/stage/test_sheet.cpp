@@ -319,3 +319,32 @@ TEST_CASE("sheet: arguments out of range are refused", "[sheet][stage]") {
   options.closing_vox = kMaxClosingVox + 1;
   CHECK_THROWS_AS(sheet_of(shapes::box({0, 0, 0}, {1, 1, 1}), 16, options), Error);
 }
+
+TEST_CASE("sheet: a coarse site holds at least one site, and every site lies in one", "[sheet][stage]") {
+  for (const Named& blob : all_blobs()) {
+    INFO(blob.name);
+    std::vector<Voxel> fine, coarse;
+    for (Voxel v : blob.voxels) {
+      fine.push_back({v.x + kOffset.x, v.y + kOffset.y, v.z + kOffset.z});
+      coarse.push_back({fine.back().x >> 1, fine.back().y >> 1, fine.back().z >> 1});
+    }
+    TestContext context;
+    const SiteSet sites = coarsen_sites(make_site_set(fine, kSparseExtent), context);
+    const Extent half = {kSparseExtent[0] / 2, kSparseExtent[1] / 2, kSparseExtent[2] / 2};
+    CHECK(digest(sites) == digest(make_site_set(coarse, half)));
+    CHECK(sites.voxels.voxel_count() == make_site_set(coarse, half).voxels.voxel_count());
+  }
+}
+
+TEST_CASE("sheet: an outline has the sheet's vertices and topology, and stays within two voxels of it",
+          "[sheet][stage]") {
+  TestContext context;
+  const Pipeline p = sites_of(shapes::torus(2, .7, 60, 30), 96, context);
+  const Sheet outline = build_outline(p.sites, p.surface.frame, {}, context),
+              sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
+  check_sheet(outline);
+  CHECK(outline.topology.genus == 1);
+  REQUIRE(digest(outline.corners) == digest(sheet.corners));
+  for (int64_t v = 0; v < sheet.vertex_count(); ++v)
+    REQUIRE(distance_sq_q16(outline.position[v], sheet.position[v]) <= 2 * 2 * 65536);
+}

@@ -33,6 +33,13 @@ inline Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, co
                          const SheetOptions& options, TestContext& context) {
   return to_host(build_sheet(surface, sites, samples, options, context.plain()));
 }
+inline SiteSet coarsen_sites(const SiteSet& sites, TestContext& context) {
+  return to_host(coarsen_sites(sites, context.plain()));
+}
+inline Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                           TestContext& context) {
+  return to_host(build_outline(sites, frame, options, context.plain()));
+}
 inline SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, TestContext& context) {
   return to_host(place_seeds(sheet, options, context.plain()));
 }
@@ -52,8 +59,8 @@ inline RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, cons
   seeds = to_host(seeds);
   return report;
 }
-inline void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, TestContext& context) {
-  attach_to_sheet(sheet, seeds, context.plain());
+inline void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, TestContext& context, int halvings = 0) {
+  attach_to_sheet(sheet, seeds, context.plain(), halvings);
   seeds = to_host(seeds);
 }
 inline VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, TestContext& context) {
