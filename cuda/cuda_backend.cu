@@ -7,8 +7,8 @@ namespace isoshell {
 const BackendTable* cuda_backend() {
   static const BackendTable table = {
       "cuda",
-      cpu_backend().measure_topology,
-      cpu_backend().snap_surface,
+      cuda_measure_topology,
+      cuda_snap_surface,
       cuda_voxelize,
       cuda_sample_sites,
       cuda_build_shell,
@@ -24,6 +24,8 @@ const BackendTable* cuda_backend() {
       cuda_triangulate_dual,
       cuda_subdivide_seeds,
       cuda_improve_mesh,
+      cuda_six_volume_vox,
+      cuda_drop_crowded_seeds,
   };
   static const bool some = device_count() > 0;
   return some ? &table : nullptr;

@@ -5,6 +5,8 @@
 
 namespace isoshell {
 
+InputTopology cuda_measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context);
+LatticeSurface cuda_snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context);
 SiteSet cuda_voxelize(const LatticeSurface&, Context&);
 SiteSamples cuda_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
 Shell cuda_build_shell(const SiteSet&, const ShellOptions&, Context&);
@@ -20,6 +22,8 @@ void cuda_attach_to_sheet(const Sheet&, SeedSet&, int, Context&);
 VoronoiLabels cuda_flood_shell(const Shell&, const SeedSet&, Context&);
 DualMesh cuda_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
 SeedSet cuda_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
+int64_t cuda_six_volume_vox(const Sheet&, Context&);
+void cuda_drop_crowded_seeds(const DualMesh&, int64_t, int64_t, SeedSet&, Context&);
 int64_t cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 
 }  // namespace isoshell

@@ -1,5 +1,5 @@
-// The CUDA executor: exec/executor.h over a stream. Steps run one a thread; words that return a value to the host wait
-// for the stream, all others only enqueue.
+// The CUDA executor: exec/executor.h over a stream. Steps run one a thread, or as their BlockForm says; words that
+// return a value to the host wait for the stream, all others only enqueue.
 #pragma once
 
 #include <cub/device/device_merge_sort.cuh>
@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "core/copy_product.h"
+#include "cuda/block_form.cuh"
 #include "cuda/device_stream.h"
 #include "cuda/primitives.h"
 #include "isoshell/error.h"
@@ -101,7 +102,10 @@ class CudaExecutor {
   template <class Step>
   void for_each(const char* name, int64_t count, Step step) {
     if (count <= 0) return;
-    cuda_steps::run_step<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, step);
+    if constexpr (BlockForm<Step>::kThreads > 1)
+      launch_block_form(count, step, stream());
+    else
+      cuda_steps::run_step<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, step);
     check(name);
   }
 

@@ -43,31 +43,6 @@ DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
   return mesh;
 }
 
-struct DualEdge {
-  int64_t length_sq;
-  uint32_t a, b;  ///< a < b
-};
-
-/// Each edge once, shortest first, then by its ends.
-std::vector<DualEdge> edges_by_length(const DualMesh& on_any_side) {
-  const OnHost<DualMesh> on_host(on_any_side);
-  const DualMesh& mesh = *on_host;
-  std::vector<DualEdge> edges;
-  edges.reserve(size_t(mesh.triangles.size()) * 3 / 2);
-  const auto add = [&](uint32_t a, uint32_t b) {
-    if (a < b) edges.push_back({distance_sq_q16(mesh.position[a], mesh.position[b]), a, b});
-  };
-  for (TriangleIndices t : mesh.triangles) {
-    add(t.a, t.b);
-    add(t.b, t.c);
-    add(t.c, t.a);
-  }
-  std::sort(edges.begin(), edges.end(), [](const DualEdge& e, const DualEdge& f) {
-    return e.length_sq != f.length_sq ? e.length_sq < f.length_sq : (e.a != f.a ? e.a < f.a : e.b < f.b);
-  });
-  return edges;
-}
-
 /// What the levels relax on: the sheet for the finest, outlines on coarser lattices for the others.
 class Outlines {
  public:
@@ -111,32 +86,6 @@ class Outlines {
 };
 
 }  // namespace
-
-void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds) {
-  on_host(seeds);
-  const int64_t count = seeds.size();
-  std::vector<char> settled(size_t(count), 0), dropped(size_t(count), 0);
-  std::fill(settled.end() - protected_count, settled.end(), char(1));
-  int64_t left = excess;
-  for (const DualEdge& e : edges_by_length(mesh)) {
-    if (left == 0) break;
-    if (settled[e.a] || settled[e.b]) continue;
-    settled[e.a] = settled[e.b] = dropped[e.b] = 1;
-    --left;
-  }
-  SeedSet kept;
-  kept.position = Buffer<PointQ8>(count - excess + left);
-  kept.normal = Buffer<Normal8>(count - excess + left);
-  kept.home = Buffer<uint32_t>(count - excess + left);
-  int64_t at = 0;
-  for (int64_t s = 0; s < count; ++s)
-    if (!dropped[size_t(s)]) {
-      kept.position[at] = seeds.position[s];
-      kept.normal[at] = seeds.normal[s];
-      kept.home[at++] = seeds.home[s];
-    }
-  seeds = std::move(kept);
-}
 
 SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
                         RelaxReport& report, Context& context) {

@@ -13,9 +13,4 @@ namespace isoshell {
 SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& seeds, const RelaxOptions& options,
                         RelaxReport& report, Context& context);
 
-/// Takes `excess` seeds out again where they are closest together: of the shortest edges of the dual that touch neither
-/// one of the last `protected_count` seeds (those that repair needed) nor each other, the end with the larger id.
-/// May take fewer when no such edge is left. Ids close up.
-void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds);
-
 }  // namespace isoshell

@@ -56,21 +56,6 @@ int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology
   return int64_t(4 * cell_vox * 65536);
 }
 
-/// Six times the volume inside the sheet, in whole voxels. Exact up to that last rounding: it decides the closing.
-int64_t six_volume_vox(const Sheet& on_any_side) {
-  const OnHost<Sheet> on_host(on_any_side);
-  const Sheet& sheet = *on_host;
-  __extension__ typedef __int128 Wide;  // a product of three coordinates takes 66 bits
-  Wide six = 0;
-  for (TriangleIndices t : sheet.triangles) {
-    const PointQ8 o = sheet.position[t.a];
-    const Vec64 a = {o.x, o.y, o.z};
-    const Vec64 n = cross(difference(sheet.position[t.b], o), difference(sheet.position[t.c], o));
-    six += Wide(a.x) * n.x + Wide(a.y) * n.y + Wide(a.z) * n.z;
-  }
-  return int64_t(six >> (3 * kFractionBits));
-}
-
 /// Sites, samples and sheet of a surface, with the closing that is asked for or found.
 class Preparation {
  public:
@@ -103,11 +88,11 @@ class Preparation {
   /// and the solid collapses to a crust.
   void close_leaks(Prepared& p) {
     Sheet widest = sheet(p, kMaxAutoClosingVox);
-    const int64_t widest_volume = six_volume_vox(widest);
+    const int64_t widest_volume = six_volume_vox(widest, context_);
     for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
       p.sheet = {};
       p.sheet = sheet(p, p.closing_vox);
-      if (10 * six_volume_vox(p.sheet) >= 9 * widest_volume) return;
+      if (10 * six_volume_vox(p.sheet, context_) >= 9 * widest_volume) return;
     }
     p.sheet = std::move(widest);
   }
@@ -178,13 +163,12 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   note_digest(options, report, "sheet", p.sheet);
 }
 
-double sheet_area_world(const Sheet& on_any_side) {
-  const OnHost<Sheet> on_host(on_any_side);
-  const Sheet& sheet = *on_host;
+double sheet_area_world(const Sheet& sheet) {
+  const Buffer<PointQ8> position = sheet.position.to_host();
   double area = 0;
-  for (TriangleIndices t : sheet.triangles) {
-    const WorldPoint a = sheet.frame.to_world(sheet.position[t.a]), b = sheet.frame.to_world(sheet.position[t.b]),
-                     c = sheet.frame.to_world(sheet.position[t.c]);
+  for (TriangleIndices t : sheet.triangles.to_host()) {
+    const WorldPoint a = sheet.frame.to_world(position[t.a]), b = sheet.frame.to_world(position[t.b]),
+                     c = sheet.frame.to_world(position[t.c]);
     const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
     const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
     area += std::sqrt(nx * nx + ny * ny + nz * nz) / 2;
@@ -282,7 +266,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     report.dual.failed_cells = found.failed_cells;
     if (found.inserted_seeds == 0 || round == kMaxReoptimisations) break;
     timed(report, "relax", [&] {
-      drop_crowded_seeds(dual, std::max<int64_t>(0, seeds.size() - asked), found.inserted_seeds, seeds);
+      drop_crowded_seeds(dual, std::max<int64_t>(0, seeds.size() - asked), found.inserted_seeds, seeds, context);
       relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context);
     });
   }

@@ -55,6 +55,9 @@ SiteSet coarsen_sites(const SiteSet& sites, Context& context);
 /// coarse levels of seeds relax on.
 Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
 
+/// Six times the volume inside a sheet, in whole voxels, rounded down once.
+int64_t six_volume_vox(const Sheet& sheet, Context& context);
+
 struct SeedOptions {
   int64_t count = 0;  ///< k
   uint64_t seed = 0;  ///< start of the counter-based generator
@@ -125,6 +128,12 @@ DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions&
 /// needed) in canonical order, then the middles of the largest triangles. `target` seeds in all, at most
 /// seeds + edges + triangles.
 SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+                        Context& context);
+
+/// Takes `excess` seeds out again where they are closest together: of the shortest edges of the dual that touch neither
+/// one of the last `protected_count` seeds (those that repair needed) nor each other, the end with the larger id.
+/// May take fewer when no such edge is left. Ids close up. Cost: a sort of the edges, then one step for each looked at.
+void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds,
                         Context& context);
 
 struct PostOptions {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "isoshell/error.h"
+#include "voxel/snap.h"
 
 namespace isoshell {
 
@@ -29,12 +30,7 @@ LatticeFrame LatticeFrame::around(WorldPoint lo, WorldPoint hi, int32_t resoluti
   return frame;
 }
 
-PointQ8 LatticeFrame::snap(WorldPoint p) const {
-  const auto q8 = [&](double world, double from) {
-    return int32_t(std::floor((world - from) / voxel_size * kOneVoxelQ8 + 0.5));
-  };
-  return {q8(p.x, origin.x), q8(p.y, origin.y), q8(p.z, origin.z)};
-}
+PointQ8 LatticeFrame::snap(WorldPoint p) const { return snap_point(*this, p); }
 
 WorldPoint LatticeFrame::to_world(PointQ8 q) const {
   const double step = voxel_size / kOneVoxelQ8;

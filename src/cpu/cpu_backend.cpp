@@ -23,6 +23,8 @@ const BackendTable& cpu_backend() {
       cpu_triangulate_dual,
       cpu_subdivide_seeds,
       cpu_improve_mesh,
+      cpu_six_volume_vox,
+      cpu_drop_crowded_seeds,
   };
   return table;
 }

@@ -1,9 +1,10 @@
-// The CPU's build_sheet.
+// The CPU's build_sheet and six_volume_vox.
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
+#include "stages/sheet_volume_body.h"
 
 namespace isoshell {
 
@@ -23,6 +24,11 @@ Sheet cpu_build_outline(const SiteSet& sites, const LatticeFrame& frame, const S
                         Context& context) {
   TbbExecutor exec(context, "outline");
   return run_with_threads(context, [&] { return build_outline_body(exec, *OnHost(sites), frame, options); });
+}
+
+int64_t cpu_six_volume_vox(const Sheet& sheet, Context& context) {
+  TbbExecutor exec(context, "sheet");
+  return run_with_threads(context, [&] { return six_volume_vox_body(exec, *OnHost(sheet)); });
 }
 
 }  // namespace isoshell

@@ -1,4 +1,4 @@
-// measure_topology and snap_surface: host code on every backend, since world units end here.
+// The CPU's measure_topology and snap_surface.
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/surface_body.h"
@@ -8,12 +8,12 @@ namespace isoshell {
 
 InputTopology cpu_measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {
   TbbExecutor exec(context, "surface");
-  return run_with_threads(context, [&] { return measure_topology_body(exec, soup, dirt); });
+  return run_with_threads(context, [&] { return measure_topology_body(exec, view_of(soup), dirt); });
 }
 
 LatticeSurface cpu_snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
   TbbExecutor exec(context, "surface");
-  return run_with_threads(context, [&] { return snap_surface_body(exec, soup, frame); });
+  return run_with_threads(context, [&] { return snap_surface_body(exec, view_of(soup), frame); });
 }
 
 }  // namespace isoshell

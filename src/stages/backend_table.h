@@ -8,7 +8,6 @@ namespace isoshell {
 /// Same inputs, same definition, same bytes, whichever backend fills it. See stages.h for what each function computes.
 struct BackendTable {
   const char* name;
-  // The CPU's table serves every backend with these two: world units are double and end on the host.
   InputTopology (*measure_topology)(const TriangleSoup&, DirtCounts&, Context&);
   LatticeSurface (*snap_surface)(const TriangleSoup&, const LatticeFrame&, Context&);
   SiteSet (*voxelize)(const LatticeSurface&, Context&);
@@ -27,6 +26,8 @@ struct BackendTable {
   DualMesh (*triangulate_dual)(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
   SeedSet (*subdivide_seeds)(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
   int64_t (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
+  int64_t (*six_volume_vox)(const Sheet&, Context&);
+  void (*drop_crowded_seeds)(const DualMesh&, int64_t excess, int64_t protected_count, SeedSet&, Context&);
 };
 
 /// Always there.

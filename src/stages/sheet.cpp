@@ -32,4 +32,8 @@ Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const Sheet
   return backend_for(context).build_outline(sites, frame, options, context);
 }
 
+int64_t six_volume_vox(const Sheet& sheet, Context& context) {
+  return backend_for(context).six_volume_vox(sheet, context);
+}
+
 }  // namespace isoshell

@@ -1,5 +1,4 @@
-// From a soup in world units to the canonical surface on the lattice: always by the CPU's table, since world units are
-// double and stay on the host.
+// From a soup in world units to the canonical surface on the lattice.
 #include <algorithm>
 #include <limits>
 
@@ -41,13 +40,13 @@ void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box
 
 InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {
   require_countable(soup);
-  return cpu_backend().measure_topology(soup, dirt, context);
+  return backend_for(context).measure_topology(soup, dirt, context);
 }
 
 LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
   require_triangles(soup);
   require_countable(soup);
-  return cpu_backend().snap_surface(soup, frame, context);
+  return backend_for(context).snap_surface(soup, frame, context);
 }
 
 }  // namespace isoshell

@@ -6,6 +6,7 @@
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/site_shapes.h"
+#include "support/test_context.h"
 #include "voxel/leaf.h"
 
 using namespace isoshell;
@@ -32,7 +33,7 @@ TriangleSoup tetrahedron(WorldPoint apex, double side) {
 }
 
 InputTopology measured(const TriangleSoup& soup, DirtCounts& dirt, int threads = 2) {
-  Context context;
+  TestContext context;
   context.threads = threads;
   return measure_topology(soup, dirt, context);
 }
@@ -140,7 +141,7 @@ TEST_CASE("surface: dirt is counted by kind and left out of the topology", "[sur
 
 TEST_CASE("surface: vertices that no triangle uses do not matter", "[surface][stage]") {
   TriangleSoup soup = shapes::box({0, 0, 0}, {3, 2, 1});
-  Context context;
+  TestContext context;
   const uint64_t expect = digest(shapes::snapped(soup, 20, context));
   soup.vertices.push_back({std::nan(""), std::numeric_limits<double>::infinity(), 1e300});
   CHECK(digest(shapes::snapped(soup, 20, context)) == expect);
@@ -148,14 +149,14 @@ TEST_CASE("surface: vertices that no triangle uses do not matter", "[surface][st
 }
 
 TEST_CASE("surface: a soup without triangles is nothing to mesh", "[surface][stage]") {
-  Context context;
+  TestContext context;
   WorldPoint lo, hi;
   CHECK_THROWS_AS(bounding_box({}, lo, hi), Error);
   CHECK_THROWS_AS(snap_surface({}, LatticeFrame::around({0, 0, 0}, {1, 1, 1}, 8), context), Error);
 }
 
 TEST_CASE("surface: points and triangles are canonical, and each triangle is its source's", "[surface][stage]") {
-  Context context;
+  TestContext context;
   for (const auto& [name, soup] : shapes::ugly_soups()) {
     INFO(name);
     const LatticeSurface s = shapes::snapped(soup, 37, context);
@@ -192,7 +193,7 @@ TEST_CASE("surface: points and triangles are canonical, and each triangle is its
 TEST_CASE("surface: order of the file and threads change nothing", "[surface][stage][parity]") {
   for (const auto& [name, soup] : shapes::ugly_soups()) {
     INFO(name);
-    Context one;
+    TestContext one;
     one.threads = 1;
     DirtCounts dirt;
     const InputTopology expect = measured(soup, dirt, 1);
@@ -200,7 +201,7 @@ TEST_CASE("surface: order of the file and threads change nothing", "[surface][st
     for (uint64_t seed = 0; seed < 3; ++seed) {
       const TriangleSoup other = shapes::shuffled(soup, seed);
       DirtCounts other_dirt;
-      Context two;
+      TestContext two;
       two.threads = 2;
       CHECK(same(measured(other, other_dirt), expect));
       CHECK(other_dirt.degenerate_faces == dirt.degenerate_faces);

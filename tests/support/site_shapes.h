@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isoshell/stages.h"
+#include "isoshell/to_host.h"
 #include "support/shapes.h"
 
 namespace isoshell::shapes {
@@ -41,11 +42,11 @@ inline std::vector<NamedSoup> ugly_soups() {
           {"collapsed triangles", collapsed_triangles()}};
 }
 
-/// The soup on a lattice of this resolution.
+/// The soup on a lattice of this resolution, in host memory.
 inline LatticeSurface snapped(const TriangleSoup& soup, int32_t resolution, Context& context) {
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
-  return snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
+  return to_host(snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context));
 }
 
 /// Every corner on a voxel's corner: triangles lie in voxel faces, along edges, and across diagonals.
@@ -56,7 +57,7 @@ inline LatticeSurface on_voxel_boundaries(Context& context) {
   for (uint32_t i = 8; i + 2 < 16; ++i) add_triangle(s, i, i + 1, i + 2);
   LatticeFrame frame = LatticeFrame::around({0, 0, 0}, {32, 32, 32}, 33);
   frame.origin = {-double(kMarginVox), -double(kMarginVox), -double(kMarginVox)};
-  return snap_surface(s, frame, context);
+  return to_host(snap_surface(s, frame, context));
 }
 
 }  // namespace isoshell::shapes

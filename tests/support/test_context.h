@@ -20,6 +20,9 @@ struct TestContext : Context {
   Context& plain() { return *this; }
 };
 
+inline LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, TestContext& context) {
+  return to_host(snap_surface(soup, frame, context.plain()));
+}
 inline SiteSet voxelize(const LatticeSurface& surface, TestContext& context) {
   return to_host(voxelize(surface, context.plain()));
 }

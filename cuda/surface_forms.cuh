@@ -1,0 +1,30 @@
+// Form of measure_topology's sum of areas: a block a run of faces.
+#pragma once
+
+#include "cuda/block_form.cuh"
+#include "stages/topology_body.h"
+
+namespace isoshell {
+
+/// The threads measure the faces, one of them adds in order.
+template <>
+struct BlockForm<topology_steps::AddAreas> {
+  using Step = topology_steps::AddAreas;
+  static constexpr int kThreads = 256;
+  static constexpr int kElements = 1;
+  struct Shared {
+    double area[Step::kChunk];
+  };
+  static __device__ void run(const Step& step, int64_t chunk, Shared& shared, int lane) {
+    const int64_t first = chunk * Step::kChunk;
+    const int count = int(step.end(chunk) - first);
+    for (int f = lane; f < count; f += kThreads) shared.area[f] = step.area(first + f);
+    __syncthreads();
+    if (lane != 0) return;
+    double sum = 0;
+    for (int f = 0; f < count; ++f) sum += shared.area[f];
+    step.part[chunk] = sum;
+  }
+};
+
+}  // namespace isoshell
