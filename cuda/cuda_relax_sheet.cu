@@ -1,6 +1,7 @@
 // CUDA's relax_on_sheet.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
+#include "cuda/label_forms.cuh"
 #include "stages/relax_sheet_body.h"
 
 namespace isoshell {

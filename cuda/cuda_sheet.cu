@@ -1,8 +1,11 @@
-// CUDA's build_sheet.
+// CUDA's build_sheet and six_volume_vox.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
+#include "cuda/sheet_flood.cuh"
+#include "cuda/sheet_forms.cuh"
 #include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
+#include "stages/sheet_volume_body.h"
 
 namespace isoshell {
 
@@ -22,6 +25,11 @@ Sheet cuda_build_outline(const SiteSet& sites, const LatticeFrame& frame, const 
                          Context& context) {
   CudaExecutor exec(context, "outline");
   return build_outline_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
+}
+
+int64_t cuda_six_volume_vox(const Sheet& sheet, Context& context) {
+  CudaExecutor exec(context, "sheet");
+  return six_volume_vox_body(exec, *OnDevice<Sheet>(exec, sheet));
 }
 
 }  // namespace isoshell

@@ -158,13 +158,12 @@ class Partition {
       exec_.fill(mark_.view(), uint8_t(SplitCell::kClear));
     }
     const Buffer<uint32_t> ids = new_ids(count);
-    exec_.for_each(
-        "split cells", count,
+    split_cells(
+        exec_, count,
         SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(), sheet_.position.view(),
-                  seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()});
-    exec_.for_each("apply splits", count,
-                   ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(),
-                              cells_.view(), writer_of(sheet_, seeds_)});
+                  seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()},
+        ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(), cells_.view(),
+                   writer_of(sheet_, seeds_)});
   }
 
   Exec& exec_;

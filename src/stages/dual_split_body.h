@@ -157,4 +157,10 @@ struct ApplySplit {
   }
 };
 
+template <class Exec>
+void split_cells(Exec& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
+  exec.for_each("split cells", count, split);
+  exec.for_each("apply splits", count, apply);
+}
+
 }  // namespace isoshell::dual

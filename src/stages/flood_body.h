@@ -191,15 +191,20 @@ struct Spread {
 
   /// Labels of the neighbour's front voxels that touch the leaf.
   ISOSHELL_HD void read_neighbour(uint32_t other, const LeafMask& front, int dx, int dy, int dz, Halo& halo) const {
-    uint64_t touching = ~uint64_t(0);
-    if (dy != 0) touching &= dy < 0 ? 255ull << 56 : 255ull;
-    if (dz != 0) touching &= dz < 0 ? 0x8080808080808080ull : 0x0101010101010101ull;
     for (int x = dx < 0 ? 7 : 0; x <= (dx > 0 ? 0 : 7); ++x)
-      for (uint64_t bits = front.word[x] & touching; bits; bits &= bits - 1) {
-        const int bit = lowest_bit(bits);
-        const int64_t index = state.voxels.first[other] + rank_in_leaf(state.voxels.mask[other], x << 6 | bit);
-        halo.label[Halo::at(x + 8 * dx, (bit >> 3) + 8 * dy, (bit & 7) + 8 * dz)] = state.label[index];
-      }
+      for (uint64_t bits = front.word[x] & touching(dy, dz); bits; bits &= bits - 1)
+        read_voxel(other, x, lowest_bit(bits), dx, dy, dz, halo);
+  }
+  /// Voxels of a neighbour's slice that touch the leaf.
+  ISOSHELL_HD static uint64_t touching(int dy, int dz) {
+    uint64_t bits = ~uint64_t(0);
+    if (dy != 0) bits &= dy < 0 ? 255ull << 56 : 255ull;
+    if (dz != 0) bits &= dz < 0 ? 0x8080808080808080ull : 0x0101010101010101ull;
+    return bits;
+  }
+  ISOSHELL_HD void read_voxel(uint32_t other, int x, int bit, int dx, int dy, int dz, Halo& halo) const {
+    const int64_t index = state.voxels.first[other] + rank_in_leaf(state.voxels.mask[other], x << 6 | bit);
+    halo.label[Halo::at(x + 8 * dx, (bit >> 3) + 8 * dy, (bit & 7) + 8 * dz)] = state.label[index];
   }
 
   ISOSHELL_HD uint32_t best_around(const Halo& halo, int middle, PointQ8 centre) const {

@@ -226,7 +226,7 @@ struct IsHarmed {
 struct RestoreHarmed {
   View<const PointQ8> before;
   View<const uint32_t> home_before;
-  View<const uint32_t> harmed;
+  View<uint32_t> harmed;
   View<PointQ8> after;
   View<uint32_t> home_after;
   ISOSHELL_HD void operator()(int64_t v) const {
@@ -258,6 +258,35 @@ struct ByIndices {
   }
 };
 
+/// Flips in independent sets until none is left or `rounds` are done. Returns how many were made.
+template <class Exec>
+int64_t flip_edges(Exec& exec, const FlipKey& key, View<uint64_t> claim, int rounds) {
+  const int64_t half_edges = key.mesh.twin.size;
+  int64_t flips = 0;
+  for (int r = 0; r < rounds; ++r) {
+    exec.fill(claim, uint64_t(0));
+    exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
+    const Buffer<uint32_t> winners = exec.select(half_edges, WinsItsVertices{key, claim});
+    if (winners.empty()) break;
+    exec.for_each("flip edges", winners.size(), Flip{key.mesh, winners.view()});
+    flips += winners.size();
+  }
+  return flips;
+}
+
+/// Undoes the step where it would harm a triangle (ends: what is restored stays so); a restored vertex can harm
+/// another, so up to a fixed point.
+template <class Exec>
+void undo_harm(Exec& exec, View<const TriangleIndices> triangles, const RestoreHarmed& restore) {
+  const int64_t vertices = restore.harmed.size;
+  for (;;) {
+    exec.fill(restore.harmed, 0u);
+    exec.for_each("mark harmed", triangles.size, MarkHarmed{triangles, restore.before, restore.after, restore.harmed});
+    if (exec.sum(vertices, IsHarmed{restore.harmed}) == 0) return;
+    exec.for_each("restore harmed", vertices, restore);
+  }
+}
+
 /// The mesh and its scratch while it is improved.
 template <class Exec>
 class Improvement {
@@ -281,26 +310,16 @@ class Improvement {
   }
 
   /// Flips until none is left or `rounds` are done. Returns how many were made.
-  int64_t flip(int rounds) {
-    int64_t flips = 0;
-    const FlipKey key{view(), mesh_.position.view()};
-    for (int r = 0; r < rounds; ++r) {
-      exec_.fill(claim_.view(), uint64_t(0));
-      exec_.for_each("claim flips", half_edges_, ClaimVertices{key, claim_.view()});
-      const Buffer<uint32_t> winners = exec_.select(half_edges_, WinsItsVertices{key, claim_.view()});
-      if (winners.empty()) break;
-      exec_.for_each("flip edges", winners.size(), Flip{view(), winners.view()});
-      flips += winners.size();
-    }
-    return flips;
-  }
+  int64_t flip(int rounds) { return flip_edges(exec_, FlipKey{view(), mesh_.position.view()}, claim_.view(), rounds); }
 
   void smooth(int steps) {
     for (int s = 0; s < steps; ++s) {
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
       exec_.for_each("smooth", vertices_,
                      SmoothVertex{view(), walk_, mesh_.position.view(), moved_home_.view(), moved_.view()});
-      undo_harm();
+      undo_harm(
+          exec_, mesh_.triangles.view(),
+          RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
       exec_.copy(View<const PointQ8>(moved_.view()), mesh_.position.view());
       exec_.copy(View<const uint32_t>(moved_home_.view()), seeds_.home.view());
     }
@@ -324,20 +343,6 @@ class Improvement {
     exec_.fill(valence_.view(), 0u);
     exec_.fill(outgoing_.view(), kNone);
     exec_.for_each("count valences", half_edges_, CountValence{view()});
-  }
-
-  /// Undoes the step where it would harm a triangle (ends: what is restored stays so); a restored vertex can harm
-  /// another, so up to a fixed point.
-  void undo_harm() {
-    for (;;) {
-      exec_.fill(harmed_.view(), 0u);
-      exec_.for_each("mark harmed", mesh_.triangles.size(),
-                     MarkHarmed{mesh_.triangles.view(), mesh_.position.view(), moved_.view(), harmed_.view()});
-      if (exec_.sum(vertices_, IsHarmed{harmed_.view()}) == 0) return;
-      exec_.for_each(
-          "restore harmed", vertices_,
-          RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
-    }
   }
 
   Exec& exec_;

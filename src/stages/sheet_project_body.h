@@ -36,15 +36,16 @@ struct SmoothCorners {
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t leaf) const {
     const Voxel l = leaf_of_key(corners.leaf_key[leaf]);
-    for_each_active(corners, leaf, [&](int offset, int64_t v) {
-      Vec64 sum = {0, 0, 0};
-      int64_t count = 0;
-      for_each_neighbour(corners, l, offset, edges[v], [&](uint32_t n) {
-        sum = sum + to_vec64(from[n]);
-        ++count;
-      });
-      to[v] = mean_of(sum, count);
+    for_each_active(corners, leaf, [&](int offset, int64_t v) { smooth(l, offset, v); });
+  }
+  ISOSHELL_HD void smooth(Voxel leaf, int offset, int64_t v) const {
+    Vec64 sum = {0, 0, 0};
+    int64_t count = 0;
+    for_each_neighbour(corners, leaf, offset, edges[v], [&](uint32_t n) {
+      sum = sum + to_vec64(from[n]);
+      ++count;
     });
+    to[v] = mean_of(sum, count);
   }
 };
 

@@ -68,24 +68,25 @@ struct DescribeCorners {
     const Voxel l = leaf_of_key(corners.leaf_key[i]);
     SolidWindow window;
     load_window(solid, l, window);
-    for_each_active(corners, i, [&](int offset, int64_t v) {
-      const Voxel c = voxel_at(l, offset);
-      position[v] = {c.x * kOneVoxelQ8, c.y * kOneVoxelQ8, c.z * kOneVoxelQ8};
-      const int x = offset >> 6, y = offset >> 3 & 7, z = offset & 7;
-      uint32_t on = 0;  // bit 4 x + 2 y + z: the eight voxels around
-      for (int o = 0; o < 4; ++o) on |= (window.row[x + (o >> 1)][y + (o & 1)] >> z & 3) << (2 * o);
-      // The four voxels on each side of the corner; an edge is on the boundary when its four differ.
-      const uint32_t side[6] = {0x0f, 0xf0, 0x33, 0xcc, 0x55, 0xaa};
-      uint32_t bits = 0;
-      int32_t n[6];
-      for (int f = 0; f < 6; ++f) {
-        const uint32_t four = on & side[f];
-        if (four != 0 && four != side[f]) bits |= 1u << f;
-        n[f] = popcount64(four);
-      }
-      edges[v] = uint8_t(bits);
-      lattice_normal[v] = {int8_t(n[0] - n[1]), int8_t(n[2] - n[3]), int8_t(n[4] - n[5])};
-    });
+    for_each_active(corners, i, [&](int offset, int64_t v) { describe(window, l, offset, v); });
+  }
+  ISOSHELL_HD void describe(const SolidWindow& window, Voxel l, int offset, int64_t v) const {
+    const Voxel c = voxel_at(l, offset);
+    position[v] = {c.x * kOneVoxelQ8, c.y * kOneVoxelQ8, c.z * kOneVoxelQ8};
+    const int x = offset >> 6, y = offset >> 3 & 7, z = offset & 7;
+    uint32_t on = 0;  // bit 4 x + 2 y + z: the eight voxels around
+    for (int o = 0; o < 4; ++o) on |= (window.row[x + (o >> 1)][y + (o & 1)] >> z & 3) << (2 * o);
+    // The four voxels on each side of the corner; an edge is on the boundary when its four differ.
+    const uint32_t side[6] = {0x0f, 0xf0, 0x33, 0xcc, 0x55, 0xaa};
+    uint32_t bits = 0;
+    int32_t n[6];
+    for (int f = 0; f < 6; ++f) {
+      const uint32_t four = on & side[f];
+      if (four != 0 && four != side[f]) bits |= 1u << f;
+      n[f] = popcount64(four);
+    }
+    edges[v] = uint8_t(bits);
+    lattice_normal[v] = {int8_t(n[0] - n[1]), int8_t(n[2] - n[3]), int8_t(n[4] - n[5])};
   }
 };
 
@@ -145,19 +146,27 @@ struct ListFaces {
     int64_t at = first[i];
     for (int x = 0; x < 8; ++x)
       for (int y = 0; y < 8; ++y) {
-        uint32_t exposed[6], any = 0;
+        uint32_t exposed[6];
         exposed_faces(window, x, y, exposed);
-        for (const uint32_t e : exposed) any |= e;
-        for (; any; any &= any - 1) {
-          const int bit = lowest_bit(any);
-          for (int f = 0; f < 6; ++f)
-            if (exposed[f] >> bit & 1) quads[at++] = face_of(corner, x, y, bit - 1, f);
-        }
+        list_row(corner, x, y, exposed, quads, at);
       }
+  }
+  /// Faces of one row, from place `at` on.
+  template <class Corner>
+  ISOSHELL_HD static void list_row(const Corner& corner, int x, int y, const uint32_t exposed[6],
+                                   const View<Quad>& quads, int64_t& at) {
+    uint32_t any = 0;
+    for (int f = 0; f < 6; ++f) any |= exposed[f];
+    for (; any; any &= any - 1) {
+      const int bit = lowest_bit(any);
+      for (int f = 0; f < 6; ++f)
+        if (exposed[f] >> bit & 1) quads[at++] = face_of(corner, x, y, bit - 1, f);
+    }
   }
   /// Walks round face f of a voxel: along u then v on the positive side, v then u on the negative, with (u, v) the axes
   /// after the face's own, so that the turn is to the left seen from outside.
-  ISOSHELL_HD static Quad face_of(const CornerLookup& corner, int x, int y, int z, int f) {
+  template <class Corner>
+  ISOSHELL_HD static Quad face_of(const Corner& corner, int x, int y, int z, int f) {
     const int axis = f >> 1, u = (axis + 1) % 3, v = (axis + 2) % 3;
     Quad quad;
     for (int k = 0; k < 4; ++k) {

@@ -15,43 +15,50 @@ struct WindowAdditions {
 /// Square of four voxels, two opposite solid and two opposite empty: the empty one with the smaller coordinates
 /// (smaller first axis of the square). Cube of eight: only two opposite corners p, q solid (p.x < q.x): (q.x, p.y, p.z)
 /// and (q.x, q.y, p.z), which join them by faces. Only two opposite corners empty: the one with the smaller x.
-ISOSHELL_HD inline void find_additions(const SolidWindow& window, WindowAdditions& add) {
+/// `add(x, y, bits)` adds to row (x, y); this finds what the configurations with their smallest row at (x, y) ask for.
+template <class Add>
+ISOSHELL_HD inline void find_additions_at(const SolidWindow& window, int x, int y, Add add) {
   constexpr uint32_t kPairs = kWindowRow >> 1;  // rows of voxels z that have a z + 1
+  const uint32_t a = window.row[x][y];
+  uint32_t here = 0;
+  if (x < 9) {  // squares in x and z
+    const uint32_t c = window.row[x + 1][y];
+    here |= (a & ~(a >> 1) & ~c & (c >> 1) & kPairs) << 1;
+    here |= ~a & (a >> 1) & c & ~(c >> 1) & kPairs;
+  }
+  if (y < 9) {  // squares in y and z
+    const uint32_t b = window.row[x][y + 1];
+    here |= (a & ~(a >> 1) & ~b & (b >> 1) & kPairs) << 1;
+    here |= ~a & (a >> 1) & b & ~(b >> 1) & kPairs;
+  }
+  add(x, y, here);
+  if (x == 9 || y == 9) return;
+  const uint32_t b = window.row[x][y + 1], c = window.row[x + 1][y], d = window.row[x + 1][y + 1];
+  add(x, y + 1, a & ~b & ~c & d);  // squares in x and y
+  add(x, y, ~a & b & c & ~d & kWindowRow);
+  // Cubes: bit i of corner[4 x + 2 y + z]; opposite corners sum to 7.
+  const uint32_t corner[8] = {a, a >> 1, b, b >> 1, c, c >> 1, d, d >> 1};
+  for (int p = 0; p < 4; ++p) {
+    uint32_t any = 0, all = kPairs;
+    for (int o = 0; o < 8; ++o)
+      if (o != p && o != 7 - p) {
+        any |= corner[o];
+        all &= corner[o];
+      }
+    const uint32_t joined = corner[p] & corner[7 - p] & ~any & kPairs, opened = ~corner[p] & ~corner[7 - p] & all;
+    const int py = p >> 1, pz = p & 1;
+    add(x + 1, y + py, joined << pz);
+    add(x + 1, y + 1 - py, joined << pz);
+    add(x, y + py, opened << pz);
+  }
+}
+
+ISOSHELL_HD inline void find_additions(const SolidWindow& window, WindowAdditions& add) {
   for (auto& layer : add.row)
     for (uint32_t& row : layer) row = 0;
   for (int x = 0; x < 10; ++x)
-    for (int y = 0; y < 10; ++y) {
-      const uint32_t a = window.row[x][y];
-      if (x < 9) {  // squares in x and z
-        const uint32_t c = window.row[x + 1][y];
-        add.row[x][y] |= (a & ~(a >> 1) & ~c & (c >> 1) & kPairs) << 1;
-        add.row[x][y] |= ~a & (a >> 1) & c & ~(c >> 1) & kPairs;
-      }
-      if (y < 9) {  // squares in y and z
-        const uint32_t b = window.row[x][y + 1];
-        add.row[x][y] |= (a & ~(a >> 1) & ~b & (b >> 1) & kPairs) << 1;
-        add.row[x][y] |= ~a & (a >> 1) & b & ~(b >> 1) & kPairs;
-      }
-      if (x == 9 || y == 9) continue;
-      const uint32_t b = window.row[x][y + 1], c = window.row[x + 1][y], d = window.row[x + 1][y + 1];
-      add.row[x][y + 1] |= a & ~b & ~c & d;  // squares in x and y
-      add.row[x][y] |= ~a & b & c & ~d & kWindowRow;
-      // Cubes: bit i of corner[4 x + 2 y + z]; opposite corners sum to 7.
-      const uint32_t corner[8] = {a, a >> 1, b, b >> 1, c, c >> 1, d, d >> 1};
-      for (int p = 0; p < 4; ++p) {
-        uint32_t any = 0, all = kPairs;
-        for (int o = 0; o < 8; ++o)
-          if (o != p && o != 7 - p) {
-            any |= corner[o];
-            all &= corner[o];
-          }
-        const uint32_t joined = corner[p] & corner[7 - p] & ~any & kPairs, opened = ~corner[p] & ~corner[7 - p] & all;
-        const int py = p >> 1, pz = p & 1;
-        add.row[x + 1][y + py] |= joined << pz;
-        add.row[x + 1][y + 1 - py] |= joined << pz;
-        add.row[x][y + py] |= opened << pz;
-      }
-    }
+    for (int y = 0; y < 10; ++y)
+      find_additions_at(window, x, y, [&](int to_x, int to_y, uint32_t bits) { add.row[to_x][to_y] |= bits; });
 }
 
 namespace sheet_steps {

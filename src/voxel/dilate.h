@@ -16,22 +16,26 @@ ISOSHELL_HD inline uint64_t dilate_y(uint64_t slice, uint64_t below, uint64_t ab
   return slice | slice << 8 | slice >> 8 | below >> 56 | above << 56;
 }
 
-/// Voxels of the middle leaf that are in the set or have a 26-neighbour in it. around[n]: the set's mask in neighbour
-/// n, null where it is empty.
+/// Slice x, -1..8, of the middle column of leaves, grown along z and y. around[n]: the set's mask in neighbour n, null
+/// where it is empty.
+ISOSHELL_HD inline uint64_t grown_slice(const LeafMask* const around[27], int x) {
+  const int dx = x < 0 ? -1 : x > 7 ? 1 : 0, slice = x & 7;
+  uint64_t row[3];
+  for (int dy = -1; dy <= 1; ++dy) {
+    const auto word = [&](int dz) {
+      const LeafMask* mask = around[neighbour_number(dx, dy, dz)];
+      return mask ? mask->word[slice] : 0;
+    };
+    row[dy + 1] = dilate_z(word(0), word(-1), word(1));
+  }
+  return dilate_y(row[1], row[0], row[2]);
+}
+
+/// Voxels of the middle leaf that are in the set or have a 26-neighbour in it.
 ISOSHELL_HD inline LeafMask dilate_26(const LeafMask* const around[27]) {
   LeafMask out{};
-  // Slices x = -1..8 of the middle column, grown along z and y, go into slices x - 1, x and x + 1.
   for (int x = -1; x <= 8; ++x) {
-    const int dx = x < 0 ? -1 : x > 7 ? 1 : 0, slice = x & 7;
-    uint64_t row[3];
-    for (int dy = -1; dy <= 1; ++dy) {
-      const auto word = [&](int dz) {
-        const LeafMask* mask = around[neighbour_number(dx, dy, dz)];
-        return mask ? mask->word[slice] : 0;
-      };
-      row[dy + 1] = dilate_z(word(0), word(-1), word(1));
-    }
-    const uint64_t grown = dilate_y(row[1], row[0], row[2]);
+    const uint64_t grown = grown_slice(around, x);
     for (int to = x - 1; to <= x + 1; ++to)
       if (to >= 0 && to < 8) out.word[to] |= grown;
   }

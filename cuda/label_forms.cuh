@@ -1,0 +1,172 @@
+// Form of label_sheet: a warp a leaf. Lanes gather the seeds that can win inside the leaf's box, then label its
+// vertices.
+#pragma once
+
+#include "cuda/block_form.cuh"
+#include "stages/label_body.h"
+
+namespace isoshell {
+namespace label_forms {
+
+constexpr unsigned kAll = 0xffffffffu;
+constexpr int kCapacity = 128;  ///< seeds of a leaf; more take the exact slow path
+
+template <class T>
+__device__ inline T warp_min(T value) {
+  for (int step = 16; step > 0; step >>= 1) {
+    const T other = __shfl_xor_sync(kAll, value, step);
+    value = other < value ? other : value;
+  }
+  return value;
+}
+template <class T>
+__device__ inline T warp_max(T value) {
+  for (int step = 16; step > 0; step >>= 1) {
+    const T other = __shfl_xor_sync(kAll, value, step);
+    value = other > value ? other : value;
+  }
+  return value;
+}
+
+struct Candidates {
+  label::LabelSeed seed[kCapacity];
+};
+
+/// One leaf and the warp that labels it.
+template <class Step>
+class LeafLabeller {
+ public:
+  __device__ LeafLabeller(const Step& step, int64_t leaf, Candidates& candidates, int lane)
+      : step_(step),
+        candidates_(candidates),
+        lane_(lane),
+        begin_(step.corners.first[leaf]),
+        end_(step.corners.first[leaf + 1]) {}
+
+  __device__ void run() {
+    find_bounds();
+    const int count = gather();
+    for (int64_t v = begin_ + lane_; v < end_; v += 32) step_.out[v] = count <= kCapacity ? best_of(v, count) : best(v);
+  }
+
+ private:
+  __device__ void find_bounds() {
+    label::Bounds b = label::empty_bounds();
+    for (int64_t v = begin_ + lane_; v < end_; v += 32) include(b, step_.position[v], step_.normal[v]);
+    const auto all = [](auto& lo, auto& hi) {
+      lo = warp_min(int(lo));
+      hi = warp_max(int(hi));
+    };
+    all(b.lo.x, b.hi.x);
+    all(b.lo.y, b.hi.y);
+    all(b.lo.z, b.hi.z);
+    all(b.normal_lo.x, b.normal_hi.x);
+    all(b.normal_lo.y, b.normal_hi.y);
+    all(b.normal_lo.z, b.normal_hi.z);
+    bounds_ = b;
+  }
+
+  /// The seeds that can win in the box, and the limit that no label's cost exceeds, as LabelLeaf::gather finds them. A
+  /// count above kCapacity: they do not fit.
+  __device__ int gather() {
+    const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds_.lo, bounds_.hi))));
+    for (int64_t reach = diagonal + step_.spacing.h_q8 * 3 / 4;; reach *= 2) {
+      limit_ = INT64_MAX;
+      for_each_within(reach * reach, [&](bool in, const label::LabelSeed& s) {
+        if (!in) return;
+        const int64_t hi = cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).hi;
+        limit_ = hi < limit_ ? hi : limit_;
+      });
+      limit_ = warp_min(limit_);
+      if (limit_ != INT64_MAX) break;
+    }
+    int count = 0;
+    for_each_within(limit_, [&](bool in, const label::LabelSeed& s) {
+      in = in && cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).lo <= limit_;
+      const unsigned kept = __ballot_sync(kAll, in);
+      const int place = count + __popc(kept & ((1u << lane_) - 1));
+      if (in && place < kCapacity) candidates_.seed[place] = s;
+      count += __popc(kept);
+    });
+    __syncwarp();
+    return count;
+  }
+
+  /// Calls visit(in, seed) in all lanes alike, `in` where there is a seed, for those of a box around the bounds.
+  template <class Visit>
+  __device__ void for_each_within(int64_t limit_sq, Visit visit) const {
+    const PointGridView& grid = step_.grid;
+    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
+    const int32_t x_lo = grid_coordinate(grid, bounds_.lo.x - r, 0), x_hi = grid_coordinate(grid, bounds_.hi.x + r, 0),
+                  y_lo = grid_coordinate(grid, bounds_.lo.y - r, 1), y_hi = grid_coordinate(grid, bounds_.hi.y + r, 1),
+                  z_lo = grid_coordinate(grid, bounds_.lo.z - r, 2), z_hi = grid_coordinate(grid, bounds_.hi.z + r, 2);
+    const int32_t across = y_hi - y_lo + 1, rows = (x_hi - x_lo + 1) * across;
+    for (int32_t base = 0; base < rows; base += 32) {
+      const int32_t row = base + lane_;
+      uint32_t i = 0, end = 0;
+      if (row < rows) {
+        const int64_t cell = grid_cell(grid, x_lo + row / across, y_lo + row % across, z_lo);
+        i = grid.cell_first[cell];
+        end = grid.cell_first[cell + (z_hi - z_lo) + 1];
+      }
+      for (; __any_sync(kAll, i < end); ++i) {
+        label::LabelSeed s{};
+        if (i < end) {
+          const GridPoint p = grid.points[i];
+          s = {p.position, p.id, step_.seed_normal[p.id]};
+        }
+        visit(i < end, s);
+      }
+    }
+  }
+
+  struct Best {
+    int64_t cost = INT64_MAX;
+    uint32_t id = kNone;
+    __device__ void offer(int64_t c, uint32_t seed) {
+      if (c < cost || (c == cost && seed < id)) cost = c, id = seed;
+    }
+  };
+  __device__ uint32_t best_of(int64_t v, int count) const {
+    Best best;
+    const PointQ8 p = step_.position[v];
+    const Normal8 n = step_.normal[v];
+    for (int c = 0; c < count; ++c)
+      best.offer(label::cost(p, n, candidates_.seed[c], step_.spacing.penalty_q16), candidates_.seed[c].id);
+    return best.id;
+  }
+  /// The exact path without lists: every seed in reach.
+  __device__ uint32_t best(int64_t v) const {
+    Best best;
+    const int32_t r = int32_t(isqrt(uint64_t(limit_))) + 1;
+    const PointQ8 lo = bounds_.lo, hi = bounds_.hi;
+    const auto offer = [&](const GridPoint& p) {
+      best.offer(label::cost(step_.position[v], step_.normal[v], {p.position, p.id, step_.seed_normal[p.id]},
+                             step_.spacing.penalty_q16),
+                 p.id);
+    };
+    visit_box(step_.grid, {{lo.x - r, lo.y - r, lo.z - r}, {hi.x + r, hi.y + r, hi.z + r}}, offer);
+    return best.id;
+  }
+
+  const Step& step_;
+  Candidates& candidates_;
+  const int lane_;
+  const int64_t begin_, end_;
+  label::Bounds bounds_;
+  int64_t limit_ = 0;
+};
+
+}  // namespace label_forms
+
+template <int kPlain>
+struct BlockForm<label::LabelLeaf<kPlain>> {
+  static constexpr int kThreads = 32;
+  static constexpr int kElements = 4;
+  using Shared = label_forms::Candidates;
+  static __device__ void run(const label::LabelLeaf<kPlain>& step, int64_t leaf, Shared& candidates, int lane) {
+    label_forms::LeafLabeller<label::LabelLeaf<kPlain>>(step, leaf, candidates, lane).run();
+  }
+};
+
+}  // namespace isoshell

@@ -1,0 +1,71 @@
+// The rounds of improve_mesh (see stages/post_body.h) on the device without a look of the host at each: a round that
+// finds nothing to do changes nothing, so several are launched at once.
+#pragma once
+
+#include "cuda/executor_cuda.cuh"
+#include "stages/post_body.h"
+
+namespace isoshell::post {
+namespace device_steps {
+
+/// Lists the flips that go ahead, in any order: they touch nothing in common.
+struct ListWinners {
+  WinsItsVertices wins;
+  View<uint32_t> winners, count;  ///< count: of this round
+  ISOSHELL_HD void operator()(int64_t h) const {
+    if (wins(h)) winners[atomic_fetch_add(count[0], 1u)] = uint32_t(h);
+  }
+};
+struct FlipWinners {
+  Flip flip;
+  View<const uint32_t> count;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    if (i < int64_t(count[0])) flip(i);
+  }
+};
+
+/// Restores what was harmed, and remembers that some was.
+struct RestoreAndTell {
+  RestoreHarmed restore;
+  View<uint32_t> some;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    if (restore.harmed[v] && !atomic_load(some[0])) atomic_or(some[0], 1u);
+    restore(v);
+  }
+};
+
+}  // namespace device_steps
+
+inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t> claim, int rounds) {
+  using namespace device_steps;
+  const int64_t half_edges = key.mesh.twin.size, most = claim.size / 4 + 1;  // a flip holds four vertices
+  Buffer<uint32_t> winners = exec.make<uint32_t>(most), count = exec.make<uint32_t>(rounds);
+  exec.fill(count.view(), 0u);
+  for (int r = 0; r < rounds; ++r) {
+    const View<uint32_t> count_of_round = count.view().part(r, 1);
+    exec.fill(claim, uint64_t(0));
+    exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
+    exec.for_each("list flips", half_edges, ListWinners{{key, claim}, winners.view(), count_of_round});
+    exec.for_each("flip edges", most, FlipWinners{{key.mesh, winners.view()}, count_of_round});
+  }
+  int64_t flips = 0;
+  for (const uint32_t n : count.to_host()) flips += n;
+  return flips;
+}
+
+inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, const RestoreHarmed& restore) {
+  constexpr int kRoundsPerLook = 4;
+  Buffer<uint32_t> some = exec.make<uint32_t>(kRoundsPerLook);
+  do {
+    exec.fill(some.view(), 0u);
+    for (int r = 0; r < kRoundsPerLook; ++r) {
+      exec.fill(restore.harmed, 0u);
+      exec.for_each("mark harmed", triangles.size,
+                    MarkHarmed{triangles, restore.before, restore.after, restore.harmed});
+      exec.for_each("restore harmed", restore.harmed.size,
+                    device_steps::RestoreAndTell{restore, some.view().part(r, 1)});
+    }
+  } while (exec.value(View<const uint32_t>(some.view()), kRoundsPerLook - 1) != 0);
+}
+
+}  // namespace isoshell::post

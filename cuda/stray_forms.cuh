@@ -1,0 +1,108 @@
+// Forms of the dual's steps over strays: a warp a stray, a lane a vertex of it.
+#pragma once
+
+#include "cuda/block_form.cuh"
+#include "stages/dual_strays_body.h"
+
+namespace isoshell {
+namespace stray_forms {
+
+struct StrayForm {
+  static constexpr int kThreads = 32;
+  static constexpr int kElements = 4;
+  struct Shared {};
+};
+
+__device__ inline PointQ8 middle(const dual::StraysView& strays, int64_t s, View<const PointQ8> position, int lane) {
+  Vec64 sum = {0, 0, 0};
+  for (int64_t m = strays.first[s] + lane; m < strays.first[s + 1]; m += 32) {
+    const PointQ8 p = position[strays.vertex(m)];
+    sum = sum + Vec64{p.x, p.y, p.z};
+  }
+  const int64_t count = strays.first[s + 1] - strays.first[s];
+  return {int32_t(round_div(warp_sum(sum.x), count)), int32_t(round_div(warp_sum(sum.y), count)),
+          int32_t(round_div(warp_sum(sum.z), count))};
+}
+
+/// Smallest (distance, index) of the warp.
+struct Nearest {
+  int64_t distance = INT64_MAX;
+  uint32_t index = kNone;
+  __device__ void offer(int64_t d, uint32_t i) {
+    if (d < distance || (d == distance && i < index)) distance = d, index = i;
+  }
+  __device__ void over_warp() {
+    for (int step = 16; step > 0; step >>= 1) {
+      const int64_t d = __shfl_xor_sync(0xffffffffu, distance, step);
+      offer(d, __shfl_xor_sync(0xffffffffu, index, step));
+    }
+  }
+};
+
+}  // namespace stray_forms
+
+template <>
+struct BlockForm<dual::DecideStray> : stray_forms::StrayForm {
+  static __device__ void run(const dual::DecideStray& step, int64_t i, Shared&, int lane) {
+    const dual::StraysView& strays = step.strays;
+    const int64_t s = step.waiting[i], size = strays.first[s + 1] - strays.first[s];
+    if (4 * size * step.mean_cells > step.mean_vertices) {
+      if (lane == 0) step.decision[i] = dual::kNewCell;
+      return;
+    }
+    const uint32_t root = strays.root[s];
+    const uint64_t rank = dual::piece_rank(step.piece_size[root], root);
+    const PointQ8 middle = stray_forms::middle(strays, s, step.vertex_position, lane);
+    stray_forms::Nearest nearest;
+    bool largest = true;
+    for (int64_t m = strays.first[s] + lane; m < strays.first[s + 1]; m += 32)
+      step.graph.for_each_corner(strays.vertex(m), [&](uint32_t w, uint32_t) {
+        const uint32_t other = step.piece[w];
+        if (other == root) return;
+        const uint32_t owner = step.label[w];
+        if (step.main_root[owner] != other)
+          largest = largest && dual::piece_rank(step.piece_size[other], other) < rank;
+        else
+          nearest.offer(distance_sq_q16(middle, step.seed_position[owner]), owner);
+      });
+    nearest.over_warp();
+    largest = __all_sync(0xffffffffu, largest);
+    if (lane == 0)
+      step.decision[i] = nearest.index != kNone ? nearest.index : (largest ? dual::kLocalLargest : dual::kWait);
+  }
+};
+
+template <>
+struct BlockForm<dual::JoinStray> : stray_forms::StrayForm {
+  static __device__ void run(const dual::JoinStray& step, int64_t i, Shared&, int lane) {
+    const int64_t s = step.waiting[step.index[i]], first = step.strays.first[s], end = step.strays.first[s + 1];
+    const uint32_t owner = step.decision[step.index[i]], root = step.cells.root[owner];
+    for (int64_t m = first + lane; m < end; m += 32) {
+      step.label[step.strays.vertex(m)] = owner;
+      step.piece[step.strays.vertex(m)] = root;
+    }
+    if (lane == 0) atomic_add(step.cells.size[owner], uint32_t(end - first));
+  }
+};
+
+template <>
+struct BlockForm<dual::FoundCell> : stray_forms::StrayForm {
+  static __device__ void run(const dual::FoundCell& step, int64_t i, Shared&, int lane) {
+    const int64_t s = step.waiting[step.index[i]], first = step.strays.first[s], end = step.strays.first[s + 1];
+    const PointQ8 middle = stray_forms::middle(step.strays, s, step.seeds.vertex_position, lane);
+    const uint32_t id = step.new_id[i];
+    stray_forms::Nearest nearest;
+    for (int64_t m = first + lane; m < end; m += 32) {
+      const uint32_t v = step.strays.vertex(m);
+      nearest.offer(distance_sq_q16(middle, step.seeds.vertex_position[v]), v);
+      step.label[v] = id;
+    }
+    nearest.over_warp();
+    if (lane != 0) return;
+    step.cells.root[id] = step.strays.root[s];
+    step.cells.size[id] = uint32_t(end - first);
+    step.seeds.put(id, nearest.index);
+  }
+};
+
+}  // namespace isoshell
