@@ -80,11 +80,6 @@ int device_count() {
 
 DeviceStream& DeviceStream::of(Context& context) {
   if (!context.backend_state) {
-    const int devices = device_count();
-    if (context.device < 0 || context.device >= devices)
-      throw Error(ErrorCode::no_device, "device",
-                  "there is no CUDA device " + std::to_string(context.device) + "; this machine has " +
-                      std::to_string(devices) + ", numbered from 0");
     require_success(cudaSetDevice(context.device), "cudaSetDevice");
     context.backend_state = std::shared_ptr<void>(take_stream(context.device), return_stream);
   }
@@ -106,8 +101,9 @@ void* DeviceStream::allocate(int64_t bytes) {
     throw Error(ErrorCode::out_of_memory, "memory",
                 "out of device memory: " + std::to_string(bytes >> 20) + " MiB more than the " +
                     std::to_string(held_bytes >> 20) + " MiB in use were refused" +
-                    (allowed ? "" : " by the limit of " + std::to_string(limit_ >> 20) + " MiB") +
-                    "; lower the resolution, or use --device cpu");
+                    (allowed ? "; lower the resolution or use --device cpu"
+                             : " by the limit of " + std::to_string(limit_ >> 20) +
+                                   " MiB; lower the resolution, raise --max-memory or use --device cpu"));
   }
   const int64_t held = held_bytes += bytes;
   int64_t peak = peak_bytes.load();

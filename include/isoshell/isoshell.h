@@ -1,6 +1,7 @@
 // Umbrella header.
 #pragma once
 
+#include "isoshell/device_info.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"

@@ -10,7 +10,7 @@ struct RunEstimate {
   double voxel_size_world = 0;
   int64_t vertices = 0;  ///< of the result
   int64_t sites = 0, active_voxels = 0, sheet_vertices = 0;
-  int64_t bytes = 0;  ///< host memory of the library's products and scratch at their peak, the input included
+  int64_t bytes = 0;  ///< memory of the library's products and scratch at their peak, the input included
 };
 
 /// From the area of the surface alone, on the grid the run would start with; `resolution` > 0 overrules the options.

@@ -2,18 +2,23 @@
 #include "stages/backend_table.h"
 
 #include "isoshell/error.h"
+#include "stages/cuda_device.h"
 
 namespace isoshell {
 
 const BackendTable& backend_for(const Context& context) {
   if (context.backend == Backend::cpu) return cpu_backend();
-  if (const BackendTable* cuda = cuda_backend()) return *cuda;
+  const std::string why_not = why_not_cuda(context.device);
+  if (why_not.empty()) return *cuda_backend();
   if (context.backend == Backend::cuda)
-    throw Error(ErrorCode::no_device, "device",
-                "no CUDA device: this build or this machine has none; use --device cpu or auto");
+    throw Error(ErrorCode::no_device, "device", why_not + "; use --device cpu or auto");
   return cpu_backend();
 }
 
 const char* backend_name(const Context& context) { return backend_for(context).name; }
+
+DeviceInfo device_info(const Context& context) {
+  return &backend_for(context) == &cpu_backend() ? DeviceInfo() : cuda_device_info(context.device);
+}
 
 }  // namespace isoshell

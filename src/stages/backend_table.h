@@ -32,7 +32,7 @@ struct BackendTable {
 
 /// Always there.
 const BackendTable& cpu_backend();
-/// Null when CUDA was not built in or no device is present.
+/// Null when CUDA was not built in. See cuda_device.h.
 const BackendTable* cuda_backend();
 /// The table the context asks for. Throws Error{no_device} when it asks for CUDA and there is none.
 const BackendTable& backend_for(const Context& context);

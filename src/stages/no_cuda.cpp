@@ -1,8 +1,13 @@
 // Compiled instead of cuda/ when CUDA is off: an empty table.
 #include "stages/backend_table.h"
+#include "stages/cuda_device.h"
 
 namespace isoshell {
 
 const BackendTable* cuda_backend() { return nullptr; }
+std::string why_not_cuda(int) { return "no CUDA device: this build has no CUDA backend"; }
+DeviceInfo cuda_device_info(int) { return {}; }
+int64_t device_memory_peak_bytes() { return 0; }
+void reset_device_memory_peak() {}
 
 }  // namespace isoshell

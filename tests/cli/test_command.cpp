@@ -88,7 +88,10 @@ TEST_CASE("command: cuda is never replaced by the CPU in silence", "[cli]") {
     CHECK(contains(r.err, "no CUDA device"));
     CHECK_FALSE(folder.has("out.ply"));
   }
-  CHECK(folder.run("ball.off out2.ply --device cuda:999" + kQuick).status == 8);
+  const auto far = folder.run("ball.off out2.ply --device cuda:999" + kQuick);
+  CHECK(far.status == 8);
+  CHECK(contains(far.err, "no CUDA device"));
+  CHECK(contains(far.err, "--device cpu"));
 }
 
 TEST_CASE("command: a run over the memory cap exits with 7 before it allocates", "[cli]") {

@@ -44,7 +44,7 @@ TEST_CASE("run: a surface becomes a closed mesh of the asked size, in the input'
 TEST_CASE("run: statistics have every key of schema 1, and null for what is not measured", "[cli]") {
   Folder folder;
   write_ball(folder);
-  const auto r = folder.run("ball.off out.ply --stats - -q" + kQuick);
+  const auto r = folder.run("ball.off out.ply --stats - -q --device cpu" + kQuick);
   REQUIRE(r.status == 0);
   CHECK(r.err.empty());
   const Json j = Json::parse(r.out);
@@ -61,10 +61,32 @@ TEST_CASE("run: statistics have every key of schema 1, and null for what is not 
   CHECK(j["topology"]["manifold"] == true);
   CHECK(j["distance"]["to_input_max"].is_null());
   CHECK(j["device"] == "cpu");
+  CHECK(j["device_details"].is_null());
+  CHECK(j["memory_bytes"]["device_peak"].is_null());
   CHECK(j["quality"]["q_avg"] > 0.8);
   CHECK(j["memory_bytes"]["host_peak"] > 0);
   CHECK(j["timings_ms"]["total"] > 0);
   CHECK(keys(j["digests"]) == std::set<std::string>{"mesh", "samples", "seeds", "sheet", "sites", "surface"});
+}
+
+TEST_CASE("run: a run on a device names it and gives the bytes of the CPU", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  const auto r = folder.run("ball.off out.off --stats out.json -v --device cuda:0" + kQuick);
+  if (r.status == 8) return;  // no device; test_command looks at the message
+  REQUIRE(r.status == 0);
+  const Json j = Json::parse(folder.content("out.json"));
+  CHECK(j["device"] == "cuda");
+  CHECK(j["device_details"]["number"] == 0);
+  const std::string name = j["device_details"]["name"];
+  CHECK_FALSE(name.empty());
+  CHECK(contains(r.err, "device: cuda:0, " + name));
+  CHECK(j["memory_bytes"]["device_peak"] > 0);
+  REQUIRE(folder.run("ball.off cpu.off --device cpu" + kQuick).status == 0);
+  CHECK(folder.content("cpu.off") == folder.content("out.off"));
+  const auto capped = folder.run("ball.off capped.off --device cuda --max-memory 1M" + kQuick);
+  CHECK(capped.status == 7);
+  CHECK(contains(capped.err, "--max-memory"));
 }
 
 TEST_CASE("run: a gate that fails exits with 6 and still writes the mesh", "[cli]") {

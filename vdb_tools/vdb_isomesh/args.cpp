@@ -85,7 +85,8 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
          "gates on the result, exit 6 when one fails: closed, manifold, genus=G, components=N, min-angle=DEG", "");
   option(run, "--device", raw.device, "auto|cpu|cuda[:N]", "where to run", "auto");
   option(run, "--threads", raw.threads, "N", "CPU threads", "all");
-  option(run, "--max-memory", raw.max_memory, "SIZE", "refuse runs that would need more, as 512M or 8G",
+  option(run, "--max-memory", raw.max_memory, "SIZE",
+         "refuse runs that would need more memory, the device's where it runs there, as 512M or 8G",
          "80 % of what is free");
   flag(run, "--dry-run", a.dry_run, "print grid and memory estimate, and stop");
   option(run, "--progress", raw.progress, "auto|always|never|json", "progress on standard error", "auto");

@@ -32,7 +32,7 @@ int run_command(int argc, char* argv[]) {
   context.backend = a.backend;
   context.device = a.device;
   context.threads = a.threads;
-  context.memory_limit_bytes = a.max_memory_bytes > 0 ? a.max_memory_bytes : tool::default_memory_limit_bytes();
+  context.memory_limit_bytes = a.max_memory_bytes;
   context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
   return tool::run(a, context, console);
 }

@@ -31,7 +31,7 @@ class Run {
  public:
   Run(const Arguments& a, Context& context, Console& console)
       : a_(a), options_(a.remesh), context_(context), console_(console) {
-    record_.device = backend_name(context);
+    choose_device();
     options_.want_shell = keeps_shell();
     options_.want_digests = !a.stats.empty();
   }
@@ -58,6 +58,18 @@ class Run {
   }
 
  private:
+  /// Before anything is read: asking for a device that is not there should cost no time.
+  void choose_device() {
+    const DeviceInfo& d = record_.device = device_info(context_);
+    const bool cuda = d.backend == "cuda";
+    if (context_.memory_limit_bytes <= 0)
+      context_.memory_limit_bytes = cuda ? d.free_bytes / 5 * 4 : default_memory_limit_bytes();
+    if (!cuda) return;
+    console_.detail("device: cuda:" + std::to_string(d.number) + ", " + d.name + ", " + readable_bytes(d.free_bytes) +
+                    " of " + readable_bytes(d.memory_bytes) + " free, driver " +
+                    (d.driver_version.empty() ? "" : d.driver_version + ", ") + "CUDA " + d.cuda_version);
+  }
+
   bool keeps_shell() const {
     return !a_.save_shell.empty() || !a_.save_voronoi.empty() || a_.stop_after != StopAfter::mesh;
   }
@@ -214,17 +226,18 @@ class Run {
       throw Error(ErrorCode::usage, "command line",
                   "--dry-run needs a mesh as INPUT, a stage file has its grid already");
     DirtCounts dirt;
+    const int64_t limit = context_.memory_limit_bytes;
     const RunEstimate e = estimate_run(source.soup, measure_topology(source.soup, dirt, context_), options_);
     std::ostringstream text;
     text << "estimate: resolution " << e.resolution << ", voxel size " << e.voxel_size_world << ", "
          << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices")
          << ", " << counted(e.vertices, "vertex", "vertices") << " in the result, about " << readable_bytes(e.bytes)
-         << " of " << readable_bytes(context_.memory_limit_bytes) << " allowed";
+         << " of " << readable_bytes(limit) << " allowed";
     console_.result(text.str());
-    if (context_.memory_limit_bytes > 0 && e.bytes > context_.memory_limit_bytes)
+    if (limit > 0 && e.bytes > limit)
       throw Error(ErrorCode::out_of_memory, "memory",
                   "the run needs about " + readable_bytes(e.bytes) + ", more than the limit of " +
-                      readable_bytes(context_.memory_limit_bytes) + "; lower --resolution or raise --max-memory");
+                      readable_bytes(limit) + "; lower --resolution or raise --max-memory");
   }
 
   std::vector<std::string> failed_gates() const {
@@ -281,6 +294,7 @@ class Run {
   int finish() {
     record_.total_ms = ms_since(start_);
     record_.host_peak_bytes = process_peak_bytes();
+    record_.device_peak_bytes = device_memory_peak_bytes();
     for (const std::string& text : record_.report.warnings) warn(text);
     if (!a_.stats.empty()) write_text(a_.stats, stats_json(a_, record_));
     tell_result();

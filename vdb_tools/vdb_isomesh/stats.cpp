@@ -107,6 +107,15 @@ Json timings_json(const RunRecord& r) {
   return j;
 }
 
+Json device_json(const DeviceInfo& d) {
+  if (d.backend != "cuda") return nullptr;
+  return {{"number", d.number},
+          {"name", d.name},
+          {"driver", known(d.driver_version)},
+          {"driver_cuda", d.cuda_version},
+          {"memory_bytes", d.memory_bytes}};
+}
+
 const char* method_name(Method method) { return method == Method::shell ? "shell" : "sheet"; }
 
 }  // namespace
@@ -128,9 +137,10 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   j["timings_ms"] = timings_json(r);
   j["memory_bytes"] = {
       {"host_peak", r.host_peak_bytes},
-      {"device_peak", nullptr},
+      {"device_peak", r.device.backend == "cuda" ? Json(r.device_peak_bytes) : Json()},
       {"estimate", r.report.memory_estimate_bytes > 0 ? Json(r.report.memory_estimate_bytes) : Json()}};
-  j["device"] = known(r.device);
+  j["device"] = r.device.backend;
+  j["device_details"] = device_json(r.device);
   j["digests"] = r.report.digests.empty() ? Json::object() : Json(r.report.digests);
   j["warnings"] = r.warnings.empty() ? Json::array() : Json(r.warnings);
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/device_info.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/remesh.h"
@@ -28,8 +29,8 @@ struct RunRecord {
   int64_t vertices = -1, triangles = -1;
   std::vector<StageTime> times;  ///< of the command; the library's are in the report
   double total_ms = 0;
-  std::string device;
-  int64_t host_peak_bytes = 0;
+  DeviceInfo device;
+  int64_t host_peak_bytes = 0, device_peak_bytes = 0;
   std::vector<std::string> warnings;
 };
 

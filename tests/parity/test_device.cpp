@@ -1,0 +1,88 @@
+// How a device is chosen, and how a stage on it ends early: too little memory, a device that is not there, a cancelled
+// run.
+#include "isoshell/error.h"
+#include "isoshell/isoshell.h"
+#include "support/catch.h"
+#include "support/mesh_files.h"
+#include "support/shapes.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+LatticeSurface ball() {
+  Context context;
+  const TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 48);
+  return snap_surface(soup, LatticeFrame::around({-1, -1, -1}, {1, 1, 1}, 200), context);
+}
+
+}  // namespace
+
+TEST_CASE("device: the one that runs is named", "[device]") {
+  const TestContext context;
+  const DeviceInfo info = device_info(context);
+  CHECK(info.backend == "cuda");
+  CHECK(info.number == 0);
+  CHECK_FALSE(info.name.empty());
+  CHECK_FALSE(info.cuda_version.empty());
+  CHECK(info.memory_bytes >= info.free_bytes);
+  CHECK(info.free_bytes > 0);
+  WARN(info.name << ", driver " << info.driver_version << ", CUDA " << info.cuda_version);
+}
+
+TEST_CASE("device: auto takes it, and a number beyond the last is refused", "[device]") {
+  Context context;
+  CHECK(std::string(backend_name(context)) == "cuda");
+  context.backend = Backend::cuda;
+  context.device = 1000;
+  const Error error = error_of([&] { voxelize(ball(), context); });
+  CHECK(error.code() == ErrorCode::no_device);
+  CHECK(says(error, "no CUDA device 1000: this machine has"));
+}
+
+TEST_CASE("device: a stage beyond the memory limit ends with out_of_memory and gives everything back", "[device]") {
+  const LatticeSurface surface = ball();
+  TestContext context;
+  context.memory_limit_bytes = 100000;
+  const Error error = error_of([&] { voxelize(surface, context); });
+  CHECK(error.code() == ErrorCode::out_of_memory);
+  CHECK(says(error, "limit"));
+  context.memory_limit_bytes = 0;
+  const uint64_t whole = digest(voxelize(surface, context));
+  Context cpu;
+  cpu.backend = Backend::cpu;
+  CHECK(whole == digest(voxelize(surface, cpu)));
+  reset_device_memory_peak();
+  CHECK(device_memory_peak_bytes() == 0);
+}
+
+TEST_CASE("device: every stage stops when its context is cancelled", "[device]") {
+  Context cpu;
+  cpu.backend = Backend::cpu;
+  const LatticeSurface surface = ball();
+  const SiteSet sites = voxelize(surface, cpu);
+  const SiteSamples samples = sample_sites(surface, sites, cpu);
+  const Shell shell = build_shell(sites, {2}, cpu);
+  const Sheet sheet = build_sheet(surface, sites, samples, {0, 0}, cpu);
+  const SeedSet seeds = place_seeds(sheet, {300, 0}, cpu);
+  TestContext context;
+  context.cancel = true;
+  SeedSet moved = to_host(seeds);
+  DualReport report;
+  const std::function<void()> stages[] = {[&] { voxelize(surface, context); },
+                                          [&] { sample_sites(surface, sites, context); },
+                                          [&] { build_shell(sites, {2}, context); },
+                                          [&] {
+                                            build_sheet(surface, sites, samples, {0, 0}, context);
+                                          },
+                                          [&] {
+                                            relax_on_sheet(sheet, moved, {20, 0, 0}, context);
+                                          },
+                                          [&] {
+                                            relax_in_shell(shell, sites, samples, moved, {20, 0, 0}, context);
+                                          },
+                                          [&] { flood_shell(shell, seeds, context); },
+                                          [&] { triangulate_dual(sheet, moved, {}, report, context); }};
+  for (const auto& stage : stages) CHECK(error_of(stage).code() == ErrorCode::interrupted);
+}
