@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "golden/golden_cases.h"
+#include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "parity/product_hash.h"
 #include "support/catch.h"
@@ -58,10 +59,10 @@ std::string text_of(const SheetTopology& t) {
 /// All products of a run, in one memory.
 struct Products {
   LatticeSurface surface;
-  SiteSet sites;
+  SiteSet sites, coarse_sites;
   SiteSamples samples;
   Shell shell;
-  Sheet sheet;
+  Sheet sheet, outline;
   SeedSet seeds, site_seeds;
   DualMesh dual;
   VoronoiLabels labels;
@@ -71,6 +72,7 @@ struct Products {
 class SideBySide {
  public:
   SideBySide() {
+    REQUIRE(test_backend() == Backend::cuda);  // run with --cuda, which also sees whether there is a device
     cpu_context_.backend = Backend::cpu;
     cuda_context_.backend = Backend::cuda;
   }
@@ -127,9 +129,29 @@ DualRun dual_of(const Products& p, const DualOptions& options, Context& context)
   return run;
 }
 
-bool up_to_samples(SideBySide& both, const LatticeSurface& surface) {
-  both.cpu.surface = to_host(surface);
-  both.cuda.surface = to_host(surface);
+std::string text_of(const InputTopology& t, const DirtCounts& d) {
+  uint64_t area;
+  std::memcpy(&area, &t.area_world, sizeof area);
+  std::string text = digest_text(area);
+  for (const int64_t n : {int64_t(t.closed), int64_t(t.oriented), t.components, t.boundary_loops, t.euler, t.genus,
+                          d.nonfinite_vertices, d.dropped_faces_nonfinite, d.short_faces, d.degenerate_faces,
+                          d.duplicate_faces, d.unreferenced_vertices, d.nonmanifold_edges, d.inconsistent_edges})
+    text += " " + std::to_string(n);
+  return text;
+}
+
+bool snapped(SideBySide& both, const TriangleSoup& soup, int32_t resolution) {
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
+  return both.stage("snap", &Products::surface, [&](const Products&, Context& c) {
+    DirtCounts dirt;
+    const InputTopology topology = measure_topology(soup, dirt, c);
+    return made(snap_surface(soup, frame, c), text_of(topology, dirt));
+  });
+}
+
+bool up_to_samples(SideBySide& both) {
   return both.stage("voxelize", &Products::sites, [](const Products& p, Context& c) {
     return made(voxelize(p.surface, c));
   }) && both.stage("samples", &Products::samples, [](const Products& p, Context& c) {
@@ -142,10 +164,21 @@ bool shell_of_band(SideBySide& both, int32_t band_vox) {
                     [=](const Products& p, Context& c) { return made(build_shell(p.sites, {band_vox}, c)); });
 }
 
+void outline_of_coarse_sites(SideBySide& both) {
+  if (!both.stage("coarse sites", &Products::coarse_sites,
+                  [](const Products& p, Context& c) { return made(coarsen_sites(p.sites, c)); }))
+    return;
+  both.stage("outline", &Products::outline, [](const Products& p, Context& c) {
+    Sheet outline = build_outline(p.coarse_sites, p.surface.frame, {}, c);
+    const std::string facts = text_of(outline.topology);
+    return made(std::move(outline), facts);
+  });
+}
+
 bool sheet_with_closing(SideBySide& both, int32_t closing_vox) {
   return both.stage("sheet " + std::to_string(closing_vox), &Products::sheet, [=](const Products& p, Context& c) {
     Sheet sheet = build_sheet(p.surface, p.sites, p.samples, {closing_vox, 0}, c);
-    const std::string facts = text_of(sheet.topology);
+    const std::string facts = text_of(sheet.topology) + ", volume " + std::to_string(six_volume_vox(sheet, c));
     return made(std::move(sheet), facts);
   });
 }
@@ -175,6 +208,12 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
              [](const Products& p, Context& c) { return made(dual_of(p, {}, c).seeds); });
   both.stage("subdivided seeds", &Products::site_seeds, [](const Products& p, Context& c) {
     return made(subdivide_seeds(p.sheet, p.dual, p.seeds, p.seeds.size() * 2, c));
+  });
+  both.stage("seeds with the crowded dropped", &Products::site_seeds, [](const Products& p, Context& c) {
+    return changed(p.seeds, [&](SeedSet& seeds) {
+      drop_crowded_seeds(p.dual, seeds.size() / 5, seeds.size() / 7, seeds, c);
+      return std::string();
+    });
   });
   if (failed_cells > 0) return;
   both.stage("improved mesh", &Products::dual, [](const Products& p, Context& c) {
@@ -206,12 +245,22 @@ void relax_and_flood_the_shell(SideBySide& both, int64_t count, bool has_sheet) 
     });
   };
   both.stage("attached seeds", &Products::site_seeds, attach);
+  if (both.cpu.outline.vertex_count() == 0) return;
+  const auto attach_twice_as_fine = [](const Products& p, Context& c) {
+    return changed(p.site_seeds, [&](SeedSet& seeds) {
+      for (PointQ8& q : seeds.position) q = {q.x / 2, q.y / 2, q.z / 2};
+      attach_to_sheet(p.outline, seeds, c);
+      attach_to_sheet(p.sheet, seeds, c, 1);
+      return std::string();
+    });
+  };
+  both.stage("seeds moved to a finer lattice", &Products::site_seeds, attach_twice_as_fine);
 }
 
-void every_stage(const LatticeSurface& surface, int32_t band_vox, int32_t closing_vox) {
-  SideBySide both;
-  if (!up_to_samples(both, surface)) return;
+void every_stage_after_snapping(SideBySide& both, int32_t band_vox, int32_t closing_vox) {
+  if (!up_to_samples(both)) return;
   shell_of_band(both, band_vox);
+  outline_of_coarse_sites(both);
   const bool has_sheet = sheet_with_closing(both, closing_vox);
   const int64_t sites = both.cpu.sites.voxels.voxel_count();
   if (has_sheet) relax_and_mesh_the_sheet(both, std::max<int64_t>(4, sites / 40));
@@ -243,16 +292,20 @@ TEST_CASE("parity: every stage on every shape, whatever memory its inputs lie in
   for (const shapes::NamedSoup& shape : all_soups())
     for (const int32_t resolution : {17, 45, 98}) {
       CAPTURE(shape.name, resolution);
-      Context context;
       const int32_t bands[] = {1, 2, 3, 5}, closings[] = {0, 0, 2, 5};
-      every_stage(shapes::snapped(shape.soup, resolution, context), bands[turn % 4], closings[turn / 2 % 4]);
+      SideBySide both;
+      if (snapped(both, shape.soup, resolution))
+        every_stage_after_snapping(both, bands[turn % 4], closings[turn / 2 % 4]);
       ++turn;
     }
 }
 
 TEST_CASE("parity: corners on voxel boundaries", "[parity][cuda]") {
-  Context context;
-  every_stage(shapes::on_voxel_boundaries(context), 2, 1);
+  TestContext context;
+  SideBySide both;
+  both.cpu.surface = shapes::on_voxel_boundaries(context);
+  both.cuda.surface = shapes::on_voxel_boundaries(context);
+  every_stage_after_snapping(both, 2, 1);
 }
 
 TEST_CASE("parity: the shell of every thickness around every set of voxels", "[parity][cuda]") {
@@ -323,4 +376,18 @@ TEST_CASE("parity: one context serves run after run, and two contexts do not dis
   one.backend = two.backend = Backend::cuda;
   const std::string expected = golden::run(c, cpu);
   for (Context* context : {&one, &two, &one}) CHECK(golden::run(c, *context) == expected);
+}
+
+TEST_CASE("parity: what one context made is taken by another one at once", "[parity][cuda]") {
+  Context host;
+  host.backend = Backend::cpu;
+  const LatticeSurface surface = shapes::snapped(shapes::torus(2, .7, 96, 48), 300, host);
+  const SiteSet sites = voxelize(surface, host);
+  const uint64_t expected = digest(build_shell(sites, {2}, host));
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    Context one, two;
+    one.backend = two.backend = Backend::cuda;
+    const SiteSet made = voxelize(surface, one);
+    CHECK(digest(build_shell(made, {2}, two)) == expected);
+  }
 }

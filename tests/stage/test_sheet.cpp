@@ -138,7 +138,6 @@ Pipeline sites_of(const TriangleSoup& soup, int32_t resolution, TestContext& con
 
 Sheet sheet_of(const TriangleSoup& soup, int32_t resolution, const SheetOptions& options = {}, int threads = 0) {
   TestContext context;
-  context.backend = Backend::cpu;
   context.threads = threads;
   const Pipeline p = sites_of(soup, resolution, context);
   return build_sheet(p.surface, p.sites, p.samples, options, context);
@@ -185,6 +184,7 @@ double signed_volume(const Sheet& sheet) {
 
 TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel", "[sheet][stage]") {
   TestContext context;
+  context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
   TbbExecutor exec(context, "sheet");
   for (const Named& blob : all_blobs())
     for (const int32_t r : {0, 1, 2, 5}) {
@@ -206,6 +206,7 @@ TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel"
 
 TEST_CASE("sheet: holes close as wide as the closing reaches", "[sheet][stage]") {
   TestContext context;
+  context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
   TbbExecutor exec(context, "sheet");
   for (const int width : {1, 3, 5, 7})
     for (const int32_t r : {0, 1, 2, 3, 4}) {

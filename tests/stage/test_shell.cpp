@@ -16,7 +16,6 @@ namespace {
 
 Shell shell_of(const SiteSet& sites, int32_t band_vox, int threads = 0) {
   TestContext context;
-  context.backend = Backend::cpu;
   context.threads = threads;
   ShellOptions options;
   options.band_vox = band_vox;
