@@ -6,6 +6,13 @@ set -euo pipefail
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
           libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2)
 
+# CUDA is not installed from here: which toolkit fits is the driver's and the administrator's to say.
+if ! command -v nvcc >/dev/null && [ ! -x /usr/local/cuda/bin/nvcc ]; then
+  echo "setup: no nvcc, so only the CPU backend can be built. The CUDA backend takes a toolkit from 12.0 to 13.x" >&2
+  echo "       (https://developer.nvidia.com/cuda-downloads; package nvidia-cuda-toolkit on Ubuntu 24.04 and Debian 13)," >&2
+  echo "       the preset cuda, and to run a device of compute capability 7.5 or newer with its driver." >&2
+fi
+
 if ! command -v dpkg-query >/dev/null; then
   echo "setup: this is not a Debian or Ubuntu system; install by hand what these packages hold: ${packages[*]}" >&2
   exit 1
