@@ -21,7 +21,8 @@ struct DeviceInfo {
 /// them.
 DeviceInfo device_info(const Context& context);
 
-/// Largest number of bytes that Buffers held on all devices at one time since the last reset; 0 in a build without CUDA.
+/// Largest number of bytes that Buffers held on all devices at one time since the last reset; 0 in a build without
+/// CUDA.
 int64_t device_memory_peak_bytes();
 void reset_device_memory_peak();
 
