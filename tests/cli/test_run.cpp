@@ -173,8 +173,9 @@ TEST_CASE("run: an interrupted run exits with 130 and leaves nothing", "[cli]") 
   Folder folder;
   folder.write_off("ball.off", shapes::sphere({1, 2, 3}, 5, 200));
   // In the foreground: otherwise timeout also signals its group, and a second signal ends the run without a word.
-  const auto r = folder.shell("timeout --foreground --preserve-status -s INT 1.5 '" + command_path() +
-                              "' ball.off out.ply --vertices 60000 --stats out.json --save-shell shell.vdb");
+  const auto r =
+      folder.shell("timeout --foreground --preserve-status -s INT 1.5 '" + command_path() +
+                   "' ball.off out.ply --device cpu --vertices 60000 --stats out.json --save-shell shell.vdb");
   CHECK(r.status == 130);
   CHECK(contains(r.err, "interrupted"));
   CHECK_FALSE(folder.has("out.ply"));

@@ -46,6 +46,8 @@ class ExecutorWords {
   virtual std::vector<uint32_t> select(int64_t count, uint64_t modulus) = 0;
   /// Sum of i % 1000 - 499.
   virtual int64_t sum(int64_t count) = 0;
+  /// The same into the middle one of three numbers that are -1 before.
+  virtual std::vector<int64_t> sum_into(int64_t count) = 0;
   virtual std::vector<uint64_t> canary(const std::vector<CanaryOperands>& cases) = 0;
 
   // On arrays that stay with the executor, of more elements than 32 bits count.

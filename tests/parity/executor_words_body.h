@@ -99,6 +99,12 @@ class WordsOf : public ExecutorWords {
     return here(out);
   }
   int64_t sum(int64_t count) override { return exec_.sum(count, CentredRest{}); }
+  std::vector<int64_t> sum_into(int64_t count) override {
+    auto out = exec_.template make<int64_t>(3);
+    exec_.fill(out.view(), int64_t(-1));
+    exec_.sum_into(out.view().part(1, 1), count, CentredRest{});
+    return here(out);
+  }
   std::vector<uint64_t> canary(const std::vector<CanaryOperands>& cases) override {
     const auto operands = there(cases);
     auto out = exec_.template make<uint64_t>(operands.size());

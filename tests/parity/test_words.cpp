@@ -155,6 +155,7 @@ TEST_CASE("words: sum is exact, with terms of both signs", "[parity][words]") {
     int64_t expected = 0;
     for (int64_t i = 0; i < n; ++i) expected += i % 1000 - 499;
     CHECK(words->sum(n) == expected);
+    CHECK(words->sum_into(n) == std::vector<int64_t>{-1, expected, -1});
   }
 }
 
