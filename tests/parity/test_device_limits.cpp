@@ -1,4 +1,6 @@
 // What the device's forms of steps keep in lists of fixed size, made to overflow: the exact slow paths give the same.
+#include <cstring>
+
 #include "golden/golden_cases.h"
 #include "parity/product_hash.h"
 #include "support/catch.h"
