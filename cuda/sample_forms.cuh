@@ -1,86 +1,86 @@
-// Forms of sample_sites' steps over leaves: a warp a leaf. Lanes take the leaf's triangles, then its sites.
+// sample_sites on the device: a thread a leaf and triangle, then a warp a leaf with a lane a site.
 #pragma once
 
+#include "cuda/executor_cuda.cuh"
 #include "cuda/leaf_forms.cuh"
 #include "stages/samples_body.h"
 
 namespace isoshell {
 namespace sample_forms {
 
-constexpr int kBatch = 32;  ///< triangles whose voxels are held at one time
-
-/// Voxels that a batch of the leaf's triangles meets, and the leaf's sites.
-struct Batch {
-  LeafMask met[kBatch];
-  uint16_t offset[512];
-  uint32_t triangle[kBatch];
-};
-
-/// Marks the voxels of the triangles from `at` on; returns how many triangles there are.
-__device__ inline int mark_batch(const SurfaceView& surface, View<const uint32_t> triangles, Voxel leaf, int64_t at,
-                                 int64_t end, Batch& batch, int lane) {
-  __syncwarp();  // the last batch was read
-  if (at + lane < end) {
-    const uint32_t t = triangles[at + lane];
-    LeafMask met = {};
-    mark_voxels(surface.triangle(t), leaf, met);
-    batch.met[lane] = met;
-    batch.triangle[lane] = t;
+/// Voxels of a leaf that one triangle of its list meets; by places in the lists, so that lists of any length share the
+/// work.
+struct MarkMet {
+  SurfaceView surface;
+  View<const uint64_t> leaf_key;
+  View<const int64_t> first;
+  View<const uint32_t> triangle;
+  View<LeafMask> met;
+  ISOSHELL_HD void operator()(int64_t place) const {
+    int64_t lo = 0, hi = leaf_key.size;  // the last leaf that starts at the place or before
+    while (hi - lo > 1) {
+      const int64_t middle = lo + (hi - lo) / 2;
+      (first[middle] <= place ? lo : hi) = middle;
+    }
+    LeafMask mask = {};
+    mark_voxels(surface.triangle(triangle[place]), leaf_of_key(leaf_key[lo]), mask);
+    met[place] = mask;
   }
-  __syncwarp();
-  return int(end - at < kBatch ? end - at : kBatch);
-}
-
-struct BatchForm {
-  static constexpr int kThreads = 32;
-  static constexpr int kElements = 4;
-  using Shared = Batch;
 };
 
-constexpr int kSitesOfLane = 512 / 32;  ///< a lane fills the lists of every 32nd site
+/// The sites of a leaf and the lists that they get.
+struct SitesOfLeaf {
+  VoxelSetView sites;
+  View<const int64_t> leaf_first;
+  View<const LeafMask> met;
+
+  /// Calls visit(place) for the triangles that meet the voxel, in order.
+  template <class Visit>
+  ISOSHELL_HD void for_each_triangle(int64_t leaf, int offset, Visit visit) const {
+    for (int64_t place = leaf_first[leaf]; place < leaf_first[leaf + 1]; ++place)
+      if (met[place].word[offset >> 6] >> (offset & 63) & 1) visit(place);
+  }
+};
+struct CountMet {
+  SitesOfLeaf of;
+  View<int64_t> count;
+};
+struct FillMet {
+  SitesOfLeaf of;
+  View<const uint32_t> leaf_triangle;
+  View<const int64_t> first;
+  View<uint32_t> triangles;
+};
+
+/// Calls visit(offset, site) for the sites of a leaf, a lane each.
+template <class Visit>
+__device__ inline void for_each_site(const VoxelSetView& sites, int64_t leaf, leaf_forms::Offsets& shared, int lane,
+                                     Visit visit) {
+  const int count = leaf_forms::list_active(sites.mask[leaf], shared.offset, lane);
+  const int64_t first = sites.first[leaf];
+  for (int k = lane; k < count; k += 32) visit(int(shared.offset[k]), first + k);
+}
 
 }  // namespace sample_forms
 
 template <>
-struct BlockForm<CountSiteTriangles> : sample_forms::BatchForm {
-  static __device__ void run(const CountSiteTriangles& step, int64_t l, Shared& batch, int lane) {
-    using namespace sample_forms;
-    const Voxel leaf = leaf_of_key(step.sites.leaf_key[l]);
-    const int sites = leaf_forms::list_active(step.sites.mask[l], batch.offset, lane);
-    int64_t* const count = &step.count[step.sites.first[l]];
-    for (int k = lane; k < sites; k += 32) count[k] = 0;
-    for (int64_t at = step.leaf_first[l], end = step.leaf_first[l + 1]; at < end; at += kBatch) {
-      const int triangles = mark_batch(step.surface, step.leaf_triangle, leaf, at, end, batch, lane);
-      for (int k = lane; k < sites; k += 32) {
-        const int word = batch.offset[k] >> 6, bit = batch.offset[k] & 63;
-        int seen = 0;
-        for (int t = 0; t < triangles; ++t) seen += int(batch.met[t].word[word] >> bit & 1);
-        if (seen) count[k] += seen;
-      }
-    }
+struct BlockForm<sample_forms::CountMet> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+  static __device__ void run(const sample_forms::CountMet& step, int64_t leaf, Shared& shared, int lane) {
+    sample_forms::for_each_site(step.of.sites, leaf, shared, lane, [&](int offset, int64_t site) {
+      int64_t seen = 0;
+      step.of.for_each_triangle(leaf, offset, [&](int64_t) { ++seen; });
+      step.count[site] = seen;
+    });
   }
 };
 
 template <>
-struct BlockForm<FillSiteTriangles> : sample_forms::BatchForm {
-  static __device__ void run(const FillSiteTriangles& step, int64_t l, Shared& batch, int lane) {
-    using namespace sample_forms;
-    const Voxel leaf = leaf_of_key(step.sites.leaf_key[l]);
-    const int sites = leaf_forms::list_active(step.sites.mask[l], batch.offset, lane);
-    const int64_t* const first = &step.first[step.sites.first[l]];
-    uint32_t filled[kSitesOfLane];
-    for (uint32_t& n : filled) n = 0;
-    for (int64_t at = step.leaf_first[l], end = step.leaf_first[l + 1]; at < end; at += kBatch) {
-      const int triangles = mark_batch(step.surface, step.leaf_triangle, leaf, at, end, batch, lane);
-#pragma unroll
-      for (int j = 0; j < kSitesOfLane; ++j) {
-        const int k = lane + 32 * j;
-        if (k >= sites) break;
-        const int word = batch.offset[k] >> 6, bit = batch.offset[k] & 63;
-        for (int t = 0; t < triangles; ++t)
-          if (batch.met[t].word[word] >> bit & 1) step.triangles[first[k] + filled[j]++] = batch.triangle[t];
-      }
-    }
+struct BlockForm<sample_forms::FillMet> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+  static __device__ void run(const sample_forms::FillMet& step, int64_t leaf, Shared& shared, int lane) {
+    sample_forms::for_each_site(step.of.sites, leaf, shared, lane, [&](int offset, int64_t site) {
+      int64_t at = step.first[site];
+      step.of.for_each_triangle(leaf, offset, [&](int64_t place) { step.triangles[at++] = step.leaf_triangle[place]; });
+    });
   }
 };
 
@@ -113,13 +113,26 @@ struct BlockForm<SortLeafTriangles> {
 
 template <>
 struct BlockForm<SampleSites> : leaf_forms::LeafForm<leaf_forms::Offsets> {
-  static __device__ void run(const SampleSites& step, int64_t l, Shared& shared, int lane) {
-    const Voxel leaf = leaf_of_key(step.sites.leaf_key[l]);
-    const int sites = leaf_forms::list_active(step.sites.mask[l], shared.offset, lane);
-    const int64_t first = step.sites.first[l];
-    for (int k = lane; k < sites; k += 32)
-      step.sample[first + k] = step.nearest(voxel_centre(voxel_at(leaf, shared.offset[k])), first + k);
+  static __device__ void run(const SampleSites& step, int64_t leaf, Shared& shared, int lane) {
+    const Voxel at = leaf_of_key(step.sites.leaf_key[leaf]);
+    sample_forms::for_each_site(step.sites, leaf, shared, lane, [&](int offset, int64_t site) {
+      step.sample[site] = step.nearest(voxel_centre(voxel_at(at, offset)), site);
+    });
   }
 };
+
+/// The lists of sample_sites_body by way of one mask a leaf and triangle: each pair is tested once, by its own thread.
+inline void list_site_triangles(CudaExecutor& exec, const SurfaceView& surface, const VoxelSetView& sites,
+                                const LeafTriangles& lists, SiteSamples& out) {
+  using namespace sample_forms;
+  Buffer<LeafMask> met = exec.make<LeafMask>(lists.triangle.size());
+  exec.for_each("mark voxels met", met.size(),
+                MarkMet{surface, sites.leaf_key, lists.first.view(), lists.triangle.view(), met.view()});
+  const SitesOfLeaf of{sites, lists.first.view(), met.view()};
+  exec.for_each("count site triangles", sites.leaf_key.size, CountMet{of, out.first.view()});
+  out.triangles = exec.make<uint32_t>(exec.exclusive_scan(out.first.view()));
+  exec.for_each("fill site triangles", sites.leaf_key.size,
+                FillMet{of, lists.triangle.view(), out.first.view(), out.triangles.view()});
+}
 
 }  // namespace isoshell

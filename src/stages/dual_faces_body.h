@@ -105,15 +105,37 @@ struct HookPairs {
     if (i == 0 || pair[i - 1] != pair[i]) join(parent, uint32_t(pair[i] >> 32), uint32_t(pair[i]));
   }
 };
+/// A run of cells of one component is added at once.
 struct CountCellsOfComponent {
+  static constexpr int64_t kRun = 64;
   View<const uint32_t> component;
   CellsView cells;
   View<uint32_t> count;
   View<uint64_t> largest;
-  ISOSHELL_HD void operator()(int64_t s) const {
-    if (cells.size[s] == 0) return;
-    atomic_add(count[component[s]], 1u);
-    atomic_max(largest[component[s]], piece_rank(cells.size[s], uint32_t(s)));
+  ISOSHELL_HD void operator()(int64_t run) const {
+    const int64_t begin = run * kRun, end = begin + kRun < component.size ? begin + kRun : component.size;
+    uint32_t current = component[begin], found = 0;
+    uint64_t best = 0;
+    for (int64_t s = begin; s < end; ++s) {
+      if (component[s] != current) {
+        add(current, found, best);
+        current = component[s];
+        found = 0;
+        best = 0;
+      }
+      if (cells.size[s] == 0) continue;
+      const uint64_t rank = piece_rank(cells.size[s], uint32_t(s));
+      best = rank > best ? rank : best;
+      ++found;
+    }
+    add(current, found, best);
+  }
+
+ private:
+  ISOSHELL_HD void add(uint32_t of, uint32_t found, uint64_t best) const {
+    if (found == 0) return;
+    atomic_add(count[of], found);
+    atomic_max(largest[of], best);
   }
 };
 struct RequestSmallComponents {
@@ -136,7 +158,8 @@ void request_small_components(Exec& exec, View<const uint64_t> pairs, Cells& cel
   exec.for_each("root components", k, PointAtRoot{component.view()});
   exec.fill(count.view(), uint32_t(0));
   exec.fill(largest.view(), uint64_t(0));
-  exec.for_each("count cells of components", k,
+  constexpr int64_t kRun = CountCellsOfComponent::kRun;
+  exec.for_each("count cells of components", (k + kRun - 1) / kRun,
                 CountCellsOfComponent{component.view(), cells.view(), count.view(), largest.view()});
   exec.for_each("split small components", k, RequestSmallComponents{count.view(), largest.view(), request});
 }
