@@ -59,7 +59,7 @@ class Partition {
       else
         split(largest_cells(unused));
     }
-    if (faces.empty()) faces = dual_faces(exec_, sheet_, label_.view());
+    if (faces.empty()) faces = faces_now();
     return faces;
   }
 
@@ -134,11 +134,17 @@ class Partition {
     Buffer<uint32_t> failing = requested();
     faces = {};
     if (!failing.empty()) return failing;
-    faces = dual_faces(exec_, sheet_, label_.view());
+    faces = faces_now();
     const Buffer<uint64_t> pairs = face_pairs(exec_, faces.view());
     exec_.for_each("check pairs", pairs.size(), RequestDoublePairs{pairs.view(), cells_.view(), request_.view()});
     request_small_components(exec_, pairs.view(), cells_, request_.view());
     return requested();
+  }
+
+  /// Splits keep the list of the faces' triangles up to date: the sheet is searched for them only once.
+  Buffer<TriangleIndices> faces_now() {
+    if (face_triangle_.empty()) face_triangle_ = select_face_triangles(exec_, sheet_, label_.view());
+    return make_faces(exec_, sheet_, label_.view(), face_triangle_.view());
   }
 
   Buffer<uint32_t> largest_cells(int64_t count) {
@@ -164,6 +170,9 @@ class Partition {
                   seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()},
         ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(), cells_.view(),
                    writer_of(sheet_, seeds_)});
+    if (!face_triangle_.empty())
+      add_new_faces(exec_, {graph_of(sheet_), label_.view(), queue.view(), request_.view(), {}}, ids.view(), cell.view(),
+                    cells_.count(), face_triangle_);
   }
 
   Exec& exec_;
@@ -176,6 +185,7 @@ class Partition {
   Cells cells_;
   Buffer<uint32_t> request_;
   Buffer<uint8_t> mark_;
+  Buffer<uint32_t> face_triangle_;  ///< sheet triangles with three labels, in any order; empty while not known
 };
 
 }  // namespace dual

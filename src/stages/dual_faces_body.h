@@ -33,10 +33,14 @@ struct MakeFace {
   }
 };
 template <class Exec>
-Buffer<TriangleIndices> dual_faces(Exec& exec, const Sheet& sheet, View<const uint32_t> label) {
-  const Buffer<uint32_t> selected = exec.select(sheet.triangles.size(), HasThreeLabels{sheet.triangles.view(), label});
-  Buffer<TriangleIndices> faces = exec.template make<TriangleIndices>(selected.size());
-  exec.for_each("make faces", selected.size(), MakeFace{sheet.triangles.view(), label, selected.view(), faces.view()});
+Buffer<uint32_t> select_face_triangles(Exec& exec, const Sheet& sheet, View<const uint32_t> label) {
+  return exec.select(sheet.triangles.size(), HasThreeLabels{sheet.triangles.view(), label});
+}
+template <class Exec>
+Buffer<TriangleIndices> make_faces(Exec& exec, const Sheet& sheet, View<const uint32_t> label,
+                                   View<const uint32_t> selected) {
+  Buffer<TriangleIndices> faces = exec.template make<TriangleIndices>(selected.size);
+  exec.for_each("make faces", selected.size, MakeFace{sheet.triangles.view(), label, selected, faces.view()});
   return faces;
 }
 

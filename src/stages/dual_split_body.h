@@ -157,6 +157,69 @@ struct ApplySplit {
   }
 };
 
+/// Sheet triangles that splits made to faces, found at the vertices of the cells that were split. Three labels stay
+/// three, so no triangle ceases to be a face.
+struct NewFaces {
+  SheetGraph graph;
+  View<const uint32_t> label, member, request;  ///< request: of the cells before the splits
+  View<const uint32_t> origin;                  ///< of every cell: the one that it was split from, or itself
+
+  template <class Visit>
+  ISOSHELL_HD void for_each(int64_t at, Visit visit) const {
+    const uint32_t v = member[at];
+    for (int64_t n = graph.first[v]; n < graph.first[v + 1]; ++n) {
+      const TriangleIndices t = graph.triangles[graph.incident[n]];
+      const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
+      if (a == b || b == c || c == a) continue;
+      if ((t.a < v && is_split(a)) || (t.b < v && is_split(b)) || (t.c < v && is_split(c))) continue;  // found there
+      const bool was_face = origin[a] != origin[b] && origin[b] != origin[c] && origin[c] != origin[a];
+      if (!was_face) visit(graph.incident[n]);
+    }
+  }
+  ISOSHELL_HD bool is_split(uint32_t id) const {
+    return origin[id] < request.size && request[origin[id]] != kNoSplit;
+  }
+};
+struct SetOrigin {
+  View<const uint32_t> new_id, cell;
+  View<uint32_t> origin;
+  ISOSHELL_HD void operator()(int64_t i) const { origin[new_id[i]] = cell[i]; }
+};
+struct CountNewFaces {
+  NewFaces faces;
+  View<int64_t> count;
+  ISOSHELL_HD void operator()(int64_t at) const {
+    int64_t found = 0;
+    faces.for_each(at, [&](uint32_t) { ++found; });
+    count[at] = found;
+  }
+};
+struct ListNewFaces {
+  NewFaces faces;
+  View<const int64_t> first;
+  View<uint32_t> out;
+  ISOSHELL_HD void operator()(int64_t at) const {
+    int64_t to = first[at];
+    faces.for_each(at, [&](uint32_t triangle) { out[to++] = triangle; });
+  }
+};
+/// Appends what the splits of `cell` into themselves and `new_id` made to faces.
+template <class Exec>
+void add_new_faces(Exec& exec, NewFaces faces, View<const uint32_t> new_id, View<const uint32_t> cell, int64_t cells,
+                   Buffer<uint32_t>& face_triangle) {
+  Buffer<uint32_t> origin = exec.template make<uint32_t>(cells);
+  exec.for_each("start origins", cells, StartAlone{origin.view()});
+  exec.for_each("set origins", cell.size, SetOrigin{new_id, cell, origin.view()});
+  faces.origin = origin.view();
+  Buffer<int64_t> first = exec.template make<int64_t>(faces.member.size);
+  exec.for_each("count new faces", first.size(), CountNewFaces{faces, first.view()});
+  const int64_t before = face_triangle.size(), more = exec.exclusive_scan(first.view());
+  Buffer<uint32_t> all = exec.template make<uint32_t>(before + more);
+  exec.copy(View<const uint32_t>(face_triangle.view()), all.view().part(0, before));
+  exec.for_each("list new faces", first.size(), ListNewFaces{faces, first.view(), all.view().part(before, more)});
+  face_triangle = std::move(all);
+}
+
 template <class Exec>
 void split_cells(Exec& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
   exec.for_each("split cells", count, split);
