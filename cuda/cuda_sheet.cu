@@ -1,6 +1,7 @@
 // CUDA's build_sheet and six_volume_vox.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
+#include "cuda/sheet_components.cuh"
 #include "cuda/sheet_flood.cuh"
 #include "cuda/sheet_forms.cuh"
 #include "stages/coarsen_sites_body.h"

@@ -78,6 +78,34 @@ struct WarpCornerLookup {
   }
 };
 
+/// Vertex indices on the other side of a leaf's faces, with the ranks of all words at hand.
+struct FaceNeighbours {
+  uint16_t offset[512];
+  uint32_t first[7][8];  ///< of the leaf itself, then through each face
+  uint64_t word[7][8];
+
+  __device__ void load(const VoxelSetView& set, Voxel l, int lane) {
+    if (lane < 7) {
+      const uint32_t leaf = find_leaf(set, lane == 0 ? l : step_through(l, lane - 1));
+      uint32_t at = leaf == kNone ? 0 : uint32_t(set.first[leaf]);
+      for (int w = 0; w < 8; ++w) {
+        const uint64_t bits = leaf == kNone ? 0 : set.mask[leaf].word[w];
+        word[lane][w] = bits;
+        first[lane][w] = at;
+        at += uint32_t(popcount64(bits));
+      }
+    }
+    __syncwarp();
+  }
+  __device__ uint32_t vertex_through(int face, int from) const {
+    const Voxel to = step_through({from >> 6, from >> 3 & 7, from & 7}, face);
+    const bool inside = ((to.x | to.y | to.z) & ~7) == 0;
+    const int n = inside ? 0 : 1 + face, x = to.x & 7;
+    const uint64_t below = (uint64_t(1) << ((to.y & 7) << 3 | (to.z & 7))) - 1;
+    return first[n][x] + uint32_t(popcount64(word[n][x] & below));
+  }
+};
+
 }  // namespace leaf_forms
 
 template <>
@@ -190,12 +218,18 @@ struct BlockForm<sheet_steps::ListFaces> : leaf_forms::LeafForm<leaf_forms::Warp
 };
 
 template <>
-struct BlockForm<sheet_steps::SmoothCorners> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+struct BlockForm<sheet_steps::SmoothCorners> : leaf_forms::LeafForm<leaf_forms::FaceNeighbours> {
   static __device__ void run(const sheet_steps::SmoothCorners& step, int64_t i, Shared& shared, int lane) {
-    const Voxel l = leaf_of_key(step.corners.leaf_key[i]);
+    shared.load(step.corners, leaf_of_key(step.corners.leaf_key[i]), lane);
     const int count = leaf_forms::list_active(step.corners.mask[i], shared.offset, lane);
     const int64_t first = step.corners.first[i];
-    for (int k = lane; k < count; k += 32) step.smooth(l, shared.offset[k], first + k);
+    for (int k = lane; k < count; k += 32) {
+      const uint8_t edges = step.edges[first + k];
+      Vec64 sum = {0, 0, 0};
+      for (int f = 0; f < 6; ++f)
+        if (edges >> f & 1) sum = sum + sheet_steps::to_vec64(step.from[shared.vertex_through(f, shared.offset[k])]);
+      step.to[first + k] = sheet_steps::mean_of(sum, __popc(edges));
+    }
   }
 };
 

@@ -171,8 +171,8 @@ class Partition {
         ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(), cells_.view(),
                    writer_of(sheet_, seeds_)});
     if (!face_triangle_.empty())
-      add_new_faces(exec_, {graph_of(sheet_), label_.view(), queue.view(), request_.view(), {}}, ids.view(), cell.view(),
-                    cells_.count(), face_triangle_);
+      add_new_faces(exec_, {graph_of(sheet_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
+                    cell.view(), cells_.count(), face_triangle_);
   }
 
   Exec& exec_;

@@ -176,9 +176,7 @@ struct NewFaces {
       if (!was_face) visit(graph.incident[n]);
     }
   }
-  ISOSHELL_HD bool is_split(uint32_t id) const {
-    return origin[id] < request.size && request[origin[id]] != kNoSplit;
-  }
+  ISOSHELL_HD bool is_split(uint32_t id) const { return origin[id] < request.size && request[origin[id]] != kNoSplit; }
 };
 struct SetOrigin {
   View<const uint32_t> new_id, cell;

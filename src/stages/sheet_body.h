@@ -116,8 +116,8 @@ QuadMesh boundary_of_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox
 template <class Exec>
 Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMesh laid,
                    int64_t min_component_area_q16) {
-  mesh.edges = {};
   const ComponentCount components = drop_small_components(exec, mesh, laid, min_component_area_q16);
+  mesh.edges = {};
   if (components.kept == 0)
     throw Error(ErrorCode::nothing_to_mesh, "sheet",
                 "all " + std::to_string(components.dropped) + " components are smaller than " +

@@ -37,6 +37,12 @@ struct JoinCorners {
   }
 };
 
+/// Joins what the boundary's quads connect; every parent is its own before.
+template <class Exec>
+void join_components(Exec& exec, const QuadMesh& mesh, View<uint32_t> parent) {
+  exec.for_each("join corners", mesh.quads.size(), JoinCorners{mesh.quads.view(), parent});
+}
+
 struct IsRoot {
   View<const uint32_t> parent;
   ISOSHELL_HD bool operator()(int64_t v) const { return parent[v] == uint32_t(v); }
@@ -165,7 +171,7 @@ ComponentCount drop_small_components(Exec& exec, QuadMesh& mesh, LaidMesh& laid,
   const int64_t vertices = laid.position.size();
   Buffer<uint32_t> root = exec.template make<uint32_t>(vertices);
   exec.for_each("components", vertices, StartAlone{root.view()});
-  exec.for_each("join corners", mesh.quads.size(), JoinCorners{mesh.quads.view(), root.view()});
+  join_components(exec, mesh, root.view());
   exec.for_each("flatten components", vertices, PointAtRoot{root.view()});
   const Buffer<uint32_t> roots = exec.select(vertices, IsRoot{root.view()});
   if (min_area_q16 <= 0) return {roots.size(), 0};
