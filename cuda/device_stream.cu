@@ -64,6 +64,16 @@ void return_stream(void* stream) {
   all.streams.push_back(static_cast<DeviceStream*>(stream));
 }
 
+/// Size of the block that serves this many bytes: four sizes from one power of two to the next, so that blocks fit
+/// again. Large blocks are as asked.
+int64_t rounded(int64_t bytes) {
+  constexpr int64_t kSmallest = 512;
+  if (bytes > DeviceStream::kLargestKept) return bytes;
+  int64_t step = kSmallest / 4;
+  while (step * 8 < bytes) step *= 2;
+  return bytes <= kSmallest ? kSmallest : (bytes + step - 1) / step * step;
+}
+
 }  // namespace
 
 void require_success(cudaError_t status, const char* call) {
@@ -92,12 +102,39 @@ DeviceStream& DeviceStream::of(Context& context) {
 DeviceStream::DeviceStream(int device, cudaStream_t stream, void* pinned)
     : device_(device), stream_(stream), pinned_(pinned) {}
 
+/// Null when the device has no more.
+void* DeviceStream::take(int64_t bytes) {
+  {
+    const std::lock_guard<std::mutex> lock(kept_mutex_);
+    const auto kept = kept_.find(bytes);
+    if (kept != kept_.end() && !kept->second.empty()) {
+      void* data = kept->second.back();
+      kept->second.pop_back();
+      return data;
+    }
+  }
+  void* data = nullptr;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (cudaMallocFromPoolAsync(&data, size_t(bytes), pool_of(device_), stream_) == cudaSuccess) return data;
+    cudaGetLastError();
+    release_kept();
+  }
+  return nullptr;
+}
+
+void DeviceStream::release_kept() noexcept {
+  const std::lock_guard<std::mutex> lock(kept_mutex_);
+  for (auto& size : kept_) {
+    for (void* data : size.second) cudaFreeAsync(data, stream_);
+    size.second.clear();
+  }
+}
+
 void* DeviceStream::allocate(int64_t bytes) {
   if (bytes <= 0) return nullptr;
-  void* data = nullptr;
   const bool allowed = limit_ <= 0 || held_bytes + bytes <= limit_;
-  if (!allowed || cudaMallocFromPoolAsync(&data, size_t(bytes), pool_of(device_), stream_) != cudaSuccess) {
-    cudaGetLastError();
+  void* data = allowed ? take(rounded(bytes)) : nullptr;
+  if (!data) {
     throw Error(ErrorCode::out_of_memory, "memory",
                 "out of device memory: " + std::to_string(bytes >> 20) + " MiB more than the " +
                     std::to_string(held_bytes >> 20) + " MiB in use were refused" +
@@ -113,8 +150,13 @@ void* DeviceStream::allocate(int64_t bytes) {
 }
 
 void DeviceStream::free(void* data, int64_t bytes) noexcept {
-  cudaFreeAsync(data, stream_);
   held_bytes -= bytes;
+  if (rounded(bytes) > kLargestKept) {
+    cudaFreeAsync(data, stream_);
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(kept_mutex_);
+  kept_[rounded(bytes)].push_back(data);
 }
 
 void DeviceStream::copy_to_host(void* to, const void* from, int64_t bytes) {

@@ -4,6 +4,9 @@
 #include <cuda_runtime_api.h>
 
 #include <cstdint>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
 
 #include "isoshell/backend.h"
 #include "isoshell/buffer.h"
@@ -16,8 +19,9 @@ void require_success(cudaError_t status, const char* call);
 /// Number of CUDA devices; 0 without a driver.
 int device_count();
 
-/// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Lives as
-/// long as the process: contexts borrow it, and Buffers may outlive them.
+/// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Small
+/// blocks that were freed are handed out again without asking the driver: a run takes a thousand of them. Lives as long
+/// as the process: contexts borrow it, and Buffers may outlive them.
 class DeviceStream final : public Memory {
  public:
   /// The context's own; made, and its device chosen, at first use. Throws: no_device.
@@ -34,6 +38,7 @@ class DeviceStream final : public Memory {
   cudaStream_t stream() const { return stream_; }
   /// Waits for everything in the stream.
   void synchronize();
+  static constexpr int64_t kLargestKept = int64_t(8) << 20;  ///< bytes of a block that is kept when freed
   /// A few words of pinned host memory for read-backs.
   static constexpr int64_t kPinnedBytes = 4096;
   void* pinned() const { return pinned_; }
@@ -41,10 +46,15 @@ class DeviceStream final : public Memory {
   void set_limit(int64_t bytes) { limit_ = bytes; }
 
  private:
+  void* take(int64_t bytes);
+  void release_kept() noexcept;
+
   int device_;
   cudaStream_t stream_;
   void* pinned_;
   int64_t limit_ = 0;
+  std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread
+  std::unordered_map<int64_t, std::vector<void*>> kept_;  ///< by their sizes
 };
 
 /// Largest number of bytes that Buffers held on all devices at one time since the last reset.

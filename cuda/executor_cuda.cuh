@@ -11,6 +11,7 @@
 #include "cuda/block_form.cuh"
 #include "cuda/device_stream.h"
 #include "cuda/primitives.h"
+#include "cuda/small_words.cuh"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -112,6 +113,13 @@ class CudaExecutor {
   template <class T>
   T exclusive_scan(View<T> counts) {
     if (counts.empty()) return 0;
+    if (counts.size <= small_words::kMost) {
+      T* const total = static_cast<T*>(stream_.pinned());
+      small_words::exclusive_scan<<<1, small_words::kThreads, 0, stream()>>>(counts, total);
+      check("scan");
+      stream_.synchronize();
+      return *total;
+    }
     read_back(counts.data + counts.size - 1, 0, sizeof(T));
     exclusive_scan_async(stream_, counts);
     read_back(counts.data + counts.size - 1, sizeof(T), sizeof(T));
@@ -143,6 +151,7 @@ class CudaExecutor {
   template <class Keep>
   Buffer<uint32_t> select(int64_t count, Keep keep) {
     if (count <= 0) return {};
+    if (count <= small_words::kMost) return select_of_few(count, keep);
     Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32), rank = make<uint32_t>(words.size() + 1);
     cuda_steps::mark_kept<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, keep,
                                                                                                 words.view());
@@ -156,6 +165,13 @@ class CudaExecutor {
   template <class Term>
   int64_t sum(int64_t count, Term term) {
     if (count <= 0) return 0;
+    if (count <= small_words::kMost) {
+      int64_t* const few = static_cast<int64_t*>(stream_.pinned());
+      small_words::sum<<<1, small_words::kThreads, 0, stream()>>>(count, term, few);
+      check("sum");
+      stream_.synchronize();
+      return *few;
+    }
     Buffer<int64_t> total = make<int64_t>(1);
     sum_into(total.view(), count, term);
     return value(View<const int64_t>(total.view()), 0);
@@ -183,6 +199,20 @@ class CudaExecutor {
   }
 
  private:
+  template <class Keep>
+  Buffer<uint32_t> select_of_few(int64_t count, Keep keep) {
+    Buffer<uint32_t> room = make<uint32_t>(count);
+    uint32_t* const total = static_cast<uint32_t*>(stream_.pinned());
+    small_words::select<<<1, small_words::kThreads, 0, stream()>>>(count, keep, room.data(), total);
+    check("select");
+    stream_.synchronize();
+    const int64_t kept = *total;
+    if (kept == count) return room;
+    Buffer<uint32_t> out = make<uint32_t>(kept);
+    copy(View<const uint32_t>(room.view()).part(0, kept), out.view());
+    return out;
+  }
+
   /// To the pinned memory; complete after the stream was waited for.
   void read_back(const void* from, int64_t at, size_t bytes) {
     require_success(

@@ -17,7 +17,7 @@ using namespace isoshell::parity;
 
 namespace {
 
-constexpr int64_t kSizes[] = {0, 1, 2, 31, 32, 33, 127, 128, 129, 1000, 4096, 65537, 1000007};
+constexpr int64_t kSizes[] = {0, 1, 2, 31, 32, 33, 127, 128, 129, 1000, 1024, 1025, 4096, 16384, 16385, 65537, 1000007};
 constexpr int64_t kBeyond32Bits = (int64_t(1) << 31) + 77;
 
 struct Words {
