@@ -24,13 +24,15 @@ struct FlipWinners {
   }
 };
 
-/// Restores what was harmed, and remembers that some was.
+/// Restores what was harmed, remembers that some was, and clears the marks for the next round.
 struct RestoreAndTell {
   RestoreHarmed restore;
   View<uint32_t> some;
   ISOSHELL_HD void operator()(int64_t v) const {
-    if (restore.harmed[v] && !atomic_load(some[0])) atomic_or(some[0], 1u);
+    if (!restore.harmed[v]) return;
+    if (!atomic_load(some[0])) atomic_or(some[0], 1u);
     restore(v);
+    restore.harmed[v] = 0;
   }
 };
 
@@ -56,10 +58,10 @@ inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t>
 inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, const RestoreHarmed& restore) {
   constexpr int kRoundsPerLook = 4;
   Buffer<uint32_t> some = exec.make<uint32_t>(kRoundsPerLook);
+  exec.fill(restore.harmed, 0u);
   do {
     exec.fill(some.view(), 0u);
     for (int r = 0; r < kRoundsPerLook; ++r) {
-      exec.fill(restore.harmed, 0u);
       exec.for_each("mark harmed", triangles.size,
                     MarkHarmed{triangles, restore.before, restore.after, restore.harmed});
       exec.for_each("restore harmed", restore.harmed.size,

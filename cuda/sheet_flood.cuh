@@ -11,6 +11,7 @@ namespace flood_kernels {
 
 constexpr int kRoundsPerLook = 8;  ///< even: worklists trade places every round
 constexpr int kThreads = 256;
+constexpr int kBlockThreads = 1024;  ///< that share a block of leaves
 constexpr unsigned kBlocks = 528;  ///< as many as stay resident on a large device; each takes several nodes if need be
 
 /// The tail of a worklist that is filled from its end.
@@ -21,15 +22,15 @@ struct Worklist {
   __device__ uint32_t operator[](int64_t i) const { return node[int64_t(*left) + i]; }
 };
 
-/// FloodState::enter_block_side by a block of threads.
-__device__ inline void enter_block_side(const sheet_steps::FloodState& state, Voxel first_leaf, int face) {
+/// The part of FloodState::enter_block_side that belongs to one of the side's 256 leaves.
+__device__ inline void enter_side_leaf(const sheet_steps::FloodState& state, Voxel first_leaf, int face, int number) {
   const int64_t t = state.out.table_index(first_leaf);
   if (t < 0) return;
   if (state.out.blocked.block_table[t] == kNone) {
-    if (threadIdx.x == 0) state.enter_empty_block(t);
+    if (number == 0) state.enter_empty_block(t);
     return;
   }
-  const int32_t fixed = face & 1 ? 0 : 15, i = int32_t(threadIdx.x) >> 4, j = int32_t(threadIdx.x) & 15;
+  const int32_t fixed = face & 1 ? 0 : 15, i = number >> 4, j = number & 15;
   const Voxel l = {first_leaf.x + (face < 2 ? fixed : i),
                    first_leaf.y + (face >> 1 == 1 ? fixed
                                    : face < 2     ? i
@@ -37,13 +38,15 @@ __device__ inline void enter_block_side(const sheet_steps::FloodState& state, Vo
                    first_leaf.z + (face >> 1 == 2 ? fixed : j)};
   state.enter(l, crossing(uniform_leaf(true), face));
 }
-static_assert(kThreads == 256, "one thread a leaf of a block's side");
+constexpr int kSideLeaves = 6 * 256;  ///< leaves on the sides of a block
 
-__global__ void __launch_bounds__(kThreads) enter_from_border(sheet_steps::FloodState state, int64_t entries) {
+__global__ void __launch_bounds__(kBlockThreads) enter_from_border(sheet_steps::FloodState state, int64_t entries) {
   for (int64_t t = blockIdx.x; t < entries; t += gridDim.x) {
     const Voxel first = state.first_leaf_of_entry(t);
-    for (int face = 0; face < 6; ++face)
-      if (state.out.table_index(step_through(first, face, 16)) < 0) enter_block_side(state, first, face ^ 1);
+    for (int task = int(threadIdx.x); task < kSideLeaves; task += kBlockThreads) {
+      const int face = task >> 8;
+      if (state.out.table_index(step_through(first, face, 16)) < 0) enter_side_leaf(state, first, face ^ 1, task & 255);
+    }
   }
 }
 
@@ -75,7 +78,7 @@ __device__ inline void flood_words(const uint64_t* free, uint64_t* reached) {
   }
 }
 
-__global__ void __launch_bounds__(kThreads) flood_blocks(sheet_steps::FloodState state, Worklist list) {
+__global__ void __launch_bounds__(kBlockThreads) flood_blocks(sheet_steps::FloodState state, Worklist list) {
   __shared__ uint64_t free[64], reached[64], fresh[64];
   const int64_t count = list.size();
   const int thread = int(threadIdx.x);
@@ -83,7 +86,8 @@ __global__ void __launch_bounds__(kThreads) flood_blocks(sheet_steps::FloodState
     const uint32_t t = list[i], b = state.out.blocked.block_table[t];
     const Voxel first = state.first_leaf_of_entry(t);
     if (b == kNone) {
-      for (int face = 0; face < 6; ++face) enter_block_side(state, step_through(first, face, 16), face);
+      for (int task = thread; task < kSideLeaves; task += kBlockThreads)
+        enter_side_leaf(state, step_through(first, task >> 8, 16), task >> 8, task & 255);
       continue;
     }
     __syncthreads();  // the last node's bits have been used
@@ -101,7 +105,7 @@ __global__ void __launch_bounds__(kThreads) flood_blocks(sheet_steps::FloodState
       }
     }
     __syncthreads();
-    for (int bit = thread; bit < 4096; bit += kThreads) {
+    for (int bit = thread; bit < 4096; bit += kBlockThreads) {
       if (!(fresh[bit >> 6] >> (bit & 63) & 1)) continue;
       const Voxel l = {first.x + (bit >> 8), first.y + ((bit >> 4) & 15), first.z + (bit & 15)};
       for (int face = 0; face < 6; ++face) {
@@ -190,14 +194,14 @@ inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
   const int64_t entries = blocked.block_table.size;
   Queue leaves(exec, blocked.leaf_key.size), blocks(exec, entries);
   sheet_steps::FloodState state = {outside.view(), passed_on.view(), leaves.list_of(0), blocks.list_of(0), 1};
-  enter_from_border<<<blocks_for(entries), kThreads, 0, exec.stream()>>>(state, entries);
+  enter_from_border<<<blocks_for(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
   exec.check("enter from the border");
   do {
     for (int round = 0; round < kRoundsPerLook; ++round) {
       state.leaves = leaves.list_of(round + 1);
       state.blocks = blocks.list_of(round + 1);
       ++state.next_round;
-      flood_blocks<<<blocks_for(entries), kThreads, 0, exec.stream()>>>(state, blocks.of(round));
+      flood_blocks<<<blocks_for(entries), kBlockThreads, 0, exec.stream()>>>(state, blocks.of(round));
       exec.check("flood blocks");
       flood_leaves<<<blocks_for((leaves.capacity + 31) / 32), kThreads, 0, exec.stream()>>>(state, leaves.of(round));
       exec.check("flood leaves");

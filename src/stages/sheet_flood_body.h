@@ -94,12 +94,14 @@ struct FloodState {
     blocks.add(uint32_t(t), next_round);
   }
   ISOSHELL_HD void enter_blocked_leaf(uint32_t number, const LeafMask& voxels) const {
+    LeafMask& seen = out.leaf[number];
+    LeafMask fresh;  // all is read before anything is written: the reads do not wait for each other
+    for (int x = 0; x < 8; ++x)
+      fresh.word[x] = voxels.word[x] & ~out.blocked.mask[number].word[x] & ~atomic_load(seen.word[x]);
     bool grew = false;
     for (int x = 0; x < 8; ++x) {
-      uint64_t& seen = out.leaf[number].word[x];
-      const uint64_t fresh = voxels.word[x] & ~out.blocked.mask[number].word[x] & ~atomic_load(seen);
-      if (fresh) atomic_or(seen, fresh);
-      grew |= fresh != 0;
+      if (fresh.word[x]) atomic_or(seen.word[x], fresh.word[x]);
+      grew |= fresh.word[x] != 0;
     }
     if (grew) leaves.add(number, next_round);
   }

@@ -160,9 +160,8 @@ template <class Exec>
 LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
   using namespace sheet_steps;
   LaidMesh laid = lay_smooth(exec, mesh);
-  const int64_t vertices = laid.smooth.size();
   exec.for_each(
-      "project", vertices,
+      "project", laid.smooth.size(),
       ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
   smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
   return laid;

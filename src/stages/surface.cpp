@@ -1,6 +1,7 @@
 // From a soup in world units to the canonical surface on the lattice.
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
@@ -30,12 +31,15 @@ void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box
   const double inf = std::numeric_limits<double>::infinity();
   box_min = {inf, inf, inf};
   box_max = {-inf, -inf, -inf};
+  std::vector<char> used(soup.vertices.size(), 0);  // each vertex once: triangles meet it six times
   for (const auto& t : soup.triangles)
-    for (uint32_t v : t) {
-      const WorldPoint& p = soup.vertices[v];
-      box_min = {std::min(box_min.x, p.x), std::min(box_min.y, p.y), std::min(box_min.z, p.z)};
-      box_max = {std::max(box_max.x, p.x), std::max(box_max.y, p.y), std::max(box_max.z, p.z)};
-    }
+    for (uint32_t v : t) used[v] = 1;
+  for (size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    const WorldPoint& p = soup.vertices[v];
+    box_min = {std::min(box_min.x, p.x), std::min(box_min.y, p.y), std::min(box_min.z, p.z)};
+    box_max = {std::max(box_max.x, p.x), std::max(box_max.y, p.y), std::max(box_max.z, p.z)};
+  }
 }
 
 InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {

@@ -62,13 +62,14 @@ class NearestTriangleSearch {
     }
     return margin + int64_t(reach) * kOneVoxelQ8 - 1;
   }
-  /// Squared distance to the voxel, which is widened by the rounding of closest points.
+  /// Squared distance to a voxel of a cube, which is widened by the rounding of closest points. Cubes reach 16 voxels,
+  /// so 32 bits hold it.
   ISOSHELL_HD int64_t distance_sq_to(Voxel v) const {
-    const auto gap = [](int32_t p, int32_t voxel) -> int64_t {
+    const auto gap = [](int32_t p, int32_t voxel) {
       const int32_t lo = voxel * kOneVoxelQ8 - 1, hi = (voxel + 1) * kOneVoxelQ8 + 1;
       return p < lo ? lo - p : p > hi ? p - hi : 0;
     };
-    const int64_t x = gap(p_.x, v.x), y = gap(p_.y, v.y), z = gap(p_.z, v.z);
+    const int32_t x = gap(p_.x, v.x), y = gap(p_.y, v.y), z = gap(p_.z, v.z);
     return x * x + y * y + z * z;
   }
   ISOSHELL_HD void look_at(Voxel v) {
