@@ -1,14 +1,71 @@
-// CUDA's relax_on_sheet.
+// CUDA's relax_on_sheet: passes of two kernels over patches, the plain body where a sheet has no patches.
 #include "cuda/cuda_backend.h"
-#include "cuda/executor_cuda.cuh"
 #include "cuda/label_forms.cuh"
-#include "stages/relax_sheet_body.h"
+#include "cuda/relax_sheet_pass.cuh"
 
 namespace isoshell {
+namespace {
+
+using namespace cuda_relax;
+
+constexpr int kThreads = 128;
+unsigned blocks_for(int64_t count, int per_block) { return unsigned((count + per_block - 1) / per_block); }
+
+/// About three cells at most, so that lists of candidates stay short; few enough that patches take about the same time.
+int own_vertices_for(int64_t h_sq_q16) {
+  const int64_t of_cells = 3 * h_sq_q16 >> (2 * kFractionBits);
+  return int(of_cells < 32 ? 32 : of_cells > 96 ? 96 : of_cells);
+}
+
+RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const SheetPatches& patches, int64_t area2,
+                             SeedSet& seeds, const RelaxOptions& options) {
+  const int64_t count = seeds.size(), parts = patches.patch.size();
+  const SeedSpacing spacing = seed_spacing(area2, count);
+  SeedBuckets buckets = make_seed_buckets(exec, sheet.corners.block_dims, 2 * spacing.h_q8, count, 2);
+  Buffer<SeedRecord> records = exec.make<SeedRecord>(count);
+  Buffer<PointQ8> last = exec.make<PointQ8>(count);
+  Buffer<relax_sheet::CellSum> cells = exec.make<relax_sheet::CellSum>(count);
+  Buffer<int32_t> reach = exec.make<int32_t>(parts);
+  Buffer<PassState> state = exec.make<PassState>(1);
+  Buffer<PassProgress> progress = exec.make<PassProgress>(1);
+
+  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
+                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const int64_t max_step = options.max_step_q8 > 0 ? options.max_step_q8 : spacing.h_q8 * 2 / 5;
+  const relax_sheet::MovingSeeds moving{
+      walk, seeds.position.view(), last.view(), seeds.home.view(), seeds.normal.view(), max_step};
+  SheetPass pass{patches.view(),       {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},
+                 reach.data(),         int32_t(spacing.h_q8 / 8),
+                 cells.data(),         state.data(),
+                 progress.data(),      relax_sheet::energy_shift(area2, spacing.h_sq_q16),
+                 options.tolerance_ppb};
+  SheetMove move{moving,           cells.data(), records.data(),  buckets.grid,       buckets.table(1),
+                 buckets.table(0), state.data(), progress.data(), options.max_passes, count};
+  start_seeds<<<blocks_for(count, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
+  first_reach<<<blocks_for(parts, kThreads), kThreads, 0, exec.stream()>>>(pass.patches, spacing.h_q8, reach.data());
+  exec.check("start passes");
+  int searched = 0;
+  return run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
+    pass.search.table = move.from = buckets.table(searched);
+    searched = 1 - searched;
+    move.to = buckets.table(searched);
+    sum_patches<<<blocks_for(parts, kSumWarps), kSumWarps * 32, 0, exec.stream()>>>(pass);
+    move_seeds<<<blocks_for(count, kMoveThreads / kWalkLanes), kMoveThreads, 0, exec.stream()>>>(move);
+    exec.check("relaxation pass");
+  });
+}
+
+}  // namespace
 
 RelaxReport cuda_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
   CudaExecutor exec(context, "relax_sheet");
-  return relax_on_sheet_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), options);
+  const OnDevice<Sheet> here(exec, sheet);
+  on_device(exec, seeds);
+  const int64_t area2 = doubled_area_q16(exec, *here);
+  const SheetPatches patches =
+      make_sheet_patches(exec, *here, own_vertices_for(seed_spacing(area2, seeds.size()).h_sq_q16));
+  if (!patches.fits) return relax_on_sheet_body(exec, *here, seeds, options);
+  return relax_by_patches(exec, *here, patches, area2, seeds, options);
 }
 
 }  // namespace isoshell

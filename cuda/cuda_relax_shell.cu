@@ -1,15 +1,67 @@
-// CUDA's relax_in_shell.
+// CUDA's relax_in_shell: passes of two kernels.
 #include "cuda/cuda_backend.h"
-#include "cuda/executor_cuda.cuh"
-#include "stages/relax_shell_body.h"
+#include "cuda/relax_shell_pass.cuh"
 
 namespace isoshell {
+namespace {
+
+using namespace cuda_relax;
+
+constexpr int kThreads = 128;
+unsigned blocks_for(int64_t count, int per_block) { return unsigned((count + per_block - 1) / per_block); }
+
+RelaxReport relax_by_leaves(CudaExecutor& exec, const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
+                            SeedSet& seeds, const RelaxOptions& options) {
+  const int64_t k = seeds.size(), leaves = shell.voxels.leaf_count();
+  const int64_t spacing_q8 = relax_shell::spacing_vox(sites.voxels.voxel_count(), k) * kOneVoxelQ8;
+  const VoxelSetView voxels = shell.voxels.view();
+  SeedBuckets buckets = make_seed_buckets(exec, shell.voxels.block_dims, 2 * spacing_q8, k, 2);
+  Buffer<SeedRecord> records = exec.make<SeedRecord>(k);
+  Buffer<relax_shell::CellSums> cells = exec.make<relax_shell::CellSums>(k);
+  Buffer<ShellLeaf> descriptions = exec.make<ShellLeaf>(leaves);
+  Buffer<uint16_t> offsets = exec.make<uint16_t>(shell.voxels.voxel_count());
+  Buffer<int32_t> reach = exec.make<int32_t>(leaves);
+  Buffer<PassState> state = exec.make<PassState>(1);
+  Buffer<PassProgress> progress = exec.make<PassProgress>(1);
+
+  ShellPass pass{
+      descriptions.data(), offsets.data(),          leaves,       {buckets.grid, buckets.table(0), records.data(), 0},
+      reach.data(),        int32_t(spacing_q8 / 8), cells.data(), state.data(),
+      progress.data(),     options.tolerance_ppb};
+  ShellMove move{{voxels, shell.closest_site.view(), sites.voxels.view(), samples.sample.view(),
+                  options.max_step_q8 > 0 ? options.max_step_q8 : kOneVoxelQ8, cells.view(), seeds.position.view(),
+                  seeds.normal.view(), seeds.home.view(), state.view()},
+                 cells.data(),
+                 records.data(),
+                 buckets.grid,
+                 buckets.table(1),
+                 buckets.table(0),
+                 progress.data()};
+  start_shell_seeds<<<blocks_for(k, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
+  describe_leaves<<<blocks_for(leaves, kThreads / 32), kThreads, 0, exec.stream()>>>(
+      voxels, descriptions.data(), offsets.data(), spacing_q8, reach.data());
+  exec.check("start passes");
+  int searched = 0;
+  RelaxReport report = run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
+    pass.search.table = move.from = buckets.table(searched);
+    searched = 1 - searched;
+    move.to = buckets.table(searched);
+    sum_leaves<<<blocks_for(leaves, kLeafWarps), kLeafWarps * 32, 0, exec.stream()>>>(pass);
+    move_shell_seeds<<<blocks_for(k, kThreads), kThreads, 0, exec.stream()>>>(move);
+    exec.check("relaxation pass");
+  });
+  report.normalised_energy_factor =
+      relax_shell::normalised_energy_factor(k, shell.voxels.voxel_count(), sites.voxels.voxel_count());
+  return report;
+}
+
+}  // namespace
 
 RelaxReport cuda_relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
                                 const RelaxOptions& options, Context& context) {
   CudaExecutor exec(context, "relax_shell");
-  return relax_in_shell_body(exec, *OnDevice<Shell>(exec, shell), *OnDevice<SiteSet>(exec, sites),
-                             *OnDevice<SiteSamples>(exec, samples), on_device(exec, seeds), options);
+  return relax_by_leaves(exec, *OnDevice<Shell>(exec, shell), *OnDevice<SiteSet>(exec, sites),
+                         *OnDevice<SiteSamples>(exec, samples), on_device(exec, seeds), options);
 }
 
 }  // namespace isoshell

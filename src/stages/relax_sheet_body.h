@@ -229,28 +229,27 @@ struct MovingSeeds {
   }
 };
 
-/// here = s + beta (s - last), last = s.
-ISOSHELL_HD inline void look_ahead(const MovingSeeds& seeds, int64_t beta_q15, int64_t i) {
-  const PointQ8 s = seeds.here[i];
+/// s + beta (s - last).
+ISOSHELL_HD inline PointQ8 point_ahead(const MovingSeeds& seeds, PointQ8 s, int64_t beta_q15, int64_t i) {
   const Vec64 step = difference(s, seeds.last[i]) * beta_q15;
-  seeds.last[i] = s;
-  if (beta_q15 == 0) return;
-  seeds.here[i] = seeds.settle(i, seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15}));
+  return seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15});
 }
 
-/// here = centre of the cell measured at here.
-ISOSHELL_HD inline void move_to_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
-  if (c.mass <= 0) return;
-  const Vec64 step = {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass),
-                      round_div(c.first_z, 3 * c.mass)};
-  seeds.here[i] = seeds.settle(i, seeds.moved(seeds.here[i], step));
+/// Centre of the cell measured at here, no farther than a step. The cell must have an area.
+ISOSHELL_HD inline PointQ8 point_towards_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
+  return seeds.moved(seeds.here[i], {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass),
+                                     round_div(c.first_z, 3 * c.mass)});
 }
 
 struct LookAhead {
   MovingSeeds seeds;
   View<const PassState> state;
   ISOSHELL_HD void operator()(int64_t i) const {
-    if (!state[0].converged) look_ahead(seeds, state[0].beta_q15, i);
+    if (state[0].converged) return;
+    const int64_t beta_q15 = state[0].beta_q15;
+    const PointQ8 s = seeds.here[i];
+    if (beta_q15 != 0) seeds.here[i] = seeds.settle(i, point_ahead(seeds, s, beta_q15, i));
+    seeds.last[i] = s;
   }
 };
 
@@ -259,7 +258,8 @@ struct MoveToCentre {
   View<const CellSum> cell;
   View<const PassState> state;
   ISOSHELL_HD void operator()(int64_t i) const {
-    if (!state[0].converged) move_to_centre(seeds, cell[i], i);
+    if (state[0].converged || cell[i].mass <= 0) return;
+    seeds.here[i] = seeds.settle(i, point_towards_centre(seeds, cell[i], i));
   }
 };
 
@@ -286,7 +286,7 @@ struct StartPasses {
   View<PassState> state;
   ISOSHELL_HD void operator()(int64_t) const {
     PassState& s = state[0];
-    s.passes = s.converged = 0;
+    s = {};
     s.momentum = 1;
     advance_momentum(s);
   }

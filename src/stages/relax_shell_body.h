@@ -103,8 +103,12 @@ struct MoveSeed {
   View<const PassState> state;
 
   ISOSHELL_HD void operator()(int64_t i) const {
+    if (!state[0].converged) move(i);
+  }
+
+  ISOSHELL_HD void move(int64_t i) const {
     const CellSums& cell = cells[i];
-    if (state[0].converged || cell.count == 0) return;
+    if (cell.count == 0) return;
     const Vec64 to_centre = {round_div(cell.x, cell.count), round_div(cell.y, cell.count),
                              round_div(cell.z, cell.count)};
     const Vec64 step = bounded_step(to_centre, most_q8);
@@ -150,7 +154,7 @@ ISOSHELL_HD inline bool stalled(const PassState& state, int32_t tolerance_ppb) {
 
 struct StartPasses {
   View<PassState> state;
-  ISOSHELL_HD void operator()(int64_t) const { state[0].passes = state[0].converged = 0; }
+  ISOSHELL_HD void operator()(int64_t) const { state[0] = {}; }
 };
 
 /// Ends a pass: notes its energy, stops when it no longer falls.
@@ -169,6 +173,11 @@ struct FinishPass {
 /// Edge of a square that holds one seed, by the count of sites, which are about one a unit of area.
 inline int64_t spacing_vox(int64_t sites, int64_t seeds) {
   return int64_t(isqrt(uint64_t(sites / (seeds > 0 ? seeds : 1)))) + 1;
+}
+
+/// See RelaxReport.
+inline double normalised_energy_factor(int64_t seeds, int64_t voxels, int64_t sites) {
+  return double(seeds) / (double(1 << (2 * kFractionBits - kEnergyShift)) * double(voxels) * double(sites));
 }
 
 }  // namespace relax_shell
@@ -207,9 +216,7 @@ RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& s
     sum_split_into(exec, energy.view(), leaf_energy.view());
     exec.for_each("finish pass", 1, finish);
   });
-  report.normalised_energy_factor =
-      double(k) / (double(1 << (2 * kFractionBits - kEnergyShift)) * double(shell.voxels.voxel_count()) *
-                   double(sites.voxels.voxel_count()));
+  report.normalised_energy_factor = normalised_energy_factor(k, shell.voxels.voxel_count(), sites.voxels.voxel_count());
   return report;
 }
 

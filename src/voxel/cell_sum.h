@@ -90,20 +90,30 @@ struct SplitTriangle {
   template <class Add>
   ISOSHELL_HD void three_cells(Add add) const {
     for (int k = 0; k < 3; ++k) {
+      if (!separates(k)) continue;
       const int i = (k + 1) % 3, j = (k + 2) % 3;
-      const Local m = between(p[i], p[j], crossing_q15(nearer(p[i], s[i], s[j]), nearer(p[j], s[i], s[j])));
-      if (nearer(m, s[i], s[k]) > 0 && nearer(m, s[j], s[k]) > 0) {
-        const PieceSum a = corner(i, k), b = corner(j, k);
-        add(i, a);
-        add(j, b);
-        add(k, piece_sum(area2, p[0], p[1], p[2]) - a - b);
-        return;
-      }
+      const PieceSum a = corner(i, k), b = corner(j, k);
+      add(i, a);
+      add(j, b);
+      add(k, total() - a - b);
+      return;
     }
-    meet_inside(add);
+    const Barycentric x = meeting_point();
+    const Local meet = point_at(x);
+    for (int i = 0; i < 3; ++i) add(i, around_meeting(i, meet, x));
   }
 
- private:
+  // The parts of three_cells.
+
+  ISOSHELL_HD PieceSum total() const { return piece_sum(area2, p[0], p[1], p[2]); }
+
+  /// True when seed k wins where the bisector of the other two meets their edge.
+  ISOSHELL_HD bool separates(int k) const {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const Local m = between(p[i], p[j], crossing_q15(nearer(p[i], s[i], s[j]), nearer(p[j], s[i], s[j])));
+    return nearer(m, s[i], s[k]) > 0 && nearer(m, s[j], s[k]) > 0;
+  }
+
   /// Part of corner i on its own side of the bisector with the seed of corner j.
   ISOSHELL_HD PieceSum corner(int i, int j) const {
     const int q = (i + 1) % 3, r = (i + 2) % 3;
@@ -112,27 +122,30 @@ struct SplitTriangle {
                         crossing_q15(at, nearer(p[r], s[i], s[j])));
   }
 
-  template <class Add>
-  ISOSHELL_HD void meet_inside(Add add) const {
+  /// Weights of the corners, in 1/32768.
+  struct Barycentric {
     int32_t x[3];
-    meeting_point(x);
-    const Local meet = {
-        p[0].x + int32_t((int64_t(p[1].x - p[0].x) * x[1] + int64_t(p[2].x - p[0].x) * x[2] + kOneQ15 / 2) >> 15),
-        p[0].y + int32_t((int64_t(p[1].y - p[0].y) * x[1] + int64_t(p[2].y - p[0].y) * x[2] + kOneQ15 / 2) >> 15),
-        p[0].z + int32_t((int64_t(p[1].z - p[0].z) * x[1] + int64_t(p[2].z - p[0].z) * x[2] + kOneQ15 / 2) >> 15)};
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const int32_t t = crossing_q15(nearer(p[i], s[i], s[j]), nearer(p[j], s[i], s[j]));
-      const int32_t u = crossing_q15(nearer(p[i], s[i], s[k]), nearer(p[k], s[i], s[k]));
-      const int64_t part_j = area2 * ((int64_t(t) * x[k]) >> 15) >> 15;
-      const int64_t part_k = area2 * ((int64_t(u) * x[j]) >> 15) >> 15;
-      add(i, piece_sum(part_j, p[i], between(p[i], p[j], t), meet) +
-                 piece_sum(part_k, p[i], meet, between(p[i], p[k], u)));
-    }
+  };
+  ISOSHELL_HD Local point_at(const Barycentric& b) const {
+    const int32_t* x = b.x;
+    return {p[0].x + int32_t((int64_t(p[1].x - p[0].x) * x[1] + int64_t(p[2].x - p[0].x) * x[2] + kOneQ15 / 2) >> 15),
+            p[0].y + int32_t((int64_t(p[1].y - p[0].y) * x[1] + int64_t(p[2].y - p[0].y) * x[2] + kOneQ15 / 2) >> 15),
+            p[0].z + int32_t((int64_t(p[1].z - p[0].z) * x[1] + int64_t(p[2].z - p[0].z) * x[2] + kOneQ15 / 2) >> 15)};
   }
 
-  /// Barycentric coordinates of the point at equal distance from the three seeds, clamped to the triangle.
-  ISOSHELL_HD void meeting_point(int32_t x[3]) const {
+  /// The piece of corner i when the three cells meet inside, at `meet` with weights `b`.
+  ISOSHELL_HD PieceSum around_meeting(int i, Local meet, const Barycentric& b) const {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const int32_t t = crossing_q15(nearer(p[i], s[i], s[j]), nearer(p[j], s[i], s[j]));
+    const int32_t u = crossing_q15(nearer(p[i], s[i], s[k]), nearer(p[k], s[i], s[k]));
+    const int64_t part_j = area2 * ((int64_t(t) * b.x[k]) >> 15) >> 15;
+    const int64_t part_k = area2 * ((int64_t(u) * b.x[j]) >> 15) >> 15;
+    return piece_sum(part_j, p[i], between(p[i], p[j], t), meet) +
+           piece_sum(part_k, p[i], meet, between(p[i], p[k], u));
+  }
+
+  /// The point at equal distance from the three seeds, clamped to the triangle.
+  ISOSHELL_HD Barycentric meeting_point() const {
     double f[3], g[3], w[3];
     for (int i = 0; i < 3; ++i) {
       f[i] = double(nearer(p[i], s[0], s[1]));
@@ -146,9 +159,8 @@ struct SplitTriangle {
       if (!(w[i] > 0)) w[i] = 0;
     }
     total = w[0] + w[1] + w[2];
-    x[1] = int32_t(w[1] / total * kOneQ15);
-    x[2] = int32_t(w[2] / total * kOneQ15);
-    x[0] = kOneQ15 - x[1] - x[2];
+    const int32_t x1 = int32_t(w[1] / total * kOneQ15), x2 = int32_t(w[2] / total * kOneQ15);
+    return {{kOneQ15 - x1 - x2, x1, x2}};
   }
 };
 

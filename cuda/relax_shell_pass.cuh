@@ -1,0 +1,236 @@
+// One pass of relax_in_shell in two kernels: sum_leaves (candidates, labels, sums of the cells; the last block ends the
+// pass) and move_shell_seeds. Definition and arithmetic are those of stages/relax_shell_body.h; labels are never
+// stored.
+#pragma once
+
+#include "cuda/pass_end.cuh"
+#include "cuda/patch_winners.cuh"
+#include "stages/relax_shell_body.h"
+
+namespace isoshell::cuda_relax {
+
+constexpr int kLeafWarps = 2;
+
+/// Sums over voxels of a leaf by their offsets from voxel 0. The largest: 512 * 147.
+struct OffsetSums {
+  uint32_t count_x, y_z;  ///< 16 bits each: 512 * 7 fits
+  uint32_t squares;
+
+  __device__ static OffsetSums of(int offset) {
+    const uint32_t x = uint32_t(offset) >> 6, y = uint32_t(offset) >> 3 & 7, z = uint32_t(offset) & 7;
+    return {1u | x << 16, y | z << 16, x * x + y * y + z * z};
+  }
+  __device__ void add(const OffsetSums& o) { count_x += o.count_x, y_z += o.y_z, squares += o.squares; }
+};
+
+/// What a pass reads of a leaf beside its voxels' offsets.
+struct alignas(16) ShellLeaf {
+  int64_t voxel_first;
+  Voxel leaf;        ///< leaf coordinates
+  OffsetSums total;  ///< of all voxels
+  uint16_t lo, hi;   ///< corners of the voxels' box, as offsets
+  uint16_t voxels;
+};
+
+struct ShellPass {
+  const ShellLeaf* leaf;
+  const uint16_t* offset;  ///< per active voxel, in its leaf
+  int64_t leaves;
+  SeedSearch search;
+  int32_t* reach;
+  int32_t reach_slack;
+  relax_shell::CellSums* cell;
+  PassState* state;
+  PassProgress* progress;
+  int32_t tolerance_ppb;
+};
+
+__device__ inline uint32_t sum_over_warp(uint32_t x) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(~0u, x);
+#else
+  for (int d = 16; d > 0; d >>= 1) x += __shfl_xor_sync(~0u, x, d);
+  return x;
+#endif
+}
+
+/// Sums from voxel 0 to the seed, which is at `a` from that voxel's centre; returns their energy.
+__device__ inline Int128 add_to_shell_cell(relax_shell::CellSums& cell, const OffsetSums& s, Vec64 a) {
+  const int64_t n = s.count_x & 0xffff;
+  const Vec64 first = {int64_t(s.count_x >> 16), int64_t(s.y_z & 0xffff), int64_t(s.y_z >> 16)};
+  const Vec64 moment = first * kOneVoxelQ8 - a * n;
+  atomic_add(cell.count, n);
+  atomic_add(cell.x, moment.x);
+  atomic_add(cell.y, moment.y);
+  atomic_add(cell.z, moment.z);
+  return int64_t(s.squares) * kOneVoxelQ8 * kOneVoxelQ8 - 2 * kOneVoxelQ8 * dot(a, first) + n * dot(a, a);
+}
+
+__device__ inline Local voxel_local(int offset) {
+  return {(offset >> 6) * kOneVoxelQ8, (offset >> 3 & 7) * kOneVoxelQ8, (offset & 7) * kOneVoxelQ8};
+}
+
+/// From the centre of voxel 0.
+__device__ inline PatchBox box_of(const ShellLeaf& leaf) {
+  return {voxel_centre({leaf.leaf.x * 8, leaf.leaf.y * 8, leaf.leaf.z * 8}), voxel_local(leaf.lo), voxel_local(leaf.hi),
+          0, 0};
+}
+
+/// A leaf with more candidates than lists hold: each lane searches for its voxels.
+__device__ __noinline__ inline Int128 sum_leaf_directly(const ShellPass& pass, int64_t number, int64_t limit) {
+  Int128 energy = 0;
+  const ShellLeaf& leaf = pass.leaf[number];
+  const PatchBox box = box_of(leaf);
+  const int32_t reach = reach_of(limit);
+  for (int i = threadIdx.x & 31; i < leaf.voxels; i += 32) {
+    const int offset = pass.offset[leaf.voxel_first + i];
+    const Local u = voxel_local(offset);
+    const PointQ8 p = {box.origin.x + u.x, box.origin.y + u.y, box.origin.z + u.z};
+    const uint32_t id = label_directly(pass.search, box, reach, p, Normal8{0, 0, 0});
+    energy += add_to_shell_cell(pass.cell[id], OffsetSums::of(offset),
+                                difference(pass.search.seed[id].position(), box.origin));
+  }
+  return energy;
+}
+
+/// Sums per winner, in the lane of its number.
+__device__ inline OffsetSums sum_voxels(const ShellPass& pass, const ShellLeaf& leaf, const SearchResult& found,
+                                        const Winners& winners) {
+  constexpr int kRounds = 4;
+  const int lane = threadIdx.x & 31;
+  OffsetSums mine{0, 0, 0};
+  for (int base = 0; base < leaf.voxels; base += 32 * kRounds) {
+    int label[kRounds];
+    Local v[kRounds];
+    OffsetSums sums[kRounds];
+#pragma unroll
+    for (int r = 0; r < kRounds; ++r) {
+      const int i = base + 32 * r + lane;
+      const int offset = i < leaf.voxels ? pass.offset[leaf.voxel_first + i] : 0;
+      v[r] = voxel_local(offset);
+      sums[r] = i < leaf.voxels ? OffsetSums::of(offset) : OffsetSums{0, 0, 0};
+    }
+    if (found.narrow) {
+      winners_at(winners, found.count, v, label);
+    } else {
+#pragma unroll
+      for (int r = 0; r < kRounds; ++r) label[r] = winner_at(winners, found.count, v[r], Normal8{0, 0, 0}, 0);
+    }
+    for (int c = 0; c < found.count; ++c) {
+      OffsetSums part{0, 0, 0};
+#pragma unroll
+      for (int r = 0; r < kRounds; ++r)
+        if (label[r] == c) part.add(sums[r]);
+      part = {sum_over_warp(part.count_x), sum_over_warp(part.y_z), sum_over_warp(part.squares)};
+      if (lane == c) mine.add(part);
+    }
+  }
+  return mine;
+}
+
+struct ShellScratch {
+  Winners winners;
+  SearchScratch search;
+};
+
+/// One warp's leaf; returns the lane's part of the energy.
+__device__ inline Int128 sum_shell_leaf(const ShellPass& pass, int64_t number, ShellScratch& scratch) {
+  const ShellLeaf& leaf = pass.leaf[number];
+  if (leaf.voxels == 0) return 0;
+  const int lane = threadIdx.x & 31;
+  const PatchBox box = box_of(leaf);
+  const SearchResult found = find_winners(pass.search, box, pass.reach[number], scratch.search, scratch.winners);
+  if (lane == 0) pass.reach[number] = found.reach + pass.reach_slack;
+  if (found.count > kMaxWinners) return sum_leaf_directly(pass, number, found.limit);
+  OffsetSums sums = leaf.total;
+  if (found.count > 1) sums = sum_voxels(pass, leaf, found, scratch.winners);
+  if (lane >= found.count || sums.count_x == 0) return 0;
+  const Local a = scratch.winners.place[lane];
+  return add_to_shell_cell(pass.cell[scratch.winners.id[lane]], sums, {a.x, a.y, a.z});
+}
+
+__global__ void __launch_bounds__(kLeafWarps * 32) sum_leaves(const __grid_constant__ ShellPass pass) {
+  __shared__ ShellScratch scratch[kLeafWarps];
+  if (pass_is_over(pass.state, pass.progress)) return;
+  const int64_t leaf = int64_t(blockIdx.x) * kLeafWarps + (threadIdx.x >> 5);
+  Int128 energy = 0;
+  if (leaf < pass.leaves) energy = sum_shell_leaf(pass, leaf, scratch[threadIdx.x >> 5]);
+  end_block<kLeafWarps>(pass.progress, energy, [&](View<const int64_t> total) {
+    relax_shell::FinishPass{{pass.state, 1}, total, pass.tolerance_ppb}(0);
+  });
+}
+
+struct ShellMove {
+  relax_shell::MoveSeed move;
+  relax_shell::CellSums* cell;
+  SeedRecord* record;
+  BucketGrid grid;
+  BucketTable from, to;
+  const PassProgress* progress;
+};
+
+__global__ void __launch_bounds__(128) move_shell_seeds(const __grid_constant__ ShellMove m) {
+  if (!m.progress->moving) return;
+  const int64_t i = int64_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i >= m.move.position.size) return;
+  m.from.remove(m.grid, m.move.position[i], i);
+  m.move.move(i);
+  m.cell[i] = {0, 0, 0, 0};
+  m.to.insert(m.grid, m.move.position[i], uint32_t(i));
+  m.record[i] = seed_record(m.move.position[i], {0, 0, 0});
+}
+
+__global__ void start_shell_seeds(ShellMove m, PassState* state, PassProgress* progress) {
+  const int64_t i = int64_t(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i == 0) {
+    relax_shell::StartPasses{{state, 1}}(0);
+    *progress = PassProgress{};
+  }
+  if (i >= m.move.position.size) return;
+  m.cell[i] = {0, 0, 0, 0};
+  m.to.insert(m.grid, m.move.position[i], uint32_t(i));
+  m.record[i] = seed_record(m.move.position[i], {0, 0, 0});
+}
+
+/// One warp a leaf.
+__global__ void describe_leaves(VoxelSetView voxels, ShellLeaf* out, uint16_t* offsets, int64_t spacing_q8,
+                                int32_t* reach) {
+  const int64_t number = (int64_t(blockIdx.x) * blockDim.x + threadIdx.x) >> 5;
+  const int lane = threadIdx.x & 31;
+  if (number >= voxels.leaf_key.size) return;
+  const LeafMask& mask = voxels.mask[number];
+  const int64_t first = voxels.first[number];
+  OffsetSums total{0, 0, 0};
+  int at = 0;
+  unsigned x = 0, y = 0, z = 0;
+  for (int base = 0; base < 512; base += 32) {
+    const int offset = base + lane;
+    const unsigned on = unsigned(mask.word[base >> 6] >> (base & 32));
+    if (on >> lane & 1) {
+      offsets[first + at + __popc(on & ((1u << lane) - 1))] = uint16_t(offset);
+      total.add(OffsetSums::of(offset));
+      x |= 1u << (offset >> 6), y |= 1u << (offset >> 3 & 7), z |= 1u << (offset & 7);
+    }
+    at += __popc(on);
+  }
+  total = {sum_over_warp(total.count_x), sum_over_warp(total.y_z), sum_over_warp(total.squares)};
+  for (int d = 16; d > 0; d >>= 1) {
+    x |= __shfl_xor_sync(~0u, x, d);
+    y |= __shfl_xor_sync(~0u, y, d);
+    z |= __shfl_xor_sync(~0u, z, d);
+  }
+  if (lane) return;
+  const auto lowest = [](unsigned w) { return w ? __ffs(int(w)) - 1 : 0; };
+  const auto highest = [](unsigned w) { return w ? 31 - __clz(int(w)) : 0; };
+  ShellLeaf leaf{first,
+                 leaf_of_key(voxels.leaf_key[number]),
+                 total,
+                 uint16_t(lowest(x) << 6 | lowest(y) << 3 | lowest(z)),
+                 uint16_t(highest(x) << 6 | highest(y) << 3 | highest(z)),
+                 uint16_t(at)};
+  out[number] = leaf;
+  const Local lo = voxel_local(leaf.lo), hi = voxel_local(leaf.hi);
+  reach[number] = reach_of(square({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z})) + int32_t(spacing_q8 * 3 / 4);
+}
+
+}  // namespace isoshell::cuda_relax
