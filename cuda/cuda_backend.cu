@@ -11,6 +11,7 @@ const BackendTable* cuda_backend() {
       cuda_voxelize,
       cuda_sample_sites,
       cuda_build_shell,
+      cuda_nano_index_grid,
       cuda_build_sheet,
       cuda_coarsen_sites,
       cuda_build_outline,

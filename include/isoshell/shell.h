@@ -14,8 +14,14 @@ struct Shell {
   Buffer<uint16_t> distance_sq_vox;  ///< per active voxel
 };
 
+struct Context;
+
 /// NanoVDB index grid (GridType::Index) over a VoxelSet, as bytes to upload or save: value i of its active voxels is
 /// i + 1 in canonical order, 0 is the background. All padding is zero. Cost: 96 bytes a leaf plus the upper nodes.
 Buffer<std::byte> nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name);
+/// The same bytes, made where the context's stages run: on the device, in its memory, from its leaves. Cost there: one
+/// pass over masks and nodes, one wait for the device.
+Buffer<std::byte> nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name,
+                                  Context& context);
 
 }  // namespace isoshell

@@ -11,6 +11,7 @@ const BackendTable& cpu_backend() {
       cpu_voxelize,
       cpu_sample_sites,
       cpu_build_shell,
+      cpu_nano_index_grid,
       cpu_build_sheet,
       cpu_coarsen_sites,
       cpu_build_outline,

@@ -6,12 +6,14 @@
 // ValueOnIndex keeps the counts of the words before, packed nine bits each.
 #include <nanovdb/NanoVDB.h>
 
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include "grid/nano_nodes.h"
 #include "isoshell/error.h"
-#include "isoshell/shell.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {
@@ -37,29 +39,20 @@ using Box = nanovdb::CoordBBox;
 
 static_assert(sizeof(Leaf) == 96 && sizeof(Grid) == 672 && sizeof(Tree) == 64, "unknown NanoVDB layout");
 
-/// Where the parts of the grid lie, in bytes from its start.
-struct Layout {
-  int64_t uppers = 0, lowers = 0, leaves = 0;  ///< counts
-  int64_t root = 0, first_upper = 0, first_lower = 0, first_leaf = 0, end = 0;
-};
-
 constexpr uint64_t lower_of_key(uint64_t key) { return key >> 12; }
 constexpr uint64_t upper_of_key(uint64_t key) { return key >> 27; }
 
-Layout lay_out(const VoxelSet& voxels) {
-  Layout at;
-  at.leaves = voxels.leaf_count();
-  for (int64_t l = 0; l < at.leaves; ++l) {
+constexpr uint8_t kHasBox = 2, kOnlyActiveVoxelsCount = 16;
+constexpr uint8_t kLeafFlags = ISOSHELL_NANOVDB_ON_INDEX ? kHasBox : kHasBox | kOnlyActiveVoxelsCount;
+
+NanoLayout lay_out(const VoxelSet& voxels, std::vector<uint64_t>& upper_key) {
+  int64_t lowers = 0;
+  for (int64_t l = 0; l < voxels.leaf_count(); ++l) {
     const uint64_t key = voxels.leaf_key[l], before = l ? voxels.leaf_key[l - 1] : ~uint64_t(0);
-    at.lowers += l == 0 || lower_of_key(key) != lower_of_key(before);
-    at.uppers += l == 0 || upper_of_key(key) != upper_of_key(before);
+    lowers += l == 0 || lower_of_key(key) != lower_of_key(before);
+    if (l == 0 || upper_of_key(key) != upper_of_key(before)) upper_key.push_back(upper_of_key(key));
   }
-  at.root = int64_t(sizeof(Grid) + sizeof(Tree));
-  at.first_upper = at.root + int64_t(sizeof(Root)) + at.uppers * int64_t(sizeof(Root::Tile));
-  at.first_lower = at.first_upper + at.uppers * int64_t(sizeof(Upper));
-  at.first_leaf = at.first_lower + at.lowers * int64_t(sizeof(Lower));
-  at.end = at.first_leaf + at.leaves * int64_t(sizeof(Leaf));
-  return at;
+  return nano_layout(voxels.leaf_count(), lowers, int64_t(upper_key.size()), voxels.voxel_count());
 }
 
 void write_leaf(Leaf& leaf, Voxel at, const LeafMask& mask, uint64_t first_value) {
@@ -80,9 +73,8 @@ void write_leaf(Leaf& leaf, Voxel at, const LeafMask& mask, uint64_t first_value
   }
   leaf.mBBoxMin = nanovdb::Coord(at.x * 8 + lo[0], at.y * 8 + lo[1], at.z * 8 + lo[2]);
   for (int axis = 0; axis < 3; ++axis) leaf.mBBoxDif[axis] = uint8_t(hi[axis] - lo[axis]);
-  constexpr uint8_t kHasBox = 2;
+  leaf.mFlags = kLeafFlags;
 #if ISOSHELL_NANOVDB_ON_INDEX
-  leaf.mFlags = kHasBox;
   leaf.mOffset = first_value;
   uint64_t before = 0, packed = 0;
   for (int word = 0; word < 7; ++word) {
@@ -91,8 +83,6 @@ void write_leaf(Leaf& leaf, Voxel at, const LeafMask& mask, uint64_t first_value
   }
   leaf.mPrefixSum = packed;
 #else
-  constexpr uint8_t kOnlyActiveVoxelsCount = 16;
-  leaf.mFlags = kHasBox | kOnlyActiveVoxelsCount;
   leaf.mValueOff = first_value;
 #endif
 }
@@ -113,7 +103,7 @@ void adopt(Parent& parent, uint32_t slot, Child& child, const Box& child_box, bo
 }
 
 /// Writes leaves and internal nodes and links them; the boxes grow on the way.
-void write_nodes(std::byte* bytes, const Layout& at, const VoxelSet& voxels) {
+void write_nodes(std::byte* bytes, const NanoLayout& at, const VoxelSet& voxels) {
   auto* root = reinterpret_cast<Root*>(bytes + at.root);
   auto* uppers = reinterpret_cast<Upper*>(bytes + at.first_upper);
   auto* lowers = reinterpret_cast<Lower*>(bytes + at.first_lower);
@@ -135,15 +125,20 @@ void write_nodes(std::byte* bytes, const Layout& at, const VoxelSet& voxels) {
     adopt(lowers[w], uint32_t(key & 4095), leaf, box, new_lower);
     adopt(uppers[u], uint32_t(key >> 12) & 32767, lowers[w], box, new_upper);
     stretch_box(root->mBBox, box, l == 0);
-    if (new_upper) {
-      const nanovdb::Coord corner(origin.x * 8, origin.y * 8, origin.z * 8);
-      root->tile(root->mTableSize++)
-          ->setChild(corner, reinterpret_cast<nanovdb::NanoUpper<BuildType>*>(&uppers[u]), root);
-    }
   }
 }
 
-void write_tree(std::byte* bytes, const Layout& at, const VoxelSet& voxels) {
+void write_root(std::byte* bytes, const NanoLayout& at, const uint64_t* upper_key) {
+  auto* root = reinterpret_cast<Root*>(bytes + at.root);
+  for (int64_t u = 0; u < at.uppers; ++u) {
+    const Voxel leaf = leaf_of_key(upper_key[u] << 27);
+    auto* upper = reinterpret_cast<nanovdb::NanoUpper<BuildType>*>(bytes + at.first_upper + u * int64_t(sizeof(Upper)));
+    root->tile(root->mTableSize++)->setChild(nanovdb::Coord(leaf.x * 8, leaf.y * 8, leaf.z * 8), upper, root);
+  }
+  if (at.leaves == 0) root->mBBox = Box();
+}
+
+void write_tree(std::byte* bytes, const NanoLayout& at) {
   auto* tree = reinterpret_cast<Tree*>(bytes + sizeof(Grid));
   const int64_t start = int64_t(sizeof(Grid));
   const int64_t node[4] = {at.first_leaf, at.first_lower, at.first_upper, at.root};
@@ -154,27 +149,33 @@ void write_tree(std::byte* bytes, const Layout& at, const VoxelSet& voxels) {
 #if !ISOSHELL_NANOVDB_ON_INDEX
   if (at.leaves == 0) tree->mNodeOffset[0] = tree->mNodeOffset[1] = tree->mNodeOffset[2] = 0;
 #endif
-  tree->mVoxelCount = uint64_t(voxels.voxel_count());
+  tree->mVoxelCount = uint64_t(at.voxels);
 }
 
-/// Index (i, j, k) is the centre of voxel (i, j, k). The world box is that of index box lo .. hi + 1, as NanoVDB has
-/// it.
-void write_map(Grid& grid, const Box& box, const LatticeFrame& frame, bool empty) {
-  const double half = 0.5 * frame.voxel_size;
-  const nanovdb::Vec3d shift(frame.origin.x + half, frame.origin.y + half, frame.origin.z + half);
-  grid.mMap.set(frame.voxel_size, shift, 1.0);
+/// Index (i, j, k) is the centre of voxel (i, j, k).
+void write_map(Grid& grid, const LatticeFrame& frame) {
+  grid.mMap.set(frame.voxel_size, nanovdb::Vec3d(nano_shift(frame, 0), nano_shift(frame, 1), nano_shift(frame, 2)),
+                1.0);
+  for (int axis = 0; axis < 3; ++axis) grid.mVoxelSize[axis] = frame.voxel_size;
+}
+
+/// The world box is that of index box lo .. hi + 1, as NanoVDB has it.
+void write_world_box(Grid& grid, const Box& box, const LatticeFrame& frame) {
   for (int axis = 0; axis < 3; ++axis) {
-    grid.mVoxelSize[axis] = frame.voxel_size;
-    const double furthest = std::numeric_limits<double>::max();
-    grid.mWorldBBox[0][axis] = empty ? furthest : shift[axis] + frame.voxel_size * box[0][axis];
-    grid.mWorldBBox[1][axis] = empty ? -furthest : shift[axis] + frame.voxel_size * (box[1][axis] + 1.0);
+    grid.mWorldBBox[0][axis] = nano_shift(frame, axis) + frame.voxel_size * box[0][axis];
+    grid.mWorldBBox[1][axis] = nano_shift(frame, axis) + frame.voxel_size * (box[1][axis] + 1.0);
+  }
+}
+void write_empty_world_box(Grid& grid) {
+  const double furthest = std::numeric_limits<double>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.mWorldBBox[0][axis] = furthest;
+    grid.mWorldBBox[1][axis] = -furthest;
   }
 }
 
-void write_grid(std::byte* bytes, const Layout& at, const VoxelSet& voxels, const LatticeFrame& frame,
-                const char* name) {
+void write_grid(std::byte* bytes, const NanoLayout& at, const LatticeFrame& frame, const char* name) {
   auto* grid = reinterpret_cast<Grid*>(bytes);
-  auto* root = reinterpret_cast<Root*>(bytes + at.root);
 #ifdef NANOVDB_USE_NEW_MAGIC_NUMBERS
   grid->mMagic = NANOVDB_MAGIC_GRID;
 #else
@@ -193,27 +194,89 @@ void write_grid(std::byte* bytes, const Layout& at, const VoxelSet& voxels, cons
 #if ISOSHELL_NANOVDB_ON_INDEX
   grid->mBlindMetadataOffset = at.end;
 #endif
-  grid->mData1 = uint64_t(voxels.voxel_count()) + 1;  // values indexed, with the background
+  grid->mData1 = uint64_t(at.voxels) + 1;  // values indexed, with the background
 #if ISOSHELL_NANOVDB_ON_INDEX && !defined(NANOVDB_USE_NEW_MAGIC_NUMBERS)
   grid->mData2 = NANOVDB_MAGIC_GRID;
 #endif
-  if (at.leaves == 0) root->mBBox = Box();
-  write_map(*grid, root->mBBox, frame, at.leaves == 0);
+  write_map(*grid, frame);
+  if (at.leaves == 0) write_empty_world_box(*grid);
+}
+
+void require_name_fits(const char* name) {
+  if (std::strlen(name) >= Grid::MaxNameSize)
+    throw Error(ErrorCode::usage, "nano_shell",
+                "the grid's name has " + std::to_string(std::strlen(name)) + " characters; it must have at most 255");
+}
+
+void write_head(std::byte* bytes, const NanoLayout& at, const uint64_t* upper_key, const LatticeFrame& frame,
+                const char* name) {
+  write_root(bytes, at, upper_key);
+  write_tree(bytes, at);
+  write_grid(bytes, at, frame, name);
+}
+
+template <class Node>
+NanoNode fields_of() {
+  return {int64_t(sizeof(Node)), int64_t(offsetof(Node, mBBox)), int64_t(offsetof(Node, mChildMask)),
+          int64_t(offsetof(Node, mTable))};
 }
 
 }  // namespace
 
+NanoNodes nano_nodes() {
+#if ISOSHELL_NANOVDB_ON_INDEX
+  constexpr int64_t kFirstValue = int64_t(offsetof(Leaf, mOffset));
+#else
+  constexpr int64_t kFirstValue = int64_t(offsetof(Leaf, mValueOff));
+#endif
+  static_assert(offsetof(Leaf, mValueMask) == kNanoLeafMask && sizeof(Leaf) == kNanoLeafBytes, "unknown leaf layout");
+  return {fields_of<Upper>(), fields_of<Lower>(), kLeafFlags, int((kFirstValue - kNanoLeafWords) / 8),
+          ISOSHELL_NANOVDB_ON_INDEX == 1};
+}
+
+NanoLayout nano_layout(int64_t leaves, int64_t lowers, int64_t uppers, int64_t voxels) {
+  NanoLayout at;
+  at.leaves = leaves;
+  at.lowers = lowers;
+  at.uppers = uppers;
+  at.voxels = voxels;
+  at.root = int64_t(sizeof(Grid) + sizeof(Tree));
+  at.first_upper = at.root + int64_t(sizeof(Root)) + uppers * int64_t(sizeof(Root::Tile));
+  at.first_lower = at.first_upper + uppers * int64_t(sizeof(Upper));
+  at.first_leaf = at.first_lower + lowers * int64_t(sizeof(Lower));
+  at.end = at.first_leaf + leaves * int64_t(sizeof(Leaf));
+  at.root_box = at.root + int64_t(offsetof(Root, mBBox));
+  at.world_box = int64_t(offsetof(Grid, mWorldBBox));
+  return at;
+}
+
+double nano_shift(const LatticeFrame& frame, int axis) {
+  const double origin = axis == 0 ? frame.origin.x : axis == 1 ? frame.origin.y : frame.origin.z;
+  return origin + 0.5 * frame.voxel_size;
+}
+
+Buffer<std::byte> nano_head(const NanoLayout& at, const uint64_t* upper_key, const LatticeFrame& frame,
+                            const char* name) {
+  if (!name) name = "";
+  require_name_fits(name);
+  Buffer<std::byte> bytes(at.first_upper);
+  std::memset(bytes.data(), 0, size_t(at.first_upper));
+  write_head(bytes.data(), at, upper_key, frame, name);
+  return bytes;
+}
+
 Buffer<std::byte> nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name) {
   if (!name) name = "";
-  if (std::strlen(name) >= Grid::MaxNameSize)
-    throw Error(ErrorCode::usage, "nano_shell",
-                "the grid's name has " + std::to_string(std::strlen(name)) + " characters; it must have at most 255");
-  const Layout at = lay_out(voxels);
+  require_name_fits(name);
+  std::vector<uint64_t> upper_key;
+  const NanoLayout at = lay_out(voxels, upper_key);
   Buffer<std::byte> bytes(at.end);
   std::memset(bytes.data(), 0, size_t(at.end));
+  write_head(bytes.data(), at, upper_key.data(), frame, name);
   write_nodes(bytes.data(), at, voxels);
-  write_tree(bytes.data(), at, voxels);
-  write_grid(bytes.data(), at, voxels, frame, name);
+  if (at.leaves > 0)
+    write_world_box(*reinterpret_cast<Grid*>(bytes.data()), reinterpret_cast<Root*>(bytes.data() + at.root)->mBBox,
+                    frame);
   return bytes;
 }
 

@@ -13,6 +13,7 @@ struct BackendTable {
   SiteSet (*voxelize)(const LatticeSurface&, Context&);
   SiteSamples (*sample_sites)(const LatticeSurface&, const SiteSet&, Context&);
   Shell (*build_shell)(const SiteSet&, const ShellOptions&, Context&);
+  Buffer<std::byte> (*nano_index_grid)(const VoxelSet&, const LatticeFrame&, const char*, Context&);
   Sheet (*build_sheet)(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
   SiteSet (*coarsen_sites)(const SiteSet&, Context&);
   Sheet (*build_outline)(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);

@@ -13,8 +13,10 @@
 #include <unordered_map>
 
 #include "isoshell/error.h"
-#include "isoshell/shell.h"
+#include "isoshell/stages.h"
+#include "isoshell/to_host.h"
 #include "support/catch.h"
+#include "support/test_context.h"
 #include "support/voxel_shapes.h"
 
 using namespace isoshell;
@@ -167,6 +169,26 @@ TEST_CASE("nano: the bytes depend on nothing but the arguments", "[nano][stage]"
   const Buffer<std::byte> second = nano_index_grid(sites.voxels, some_frame(), "shell");
   REQUIRE(first.size() == second.size());
   CHECK(std::memcmp(first.data(), second.data(), size_t(first.size())) == 0);
+}
+
+TEST_CASE("nano: every backend makes the same bytes, from either memory", "[nano][stage]") {
+  TestContext context;
+  const auto same = [](const Buffer<std::byte>& a, const Buffer<std::byte>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), size_t(a.size())) == 0;
+  };
+  for (const auto& shape : voxel_shapes::all(30)) {
+    INFO(shape.name);
+    const SiteSet sites = make_site_set(shape.voxels, shape.extent);
+    const Buffer<std::byte> expected = nano_index_grid(sites.voxels, some_frame(), "shell");
+    CHECK(same(nano_index_grid(sites.voxels, some_frame(), "shell", context).to_host(), expected));
+    const Shell shell = build_shell(sites, {2}, context);
+    CHECK(same(nano_index_grid(shell.voxels, some_frame(), nullptr, context).to_host(),
+               nano_index_grid(to_host(shell).voxels, some_frame(), nullptr)));
+  }
+  const SiteSet none = make_site_set({}, {128, 128, 128});
+  CHECK(same(nano_index_grid(none.voxels, some_frame(), "none", context).to_host(),
+             nano_index_grid(none.voxels, some_frame(), "none")));
+  CHECK_THROWS_AS(nano_index_grid(none.voxels, some_frame(), std::string(256, 'n').c_str(), context), Error);
 }
 
 TEST_CASE("nano: a grid without voxels is valid and empty", "[nano][stage]") {
