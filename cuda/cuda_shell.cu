@@ -87,80 +87,88 @@ __global__ void number_words(VoxelSetView sites, closest::SiteWord* words) {
 /// Longer rows compute less twice, shorter ones keep all processors busy.
 int32_t row_leaves(int64_t leaves) { return leaves < 40000 ? 2 : leaves < 150000 ? 4 : 8; }
 
-struct Launch {
-  CudaExecutor& exec;
+struct Arguments {
   closest::Rows rows;
   closest::Input in;
   closest::Output out;
 };
 
+/// A distance transform that fills the device.
+struct Transform {
+  void (*kernel)(closest::Rows, closest::Input, closest::Output);
+  unsigned blocks, threads;
+  int shared_bytes;
+
+  void run(CudaExecutor& exec, const Arguments& a, const char* name) const {
+    kernel<<<blocks, threads, size_t(shared_bytes), exec.stream()>>>(a.rows, a.in, a.out);
+    exec.check(name);
+  }
+};
+
 template <int kReach, int kBand, class Keys>
-void launch(const Launch& l, const char* name) {
-  const auto kernel = closest::closest_sites<kReach, kBand, Keys>;
-  constexpr int64_t kBytes = closest::shared_bytes<kReach, kBand, Keys>();
-  require_success(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(kBytes)),
+Transform transform(CudaExecutor& exec) {
+  Transform t = {closest::closest_sites<kReach, kBand, Keys>, 0, closest::kWarps<Keys, kReach> * 32,
+                 int(closest::shared_bytes<kReach, kBand, Keys>())};
+  require_success(cudaFuncSetAttribute(t.kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, t.shared_bytes),
                   "cudaFuncSetAttribute");
-  int blocks = 0;
+  int blocks = 0, processors = 0;
   require_success(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, closest::kWarps<Keys, kReach> * 32, kBytes),
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, t.kernel, int(t.threads), size_t(t.shared_bytes)),
       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
-  int processors = 0;
-  require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, l.exec.device().device()),
+  require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, exec.device().device()),
                   "cudaDeviceGetAttribute");
-  kernel<<<unsigned(blocks * processors), closest::kWarps<Keys, kReach> * 32, kBytes, l.exec.stream()>>>(l.rows, l.in,
-                                                                                                         l.out);
-  l.exec.check(name);
+  t.blocks = unsigned(blocks * processors);
+  return t;
 }
 
 template <class Keys>
-void launch_wide(const Launch& l, const char* name) {
-  const int reach = reach_leaves(l.in.band_vox);
-  return reach == 1   ? launch<1, 0, Keys>(l, name)
-         : reach == 2 ? launch<2, 0, Keys>(l, name)
-                      : launch<3, 0, Keys>(l, name);
+Transform wide_transform(CudaExecutor& exec, int32_t band_vox) {
+  const int reach = reach_leaves(band_vox);
+  return reach == 1   ? transform<1, 0, Keys>(exec)
+         : reach == 2 ? transform<2, 0, Keys>(exec)
+                      : transform<3, 0, Keys>(exec);
 }
 
-void find_values(const Launch& l) {
+Transform transform_to_sites(CudaExecutor& exec, int32_t band_vox) {
   static_assert(closest::SmallPair::kMaxBand == 5, "one case each");
-  const char* name = "closest sites";
-  switch (l.in.band_vox) {
+  switch (band_vox) {
     case 1:
-      return launch<1, 1, closest::SmallPair>(l, name);
+      return transform<1, 1, closest::SmallPair>(exec);
     case 2:
-      return launch<1, 2, closest::SmallPair>(l, name);
+      return transform<1, 2, closest::SmallPair>(exec);
     case 3:
-      return launch<1, 3, closest::SmallPair>(l, name);
+      return transform<1, 3, closest::SmallPair>(exec);
     case 4:
-      return launch<1, 4, closest::SmallPair>(l, name);
+      return transform<1, 4, closest::SmallPair>(exec);
     case 5:
-      return launch<1, 5, closest::SmallPair>(l, name);
+      return transform<1, 5, closest::SmallPair>(exec);
     default:
-      return launch_wide<closest::LargePair>(l, name);
+      return wide_transform<closest::LargePair>(exec, band_vox);
   }
 }
 
 template <int kBand>
-void grow(const Launch& l) {
-  const int64_t threads = l.in.shell.leaf_key.size * 16;
+void grow(CudaExecutor& exec, const Arguments& a) {
+  const int64_t threads = a.in.shell.leaf_key.size * 16;
   reach::grow_sites<kBand>
-      <<<unsigned((threads + reach::kThreads - 1) / reach::kThreads), reach::kThreads, 0, l.exec.stream()>>>(
-          l.in.sites, l.in.shell, l.out.mask, l.out.count);
-  l.exec.check("shell masks");
+      <<<unsigned((threads + reach::kThreads - 1) / reach::kThreads), reach::kThreads, 0, exec.stream()>>>(
+          a.in.sites, a.in.shell, a.out.mask, a.out.count);
+  exec.check("shell masks");
 }
 
-void find_masks(const Launch& l) {
+void find_masks(CudaExecutor& exec, const Arguments& a) {
   static_assert(reach::kMaxBand == 4, "one case each");
-  switch (l.in.band_vox) {
+  switch (a.in.band_vox) {
     case 1:
-      return grow<1>(l);
+      return grow<1>(exec, a);
     case 2:
-      return grow<2>(l);
+      return grow<2>(exec, a);
     case 3:
-      return grow<3>(l);
+      return grow<3>(exec, a);
     case 4:
-      return grow<4>(l);
+      return grow<4>(exec, a);
     default:
-      return launch_wide<closest::DistancePair>(l, "shell masks");
+      wide_transform<closest::DistancePair>(exec, a.in.band_vox).run(exec, a, "shell masks");
   }
 }
 
@@ -175,6 +183,47 @@ VoxelSet find_shell_leaves(CudaExecutor& exec, const VoxelSetView& sites, int32_
   return marks.list(exec);
 }
 
+/// The rows of the shell, and counters: of them, and of those taken by a transform, two of which may run.
+struct RowList {
+  Buffer<uint32_t> first_leaf, counters;
+  int32_t leaves;
+
+  RowList(CudaExecutor& exec, const VoxelSetView& shell)
+      : first_leaf(exec.make<uint32_t>(shell.leaf_key.size)),
+        counters(exec.make<uint32_t>(3)),
+        leaves(row_leaves(shell.leaf_key.size)) {
+    require_success(cudaMemsetAsync(counters.data(), 0, size_t(counters.size_bytes()), exec.stream()), "clear");
+    list_rows<<<cuda_steps::blocks_for(first_leaf.size()), cuda_steps::kThreads, 0, exec.stream()>>>(
+        shell, leaves, first_leaf.view(), counters.data());
+    exec.check("list rows");
+  }
+  closest::Rows rows(int transform) {
+    return {first_leaf.view(), counters.data(), counters.data() + 1 + transform, leaves};
+  }
+};
+
+Buffer<closest::SiteWord> words_of(CudaExecutor& exec, const VoxelSetView& sites) {
+  Buffer<closest::SiteWord> words = exec.make<closest::SiteWord>(sites.leaf_key.size * 8);
+  number_words<<<cuda_steps::blocks_for(words.size()), cuda_steps::kThreads, 0, exec.stream()>>>(sites, words.data());
+  exec.check("number site words");
+  return words;
+}
+
+void fill_shell(CudaExecutor& exec, const VoxelSetView& sites, Shell& shell) {
+  VoxelSet& set = shell.voxels;
+  RowList list(exec, set.view());
+  const Buffer<closest::SiteWord> words = words_of(exec, sites);
+  const closest::Input in = {sites, set.view(), words.data(), shell.band_vox};
+  find_masks(exec, {list.rows(0), in, {set.mask.data(), set.first.data(), nullptr, nullptr}});
+  exclusive_scan_async(exec.device(), set.first.view());
+  const Transform to_sites = transform_to_sites(exec, shell.band_vox);  // while the device is busy
+  set.active = exec.value(View<const int64_t>(set.first.view()), set.leaf_count());
+  shell.closest_site = exec.make<uint32_t>(set.active);
+  shell.distance_sq_vox = exec.make<uint16_t>(set.active);
+  to_sites.run(exec, {list.rows(1), in, {nullptr, nullptr, shell.closest_site.data(), shell.distance_sq_vox.data()}},
+               "closest sites");
+}
+
 }  // namespace
 
 Shell cuda_build_shell(const SiteSet& site_set, const ShellOptions& options, Context& context) {
@@ -185,35 +234,10 @@ Shell cuda_build_shell(const SiteSet& site_set, const ShellOptions& options, Con
   shell.band_vox = options.band_vox;
   VoxelSet& set = shell.voxels;
   set = find_shell_leaves(exec, sites, options.band_vox);
-  const int64_t leaves = set.leaf_count();
-  set.mask = exec.make<LeafMask>(leaves);
-  set.first = exec.make<int64_t>(leaves + 1);
-  require_success(cudaMemsetAsync(set.first.data() + leaves, 0, sizeof(int64_t), exec.stream()), "clear");
-
-  Buffer<uint32_t> rows = exec.make<uint32_t>(leaves), counters = exec.make<uint32_t>(3);
-  require_success(cudaMemsetAsync(counters.data(), 0, size_t(counters.size_bytes()), exec.stream()), "clear");
-  if (leaves > 0)
-    list_rows<<<cuda_steps::blocks_for(leaves), cuda_steps::kThreads, 0, exec.stream()>>>(
-        set.view(), row_leaves(leaves), rows.view(), counters.data());
-  exec.check("list rows");
-  const int64_t site_words = sites.leaf_key.size * 8;
-  Buffer<closest::SiteWord> words = exec.make<closest::SiteWord>(site_words);
-  if (site_words > 0)
-    number_words<<<cuda_steps::blocks_for(site_words), cuda_steps::kThreads, 0, exec.stream()>>>(sites, words.data());
-  exec.check("number site words");
-
-  Launch l = {exec,
-              {rows.view(), counters.data(), counters.data() + 1, row_leaves(leaves)},
-              {sites, set.view(), words.data(), options.band_vox},
-              {set.mask.data(), set.first.data(), nullptr, nullptr}};
-  if (leaves > 0) find_masks(l);
-  exclusive_scan_async(exec.device(), set.first.view());
-  set.active = exec.value(View<const int64_t>(set.first.view()), leaves);
-  shell.closest_site = exec.make<uint32_t>(set.active);
-  shell.distance_sq_vox = exec.make<uint16_t>(set.active);
-  l.rows.next = counters.data() + 2;
-  l.out = {nullptr, nullptr, shell.closest_site.data(), shell.distance_sq_vox.data()};
-  if (leaves > 0) find_values(l);
+  set.mask = exec.make<LeafMask>(set.leaf_count());
+  set.first = exec.make<int64_t>(set.leaf_count() + 1);
+  require_success(cudaMemsetAsync(set.first.data() + set.leaf_count(), 0, sizeof(int64_t), exec.stream()), "clear");
+  if (set.leaf_count() > 0) fill_shell(exec, sites, shell);
   return shell;
 }
 
