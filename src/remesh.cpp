@@ -45,7 +45,8 @@ auto timed(RemeshReport& report, const char* stage, Work work) {
 
 template <class Product>
 void note_digest(const RemeshOptions& options, RemeshReport& report, const char* name, const Product& product) {
-  if (options.want_digests) report.digests[name] = digest_text(digest(product));
+  if (!options.want_digests) return;
+  timed(report, "digests", [&] { report.digests[name] = digest_text(digest(product)); });
 }
 
 /// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose.
