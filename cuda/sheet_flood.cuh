@@ -2,6 +2,8 @@
 // and several rounds between two looks of the host. The fixed point does not depend on who spreads it.
 #pragma once
 
+#include <algorithm>
+
 #include "cuda/block_form.cuh"
 #include "cuda/executor_cuda.cuh"
 #include "stages/sheet_flood_body.h"
@@ -158,21 +160,45 @@ struct Queue {
       : stamp(exec.make<uint32_t>(count)),
         node{exec.make<uint32_t>(count), exec.make<uint32_t>(count)},
         left(exec.make<uint32_t>(kRoundsPerLook + 1)),
-        capacity(count) {
-    exec.fill(stamp.view(), 0u);
-    exec.fill(left.view(), uint32_t(capacity));
-  }
+        capacity(count) {}
   sheet_steps::FloodList list_of(int round) {
     return {stamp.view(), node[round & 1].view(), left.view().part(round, 1)};
   }
   Worklist of(int round) const { return {node[round & 1].view(), left.data() + round}; }
-  /// The last round's list becomes the first of the next rounds.
-  void turn(CudaExecutor& exec) {
-    exec.copy(View<const uint32_t>(left.view().part(kRoundsPerLook, 1)), left.view().part(0, 1));
-    exec.fill(left.view().part(1, kRoundsPerLook), uint32_t(capacity));
-  }
-  bool is_empty(CudaExecutor& exec) { return exec.value(View<const uint32_t>(left.view()), 0) == uint32_t(capacity); }
 };
+
+/// What find_outside starts from: nothing reached, nothing listed.
+struct Start {
+  sheet_steps::FloodState state;
+  View<uint32_t> left[2];
+  int64_t capacity[2];
+};
+__global__ void __launch_bounds__(kThreads) start_flood(Start start) {
+  const int64_t first = int64_t(blockIdx.x) * kThreads + threadIdx.x, step = int64_t(gridDim.x) * kThreads;
+  const auto set = [&](auto* data, int64_t count, auto value) {
+    for (int64_t i = first; i < count; i += step) data[i] = value;
+  };
+  const sheet_steps::FloodState& s = start.state;
+  set(&s.out.leaf.data->word[0], s.out.leaf.size * 8, uint64_t(0));
+  set(&s.out.empty.data->word[0], s.out.empty.size * 64, uint64_t(0));
+  set(&s.passed_on.data->word[0], s.passed_on.size * 64, uint64_t(0));
+  set(s.out.block.data, s.out.block.size, 0u);
+  set(s.leaves.stamp.data, s.leaves.stamp.size, 0u);
+  set(s.blocks.stamp.data, s.blocks.stamp.size, 0u);
+  for (int q = 0; q < 2; ++q) set(start.left[q].data, start.left[q].size, uint32_t(start.capacity[q]));
+}
+
+/// The last round's lists become the first of the next rounds. Tells the host how many nodes they hold.
+__global__ void turn_queues(Start start, int64_t* listed) {
+  int64_t count = 0;
+  for (int q = 0; q < 2; ++q) {
+    const uint32_t last = start.left[q][kRoundsPerLook];
+    count += start.capacity[q] - int64_t(last);
+    start.left[q][0] = last;
+    for (int round = 1; round <= kRoundsPerLook; ++round) start.left[q][round] = uint32_t(start.capacity[q]);
+  }
+  *listed = count;
+}
 
 inline unsigned blocks_for(int64_t most) { return unsigned(most < 1 ? 1 : most < kBlocks ? most : kBlocks); }
 
@@ -186,16 +212,16 @@ inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
   outside.empty = exec.make<BlockMask>(blocked.blocks.size);
   outside.block = exec.make<uint32_t>(blocked.block_table.size);
   Buffer<BlockMask> passed_on = exec.make<BlockMask>(blocked.blocks.size);
-  exec.fill(outside.leaf.view(), LeafMask{});
-  exec.fill(outside.empty.view(), BlockMask{});
-  exec.fill(passed_on.view(), BlockMask{});
-  exec.fill(outside.block.view(), 0u);
-
   const int64_t entries = blocked.block_table.size;
   Queue leaves(exec, blocked.leaf_key.size), blocks(exec, entries);
   sheet_steps::FloodState state = {outside.view(), passed_on.view(), leaves.list_of(0), blocks.list_of(0), 1};
+  const Start start = {state, {leaves.left.view(), blocks.left.view()}, {leaves.capacity, blocks.capacity}};
+  const int64_t words = std::max(outside.leaf.size() * 8, passed_on.size() * 64);
+  start_flood<<<blocks_for((words + kThreads - 1) / kThreads), kThreads, 0, exec.stream()>>>(start);
+  exec.check("start flood");
   enter_from_border<<<blocks_for(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
   exec.check("enter from the border");
+  int64_t* const listed = static_cast<int64_t*>(exec.device().pinned());
   do {
     for (int round = 0; round < kRoundsPerLook; ++round) {
       state.leaves = leaves.list_of(round + 1);
@@ -206,9 +232,10 @@ inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
       flood_leaves<<<blocks_for((leaves.capacity + 31) / 32), kThreads, 0, exec.stream()>>>(state, leaves.of(round));
       exec.check("flood leaves");
     }
-    leaves.turn(exec);
-    blocks.turn(exec);
-  } while (!leaves.is_empty(exec) || !blocks.is_empty(exec));
+    turn_queues<<<1, 1, 0, exec.stream()>>>(start, listed);
+    exec.check("turn queues");
+    exec.device().synchronize();
+  } while (*listed > 0);
   return outside;
 }
 

@@ -37,17 +37,38 @@ void grow(Exec& exec, Buffer<T>& values, int64_t count, T rest) {
   exec.for_each("grow", count, CopyOrFill<T>{values.view(), larger.view(), rest});
   values = std::move(larger);
 }
+/// The same for three arrays of one size.
+template <class A, class B, class C>
+struct CopyOrFillThree {
+  CopyOrFill<A> a;
+  CopyOrFill<B> b;
+  CopyOrFill<C> c;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    a(i);
+    b(i);
+    c(i);
+  }
+};
+template <class Exec, class A, class B, class C>
+void grow(Exec& exec, int64_t count, Buffer<A>& a, A rest_a, Buffer<B>& b, B rest_b, Buffer<C>& c, C rest_c) {
+  Buffer<A> larger_a = exec.template make<A>(count);
+  Buffer<B> larger_b = exec.template make<B>(count);
+  Buffer<C> larger_c = exec.template make<C>(count);
+  exec.for_each("grow", count,
+                CopyOrFillThree<A, B, C>{{a.view(), larger_a.view(), rest_a},
+                                         {b.view(), larger_b.view(), rest_b},
+                                         {c.view(), larger_c.view(), rest_c}});
+  a = std::move(larger_a);
+  b = std::move(larger_b);
+  c = std::move(larger_c);
+}
 template <class Exec>
 void grow(Exec& exec, Cells& cells, int64_t count) {
-  grow(exec, cells.size, count, uint32_t(0));
-  grow(exec, cells.root, count, kNone);
-  grow(exec, cells.euler, count, int32_t(0));
+  grow(exec, count, cells.size, uint32_t(0), cells.root, kNone, cells.euler, int32_t(0));
 }
 template <class Exec>
 void grow(Exec& exec, SeedSet& seeds, int64_t count) {
-  grow(exec, seeds.position, count, PointQ8{0, 0, 0});
-  grow(exec, seeds.normal, count, Normal8{0, 0, 0});
-  grow(exec, seeds.home, count, uint32_t(0));
+  grow(exec, count, seeds.position, PointQ8{0, 0, 0}, seeds.normal, Normal8{0, 0, 0}, seeds.home, uint32_t(0));
 }
 
 /// Puts seed `id` onto a sheet vertex.
