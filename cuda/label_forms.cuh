@@ -1,5 +1,4 @@
-// Form of label_sheet: a warp a leaf. Lanes gather the seeds that can win inside the leaf's box, then label its
-// vertices.
+// Form of label_sheet: a warp a leaf. Lanes gather the seeds near the leaf, then label its vertices.
 #pragma once
 
 #include "cuda/block_form.cuh"
@@ -43,10 +42,24 @@ class LeafLabeller {
         begin_(step.corners.first[leaf]),
         end_(step.corners.first[leaf + 1]) {}
 
+  /// Looks among the seeds within reach of the leaf's bounds. When the dearest label costs no more than a seed beyond
+  /// would, the labels are right; else that cost says how far to look.
   __device__ void run() {
     find_bounds();
-    const int count = gather();
-    for (int64_t v = begin_ + lane_; v < end_; v += 32) step_.out[v] = count <= kCapacity ? best_of(v, count) : best(v);
+    int64_t reach_sq = step_.spacing.h_q8 * step_.spacing.h_q8;
+    for (;;) {
+      const int count = gather(reach_sq);
+      int64_t dearest = 0;
+      for (int64_t v = begin_ + lane_; v < end_; v += 32) {
+        const Best best = count <= kCapacity ? best_of(v, count) : best_within(v, reach_sq);
+        dearest = best.cost > dearest ? best.cost : dearest;
+        step_.out[v] = best.id;
+      }
+      dearest = warp_max(dearest);
+      if (dearest <= reach_sq) return;
+      reach_sq = dearest == INT64_MAX ? 4 * reach_sq : dearest;  // no seed at all, or none near enough
+      __syncwarp();
+    }
   }
 
  private:
@@ -66,23 +79,11 @@ class LeafLabeller {
     bounds_ = b;
   }
 
-  /// The seeds that can win in the box, and the limit that no label's cost exceeds, as LabelLeaf::gather finds them. A
-  /// count above kCapacity: they do not fit.
-  __device__ int gather() {
-    const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds_.lo, bounds_.hi))));
-    for (int64_t reach = diagonal + step_.spacing.h_q8 * 3 / 4;; reach *= 2) {
-      limit_ = INT64_MAX;
-      for_each_within(reach * reach, [&](bool in, const label::LabelSeed& s) {
-        if (!in) return;
-        const int64_t hi = cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).hi;
-        limit_ = hi < limit_ ? hi : limit_;
-      });
-      limit_ = warp_min(limit_);
-      if (limit_ != INT64_MAX) break;
-    }
+  /// Keeps the seeds within reach, perhaps others too. Returns their number; above kCapacity they do not fit.
+  __device__ int gather(int64_t reach_sq) {
     int count = 0;
-    for_each_within(limit_, [&](bool in, const label::LabelSeed& s) {
-      in = in && cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).lo <= limit_;
+    for_each_within(reach_sq, [&](bool in, const label::LabelSeed& s) {
+      in = in && cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).lo <= reach_sq;
       const unsigned kept = __ballot_sync(kAll, in);
       const int place = count + __popc(kept & ((1u << lane_) - 1));
       if (in && place < kCapacity) candidates_.seed[place] = s;
@@ -127,18 +128,18 @@ class LeafLabeller {
       if (c < cost || (c == cost && seed < id)) cost = c, id = seed;
     }
   };
-  __device__ uint32_t best_of(int64_t v, int count) const {
+  __device__ Best best_of(int64_t v, int count) const {
     Best best;
     const PointQ8 p = step_.position[v];
     const Normal8 n = step_.normal[v];
     for (int c = 0; c < count; ++c)
       best.offer(label::cost(p, n, candidates_.seed[c], step_.spacing.penalty_q16), candidates_.seed[c].id);
-    return best.id;
+    return best;
   }
-  /// The exact path without lists: every seed in reach.
-  __device__ uint32_t best(int64_t v) const {
+  /// The exact path without a list.
+  __device__ Best best_within(int64_t v, int64_t reach_sq) const {
     Best best;
-    const int32_t r = int32_t(isqrt(uint64_t(limit_))) + 1;
+    const int32_t r = int32_t(isqrt(uint64_t(reach_sq))) + 1;
     const PointQ8 lo = bounds_.lo, hi = bounds_.hi;
     const auto offer = [&](const GridPoint& p) {
       best.offer(label::cost(step_.position[v], step_.normal[v], {p.position, p.id, step_.seed_normal[p.id]},
@@ -146,7 +147,7 @@ class LeafLabeller {
                  p.id);
     };
     visit_box(step_.grid, {{lo.x - r, lo.y - r, lo.z - r}, {hi.x + r, hi.y + r, hi.z + r}}, offer);
-    return best.id;
+    return best;
   }
 
   const Step& step_;
@@ -154,7 +155,6 @@ class LeafLabeller {
   const int lane_;
   const int64_t begin_, end_;
   label::Bounds bounds_;
-  int64_t limit_ = 0;
 };
 
 }  // namespace label_forms

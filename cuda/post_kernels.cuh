@@ -6,6 +6,9 @@
 #include "stages/post_body.h"
 
 namespace isoshell::post {
+
+constexpr int kRoundsPerLook = 3;  ///< most meshes are done after two
+
 namespace device_steps {
 
 /// Lists the flips that go ahead, in any order: they touch nothing in common.
@@ -41,22 +44,26 @@ struct RestoreAndTell {
 inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t> claim, int rounds) {
   using namespace device_steps;
   const int64_t half_edges = key.mesh.twin.size, most = claim.size / 4 + 1;  // a flip holds four vertices
-  Buffer<uint32_t> winners = exec.make<uint32_t>(most), count = exec.make<uint32_t>(rounds);
-  exec.fill(count.view(), 0u);
-  for (int r = 0; r < rounds; ++r) {
-    const View<uint32_t> count_of_round = count.view().part(r, 1);
-    exec.fill(claim, uint64_t(0));
-    exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
-    exec.for_each("list flips", half_edges, ListWinners{{key, claim}, winners.view(), count_of_round});
-    exec.for_each("flip edges", most, FlipWinners{{key.mesh, winners.view()}, count_of_round});
-  }
+  Buffer<uint32_t> winners = exec.make<uint32_t>(most), count = exec.make<uint32_t>(kRoundsPerLook);
   int64_t flips = 0;
-  for (const uint32_t n : count.to_host()) flips += n;
+  for (int left = rounds; left > 0; left -= kRoundsPerLook) {
+    const int now = left < kRoundsPerLook ? left : kRoundsPerLook;
+    exec.fill(count.view(), 0u);
+    for (int r = 0; r < now; ++r) {
+      const View<uint32_t> count_of_round = count.view().part(r, 1);
+      exec.fill(claim, uint64_t(0));
+      exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
+      exec.for_each("list flips", half_edges, ListWinners{{key, claim}, winners.view(), count_of_round});
+      exec.for_each("flip edges", most, FlipWinners{{key.mesh, winners.view()}, count_of_round});
+    }
+    const Buffer<uint32_t> found = count.to_host();
+    for (const uint32_t n : found) flips += n;
+    if (found[now - 1] == 0) break;
+  }
   return flips;
 }
 
 inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, const RestoreHarmed& restore) {
-  constexpr int kRoundsPerLook = 4;
   Buffer<uint32_t> some = exec.make<uint32_t>(kRoundsPerLook);
   exec.fill(restore.harmed, 0u);
   do {

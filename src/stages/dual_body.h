@@ -51,13 +51,13 @@ class Partition {
     Buffer<TriangleIndices> faces;
     for (;;) {
       const Buffer<uint32_t> failing = find_failing(faces);
-      const int64_t unused = unused_seeds().size();
-      report_.failed_cells = strays + failing.size() + unused;
+      const Buffer<uint32_t> unused = unused_seeds();
+      report_.failed_cells = strays + failing.size() + unused.size();
       if (report_.failed_cells == 0 || strays > 0 || !take_round()) break;
       if (failing.size() > 0)
-        split(failing);
+        split(failing, unused);
       else
-        split(largest_cells(unused));
+        split(largest_cells(unused.size()), unused);
     }
     if (faces.empty()) faces = faces_now();
     return faces;
@@ -75,9 +75,8 @@ class Partition {
 
   Buffer<uint32_t> unused_seeds() { return exec_.select(cells_.count(), OwnsNothing{cells_.size.view()}); }
 
-  /// Ids for `count` new cells; makes room for them in seeds and cells.
-  Buffer<uint32_t> new_ids(int64_t count) {
-    const Buffer<uint32_t> unused = unused_seeds();
+  /// Ids for `count` new cells; makes room for them in seeds and cells. `unused`: see unused_seeds().
+  Buffer<uint32_t> new_ids(int64_t count, const Buffer<uint32_t>& unused) {
     const int64_t before = seeds_.size();
     Buffer<uint32_t> ids = exec_.template make<uint32_t>(count);
     exec_.for_each("take ids", count, TakeIds{unused.view(), uint32_t(before), ids.view()});
@@ -117,7 +116,7 @@ class Partition {
                    JoinStray{strays.view(), waiting, joining.view(), decision.view(), pieces.piece.view(),
                              label_.view(), cells_.view()});
     report_.relabelled_vertices += exec_.sum(joining.size(), SizeOfJoining{strays.view(), waiting, joining.view()});
-    const Buffer<uint32_t> ids = new_ids(founding.size());
+    const Buffer<uint32_t> ids = founding.empty() ? Buffer<uint32_t>() : new_ids(founding.size(), unused_seeds());
     exec_.for_each("found cells", founding.size(),
                    FoundCell{strays.view(), waiting, founding.view(), ids.view(), label_.view(), cells_.view(),
                              writer_of(sheet_, seeds_)});
@@ -153,7 +152,7 @@ class Partition {
   }
   Buffer<uint32_t> requested() { return exec_.select(cells_.count(), IsRequested{request_.view()}); }
 
-  void split(const Buffer<uint32_t>& cell) {
+  void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused) {
     const int64_t count = cell.size();
     Buffer<int64_t> first = exec_.template make<int64_t>(count + 1);
     exec_.for_each("size splits", count + 1, SizeOfRequested{cell.view(), cells_.size.view(), first.view()});
@@ -163,7 +162,7 @@ class Partition {
       mark_ = exec_.template make<uint8_t>(sheet_.vertex_count());
       exec_.fill(mark_.view(), uint8_t(SplitCell::kClear));
     }
-    const Buffer<uint32_t> ids = new_ids(count);
+    const Buffer<uint32_t> ids = new_ids(count, unused);
     split_cells(
         exec_, count,
         SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(), sheet_.position.view(),
