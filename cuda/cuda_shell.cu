@@ -147,6 +147,13 @@ Transform transform_to_sites(CudaExecutor& exec, int32_t band_vox) {
   }
 }
 
+/// The paper's bands, unrolled, and all others.
+Transform transform_to_masks(CudaExecutor& exec, int32_t band_vox) {
+  if (band_vox == 6) return transform<1, 6, closest::DistancePair>(exec);
+  if (band_vox == 9) return transform<2, 9, closest::DistancePair>(exec);
+  return wide_transform<closest::DistancePair>(exec, band_vox);
+}
+
 template <int kBand>
 void grow(CudaExecutor& exec, const Arguments& a) {
   const int64_t threads = a.in.shell.leaf_key.size * 16;
@@ -168,7 +175,7 @@ void find_masks(CudaExecutor& exec, const Arguments& a) {
     case 4:
       return grow<4>(exec, a);
     default:
-      wide_transform<closest::DistancePair>(exec, a.in.band_vox).run(exec, a, "shell masks");
+      transform_to_masks(exec, a.in.band_vox).run(exec, a, "shell masks");
   }
 }
 

@@ -13,7 +13,7 @@ using overlap_plan::Plan;
 
 constexpr int kWarps = 4;  ///< a thread block
 constexpr unsigned kAllLanes = 0xffffffffu;
-constexpr int32_t kMostColumns = 256;  ///< of a triangle whose voxels are found column by column
+constexpr int32_t kMostColumns = 64;  ///< of a triangle whose voxels are found column by column
 
 /// Windows of large triangles. Made in any order; more than fit are counted, but not kept.
 struct Windows {
