@@ -21,9 +21,14 @@ struct PatchBox {
 __device__ inline PatchBox box_of(const Patch& p) {
   return {p.origin, {p.lo[0], p.lo[1], p.lo[2]}, {p.hi[0], p.hi[1], p.hi[2]}, pack(p.normal_lo), pack(p.normal_hi)};
 }
+
 /// Root of a squared distance in q16, rounded up, perhaps by a little more.
 __device__ inline int32_t reach_of(int64_t sq_q16) { return int32_t(sqrtf(float(sq_q16)) * 1.00001f) + 1; }
 
+__device__ inline int64_t min_over_warp(int64_t x) {
+  for (int d = 16; d > 0; d >>= 1) x = min(x, __shfl_xor_sync(~0u, x, d));
+  return x;
+}
 __device__ inline uint32_t min_over_warp(uint32_t x) {
 #if __CUDA_ARCH__ >= 800
   return __reduce_min_sync(~0u, x);
@@ -39,7 +44,8 @@ template <class Cost>
 struct CostBounds {
   static constexpr Cost none() { return sizeof(Cost) == 4 ? Cost(UINT32_MAX) : Cost(INT64_MAX); }
   Cost lo, hi;
-  bool may_oppose;
+  Cost far;  ///< largest squared distance
+  bool may_oppose, always_opposes;
 };
 
 template <class Cost>
@@ -57,12 +63,13 @@ class BoxCosts {
     const auto outside = [](int32_t lo, int32_t hi, int32_t d) { return max(max(lo - d, d - hi), 0); };
     const int32_t x = outside(box_.lo.x, box_.hi.x, d.x), y = outside(box_.lo.y, box_.hi.y, d.y),
                   z = outside(box_.lo.z, box_.hi.z, d.z);
-    if (max(max(x, y), z) > reach) return {CostBounds<Cost>::none(), CostBounds<Cost>::none(), false};
+    constexpr Cost kNothing = CostBounds<Cost>::none();
+    if (max(max(x, y), z) > reach) return {kNothing, kNothing, kNothing, false, false};
     const auto far = [](int32_t lo, int32_t hi, int32_t d) { return max(d - lo, hi - d); };
-    CostBounds<Cost> out{
-        sum_of_squares(x, y, z),
-        sum_of_squares(far(box_.lo.x, box_.hi.x, d.x), far(box_.lo.y, box_.hi.y, d.y), far(box_.lo.z, box_.hi.z, d.z)),
-        false};
+    CostBounds<Cost> out{};
+    out.lo = sum_of_squares(x, y, z);
+    out.hi = out.far =
+        sum_of_squares(far(box_.lo.x, box_.hi.x, d.x), far(box_.lo.y, box_.hi.y, d.y), far(box_.lo.z, box_.hi.z, d.z));
     if (penalty_ == 0) return out;
     // Twice the dot product at the middle of the normals' box, and how far it goes both ways.
     const int32_t middle =
@@ -70,7 +77,8 @@ class BoxCosts {
     const int32_t spread = int32_t(__dp4a(__vabs4(s.packed_normal), half_, 0u));
     out.may_oppose = middle - spread < 2 * label::kOpposite;
     if (out.may_oppose) out.hi = plus_penalty(out.hi);
-    if (middle + spread < 2 * label::kOpposite) out.lo = plus_penalty(out.lo);
+    out.always_opposes = middle + spread < 2 * label::kOpposite;
+    if (out.always_opposes) out.lo = plus_penalty(out.lo);
     return out;
   }
 
@@ -80,8 +88,8 @@ class BoxCosts {
   }
 
   /// True when `best`, which is at `m`, wins against the seed at every point of the box, penalties counted.
-  __device__ bool beaten(const SeedRecord& best, uint32_t best_id, bool best_may_pay, const SeedRecord& s,
-                         uint32_t id) const {
+  __device__ bool beaten(const SeedRecord& best, uint32_t best_id, bool best_may_pay, const SeedRecord& s, uint32_t id,
+                         bool always_pays) const {
     const auto axis = [](int32_t origin, int32_t lo, int32_t hi, int32_t pa, int32_t pb) {
       const int64_t v = pb > pa ? hi : lo, a = pa - origin, b = pb - origin;
       return (b - a) * (2 * v - a - b);
@@ -90,6 +98,7 @@ class BoxCosts {
                    axis(box_.origin.y, box_.lo.y, box_.hi.y, best.y, s.y) +
                    axis(box_.origin.z, box_.lo.z, box_.hi.z, best.z, s.z);
     if (best_may_pay) most += full_penalty_;
+    if (always_pays) most -= full_penalty_;
     return most < 0 || (most == 0 && best_id < id);
   }
 

@@ -5,6 +5,26 @@
 
 namespace isoshell::cuda_relax {
 
+/// The most that a vertex of a patch pays at the nearest of some winners.
+struct MostAtVertices {
+  const SheetPass* pass;
+  int64_t number;
+
+  __device__ __noinline__ int64_t operator()(const Winners& winners, int count) const {
+    const Patch& patch = pass->patches.patch[number];
+    int64_t most = 0;
+    for (int i = int(threadIdx.x & 31); i < patch.vertices; i += 32) {
+      const int64_t v = patch.vertex_first + i;
+      const SeedRecord normal{0, 0, 0, pass->patches.normal[v]};
+      most = max(most, nearest_winner(winners, count, pass->patches.vertex[v].local(), normal.normal(),
+                                      pass->search.penalty_q16)
+                           .cost);
+    }
+    for (int d = 16; d > 0; d >>= 1) most = max(most, __shfl_xor_sync(~0u, most, d));
+    return most;
+  }
+};
+
 /// Patches with more candidates than winners: many of them, and no more cells than winners can be.
 class ManyCandidates {
  public:
@@ -12,8 +32,7 @@ class ManyCandidates {
       : pass_(pass), patch_(patch), scratch_(scratch), lane_(threadIdx.x & 31) {}
 
   /// Labels the vertices and gives the winners; false when there are too many of either.
-  __device__ bool label_vertices(PatchSearch& search, int32_t reach, SearchResult& found) {
-    tighten(search, reach, found.limit);
+  __device__ bool label_vertices(PatchSearch& search, SearchResult& found) {
     const int count = search.list(found.limit, scratch_.many, kMaxMany);
     if (count > kMaxMany) return false;
     if (lane_ < kMaxMany / 32) scratch_.used[lane_] = 0;
@@ -28,17 +47,6 @@ class ManyCandidates {
   }
 
  private:
-  /// Where normals point all ways, any seed may have to pay; then the limit is what vertices pay at the seeds around.
-  __device__ void tighten(PatchSearch& search, int32_t reach, int64_t& limit) {
-    const int count = search.list(search.least_far(reach), scratch_.many, kMaxMany);
-    if (count == 0 || count > kMaxMany) return;
-    int64_t most = 0;
-    for (int i = lane_; i < patch_.vertices; i += 32) most = max(most, nearest(i, count).cost);
-    for (int d = 16; d > 0; d >>= 1) most = max(most, __shfl_xor_sync(~0u, most, d));
-    limit = min(limit, most);
-    __syncwarp();
-  }
-
   struct Nearest {
     int64_t cost;
     int number;
@@ -91,7 +99,7 @@ __device__ __noinline__ inline SearchResult label_from_many(const SheetPass& pas
                                                             WarpScratch& scratch) {
   const Patch& patch = pass.patches.patch[leaf];
   PatchSearch search(pass.search, box_of(patch), scratch.search);
-  ManyCandidates(pass, patch, scratch).label_vertices(search, found.reach, found);
+  ManyCandidates(pass, patch, scratch).label_vertices(search, found);
   return found;
 }
 

@@ -11,10 +11,13 @@ using namespace cuda_relax;
 constexpr int kThreads = 128;
 unsigned blocks_for(int64_t count, int per_block) { return unsigned((count + per_block - 1) / per_block); }
 
-/// About three cells at most, so that lists of candidates stay short; few enough that patches take about the same time.
-int own_vertices_for(int64_t h_sq_q16) {
-  const int64_t of_cells = 3 * h_sq_q16 >> (2 * kFractionBits);
-  return int(of_cells < 32 ? 32 : of_cells > 96 ? 96 : of_cells);
+/// About three cells at most, so that lists of candidates stay short; few enough that patches take about the same time
+/// and that small sheets, too, give every multiprocessor some.
+int own_vertices_for(int64_t h_sq_q16, int64_t vertices) {
+  constexpr int64_t kFewest = 32, kMost = 96, kPatches = 4096;
+  const int64_t of_cells = 3 * h_sq_q16 >> (2 * kFractionBits), of_sheet = vertices / kPatches;
+  const int64_t least = of_cells < of_sheet ? of_cells : of_sheet;
+  return int(least < kFewest ? kFewest : least > kMost ? kMost : least);
 }
 
 RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const SheetPatches& patches, int64_t area2,
@@ -62,8 +65,8 @@ RelaxReport cuda_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxO
   const OnDevice<Sheet> here(exec, sheet);
   on_device(exec, seeds);
   const int64_t area2 = doubled_area_q16(exec, *here);
-  const SheetPatches patches =
-      make_sheet_patches(exec, *here, own_vertices_for(seed_spacing(area2, seeds.size()).h_sq_q16));
+  const SheetPatches patches = make_sheet_patches(
+      exec, *here, own_vertices_for(seed_spacing(area2, seeds.size()).h_sq_q16, here->vertex_count()));
   if (!patches.fits) return relax_on_sheet_body(exec, *here, seeds, options);
   return relax_by_patches(exec, *here, patches, area2, seeds, options);
 }

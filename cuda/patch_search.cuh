@@ -25,7 +25,7 @@ struct Winners {
   uint32_t packed_normal[kMaxWinners];
 };
 
-/// Scratch of the search: numbers of the seeds in 32 buckets.
+/// Scratch of the search: numbers of the seeds in 32 full buckets.
 struct SearchScratch {
   uint32_t id[32 * kBucketSeeds];
 };
@@ -44,12 +44,13 @@ class PatchSearch {
   __device__ PatchSearch(const SeedSearch& search, const PatchBox& box, SearchScratch& scratch)
       : search_(search), box_(box), scratch_(scratch), lane_(threadIdx.x & 31) {}
 
-  /// Looks `reach` far first. Cost must fit; the result has count -1 when it no longer does.
-  template <class Cost>
-  __device__ SearchResult find(int32_t reach, Winners& out) {
+  /// Looks `reach` far first. Cost must fit; the result has count -1 when it no longer does. `most_at(winners)` is the
+  /// most that a vertex pays at the nearest of some winners.
+  template <class Cost, class Most>
+  __device__ SearchResult find(int32_t reach, Winners& out, Most most_at) {
     SearchResult result{-1, 0, false, INT64_MAX, reach};
     while (BoxCosts<Cost>::fits(box_, result.reach))
-      if (look<Cost>(result)) {
+      if (look<Cost>(result, out, most_at)) {
         keep<Cost>(out, result);
         break;
       }
@@ -77,18 +78,6 @@ class PatchSearch {
     return count;
   }
 
-  /// Smallest cost that a seed has anywhere in the box where it pays nothing.
-  __device__ int64_t least_far(int32_t reach) {
-    const BoxCosts<int64_t> costs(box_, 0);
-    int64_t least = INT64_MAX;
-    set_reach(reach);
-    for_each_batch([&](const uint32_t* batch, int total) {
-      for (int i = lane_; i < total; i += 32) least = min(least, costs.of(search_.seed[batch[i]], reach).hi);
-    });
-    for (int d = 16; d > 0; d >>= 1) least = min(least, __shfl_xor_sync(~0u, least, d));
-    return least;
-  }
-
   /// Winners from a list of at most kMaxWinners ids, in its order. The best is any.
   __device__ void take(const uint32_t* ids, int count, Winners& out, SearchResult& result) const {
     if (lane_ < count) put(out, lane_, ids[lane_], search_.seed[ids[lane_]]);
@@ -99,37 +88,43 @@ class PatchSearch {
 
  private:
   /// The limit, by what seeds cost at most. False when the reach was too short; then it is longer.
-  template <class Cost>
-  __device__ bool look(SearchResult& result) {
+  template <class Cost, class Most>
+  __device__ bool look(SearchResult& result, Winners& out, Most most_at) {
     const int32_t reach = result.reach;
     const BoxCosts<Cost> costs(box_, search_.penalty_q16);
-    Cost best = CostBounds<Cost>::none();
+    Cost best = CostBounds<Cost>::none(), best_far = best;
     best_id_ = kNone;
+    best_may_pay_ = false;
     set_reach(reach);
     for_each_batch([&](const uint32_t* batch, int total) {
       for (int i = lane_; i < total; i += 32) {
         const uint32_t id = batch[i];
         const CostBounds<Cost> range = costs.of(search_.seed[id], reach);
+        best_far = min(best_far, range.far);
         if (range.hi < best) best = range.hi, best_id_ = id, best_may_pay_ = range.may_oppose;
       }
     });
-    Cost least;
-    if constexpr (sizeof(Cost) == 4) {
-      least = min_over_warp(best);
-    } else {
-      least = best;
-      for (int d = 16; d > 0; d >>= 1) least = min(least, __shfl_xor_sync(~0u, least, d));
-    }
+    const Cost least = min_over_warp(best), least_far = min_over_warp(best_far);
     // Any of the best will do.
     const int lane = __ffs(int(__ballot_sync(~0u, best == least))) - 1;
     best_id_ = __shfl_sync(~0u, best_id_, lane);
     best_may_pay_ = __shfl_sync(~0u, int(best_may_pay_), lane);
-    if (least != CostBounds<Cost>::none() && int64_t(least) <= int64_t(reach) * reach) {
-      result.limit = int64_t(least);
-      return true;
-    }
-    result.reach = least == CostBounds<Cost>::none() ? 2 * reach : reach_of(int64_t(least));
+    const int64_t reach_sq = int64_t(reach) * reach;
+    if (least != CostBounds<Cost>::none()) result.limit = min(result.limit, int64_t(least));
+    if (least_far < least && int64_t(least_far) <= reach_sq) tighten(result, least_far, out, most_at);
+    if (result.limit <= reach_sq) return true;
+    result.reach = result.limit == INT64_MAX ? 2 * reach : reach_of(result.limit);
     return false;
+  }
+
+  /// Where normals point all ways, any seed may have to pay; then the limit is what vertices pay at the seeds around.
+  template <class Cost, class Most>
+  __device__ void tighten(SearchResult& result, Cost least_far, Winners& out, Most most_at) {
+    SearchResult around = result;
+    around.limit = int64_t(least_far);
+    keep<Cost>(out, around);
+    if (around.count > 0 && around.count <= kMaxWinners) result.limit = min(result.limit, most_at(out, around.count));
+    __syncwarp();
   }
 
   /// The seeds that the limit leaves and the best one does not beat. The box is that of the last look.
@@ -137,7 +132,8 @@ class PatchSearch {
   __device__ void keep(Winners& out, SearchResult& result) {
     const int32_t reach = result.reach;
     const BoxCosts<Cost> costs(box_, search_.penalty_q16);
-    const SeedRecord best = search_.seed[best_id_];
+    const bool has_best = best_id_ != kNone;
+    const SeedRecord best = search_.seed[has_best ? best_id_ : 0];
     int count = 0;
     bool may_oppose = false;
     for_each_batch([&](const uint32_t* batch, int total) {
@@ -147,7 +143,7 @@ class PatchSearch {
         const SeedRecord s = search_.seed[id];
         const CostBounds<Cost> range = costs.of(s, reach);
         in = in && range.lo <= Cost(result.limit) &&
-             (id == best_id_ || !costs.beaten(best, best_id_, best_may_pay_, s, id));
+             (!has_best || id == best_id_ || !costs.beaten(best, best_id_, best_may_pay_, s, id, range.always_opposes));
         may_oppose |= in && range.may_oppose;
         const unsigned kept = __ballot_sync(~0u, in);
         const int place = count + __popc(kept & ((1u << lane_) - 1));
@@ -199,7 +195,7 @@ class PatchSearch {
   /// others. All lanes call it.
   template <class Each>
   __device__ void for_each_batch(Each each) {
-    for (int base = 0; base < cells_; base += 32) {
+    for (int base = 0; base < cells_; base = next_) {
       if (base != collected_) collect(base);
       each(scratch_.id, total_);
     }
@@ -219,9 +215,19 @@ class PatchSearch {
     collected_ = -1;
   }
 
-  /// Numbers of the seeds in cells base .. base + 31 of the box, into the scratch.
+  /// Numbers of the seeds in cells base .. next_ - 1 of the box, as many as the scratch holds.
   __device__ void collect(int base) {
     __syncwarp();
+    total_ = 0;
+    next_ = base;
+    while (next_ < cells_ && collect_cells(next_)) next_ += 32;
+    if (search_.grid.hash_mask) drop_strangers();
+    collected_ = base;
+    __syncwarp();
+  }
+
+  /// Adds the seeds of 32 cells; false when there is no room for them.
+  __device__ bool collect_cells(int base) {
     int count = 0, x = 0, y = 0, z = 0;
     const uint4* bucket = reinterpret_cast<const uint4*>(search_.table.bucket);
     uint4 part[2] = {};
@@ -242,9 +248,10 @@ class PatchSearch {
       const int before = __shfl_up_sync(~0u, at, d);
       if (lane_ >= d) at += before;
     }
-    total_ = __shfl_sync(~0u, at, 31);
-    at -= count;
-    uint32_t* to = scratch_.id + at;
+    const int added = __shfl_sync(~0u, at, 31);
+    if (total_ + added > 32 * kBucketSeeds) return false;
+    uint32_t* to = scratch_.id + total_ + at - count;
+    total_ += added;
     const auto put = [&](int i, uint32_t id) {
       if (i < count) to[i] = in_cell(id, x, y, z);
     };
@@ -255,9 +262,7 @@ class PatchSearch {
       put(7, part[0].x), put(8, part[0].y), put(9, part[0].z), put(10, part[0].w);
       put(11, part[1].x), put(12, part[1].y), put(13, part[1].z), put(14, part[1].w);
     }
-    if (search_.grid.hash_mask) drop_strangers();
-    collected_ = base;
-    __syncwarp();
+    return true;
   }
 
   /// Hashed cells share buckets: each seed is met in its own cell only.
@@ -282,21 +287,23 @@ class PatchSearch {
   const PatchBox box_;
   SearchScratch& scratch_;
   const int lane_;
-  int first_[3] = {}, dims_[2] = {}, cells_ = 0, collected_ = -1, total_ = 0;
+  int first_[3] = {}, dims_[2] = {}, cells_ = 0, collected_ = -1, next_ = 0, total_ = 0;
   uint32_t best_id_ = 0;
   bool best_may_pay_ = false;
 };
 
-__device__ __noinline__ inline SearchResult find_far(const SeedSearch& search, PatchBox box, int32_t reach,
-                                                     SearchScratch& scratch, Winners& out) {
-  return PatchSearch(search, box, scratch).find<int64_t>(reach, out);
+template <class Most>
+__device__ __noinline__ SearchResult find_far(const SeedSearch& search, PatchBox box, int32_t reach,
+                                              SearchScratch& scratch, Winners& out, Most most_at) {
+  return PatchSearch(search, box, scratch).find<int64_t>(reach, out, most_at);
 }
 
 /// The winners of a patch.
+template <class Most>
 __device__ inline SearchResult find_winners(const SeedSearch& search, const PatchBox& box, int32_t reach,
-                                            SearchScratch& scratch, Winners& out) {
-  const SearchResult near = PatchSearch(search, box, scratch).find<uint32_t>(reach, out);
-  return near.count >= 0 ? near : find_far(search, box, near.reach, scratch, out);
+                                            SearchScratch& scratch, Winners& out, Most most_at) {
+  const SearchResult near = PatchSearch(search, box, scratch).find<uint32_t>(reach, out, most_at);
+  return near.count >= 0 ? near : find_far(search, box, near.reach, scratch, out, most_at);
 }
 
 }  // namespace isoshell::cuda_relax

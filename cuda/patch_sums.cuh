@@ -20,13 +20,12 @@ struct SheetPass {
   int32_t tolerance_ppb;
 };
 
-/// Pieces on their way from the lanes that cut them to the lanes that own a (winner, moment) pair. Lane 5 c + q of
-/// group g owns moment q of winner 6 g + c.
+/// Pieces on their way from the lanes that cut them to the sums. Lane 5 c + q adds up moment q of winner c, c + 6 ...
 struct PieceExchange {
-  int64_t piece[kMaxWinners * 5];  ///< per lane; in the end, the sums per winner
+  int64_t piece[32 * 5];  ///< per lane
   unsigned lanes_of[kMaxWinners];
+  int64_t sum[kMaxWinners * 5];  ///< per winner
 };
-constexpr int kGroups = (kMaxWinners + 5) / 6;
 
 struct TriangleQueue {
   uint16_t triangle[64];
@@ -54,8 +53,7 @@ class PatchSums {
  public:
   __device__ PatchSums(const SheetPass& pass, const Patch& patch, const SearchResult& found, WarpScratch& scratch)
       : pass_(pass), patch_(patch), found_(found), scratch_(scratch), lane_(threadIdx.x & 31) {
-#pragma unroll
-    for (int g = 0; g < kGroups; ++g) owned_[g] = 0;
+    for (int i = lane_; i < 5 * found_.count; i += 32) scratch_.exchange.sum[i] = 0;
     scratch_.exchange.lanes_of[lane_] = 0;
   }
 
@@ -111,13 +109,7 @@ class PatchSums {
 
   /// Adds the sums to the cells; returns the lane's part of the energy.
   __device__ Int128 flush() {
-    int64_t* sums = scratch_.exchange.piece;
-#pragma unroll
-    for (int g = 0; g < kGroups; ++g) {
-      const int c = 6 * g + lane_ / 5;
-      if (lane_ < 30 && c < found_.count) sums[c * 5 + lane_ % 5] = owned_[g];
-    }
-    __syncwarp();
+    int64_t* sums = scratch_.exchange.sum;
     if (lane_ < 5) {
       const PieceSum& t = patch_.total;
       int64_t rest = lane_ == 0   ? t.mass
@@ -265,19 +257,27 @@ class PatchSums {
     add_slots(in, label);
   }
 
+  /// Sum of the lane's moment over the pieces of some lanes.
+  __device__ int64_t sum_from(unsigned lanes) const {
+    int64_t sum = 0;
+    for (; lanes; lanes &= lanes - 1) sum += scratch_.exchange.piece[(__ffs(int(lanes)) - 1) * 5 + lane_ % 5];
+    return sum;
+  }
+
   /// The same for pieces that lie in the lanes' slots.
   __device__ void add_slots(bool in, int label) {
     PieceExchange& x = scratch_.exchange;
     const unsigned active = __ballot_sync(~0u, in);
     if (in) x.lanes_of[label] = __match_any_sync(active, label);
     __syncwarp();
-    const int q = lane_ % 5;
-#pragma unroll
-    for (int g = 0; g < kGroups; ++g) {
-      const int c = 6 * g + lane_ / 5;
-      if (6 * g >= found_.count) break;
-      if (lane_ >= 30 || c >= kMaxWinners) continue;
-      for (unsigned from = x.lanes_of[c]; from; from &= from - 1) owned_[g] += x.piece[(__ffs(int(from)) - 1) * 5 + q];
+    if (found_.count <= 3) {
+      // Room for two lanes a moment, one for each half of the warp.
+      const unsigned half = lane_ < 15 ? 0x0000ffffu : lane_ < 30 ? 0xffff0000u : 0;
+      int64_t sum = sum_from(x.lanes_of[lane_ / 5 % 3] & half);
+      sum += __shfl_down_sync(~0u, sum, 15);
+      if (lane_ < 5 * found_.count) x.sum[lane_] += sum;
+    } else if (lane_ < 30) {
+      for (int c = lane_ / 5; c < found_.count; c += 6) x.sum[5 * c + lane_ % 5] += sum_from(x.lanes_of[c]);
     }
     __syncwarp();
     if (in) x.lanes_of[label] = 0;
@@ -289,7 +289,6 @@ class PatchSums {
   const SearchResult& found_;
   WarpScratch& scratch_;
   const int lane_;
-  int64_t owned_[kGroups];
 };
 
 }  // namespace isoshell::cuda_relax

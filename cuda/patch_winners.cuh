@@ -22,19 +22,27 @@ __device__ inline void winners_at(const Winners& winners, int count, const Local
   }
 }
 
-/// Number of the winner at a vertex, whatever the distances and penalties.
-__device__ inline int winner_at(const Winners& winners, int count, Local v, Normal8 normal, int64_t penalty_q16) {
-  int best = 0;
-  int64_t least = INT64_MAX;
+/// A winner and what it costs.
+struct NearestWinner {
+  int64_t cost;
+  int number;
+};
+
+/// The winner at a vertex, whatever the distances and penalties.
+__device__ inline NearestWinner nearest_winner(const Winners& winners, int count, Local v, Normal8 normal,
+                                               int64_t penalty_q16) {
+  NearestWinner best{INT64_MAX, 0};
   for (int c = 0; c < count; ++c) {
     const Local s = winners.place[c];
     const SeedRecord record{0, 0, 0, winners.packed_normal[c]};
     const int64_t here =
         square({v.x - s.x, v.y - s.y, v.z - s.z}) + (dot(normal, record.normal()) < label::kOpposite ? penalty_q16 : 0);
-    best = here < least ? c : best;
-    least = here < least ? here : least;
+    if (here < best.cost) best = {here, c};
   }
   return best;
+}
+__device__ inline int winner_at(const Winners& winners, int count, Local v, Normal8 normal, int64_t penalty_q16) {
+  return nearest_winner(winners, count, v, normal, penalty_q16).number;
 }
 
 /// The label itself, from all seeds in reach: for patches with too many candidates. One thread, any vertex.

@@ -17,7 +17,8 @@ __device__ inline Int128 sum_patch(const SheetPass& pass, int64_t leaf, WarpScra
   const Patch& patch = pass.patches.patch[leaf];
   if (patch.triangles == 0) return 0;
   const int lane = threadIdx.x & 31;
-  SearchResult found = find_winners(pass.search, box_of(patch), pass.reach[leaf], scratch.search, scratch.winners);
+  SearchResult found = find_winners(pass.search, box_of(patch), pass.reach[leaf], scratch.search, scratch.winners,
+                                    MostAtVertices{&pass, leaf});
   if (lane == 0) pass.reach[leaf] = found.reach + pass.reach_slack;
   const bool many = found.count > kMaxWinners;
   if (many) found = label_from_many(pass, leaf, found, scratch);
@@ -54,6 +55,16 @@ struct SheetMove {
   int64_t count;
 };
 
+/// point_towards_centre by a group of lanes with the same arguments: each divides for one component.
+__device__ inline PointQ8 towards_centre_together(const relax_sheet::MovingSeeds& seeds,
+                                                  const relax_sheet::CellSum& cell, PointQ8 here) {
+  const int component = threadIdx.x & 3, group = threadIdx.x & 31 & ~(kWalkLanes - 1);
+  const int64_t first = component == 0 ? cell.first_x : component == 1 ? cell.first_y : cell.first_z;
+  const int64_t way = cell.mass > 0 ? relax_sheet::way_to_centre(first, cell.mass) : 0;
+  return seeds.moved(
+      here, {__shfl_sync(~0u, way, group), __shfl_sync(~0u, way, group + 1), __shfl_sync(~0u, way, group + 2)});
+}
+
 /// Everything a seed does between two sums, by a group of lanes a seed.
 __global__ void __launch_bounds__(kMoveThreads) move_seeds(const __grid_constant__ SheetMove move) {
   if (!move.progress->moving) return;
@@ -67,8 +78,7 @@ __global__ void __launch_bounds__(kMoveThreads) move_seeds(const __grid_constant
   const bool has_area = cell.mass > 0;
   Landing at{seeds.home[i], before};
   bool moved = exists && has_area;
-  const Landing centre = walk_together(seeds.walk, at.vertex,
-                                       has_area ? relax_sheet::point_towards_centre(seeds, cell, i) : before, moved);
+  const Landing centre = walk_together(seeds.walk, at.vertex, towards_centre_together(seeds, cell, before), moved);
   if (moved) at = centre;
   __syncwarp();
   if (writes) {

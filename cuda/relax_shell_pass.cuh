@@ -9,7 +9,7 @@
 
 namespace isoshell::cuda_relax {
 
-constexpr int kLeafWarps = 2;
+constexpr int kLeafWarps = 4;
 
 /// Sums over voxels of a leaf by their offsets from voxel 0. The largest: 512 * 147.
 struct OffsetSums {
@@ -76,6 +76,11 @@ __device__ inline PatchBox box_of(const ShellLeaf& leaf) {
           0, 0};
 }
 
+/// Without penalties a limit is never tighter than the search finds it.
+struct NoPenalty {
+  __device__ int64_t operator()(const Winners&, int) const { return INT64_MAX; }
+};
+
 /// A leaf with more candidates than lists hold: each lane searches for its voxels.
 __device__ __noinline__ inline Int128 sum_leaf_directly(const ShellPass& pass, int64_t number, int64_t limit) {
   Int128 energy = 0;
@@ -139,7 +144,8 @@ __device__ inline Int128 sum_shell_leaf(const ShellPass& pass, int64_t number, S
   if (leaf.voxels == 0) return 0;
   const int lane = threadIdx.x & 31;
   const PatchBox box = box_of(leaf);
-  const SearchResult found = find_winners(pass.search, box, pass.reach[number], scratch.search, scratch.winners);
+  const SearchResult found =
+      find_winners(pass.search, box, pass.reach[number], scratch.search, scratch.winners, NoPenalty{});
   if (lane == 0) pass.reach[number] = found.reach + pass.reach_slack;
   if (found.count > kMaxWinners) return sum_leaf_directly(pass, number, found.limit);
   OffsetSums sums = leaf.total;

@@ -235,10 +235,13 @@ ISOSHELL_HD inline PointQ8 point_ahead(const MovingSeeds& seeds, PointQ8 s, int6
   return seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15});
 }
 
+/// One component of the way from a seed to its cell's centre; `first` is that of the cell, which must have an area.
+ISOSHELL_HD inline int64_t way_to_centre(int64_t first, int64_t mass) { return round_div(first, 3 * mass); }
+
 /// Centre of the cell measured at here, no farther than a step. The cell must have an area.
 ISOSHELL_HD inline PointQ8 point_towards_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
-  return seeds.moved(seeds.here[i], {round_div(c.first_x, 3 * c.mass), round_div(c.first_y, 3 * c.mass),
-                                     round_div(c.first_z, 3 * c.mass)});
+  return seeds.moved(seeds.here[i], {way_to_centre(c.first_x, c.mass), way_to_centre(c.first_y, c.mass),
+                                     way_to_centre(c.first_z, c.mass)});
 }
 
 struct LookAhead {
