@@ -73,7 +73,7 @@ missing=$(find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd
 } > "$folder/VERSION"
 
 # The tests share most of their machine code, so a window as large as the folder packs it once.
-tar -C "$(dirname "$folder")" -cf - "$(basename "$folder")" | xz -T2 --lzma2=preset=6,dict=512MiB > "$folder.tar.xz"
+tar -C "$(dirname "$folder")" -cf - "$(basename "$folder")" | xz -T2 --lzma2=preset=3,dict=512MiB > "$folder.tar.xz"
 bytes=$(stat -c %s "$folder.tar.xz")
 echo "bundle: $folder ($(du -sm "$folder" | cut -f1) MB), packed $folder.tar.xz ($((bytes / 1000000)) MB)"
 [ "$bytes" -le $((limit_mb * 1000000)) ] || { echo "bundle: over $limit_mb MB packed" >&2; exit 1; }

@@ -266,12 +266,13 @@ class Run {
   }
 
   void tell_result() {
-    for (const StageTime& t : record_.report.times) {
-      std::ostringstream text;
-      text.precision(1);
-      text << std::fixed << "  " << t.stage << " " << t.ms << " ms";
-      console_.detail(text.str());
-    }
+    for (const auto* times : {&record_.times, &record_.report.times})
+      for (const StageTime& t : *times) {
+        std::ostringstream text;
+        text.precision(1);
+        text << std::fixed << "  " << t.stage << " " << t.ms << " ms";
+        console_.detail(text.str());
+      }
     std::ostringstream text;
     text.precision(1);
     text << std::fixed << (a_.output == "-" ? "standard output" : a_.output) << ": ";
