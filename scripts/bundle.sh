@@ -69,7 +69,7 @@ missing=$(find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd
 [ -z "$missing" ] || { echo "bundle: not found: $missing" >&2; exit 1; }
 {
   echo "isoshell $(git describe --always --dirty 2>/dev/null || echo '(no git)'), preset $preset"
-  ldd --version | head -n 1 | sed 's/^ldd/built against/'
+  ldd --version | sed -n '1s/^ldd/built against/p'  # all of it read: a pipe that closes early fails the script
 } > "$folder/VERSION"
 
 # The tests share most of their machine code, so a window as large as the folder packs it once.
