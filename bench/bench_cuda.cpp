@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -123,7 +124,8 @@ json times_in(const std::string& path) {
 /// The command, file to file, in a process of its own. Without statistics: their digests take every product to the
 /// host, which no other run does.
 json cold_run(const Arguments& a, const std::string& mesh, const std::string& label, const std::string& options) {
-  const std::string folder = "/tmp/isoshell_bench_" + std::to_string(getpid());
+  const std::string folder =
+      (std::filesystem::temp_directory_path() / ("isoshell_bench_" + std::to_string(getpid()))).string();
   const std::string line = "mkdir -p " + folder + " && '" + a.command + "' '" + mesh + "' " + folder +
                            "/out.ply --force -v --device cuda " + options + " 2> " + folder + "/log";
   std::vector<double> ms;

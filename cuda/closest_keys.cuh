@@ -28,7 +28,6 @@ struct DistancePair {
   static constexpr int kBits = 0;
   using Pair = uint32_t;
   struct Order {};
-  struct Entry {};
 
   __device__ static Order order(Voxel, int) { return {}; }
   __device__ static uint32_t none(int band) { return uint32_t(band * band + 1); }

@@ -11,7 +11,7 @@
 namespace isoshell {
 namespace {
 
-constexpr int kOldestCapability = 75;  // the oldest architecture that cuda/CMakeLists.txt compiles for
+constexpr int kOldestCapability = 75;  // the oldest architecture that the build compiles for unless told otherwise
 
 std::string version_text(int version) {
   return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);

@@ -44,6 +44,7 @@ __device__ __noinline__ void list_windows(const TriangleQ8& t, uint32_t triangle
 
 /// Whole triangles that fit a window.
 struct SmallTriangles {
+  static constexpr bool kWhole = true;
   SurfaceView surface;
   BlockGrid grid;
   Windows windows;
@@ -77,6 +78,7 @@ struct SmallTriangles {
 
 /// Pieces of the others.
 struct LargeTriangles {
+  static constexpr bool kWhole = false;
   SurfaceView surface;
   BlockGrid grid;
   Windows windows;
@@ -165,7 +167,8 @@ __global__ void __launch_bounds__(kWarps * 32, 8) mark_leaves(Source source, lea
   }
 }
 
-/// Small triangles go column by column, larger ones, which fill leaves better, leaf by leaf.
+/// Small triangles go column by column, larger ones, which fill leaves better, leaf by leaf. Only for plans of whole
+/// triangles: where a window cuts one, its values need not fit the columns' 32 bits.
 __device__ bool is_by_columns(const Plan& plan) {
   return is_tiny(plan) && (plan.last[0] + 1) * (plan.last[1] + 1) <= kMostColumns;
 }
@@ -233,7 +236,7 @@ __global__ void __launch_bounds__(kWarps * 32) mark_voxels_of_leaves(Source sour
   const int64_t size = source.size(), step = int64_t(gridDim.x) * blockDim.x;
   for (int64_t first = cuda_steps::thread_number() - lane; first < size; first += step) {
     const bool some = first + lane < size && source.plan_voxels(first + lane, share.plan[lane]);
-    const bool tiny = some && is_by_columns(share.plan[lane]);
+    const bool tiny = some && Source::kWhole && is_by_columns(share.plan[lane]);
     const int32_t columns = share.enter(tiny ? (share.plan[lane].last[0] + 1) * (share.plan[lane].last[1] + 1) : 0);
     for (int32_t i = lane; i < columns; i += 32) {
       int32_t column = i;

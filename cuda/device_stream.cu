@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cuda/device_stream.h"
+#include "isoshell/device_info.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -58,6 +59,18 @@ DeviceStream* take_stream(int device) {
   return new DeviceStream(device, stream, pinned);
 }
 
+__global__ void probe() {}
+
+/// The build may hold machine code for other chips only.
+void require_code(int device) {
+  cudaFuncAttributes attributes;
+  if (cudaFuncGetAttributes(&attributes, probe) == cudaSuccess) return;
+  cudaGetLastError();
+  throw Error(ErrorCode::no_device, "device",
+              "this build has no machine code for CUDA device " + std::to_string(device) +
+                  ": build with CMAKE_CUDA_ARCHITECTURES for its chip, or use --device cpu");
+}
+
 void return_stream(void* stream) {
   FreeStreams& all = free_streams();
   const std::lock_guard<std::mutex> lock(all.mutex);
@@ -78,19 +91,15 @@ int64_t rounded(int64_t bytes) {
 
 void require_success(cudaError_t status, const char* call) {
   if (status == cudaSuccess) return;
-  throw Error(ErrorCode::internal, "cuda", std::string(call) + " failed: " + cudaGetErrorString(status));
-}
-
-int device_count() {
-  int count = 0;
-  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
-  cudaGetLastError();
-  return 0;
+  throw Error(status == cudaErrorMemoryAllocation ? ErrorCode::out_of_memory : ErrorCode::internal, "cuda",
+              std::string(call) + " failed: " + cudaGetErrorString(status));
 }
 
 DeviceStream& DeviceStream::of(Context& context) {
-  if (!context.backend_state) {
+  const auto* mine = static_cast<const DeviceStream*>(context.backend_state.get());
+  if (!mine || mine->device() != context.device) {
     require_success(cudaSetDevice(context.device), "cudaSetDevice");
+    require_code(context.device);
     context.backend_state = std::shared_ptr<void>(take_stream(context.device), return_stream);
   }
   DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());

@@ -16,9 +16,6 @@ namespace isoshell {
 /// Throws Error{internal} that names the call when `status` is an error.
 void require_success(cudaError_t status, const char* call);
 
-/// Number of CUDA devices; 0 without a driver.
-int device_count();
-
 /// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Small
 /// blocks that were freed are handed out again without asking the driver: a run takes a thousand of them. Lives as long
 /// as the process: contexts borrow it, and Buffers may outlive them.
@@ -56,9 +53,5 @@ class DeviceStream final : public Memory {
   std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread
   std::unordered_map<int64_t, std::vector<void*>> kept_;  ///< by their sizes
 };
-
-/// Largest number of bytes that Buffers held on all devices at one time since the last reset.
-int64_t device_memory_peak_bytes();
-void reset_device_memory_peak();
 
 }  // namespace isoshell

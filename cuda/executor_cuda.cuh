@@ -95,6 +95,7 @@ class CudaExecutor {
 
   template <class T>
   T value(View<const T> values, int64_t i) {
+    static_assert(sizeof(T) <= DeviceStream::kPinnedBytes, "read back through the pinned words");
     read_back(values.data + i, 0, sizeof(T));
     stream_.synchronize();
     return *static_cast<const T*>(stream_.pinned());

@@ -186,7 +186,8 @@ ISOSHELL_HD inline uint32_t plane_column(int64_t low, int64_t high, int64_t step
   return ~outside & 0xffu;
 }
 
-/// Widest bounding range, in voxels, of a plan whose plane values fit 32 bits all over it and whose columns fit 16.
+/// Widest bounding range, in voxels, of a whole triangle's plan whose plane values fit 32 bits all over it and whose
+/// columns fit 16.
 constexpr int32_t kTinyWidth = 16;
 ISOSHELL_HD inline bool is_tiny(const Plan& plan) {
   return plan.last[0] < kTinyWidth && plan.last[1] < kTinyWidth && plan.last[2] < kTinyWidth;

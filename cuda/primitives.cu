@@ -84,23 +84,6 @@ void sort_keys_async(DeviceStream& stream, View<uint64_t> keys, int bits) {
                     "cudaMemcpyAsync");
 }
 
-void sort_pairs_async(DeviceStream& stream, View<uint64_t> keys, View<uint32_t> values, int bits) {
-  if (keys.size < 2) return;
-  const Scratch other_keys(stream, size_t(keys.size) * sizeof(uint64_t));
-  const Scratch other_values(stream, size_t(keys.size) * sizeof(uint32_t));
-  cub::DoubleBuffer<uint64_t> both_keys(keys.data, static_cast<uint64_t*>(other_keys.data()));
-  cub::DoubleBuffer<uint32_t> both_values(values.data, static_cast<uint32_t*>(other_values.data()));
-  run_cub(stream, "sort", [&](void* scratch, size_t& bytes) {
-    return cub::DeviceRadixSort::SortPairs(scratch, bytes, both_keys, both_values, keys.size, 0, bits, stream.stream());
-  });
-  const auto take = [&](void* to, const void* from, size_t bytes) {
-    if (to != from)
-      require_success(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, stream.stream()), "cudaMemcpyAsync");
-  };
-  take(keys.data, both_keys.Current(), size_t(keys.size) * sizeof(uint64_t));
-  take(values.data, both_values.Current(), size_t(values.size) * sizeof(uint32_t));
-}
-
 void rank_kept_async(DeviceStream& stream, View<const uint32_t> words, View<uint32_t> rank) {
   count_kept<<<blocks_for(words.size + 1), kThreads, 0, stream.stream()>>>(words, rank);
   require_success(cudaGetLastError(), "count kept");

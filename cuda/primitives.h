@@ -14,8 +14,6 @@ void inclusive_scan_async(DeviceStream& stream, View<uint32_t> values);
 
 /// Ascending; looks at the lowest `bits` bits only.
 void sort_keys_async(DeviceStream& stream, View<uint64_t> keys, int bits = 64);
-/// By key, stable.
-void sort_pairs_async(DeviceStream& stream, View<uint64_t> keys, View<uint32_t> values, int bits = 64);
 
 /// words[w]: bit l set when element 32 w + l is kept. Writes the kept numbers in ascending order; `rank` is scratch of
 /// one word more than `words`, whose last becomes the number of them.

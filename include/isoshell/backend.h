@@ -10,7 +10,8 @@ namespace isoshell {
 
 enum class Backend { best, cpu, cuda };
 
-/// Passed to every stage, by one thread at a time. Not copied; outlives the call.
+/// Passed to every stage, by one thread at a time. Not copied; outlives the call. Products that lie in
+/// a device's memory belong to their context: another one takes them through to_host.
 struct Context {
   Backend backend = Backend::best;
   int device = 0;                  ///< CUDA device number

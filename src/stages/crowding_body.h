@@ -1,4 +1,4 @@
-// drop_crowded_seeds (see hierarchy.h), written once over an executor.
+// drop_crowded_seeds (see stages.h), written once over an executor.
 #pragma once
 
 #include "stages/subdivide_body.h"

@@ -11,6 +11,7 @@
 #include "support/site_shapes.h"
 #include "support/test_context.h"
 #include "voxel/leaf.h"
+#include "voxel/random.h"
 
 using namespace isoshell;
 
@@ -77,6 +78,29 @@ TEST_CASE("sites: exactly the voxels whose closed cube meets a closed triangle",
       CHECK(voxels_of(sites.voxels) == sites_by_axes(s));
       CHECK(index_faults(sites.voxels) == 0);
     }
+}
+
+TEST_CASE("sites: large triangles whose corners reach a little into a block keep every voxel", "[sites][stage]") {
+  TestContext context;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    // One corner at most 12 voxels inside the block that starts at 128 on every axis, two far outside of it.
+    TriangleSoup soup;
+    const auto at = [&](uint64_t i, double lo, double hi) {
+      return lo + (hi - lo) * double(random_bits(seed, i) % 4096) / 4096;
+    };
+    soup.vertices.push_back({at(0, 100, 108), at(1, 100, 108), at(2, 100, 108)});
+    soup.vertices.push_back({at(3, 2, 90), at(4, 2, 60), at(5, 2, 40)});
+    soup.vertices.push_back({at(6, 2, 40), at(7, 2, 90), at(8, 2, 60)});
+    soup.vertices.push_back({0, 0, 0});
+    soup.vertices.push_back({160, 0, 0});
+    soup.vertices.push_back({0, .1, 160});
+    soup.triangles = {{0, 1, 2}, {3, 4, 5}};
+    const LatticeSurface s = shapes::snapped(soup, 161, context);
+    INFO("seed " << seed);
+    const SiteSet sites = voxelize(s, context);
+    REQUIRE(voxels_of(sites.voxels) == sites_by_axes(s));
+    REQUIRE(index_faults(sites.voxels) == 0);
+  }
 }
 
 TEST_CASE("sites: the index equals the one that is built from leaves and masks", "[sites][stage]") {
