@@ -13,6 +13,7 @@ namespace {
 
 LatticeSurface ball() {
   Context context;
+  context.backend = Backend::cpu;  // so that it holds none of the device's memory
   const TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 48);
   return snap_surface(soup, LatticeFrame::around({-1, -1, -1}, {1, 1, 1}, 200), context);
 }
