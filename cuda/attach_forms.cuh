@@ -1,4 +1,5 @@
-// Form of attach_to_sheet: a warp a seed. Lanes share the rows of cells around it, then the triangles of its vertex.
+// Form of attach_to_sheet: a warp a seed. Lanes share the rows of cells around it; one then
+// looks at the triangles of its vertex.
 #pragma once
 
 #include "cuda/block_form.cuh"
