@@ -48,12 +48,7 @@ __device__ inline NearestPoint nearest_point(const PointGridView& grid, PointQ8 
       if (middle[2] - ring >= 0) visit_row(grid, cx, cy, middle[2] - ring, middle[2] - ring, nearest);
       if (middle[2] + ring < grid.dims[2]) visit_row(grid, cx, cy, middle[2] + ring, middle[2] + ring, nearest);
     }
-    for (int step = 16; step > 0; step >>= 1) {
-      const int64_t d = __shfl_xor_sync(0xffffffffu, nearest.distance_sq_q16, step);
-      const uint32_t id = __shfl_xor_sync(0xffffffffu, nearest.id, step);
-      if (d < nearest.distance_sq_q16 || (d == nearest.distance_sq_q16 && id < nearest.id))
-        nearest.distance_sq_q16 = d, nearest.id = id;
-    }
+    warp_min_pair(nearest.distance_sq_q16, nearest.id);
     if (whole || (gap >= 0 && gap * gap >= nearest.distance_sq_q16)) return nearest;
   }
 }

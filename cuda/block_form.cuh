@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "cuda/warp.cuh"
 #include "isoshell/buffer.h"
 
 namespace isoshell {
@@ -23,7 +24,7 @@ struct BlockForm {
 template <int kThreads>
 __device__ inline unsigned group_lanes() {
   static_assert(kThreads <= 32 && (kThreads & (kThreads - 1)) == 0, "groups divide a warp");
-  if constexpr (kThreads == 32) return 0xffffffffu;
+  if constexpr (kThreads == 32) return kWholeWarp;
   return ((1u << (kThreads & 31)) - 1) << (threadIdx.x & 31 & ~(kThreads - 1));
 }
 
@@ -55,27 +56,6 @@ void launch_block_form(int64_t count, const Step& step, cudaStream_t stream) {
   constexpr int64_t kMaxBlocks = 1 << 20;
   run_block_form<<<unsigned(blocks < kMaxBlocks ? blocks : kMaxBlocks), Form::kThreads * Form::kElements, 0, stream>>>(
       count, step);
-}
-
-/// Warp-wide reductions; every lane gets the result. Shuffles, since the instructions for them need newer chips.
-__device__ inline uint32_t warp_or(uint32_t value) {
-  for (int step = 16; step > 0; step >>= 1) value |= __shfl_xor_sync(0xffffffffu, value, step);
-  return value;
-}
-__device__ inline uint32_t warp_and(uint32_t value) { return ~warp_or(~value); }
-template <class T>
-__device__ inline T warp_sum(T value) {
-  for (int step = 16; step > 0; step >>= 1) value += __shfl_xor_sync(0xffffffffu, value, step);
-  return value;
-}
-/// Sum of the values of the lanes before.
-__device__ inline uint32_t warp_sum_before(uint32_t value, int lane) {
-  uint32_t sum = value;
-  for (int step = 1; step < 32; step <<= 1) {
-    const uint32_t before = __shfl_up_sync(0xffffffffu, sum, step);
-    if (lane >= step) sum += before;
-  }
-  return sum - value;
 }
 
 }  // namespace isoshell

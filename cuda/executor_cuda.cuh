@@ -12,6 +12,7 @@
 #include "cuda/device_stream.h"
 #include "cuda/primitives.h"
 #include "cuda/small_words.cuh"
+#include "cuda/warp.cuh"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -37,7 +38,7 @@ __global__ void fill_values(View<T> out, T value) {
 template <class Keep>
 __global__ void mark_kept(int64_t count, Keep keep, View<uint32_t> words) {
   const int64_t i = thread_number();
-  const uint32_t word = __ballot_sync(0xffffffffu, i < count && bool(keep(i)));
+  const uint32_t word = __ballot_sync(kWholeWarp, i < count && bool(keep(i)));
   if ((threadIdx.x & 31) == 0 && i < count) words[i >> 5] = word;
 }
 
@@ -45,7 +46,7 @@ template <class Term>
 __global__ void sum_terms(int64_t count, Term term, int64_t* total) {
   int64_t part = 0;
   for (int64_t i = thread_number(); i < count; i += int64_t(gridDim.x) * blockDim.x) part += int64_t(term(i));
-  for (int offset = 16; offset > 0; offset >>= 1) part += __shfl_down_sync(0xffffffffu, part, offset);
+  part = warp_sum(part);
   if ((threadIdx.x & 31) == 0 && part != 0)
     atomicAdd(reinterpret_cast<unsigned long long*>(total), (unsigned long long)part);
 }

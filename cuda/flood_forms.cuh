@@ -62,7 +62,7 @@ struct BlockForm<flood::Spread> : leaf_forms::LeafForm<flood_forms::Scratch> {
       scratch.fresh.word[lane] = fresh;
       done |= fresh;
     }
-    if (!__any_sync(0xffffffffu, fresh != 0)) return;
+    if (!__any_sync(kWholeWarp, fresh != 0)) return;
     const flood::Front& now = state.front[step.round & 1];
     if (lane < 8) now.mask[leaf].word[lane] = fresh;
     if (lane == 0) now.round[leaf] = step.round;

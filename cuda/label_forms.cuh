@@ -7,25 +7,7 @@
 namespace isoshell {
 namespace label_forms {
 
-constexpr unsigned kAll = 0xffffffffu;
 constexpr int kCapacity = 128;  ///< seeds of a leaf; more take the exact slow path
-
-template <class T>
-__device__ inline T warp_min(T value) {
-  for (int step = 16; step > 0; step >>= 1) {
-    const T other = __shfl_xor_sync(kAll, value, step);
-    value = other < value ? other : value;
-  }
-  return value;
-}
-template <class T>
-__device__ inline T warp_max(T value) {
-  for (int step = 16; step > 0; step >>= 1) {
-    const T other = __shfl_xor_sync(kAll, value, step);
-    value = other > value ? other : value;
-  }
-  return value;
-}
 
 struct Candidates {
   label::LabelSeed seed[kCapacity];
@@ -84,8 +66,8 @@ class LeafLabeller {
     int count = 0;
     for_each_within(reach_sq, [&](bool in, const label::LabelSeed& s) {
       in = in && cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).lo <= reach_sq;
-      const unsigned kept = __ballot_sync(kAll, in);
-      const int place = count + __popc(kept & ((1u << lane_) - 1));
+      const unsigned kept = __ballot_sync(kWholeWarp, in);
+      const int place = count + lanes_before(kept);
       if (in && place < kCapacity) candidates_.seed[place] = s;
       count += __popc(kept);
     });
@@ -110,7 +92,7 @@ class LeafLabeller {
         i = grid.cell_first[cell];
         end = grid.cell_first[cell + (z_hi - z_lo) + 1];
       }
-      for (; __any_sync(kAll, i < end); ++i) {
+      for (; __any_sync(kWholeWarp, i < end); ++i) {
         label::LabelSeed s{};
         if (i < end) {
           const GridPoint p = grid.points[i];

@@ -22,7 +22,7 @@ __device__ inline int list_active(const LeafMask& mask, uint16_t* offsets, int l
   int count = 0;
   for (int half = 0; half < 16; ++half) {
     const uint32_t bits = uint32_t(mask.word[half >> 1] >> (32 * (half & 1)));
-    if (bits >> lane & 1) offsets[count + __popc(bits & ((1u << lane) - 1))] = uint16_t(half * 32 + lane);
+    if (bits >> lane & 1) offsets[count + lanes_before(bits)] = uint16_t(half * 32 + lane);
     count += __popc(bits);
   }
   __syncwarp();

@@ -1,6 +1,7 @@
 // How a relaxation pass ends on the device: blocks add their energy, and the last one to finish runs FinishPass.
 #pragma once
 
+#include "cuda/warp.cuh"
 #include "stages/pass_state.h"
 #include "voxel/atomic.h"
 
@@ -23,18 +24,13 @@ __device__ inline bool pass_is_over(const PassState* state, PassProgress* progre
   return true;
 }
 
-__device__ inline int64_t sum_over_warp(int64_t x) {
-  for (int d = 16; d > 0; d >>= 1) x += __shfl_xor_sync(~0u, x, d);
-  return x;
-}
-
 /// Sum over the warp's lanes. Ordinary energies need no more than one word.
 __device__ inline SplitSum sum_energy(Int128 energy) {
   const int64_t word = int64_t(energy);
   if (__all_sync(~0u, energy == word && word < int64_t(1) << 57 && word > -(int64_t(1) << 57)))
-    return SplitSum::of(sum_over_warp(word));
+    return SplitSum::of(warp_sum(word));
   const SplitSum part = SplitSum::of(energy);
-  return {sum_over_warp(part.high), sum_over_warp(part.low)};
+  return {warp_sum(part.high), warp_sum(part.low)};
 }
 
 /// All threads of all blocks call it with their part of the energy; `finish` runs once, in one thread, with the upper
@@ -64,8 +60,8 @@ __device__ inline void end_block(PassProgress* progress, Int128 energy, Finish f
   __threadfence();
   static_assert(kEnergySlots == 32, "one lane a slot");
   SplitSum& slot = progress->energy[threadIdx.x];
-  const int64_t total[2] = {sum_over_warp(__ldcg(reinterpret_cast<const long long*>(&slot.high))),
-                            sum_over_warp(__ldcg(reinterpret_cast<const long long*>(&slot.low)))};
+  const int64_t total[2] = {warp_sum(__ldcg(reinterpret_cast<const long long*>(&slot.high))),
+                            warp_sum(__ldcg(reinterpret_cast<const long long*>(&slot.low)))};
   slot = {0, 0};
   progress->blocks_done[threadIdx.x] = 0;
   if (threadIdx.x != 0) return;

@@ -45,15 +45,6 @@ struct ShellPass {
   int32_t tolerance_ppb;
 };
 
-__device__ inline uint32_t sum_over_warp(uint32_t x) {
-#if __CUDA_ARCH__ >= 800
-  return __reduce_add_sync(~0u, x);
-#else
-  for (int d = 16; d > 0; d >>= 1) x += __shfl_xor_sync(~0u, x, d);
-  return x;
-#endif
-}
-
 /// Sums from voxel 0 to the seed, which is at `a` from that voxel's centre; returns their energy.
 __device__ inline Int128 add_to_shell_cell(relax_shell::CellSums& cell, const OffsetSums& s, Vec64 a) {
   const int64_t n = s.count_x & 0xffff;
@@ -126,7 +117,7 @@ __device__ inline OffsetSums sum_voxels(const ShellPass& pass, const ShellLeaf& 
 #pragma unroll
       for (int r = 0; r < kRounds; ++r)
         if (label[r] == c) part.add(sums[r]);
-      part = {sum_over_warp(part.count_x), sum_over_warp(part.y_z), sum_over_warp(part.squares)};
+      part = {warp_sum(part.count_x), warp_sum(part.y_z), warp_sum(part.squares)};
       if (lane == c) mine.add(part);
     }
   }
@@ -213,18 +204,14 @@ __global__ void describe_leaves(VoxelSetView voxels, ShellLeaf* out, uint16_t* o
     const int offset = base + lane;
     const unsigned on = unsigned(mask.word[base >> 6] >> (base & 32));
     if (on >> lane & 1) {
-      offsets[first + at + __popc(on & ((1u << lane) - 1))] = uint16_t(offset);
+      offsets[first + at + lanes_before(on)] = uint16_t(offset);
       total.add(OffsetSums::of(offset));
       x |= 1u << (offset >> 6), y |= 1u << (offset >> 3 & 7), z |= 1u << (offset & 7);
     }
     at += __popc(on);
   }
-  total = {sum_over_warp(total.count_x), sum_over_warp(total.y_z), sum_over_warp(total.squares)};
-  for (int d = 16; d > 0; d >>= 1) {
-    x |= __shfl_xor_sync(~0u, x, d);
-    y |= __shfl_xor_sync(~0u, y, d);
-    z |= __shfl_xor_sync(~0u, z, d);
-  }
+  total = {warp_sum(total.count_x), warp_sum(total.y_z), warp_sum(total.squares)};
+  x = warp_or(x), y = warp_or(y), z = warp_or(z);
   if (lane) return;
   const auto lowest = [](unsigned w) { return w ? __ffs(int(w)) - 1 : 0; };
   const auto highest = [](unsigned w) { return w ? 31 - __clz(int(w)) : 0; };

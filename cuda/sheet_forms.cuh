@@ -211,7 +211,7 @@ struct BlockForm<sheet_steps::ListFaces> : leaf_forms::LeafForm<leaf_forms::Warp
       sheet_steps::exposed_faces(shared.window.window, (2 * lane + k) >> 3, (2 * lane + k) & 7, exposed[k]);
       for (const uint32_t e : exposed[k]) faces += uint32_t(__popc(e));
     }
-    int64_t at = step.first[i] + warp_sum_before(faces, lane);
+    int64_t at = step.first[i] + warp_sum_before(faces);
     for (int k = 0; k < 2; ++k)
       sheet_steps::ListFaces::list_row(shared, (2 * lane + k) >> 3, (2 * lane + k) & 7, exposed[k], step.quads, at);
   }

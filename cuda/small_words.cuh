@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "cuda/warp.cuh"
 #include "isoshell/buffer.h"
 
 namespace isoshell::small_words {
@@ -18,21 +19,10 @@ template <class T>
 __device__ inline T block_sum_before(T value, T& total) {
   __shared__ T of_warp[32];
   const int lane = int(threadIdx.x) & 31, warp = int(threadIdx.x) >> 5;
-  T sum = value;
-  for (int step = 1; step < 32; step <<= 1) {
-    const T before = __shfl_up_sync(0xffffffffu, sum, step);
-    if (lane >= step) sum += before;
-  }
+  const T sum = warp_sum_until(value);
   if (lane == 31) of_warp[warp] = sum;
   __syncthreads();
-  if (warp == 0) {
-    T all = of_warp[lane];
-    for (int step = 1; step < 32; step <<= 1) {
-      const T before = __shfl_up_sync(0xffffffffu, all, step);
-      if (lane >= step) all += before;
-    }
-    of_warp[lane] = all;
-  }
+  if (warp == 0) of_warp[lane] = warp_sum_until(of_warp[lane]);
   __syncthreads();
   total = of_warp[31];
   const T before = (warp > 0 ? of_warp[warp - 1] : T(0)) + sum - value;
@@ -72,7 +62,7 @@ __global__ void __launch_bounds__(kThreads) select(int64_t count, Keep keep, uin
     if (i - lane >= count) break;
     const bool in = i < count && bool(keep(i));
     kept |= uint32_t(in) << k;
-    const uint32_t word = __ballot_sync(0xffffffffu, in);
+    const uint32_t word = __ballot_sync(kWholeWarp, in);
     if (lane == 0) before[32 * k + warp] = uint32_t(__popc(word));
   }
   __syncthreads();
@@ -83,8 +73,8 @@ __global__ void __launch_bounds__(kThreads) select(int64_t count, Keep keep, uin
 #pragma unroll
   for (int k = 0; k < kPerThread; ++k) {
     const bool in = kept >> k & 1;
-    const uint32_t word = __ballot_sync(0xffffffffu, in);
-    if (in) out[before[32 * k + warp] + __popc(word & ((1u << lane) - 1))] = uint32_t(k * kThreads + threadIdx.x);
+    const uint32_t word = __ballot_sync(kWholeWarp, in);
+    if (in) out[before[32 * k + warp] + lanes_before(word)] = uint32_t(k * kThreads + threadIdx.x);
   }
   if (threadIdx.x == 0) *total = all;
 }

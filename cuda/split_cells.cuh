@@ -102,10 +102,7 @@ __device__ inline uint64_t block_min(uint64_t value, uint64_t* shared) {
   __syncthreads();
   if (threadIdx.x == 0) *shared = ~uint64_t(0);
   __syncthreads();
-  for (int step = 16; step > 0; step >>= 1) {
-    const uint64_t other = __shfl_xor_sync(0xffffffffu, value, step);
-    value = other < value ? other : value;
-  }
+  value = warp_min(value);
   if ((threadIdx.x & 31) == 0) atomic_min(*shared, value);
   __syncthreads();
   return *shared;

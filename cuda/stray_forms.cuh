@@ -31,12 +31,7 @@ struct Nearest {
   __device__ void offer(int64_t d, uint32_t i) {
     if (d < distance || (d == distance && i < index)) distance = d, index = i;
   }
-  __device__ void over_warp() {
-    for (int step = 16; step > 0; step >>= 1) {
-      const int64_t d = __shfl_xor_sync(0xffffffffu, distance, step);
-      offer(d, __shfl_xor_sync(0xffffffffu, index, step));
-    }
-  }
+  __device__ void over_warp() { warp_min_pair(distance, index); }
 };
 
 }  // namespace stray_forms
@@ -66,7 +61,7 @@ struct BlockForm<dual::DecideStray> : stray_forms::StrayForm {
           nearest.offer(distance_sq_q16(middle, step.seed_position[owner]), owner);
       });
     nearest.over_warp();
-    largest = __all_sync(0xffffffffu, largest);
+    largest = __all_sync(kWholeWarp, largest);
     if (lane == 0)
       step.decision[i] = nearest.index != kNone ? nearest.index : (largest ? dual::kLocalLargest : dual::kWait);
   }
