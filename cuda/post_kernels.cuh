@@ -63,14 +63,15 @@ inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t>
   return flips;
 }
 
-inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, const RestoreHarmed& restore) {
+inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, double least_merit,
+                      const RestoreHarmed& restore) {
+  const MarkHarmed mark{triangles, restore.before, restore.after, least_merit, restore.harmed};
   Buffer<uint32_t> some = exec.make<uint32_t>(kRoundsPerLook);
   exec.fill(restore.harmed, 0u);
   do {
     exec.fill(some.view(), 0u);
     for (int r = 0; r < kRoundsPerLook; ++r) {
-      exec.for_each("mark harmed", triangles.size,
-                    MarkHarmed{triangles, restore.before, restore.after, restore.harmed});
+      exec.for_each("mark harmed", triangles.size, mark);
       exec.for_each("restore harmed", restore.harmed.size,
                     device_steps::RestoreAndTell{restore, some.view().part(r, 1)});
     }

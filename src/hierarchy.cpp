@@ -39,7 +39,7 @@ DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
   DualReport report;
   DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
   if (report.failed_cells > 0 || seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
-  improve_mesh(sheet, {1, 6, 0}, seeds, mesh, context);
+  improve_mesh(sheet, {6, 0, 0}, seeds, mesh, context);
   return mesh;
 }
 

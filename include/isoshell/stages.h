@@ -137,12 +137,13 @@ void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_
                         Context& context);
 
 struct PostOptions {
-  int32_t rounds = 3;           ///< of flips, then smoothing
-  int32_t flip_rounds = 6;      ///< independent sets a round
-  int32_t smoothing_steps = 3;  ///< a round
+  int32_t flip_rounds = 6;       ///< independent sets each time
+  int32_t smoothing_steps = 60;  ///< 0 leaves vertices where they are: flips only
+  int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
 };
-/// Valence flips and tangential smoothing of a closed mesh whose vertices are the seeds; homes and positions of the
-/// seeds follow. Result: still closed and 2-manifold, same genus. Returns the number of flips.
+/// Valence flips, shape matching and a search around the worst triangles of a closed mesh whose vertices are the seeds;
+/// homes and positions of the seeds follow. Result: still closed and 2-manifold, same genus. Returns the number of
+/// flips.
 int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context);
 
 /// Final positions in the world.

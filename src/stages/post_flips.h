@@ -1,0 +1,113 @@
+// Valence flips of a closed mesh, in independent sets.
+#pragma once
+
+#include "stages/post_mesh.h"
+#include "stages/post_shape.h"
+
+namespace isoshell::post {
+
+/// Flips that would make valences more even, each with a key: larger gain first, then the smaller half-edge.
+struct FlipKey {
+  MeshView mesh;
+  View<const PointQ8> position;
+  double least_merit;  ///< triangles below this may not get worse
+
+  ISOSHELL_HD static int32_t excess_sq(uint32_t valence) { return (int32_t(valence) - 6) * (int32_t(valence) - 6); }
+
+  /// 0 when the flip gains nothing or would harm the mesh.
+  ISOSHELL_HD uint64_t operator()(uint32_t h) const {
+    const uint32_t g = mesh.twin[h];
+    if (g < h) return 0;
+    const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
+    const uint32_t va = mesh.valence[a], vb = mesh.valence[b], vc = mesh.valence[c], vd = mesh.valence[d];
+    const int32_t gain = excess_sq(va) + excess_sq(vb) + excess_sq(vc) + excess_sq(vd) - excess_sq(va - 1) -
+                         excess_sq(vb - 1) - excess_sq(vc + 1) - excess_sq(vd + 1);
+    if (gain <= 0 || va <= 4 || vb <= 4 || mesh.are_neighbours(c, d)) return 0;
+    return keeps_shape(position[a], position[b], position[c], position[d]) ? uint64_t(gain) << 32 | (0xffffffffu - h)
+                                                                           : 0;
+  }
+
+ private:
+  /// Whether (a, d, c) and (d, b, c) may replace (a, b, c) and (b, a, d).
+  ISOSHELL_HD bool keeps_shape(PointQ8 a, PointQ8 b, PointQ8 c, PointQ8 d) const {
+    const Vector before = normal_of(a, b, c) + normal_of(b, a, d);
+    if (!within_45_degrees(before, normal_of(a, d, c)) || !within_45_degrees(before, normal_of(d, b, c))) return false;
+    const double flipped = smaller(merit_of(a, d, c), merit_of(d, b, c));
+    return flipped >= least_merit || flipped >= smaller(merit_of(a, b, c), merit_of(b, a, d));
+  }
+  ISOSHELL_HD static double smaller(double a, double b) { return a < b ? a : b; }
+};
+struct ClaimVertices {
+  FlipKey key;
+  View<uint64_t> claim;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t h = uint32_t(i);
+    const uint64_t k = key(h);
+    if (k == 0) return;
+    atomic_max(claim[key.mesh.from(h)], k);
+    atomic_max(claim[key.mesh.to(h)], k);
+    atomic_max(claim[key.mesh.opposite(h)], k);
+    atomic_max(claim[key.mesh.opposite(key.mesh.twin[h])], k);
+  }
+};
+/// A flip goes ahead when it holds the claim of all its four vertices.
+struct WinsItsVertices {
+  FlipKey key;
+  View<const uint64_t> claim;
+  ISOSHELL_HD bool operator()(int64_t i) const {
+    const uint32_t h = uint32_t(i);
+    const MeshView& m = key.mesh;
+    if (0xffffffffu - uint32_t(claim[m.from(h)]) != h) return false;
+    const uint64_t k = claim[m.from(h)];
+    return k != 0 && claim[m.to(h)] == k && claim[m.opposite(h)] == k && claim[m.opposite(m.twin[h])] == k;
+  }
+};
+/// (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
+struct Flip {
+  MeshView mesh;
+  View<const uint32_t> winners;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t h = winners[i], g = mesh.twin[h];
+    const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
+    const uint32_t bc = mesh.twin[next_half_edge(h)], ca = mesh.twin[previous_half_edge(h)];
+    const uint32_t ad = mesh.twin[next_half_edge(g)], db = mesh.twin[previous_half_edge(g)];
+    const uint32_t s = h / 3 * 3, t = g / 3 * 3;
+    mesh.triangles[h / 3] = {a, d, c};
+    mesh.triangles[g / 3] = {d, b, c};
+    join(s, ad);
+    join(s + 1, t + 2);
+    join(s + 2, ca);
+    join(t, db);
+    join(t + 1, bc);
+    mesh.outgoing[a] = s;
+    mesh.outgoing[d] = s + 1;
+    mesh.outgoing[c] = s + 2;
+    mesh.outgoing[b] = t + 1;
+    --mesh.valence[a];
+    --mesh.valence[b];
+    ++mesh.valence[c];
+    ++mesh.valence[d];
+  }
+  ISOSHELL_HD void join(uint32_t g, uint32_t h) const {
+    mesh.twin[g] = h;
+    mesh.twin[h] = g;
+  }
+};
+
+/// Flips in independent sets until none is left or `rounds` are done. Returns how many were made.
+template <class Exec>
+int64_t flip_edges(Exec& exec, const FlipKey& key, View<uint64_t> claim, int rounds) {
+  const int64_t half_edges = key.mesh.twin.size;
+  int64_t flips = 0;
+  for (int r = 0; r < rounds; ++r) {
+    exec.fill(claim, uint64_t(0));
+    exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
+    const Buffer<uint32_t> winners = exec.select(half_edges, WinsItsVertices{key, claim});
+    if (winners.empty()) break;
+    exec.for_each("flip edges", winners.size(), Flip{key.mesh, winners.view()});
+    flips += winners.size();
+  }
+  return flips;
+}
+
+}  // namespace isoshell::post

@@ -1,0 +1,106 @@
+// A search for better places for the corners of poor triangles: compass points in the tangent plane, in independent
+// sets.
+#pragma once
+
+#include "stages/post_mesh.h"
+#include "stages/post_shape.h"
+#include "stages/sheet_walk.h"
+#include "voxel/random.h"
+
+namespace isoshell::post {
+
+struct MarkPoor {
+  View<const TriangleIndices> triangles;
+  View<const PointQ8> position;
+  double least_merit;
+  View<uint32_t> poor;
+  ISOSHELL_HD void operator()(int64_t t) const {
+    const TriangleIndices i = triangles[t];
+    if (merit_of(position[i.a], position[i.b], position[i.c]) >= least_merit) return;
+    atomic_or(poor[i.a], 1u);
+    atomic_or(poor[i.b], 1u);
+    atomic_or(poor[i.c], 1u);
+  }
+};
+/// A poor vertex moves in a round when none of its poor neighbours drew a larger number.
+struct MayMove {
+  MeshView mesh;
+  View<const uint32_t> poor;
+  uint64_t round;
+  ISOSHELL_HD bool operator()(int64_t v) const {
+    if (!poor[v]) return false;
+    const uint64_t mine = random_bits(round, uint64_t(v));
+    bool largest = true;
+    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t) {
+      if (!poor[b]) return;
+      const uint64_t other = random_bits(round, b);
+      if (other > mine || (other == mine && b > uint32_t(v))) largest = false;
+    });
+    return largest;
+  }
+};
+struct SearchVertex {
+  MeshView mesh;
+  WalkOntoSheet walk;
+  View<const uint32_t> chosen;
+  double edge_q8;
+  bool odd;  ///< turns the compass by half a point
+  bool onto_sheet;
+  View<PointQ8> position;
+  View<uint32_t> home;
+
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t v = chosen[i];
+    const PointQ8 p = position[v];
+    Vector normal = {0, 0, 0};
+    for_each_triangle_around(mesh, v,
+                             [&](uint32_t b, uint32_t c) { normal = normal + normal_of(p, position[b], position[c]); });
+    normal = unit(normal);
+    const double ax = normal.x * normal.x, ay = normal.y * normal.y, az = normal.z * normal.z;
+    const Vector axis = ax <= ay && ax <= az ? Vector{1, 0, 0} : (ay <= az ? Vector{0, 1, 0} : Vector{0, 0, 1});
+    const Vector east = unit(cross(axis, normal)), north = cross(normal, east);
+    const double here = worst_merit(v, p, p, 0);
+    double best = here;
+    PointQ8 best_place = p;
+    double step = 0.16 * edge_q8;
+    for (int size = 0; size < 4; ++size, step *= 0.5)
+      for (int point = 0; point < 8; ++point) {
+        const PointQ8 place = moved_by(p, step * direction(point, east, north));
+        const double merit = worst_merit(v, p, place, best);
+        if (merit > best) best = merit, best_place = place;
+      }
+    if (best_place == p) return;
+    if (onto_sheet) {
+      const uint32_t near = walk.nearest_vertex(home[v], best_place);
+      best_place = walk.closest_around(near, best_place);
+      if (!(worst_merit(v, p, best_place, here) > here)) return;
+      home[v] = near;
+    }
+    position[v] = best_place;
+  }
+
+ private:
+  /// Eight directions at 45 degrees from one another.
+  ISOSHELL_HD Vector direction(int point, Vector east, Vector north) const {
+    const double major = odd ? 0.9238795325112867 : 1, minor = odd ? 0.3826834323650898 : 0;
+    const Vector first = major * east + minor * north, second = major * north - minor * east;
+    const Vector diagonal = 0.7071067811865476 * (first + second), other = 0.7071067811865476 * (second - first);
+    const Vector d = (point & 3) == 0 ? first : ((point & 3) == 1 ? diagonal : ((point & 3) == 2 ? second : other));
+    return point < 4 ? d : -1.0 * d;
+  }
+  /// Least merit of the triangles around v when it moves from p to q; 0 when one turns over, and anything not above
+  /// `enough` as soon as that is known.
+  ISOSHELL_HD double worst_merit(uint32_t v, PointQ8 p, PointQ8 q, double enough) const {
+    double worst = 2;
+    for_each_triangle_around(mesh, v, [&](uint32_t b, uint32_t c) {
+      if (worst <= enough) return;
+      const PointQ8 pb = position[b], pc = position[c];
+      const double merit = merit_of(q, pb, pc);
+      if (merit < worst) worst = merit;
+      if (!within_45_degrees(normal_of(p, pb, pc), normal_of(q, pb, pc))) worst = 0;
+    });
+    return worst;
+  }
+};
+
+}  // namespace isoshell::post

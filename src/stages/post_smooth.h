@@ -1,0 +1,67 @@
+// Shape matching: every triangle asks for its best-fitting equilateral one, every vertex goes to the mean of what its
+// triangles ask for, along the surface.
+#pragma once
+
+#include "stages/post_mesh.h"
+#include "stages/post_shape.h"
+#include "stages/sheet_walk.h"
+
+namespace isoshell::post {
+
+struct SmoothOptions {
+  double momentum = 0;     ///< part of the last move that is added
+  double evenness = 0.1;   ///< weight of the mean size against the triangle's own, 0 to 1
+  double edge_q8 = 0;      ///< mean edge length
+  double most_q8 = 0;      ///< longest move
+  bool onto_sheet = true;  ///< back onto the sheet, or only along the mesh
+};
+
+/// From p, the corner of the equilateral triangle that fits (p, b, c) best, by least squares over the corners: around
+/// the same centre, in the same plane, its radius mixed with `radius_q8`.
+ISOSHELL_HD inline Vector to_equilateral_corner(PointQ8 p, PointQ8 b, PointQ8 c, double evenness, double radius_q8) {
+  const Vector pb = from_to(p, b), pc = from_to(p, c);
+  const Vector middle = 0.5 * (pb + pc);
+  // The rotation by 90 degrees of the opposite edge, in the plane, pointing to p.
+  const Vector across = cross(unit(cross(pb, pc)), pc - pb);
+  const Vector arm = (1.0 / 3) * (0.8660254037844386 * across - middle);
+  const double length_sq = dot(arm, arm);
+  if (!(length_sq > 0)) return (2.0 / 3) * middle;
+  const double scale = (1 - evenness) + evenness * radius_q8 / rounded_sqrt(length_sq);
+  return (2.0 / 3) * middle + scale * arm;
+}
+
+struct SmoothVertex {
+  MeshView mesh;
+  WalkOntoSheet walk;
+  SmoothOptions options;
+  View<const PointQ8> from, previous;
+  View<uint32_t> home;
+  View<PointQ8> to;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const PointQ8 p = from[v];
+    const double radius_q8 = options.edge_q8 * 0.5773502691896258;
+    Vector sum = {0, 0, 0}, normal = {0, 0, 0};
+    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
+      sum = sum + to_equilateral_corner(p, from[b], from[c], options.evenness, radius_q8);
+      normal = normal + normal_of(p, from[b], from[c]);
+    });
+    normal = unit(normal);
+    const Vector wanted = 1 / double(mesh.valence[v]) * sum + options.momentum * from_to(previous[v], p);
+    const Vector move = at_most(wanted - dot(wanted, normal) * normal, options.most_q8);
+    const PointQ8 target = moved_by(p, move);
+    to[v] = target;
+    if (!options.onto_sheet) return;
+    home[v] = walk.nearest_vertex(home[v], target);
+    to[v] = walk.closest_around(home[v], target);
+  }
+};
+
+struct EdgeLength {
+  MeshView mesh;
+  View<const PointQ8> position;
+  ISOSHELL_HD int64_t operator()(int64_t h) const {
+    return int64_t(isqrt(uint64_t(distance_sq_q16(position[mesh.from(uint32_t(h))], position[mesh.to(uint32_t(h))]))));
+  }
+};
+
+}  // namespace isoshell::post

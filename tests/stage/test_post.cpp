@@ -1,0 +1,149 @@
+// Post-processing on sheets of many shapes: the mesh stays what it is, and its triangles get better.
+#include <algorithm>
+
+#include "isoshell/mesh_topology.h"
+#include "isoshell/quality.h"
+#include "isoshell/stages.h"
+#include "stages/post_shape.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "support/solid_soup.h"
+#include "support/soup_sheet.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+struct Start {
+  std::string name;
+  Sheet sheet;
+  SeedSet seeds;
+  DualMesh mesh;
+};
+
+template <class T>
+Buffer<T> copy_of(const Buffer<T>& from) {
+  return from.to_host();
+}
+SeedSet copy_of(const SeedSet& seeds) { return {copy_of(seeds.position), copy_of(seeds.normal), copy_of(seeds.home)}; }
+DualMesh copy_of(const DualMesh& mesh) { return {copy_of(mesh.position), copy_of(mesh.triangles)}; }
+
+/// Duals of seeds that were relaxed a little, or not at all.
+std::vector<Start> starts() {
+  std::vector<Start> out;
+  const auto add = [&](const char* name, const TriangleSoup& soup, int32_t resolution, int64_t count, int32_t passes) {
+    TestContext context;
+    const MeshTopology t = check_mesh({soup.vertices, soup.triangles});
+    Start s{name, sheet_of_soup(soup, resolution, t.components, t.genus), {}, {}};
+    s.seeds = place_seeds(s.sheet, {count, 3}, context);
+    if (passes > 0) relax_on_sheet(s.sheet, s.seeds, {passes}, context);
+    DualReport report;
+    s.mesh = triangulate_dual(s.sheet, s.seeds, {}, report, context);
+    REQUIRE(report.failed_cells == 0);
+    out.push_back(std::move(s));
+  };
+  add("torus", shapes::torus(2, 0.7, 160, 70), 256, 400, 20);
+  add("torus, not relaxed", shapes::torus(2, 0.7, 160, 70), 256, 400, 0);
+  add("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 300, 10);
+  add("frame of a cube, genus 5", shapes::cube_frame(12, 2), 24, 60, 5);
+  add("sieve, genus 9", shapes::sieve(3, 2, 2, 2), 28, 80, 5);
+  add("two bodies", shapes::together(shapes::torus(2, 0.5, 100, 40), shapes::sphere({0, 0, 2}, 0.5, 24)), 400, 200, 5);
+  return out;
+}
+
+double least_merit(const DualMesh& mesh) {
+  double least = 2;
+  for (const TriangleIndices& t : mesh.triangles)
+    least = std::min(least, post::merit_of(mesh.position[t.a], mesh.position[t.b], mesh.position[t.c]));
+  return least;
+}
+
+bool same(const DualMesh& a, const DualMesh& b) {
+  return std::equal(a.position.begin(), a.position.end(), b.position.begin(), b.position.end()) &&
+         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end());
+}
+
+}  // namespace
+
+TEST_CASE("post: the mesh stays closed, of its topology and in canonical order", "[post][stage]") {
+  TestContext context;
+  for (Start& s : starts()) {
+    const MeshTopology before = check_mesh(s.mesh.triangles.view(), s.mesh.position.size());
+    improve_mesh(s.sheet, {}, s.seeds, s.mesh, context);
+    const MeshTopology after = check_mesh(s.mesh.triangles.view(), s.mesh.position.size());
+    INFO(s.name);
+    CHECK(after.is_closed_manifold());
+    CHECK(after.components == before.components);
+    CHECK(after.genus == before.genus);
+    CHECK(std::equal(s.mesh.position.begin(), s.mesh.position.end(), s.seeds.position.begin(), s.seeds.position.end()));
+    for (int64_t t = 0; t < s.mesh.triangles.size(); ++t) {
+      const TriangleIndices i = s.mesh.triangles[t];
+      CHECK((i.a < i.b && i.a < i.c));
+      if (t == 0) continue;
+      const TriangleIndices j = s.mesh.triangles[t - 1];
+      CHECK((j.a != i.a ? j.a < i.a : (j.b != i.b ? j.b < i.b : j.c < i.c)));
+    }
+  }
+}
+
+TEST_CASE("post: triangles get better on average, and the worst one no worse", "[post][stage]") {
+  TestContext context;
+  for (Start& s : starts()) {
+    const double least = least_merit(s.mesh);
+    const MeshQuality before = measure_quality(to_world(s.mesh, s.sheet.frame));
+    improve_mesh(s.sheet, {}, s.seeds, s.mesh, context);
+    const MeshQuality after = measure_quality(to_world(s.mesh, s.sheet.frame));
+    INFO(s.name << ": least merit " << least << " -> " << least_merit(s.mesh));
+    CHECK(least_merit(s.mesh) >= least);
+    CHECK(after.q_avg > before.q_avg);
+    CHECK(after.irregular_ratio <= before.irregular_ratio);
+  }
+}
+
+TEST_CASE("post: smooth shapes get no angle below 38 degrees", "[post][stage]") {
+  TestContext context;
+  for (Start& s : starts()) {
+    if (s.name != "torus" && s.name != "sphere") continue;
+    improve_mesh(s.sheet, {}, s.seeds, s.mesh, context);
+    INFO(s.name);
+    CHECK(measure_quality(to_world(s.mesh, s.sheet.frame)).theta_min_deg >= 38);
+  }
+}
+
+TEST_CASE("post: flips alone move nothing and make valences more even", "[post][stage]") {
+  TestContext context;
+  for (Start& s : starts()) {
+    SeedSet seeds = copy_of(s.seeds);
+    DualMesh mesh = copy_of(s.mesh);
+    const int64_t flips = improve_mesh(s.sheet, {6, 0, 0}, seeds, mesh, context);
+    const auto unevenness = [](const DualMesh& m) {
+      std::vector<int> valence(size_t(m.position.size()));
+      for (const TriangleIndices& t : m.triangles) ++valence[t.a], ++valence[t.b], ++valence[t.c];
+      int64_t sum = 0;
+      for (const int v : valence) sum += int64_t(v - 6) * (v - 6);
+      return sum;
+    };
+    INFO(s.name);
+    CHECK(std::equal(mesh.position.begin(), mesh.position.end(), s.mesh.position.begin()));
+    CHECK(unevenness(mesh) <= unevenness(s.mesh) - 2 * flips);
+  }
+}
+
+TEST_CASE("post: one thread and two give the same bytes", "[post][stage]") {
+  for (Start& s : starts()) {
+    DualMesh first;
+    for (const int threads : {1, 2}) {
+      TestContext context;
+      context.threads = threads;
+      SeedSet seeds = copy_of(s.seeds);
+      DualMesh mesh = copy_of(s.mesh);
+      improve_mesh(s.sheet, {}, seeds, mesh, context);
+      INFO(s.name);
+      if (threads == 1)
+        first = std::move(mesh);
+      else
+        CHECK(same(first, mesh));
+    }
+  }
+}
