@@ -13,6 +13,7 @@ const BackendTable* cuda_backend() {
       cuda_build_shell,
       cuda_nano_index_grid,
       cuda_build_sheet,
+      cpu_backend().cut_false_handles,  // sequential by nature
       cuda_coarsen_sites,
       cuda_build_outline,
       cuda_place_seeds_on_sheet,

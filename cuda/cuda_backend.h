@@ -11,7 +11,8 @@ SiteSet cuda_voxelize(const LatticeSurface&, Context&);
 SiteSamples cuda_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
 Shell cuda_build_shell(const SiteSet&, const ShellOptions&, Context&);
 Buffer<std::byte> cuda_nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&);
-Sheet cuda_build_sheet(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+Sheet cuda_build_sheet(const LatticeSurface&, const SiteSet& walls, const SiteSet&, const SiteSamples&,
+                       const SheetOptions&, Context&);
 SeedSet cuda_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cuda_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 SiteSet cuda_coarsen_sites(const SiteSet&, Context&);

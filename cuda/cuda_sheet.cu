@@ -10,11 +10,11 @@
 
 namespace isoshell {
 
-Sheet cuda_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
-                       const SheetOptions& options, Context& context) {
+Sheet cuda_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+                       const SiteSamples& samples, const SheetOptions& options, Context& context) {
   CudaExecutor exec(context, "sheet");
-  return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, sites),
-                          *OnDevice<SiteSamples>(exec, samples), options);
+  return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, walls),
+                          *OnDevice<SiteSet>(exec, sites), *OnDevice<SiteSamples>(exec, samples), options);
 }
 
 SiteSet cuda_coarsen_sites(const SiteSet& sites, Context& context) {

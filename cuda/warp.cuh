@@ -15,8 +15,7 @@ template <int kLanes, class T, class Combine>
 __device__ inline T reduce(T value, Combine combine) {
   static_assert(kLanes <= 32 && (kLanes & (kLanes - 1)) == 0, "groups divide a warp");
 #pragma unroll
-  for (int step = kLanes / 2; step > 0; step >>= 1)
-    value = combine(value, T(__shfl_xor_sync(kWholeWarp, value, step)));
+  for (int step = kLanes / 2; step > 0; step >>= 1) value = combine(value, T(__shfl_xor_sync(kWholeWarp, value, step)));
   return value;
 }
 

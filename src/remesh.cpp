@@ -79,9 +79,11 @@ class Preparation {
 
  private:
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
-    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    const InputTopology& input = p.surface.topology;
+    const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
+    const int64_t genus = input.closed && input.oriented ? input.genus : -1;
     return timed(report_, "sheet", [&] {
-      return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest}, context_);
+      return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest, genus}, context_);
     });
   }
 

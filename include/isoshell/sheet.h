@@ -12,6 +12,7 @@ struct SheetTopology {
   int64_t genus = 0;               ///< sum over the components
   int64_t dropped_components = 0;  ///< smaller than the area limit
   int64_t bridged_vertices = 0;    ///< farther than two voxels from the surface
+  int64_t cut_handles = 0;         ///< false ones, where near parts of the surface share voxels
 };
 
 /// Result: vertex i is lattice corner i of `corners` in canonical order. Triangles come from the boundary faces of the

@@ -42,9 +42,13 @@ Shell build_shell(const SiteSet& sites, const ShellOptions& options, Context& co
 struct SheetOptions {
   int32_t closing_vox = 0;             ///< r: gaps up to 2 r voxels are bridged; 0 to kMaxClosingVox
   int64_t min_component_area_q16 = 0;  ///< smaller sheet components are dropped; voxel^2 / 65536
+  int64_t genus = -1;                  ///< of a closed and oriented surface: more handles are cut; -1 cuts none
 };
 /// Closes the sites by r, floods from outside, repairs the solid until it is well-composed, and lays its boundary onto
-/// the surface. Throws: nothing_to_mesh when no component is left.
+/// the surface. Handles beyond `genus` are cut where their thinnest part lies farthest outside: the solid is grown anew
+/// by simple points, from inside to outside, and what can not be added is left out. That needs closing_vox 0 and two
+/// bytes for each voxel of the sites' bounding box (at most 2^30); without them handles stay. Throws: nothing_to_mesh
+/// when no component is left.
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                   const SheetOptions& options, Context& context);
 

@@ -13,6 +13,7 @@ const BackendTable& cpu_backend() {
       cpu_build_shell,
       cpu_nano_index_grid,
       cpu_build_sheet,
+      cpu_cut_false_handles,
       cpu_coarsen_sites,
       cpu_build_outline,
       cpu_place_seeds_on_sheet,

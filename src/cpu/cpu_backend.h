@@ -11,7 +11,9 @@ SiteSet cpu_voxelize(const LatticeSurface&, Context&);
 SiteSamples cpu_sample_sites(const LatticeSurface&, const SiteSet&, Context&);
 Shell cpu_build_shell(const SiteSet&, const ShellOptions&, Context&);
 Buffer<std::byte> cpu_nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&);
-Sheet cpu_build_sheet(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+Sheet cpu_build_sheet(const LatticeSurface&, const SiteSet& walls, const SiteSet&, const SiteSamples&,
+                      const SheetOptions&, Context&);
+SiteSet cpu_cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&);
 SiteSet cpu_coarsen_sites(const SiteSet&, Context&);
 Sheet cpu_build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
 RelaxReport cpu_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&);

@@ -8,11 +8,12 @@
 
 namespace isoshell {
 
-Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
-                      const SheetOptions& options, Context& context) {
+Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+                      const SiteSamples& samples, const SheetOptions& options, Context& context) {
   TbbExecutor exec(context, "sheet");
-  return run_with_threads(
-      context, [&] { return build_sheet_body(exec, *OnHost(surface), *OnHost(sites), *OnHost(samples), options); });
+  return run_with_threads(context, [&] {
+    return build_sheet_body(exec, *OnHost(surface), *OnHost(walls), *OnHost(sites), *OnHost(samples), options);
+  });
 }
 
 SiteSet cpu_coarsen_sites(const SiteSet& sites, Context& context) {

@@ -14,7 +14,12 @@ struct BackendTable {
   SiteSamples (*sample_sites)(const LatticeSurface&, const SiteSet&, Context&);
   Shell (*build_shell)(const SiteSet&, const ShellOptions&, Context&);
   Buffer<std::byte> (*nano_index_grid)(const VoxelSet&, const LatticeFrame&, const char*, Context&);
-  Sheet (*build_sheet)(const LatticeSurface&, const SiteSet&, const SiteSamples&, const SheetOptions&, Context&);
+  /// From the sheet of all `walls`, which are the sites or what cut_false_handles makes of them.
+  Sheet (*build_sheet)(const LatticeSurface&, const SiteSet& walls, const SiteSet&, const SiteSamples&,
+                       const SheetOptions&, Context&);
+  /// Result: the sites less those that close handles beyond `genus`, with the solid voxels around these. Empty when it
+  /// does not fit.
+  SiteSet (*cut_false_handles)(const SiteSet&, const SiteSamples&, int64_t genus, Context&);
   SiteSet (*coarsen_sites)(const SiteSet&, Context&);
   Sheet (*build_outline)(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
   SeedSet (*place_seeds_on_sheet)(const Sheet&, const SeedOptions&, Context&);

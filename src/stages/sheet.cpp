@@ -20,7 +20,16 @@ void require_sheet_options(const SiteSet& sites, const SheetOptions& options) {
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                   const SheetOptions& options, Context& context) {
   require_sheet_options(sites, options);
-  return backend_for(context).build_sheet(surface, sites, samples, options, context);
+  const BackendTable& backend = backend_for(context);
+  Sheet sheet = backend.build_sheet(surface, sites, sites, samples, options, context);
+  const int64_t handles = sheet.topology.genus - options.genus;
+  if (options.genus < 0 || handles <= 0 || options.closing_vox > 0) return sheet;
+  const SiteSet walls = backend.cut_false_handles(sites, samples, options.genus, context);
+  if (walls.voxels.voxel_count() == 0) return sheet;
+  Sheet cut = backend.build_sheet(surface, walls, sites, samples, options, context);
+  if (cut.topology.components != sheet.topology.components || cut.topology.genus != options.genus) return sheet;
+  cut.topology.cut_handles = handles;
+  return cut;
 }
 
 SiteSet coarsen_sites(const SiteSet& sites, Context& context) {

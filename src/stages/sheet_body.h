@@ -153,10 +153,10 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMes
 }  // namespace sheet_steps
 
 template <class Exec>
-Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
-                       const SheetOptions& options) {
+Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+                       const SiteSamples& samples, const SheetOptions& options) {
   using namespace sheet_steps;
-  QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
+  QuadMesh mesh = boundary_of_sites(exec, walls, options.closing_vox);
   const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
                                          samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);

@@ -11,6 +11,7 @@
 #include "stages/sheet_body.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "support/solid_soup.h"
 #include "support/test_context.h"
 #include "support/voxel_sites.h"
 #include "voxel/random.h"
@@ -295,6 +296,29 @@ TEST_CASE("sheet: neither threads nor the order of the input change a bit", "[sh
     std::reverse(shuffled.triangles.begin(), shuffled.triangles.end());
     CHECK(digest(sheet_of(shuffled, 100, options, 2)) == one);
   }
+}
+
+TEST_CASE("sheet: handles that only near parts close are cut, and true ones stay", "[sheet][stage]") {
+  // Two square rings side by side, the left one slit at z = 4. The slit is thinner than a voxel.
+  TriangleSoup rings = shapes::solid_boundary(17, [](int x, int y, int z) {
+    const bool slit = z == 4 && x < 3;
+    const bool hole = (x > 2 && x < 7) || (x > 9 && x < 14);
+    return y < 3 && z < 10 && !slit && !(hole && z > 2 && z < 7);
+  });
+  for (WorldPoint& p : rings.vertices)
+    if (p.z >= 5) p.z -= .99;
+  const Sheet closed = sheet_of(rings, 100);
+  CHECK(closed.topology.genus == 2);
+  SheetOptions options;
+  options.genus = 1;
+  const Sheet slit = sheet_of(rings, 100, options);
+  check_sheet(slit);
+  CHECK(slit.topology.components == 1);
+  CHECK(slit.topology.genus == 1);
+  CHECK(slit.topology.cut_handles == 1);
+  CHECK(signed_volume(slit) == Approx(signed_volume(closed)).epsilon(.01));
+  options.genus = 2;
+  CHECK(digest(sheet_of(rings, 100, options)) == digest(closed));
 }
 
 TEST_CASE("sheet: small components are dropped and the rest is as if they had never been", "[sheet][stage]") {

@@ -70,6 +70,7 @@ Json topology_json(const RunRecord& r) {
             {"self_intersections", nullptr},
             {"sheet_components", r.report.sheet.components},
             {"sheet_genus", r.report.sheet.genus},
+            {"cut_handles", r.report.sheet.cut_handles},
             {"agrees_with_input", r.report.topology_compared ? Json(r.report.topology_agrees) : Json()},
             {"failed_cells", r.report.dual.failed_cells},
             {"inserted_seeds", r.report.dual.inserted_seeds}};

@@ -1,0 +1,76 @@
+// Grows a copy of a solid that has no more handles than wanted: region growing by simple points, deepest first (Bertrand
+// and Malandain, "A new characterization of three-dimensional simple points", 1994). What it leaves out are the cuts.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "isoshell/lattice.h"
+
+namespace isoshell {
+
+/// Parts in which a voxel's neighbours touch it; solid voxels join through corners, empty ones through faces.
+struct VoxelContacts {
+  int solid;  ///< of the solid voxels among the 26 neighbours
+  int empty;  ///< of the empty ones among the 18 that share an edge; only parts that show a face
+};
+/// Bit 9 (x + 1) + 3 (y + 1) + z + 1 of `solid` is the neighbour at (x, y, z).
+VoxelContacts contacts_of(uint32_t solid);
+
+/// Whether adding the voxel leaves the number of components, handles and cavities as it is.
+inline bool is_simple(uint32_t solid) {
+  const VoxelContacts c = contacts_of(solid);
+  return c.solid == 1 && c.empty == 1;
+}
+
+/// A box of voxels whose outermost layer stays empty. Two bytes a voxel, and eight for each that waits.
+class HandleCutter {
+ public:
+  static constexpr int kRanks = 256;
+
+  explicit HandleCutter(const int32_t extent_vox[3]);
+
+  int64_t index_of(Voxel v) const { return (int64_t(v.x) * extent_[1] + v.y) * extent_[2] + v.z; }
+  Voxel voxel_of(int64_t index) const {
+    const int64_t row = index / extent_[2];
+    return {int32_t(row / extent_[1]), int32_t(row % extent_[1]), int32_t(index % extent_[2])};
+  }
+
+  /// Makes a voxel solid. Growing takes the lowest rank it can reach.
+  void add(int64_t voxel, int rank);
+  bool is_solid(int64_t voxel) const { return flags_[size_t(voxel)] & kSolid; }
+
+  /// Grows every component from its lowest rank, then closes the cuts that reach the lowest ranks, one a handle.
+  /// Result: what a queue a rank gives, first in, first out. `check` is called now and then and may throw.
+  void grow(int64_t handles, const std::function<void()>& check);
+
+  bool is_grown(int64_t voxel) const { return flags_[size_t(voxel)] & kGrown; }
+  /// Solid voxels that were left out, ascending.
+  std::vector<int64_t> cuts() const;
+
+ private:
+  enum Flag : uint8_t { kSolid = 1, kGrown = 2, kWaiting = 4, kVisited = 8 };
+  struct Queue {
+    std::vector<int64_t> voxels;
+    size_t first = 0;  ///< those before it have left
+  };
+
+  bool is(int64_t voxel, int flags, int of) const { return (flags_[size_t(voxel)] & of) == flags; }
+  template <class Visit>
+  void for_each_around(int64_t voxel, Visit visit) const;
+  uint32_t grown_around(int64_t voxel) const;
+  int64_t unvisited_of_lowest_rank() const;
+  void visit_component(int64_t start);
+  void grow_from(int64_t start, const std::function<void()>& check);
+  void add_grown(int64_t voxel);
+  void close_cuts(int64_t handles);
+
+  int64_t extent_[3];
+  std::vector<uint8_t> flags_, rank_;
+  std::vector<Queue> waiting_;  ///< per rank
+  int lowest_waiting_ = 0;
+};
+
+}  // namespace isoshell
