@@ -77,8 +77,7 @@ void add_solid(HandleCutter& cutter, const Box& box, const SolidView& solid, con
 /// The sites less the cuts, with the solid that surrounds those: a wall again.
 SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& box, const VoxelSetView& sites) {
   std::map<uint64_t, LeafMask> leaves;
-  for (int64_t l = 0; l < sites.leaf_key.size; ++l)
-    leaves.emplace_hint(leaves.end(), sites.leaf_key[l], sites.mask[l]);
+  for (int64_t l = 0; l < sites.leaf_key.size; ++l) leaves.emplace_hint(leaves.end(), sites.leaf_key[l], sites.mask[l]);
   const auto word_of = [&](Voxel v) -> uint64_t& {
     return leaves[leaf_key(leaf_of_voxel(v))].word[offset_in_leaf(v) >> 6];
   };
@@ -98,8 +97,8 @@ SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& b
     key[at] = leaf.first;
     mask[at++] = leaf.second;
   }
-  return {voxel_set_of(exec, View<const uint64_t>(key.view()), View<const LeafMask>(mask.view()),
-                       BlockExtent(sites).vox)};
+  return {
+      voxel_set_of(exec, View<const uint64_t>(key.view()), View<const LeafMask>(mask.view()), BlockExtent(sites).vox)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/label_lanes.h"
 #include "stages/relax_sheet_body.h"
 
 namespace isoshell {

@@ -1,5 +1,6 @@
-// Grows a copy of a solid that has no more handles than wanted: region growing by simple points, deepest first (Bertrand
-// and Malandain, "A new characterization of three-dimensional simple points", 1994). What it leaves out are the cuts.
+// Grows a copy of a solid that has no more handles than wanted: region growing by simple points, deepest first
+// (Bertrand and Malandain, "A new characterization of three-dimensional simple points", 1994). What it leaves out are
+// the cuts.
 #pragma once
 
 #include <cstddef>

@@ -117,15 +117,9 @@ struct LabelLeaf {
     int64_t limit;
     const int count = gather(bounds, candidates, limit);
     if (count > kCapacity) return label_directly(bounds, limit, begin, end);
-    if (count == 1) {
-      for (int64_t v = begin; v < end; ++v) out[v] = candidates[0].id;
-      return;
-    }
-    sort_by_id(candidates, count);
-    label_quarters(leaf, candidates, count);
+    label_from(leaf, candidates, count);
   }
 
- private:
   /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
   /// costs, taken over those in reach. Returns more than kCapacity when they do not fit.
   ISOSHELL_HD int gather(const Bounds& bounds, LabelSeed* candidates, int64_t& limit) const {
@@ -152,19 +146,14 @@ struct LabelLeaf {
     }
   }
 
-  ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, LabelSeed* candidates, int count) const {
-    int kept = 0;
-    for (int c = 0; c < count; ++c)
-      if (cost_range(bounds, candidates[c].position, candidates[c].normal, spacing.penalty_q16).lo <= limit)
-        candidates[kept++] = candidates[c];
-    return kept;
-  }
-
-  template <class Visit>
-  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
-    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
-    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
-    visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
+  /// Labels from all the candidates; sorts them.
+  ISOSHELL_HD void label_from(int64_t leaf, LabelSeed* candidates, int count) const {
+    if (count == 1) {
+      for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v) out[v] = candidates[0].id;
+      return;
+    }
+    sort_by_id(candidates, count);
+    label_quarters(leaf, candidates, count);
   }
 
   ISOSHELL_HD static void sort_by_id(LabelSeed* c, int count) {
@@ -187,6 +176,22 @@ struct LabelLeaf {
       });
       out[v] = id;
     }
+  }
+
+ private:
+  ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, LabelSeed* candidates, int count) const {
+    int kept = 0;
+    for (int c = 0; c < count; ++c)
+      if (cost_range(bounds, candidates[c].position, candidates[c].normal, spacing.penalty_q16).lo <= limit)
+        candidates[kept++] = candidates[c];
+    return kept;
+  }
+
+  template <class Visit>
+  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
+    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
+    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
+    visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
   }
 
   /// The eight 4^3 quarters of the leaf in turn.

@@ -32,9 +32,23 @@ inline int energy_shift(int64_t area2_q16, int64_t h_sq_q16) {
   return bits - 60 > 12 ? bits - 60 : 12;
 }
 
-/// A sheet triangle with its doubled area.
+/// Centre of a leaf: origin of its local coordinates.
+ISOSHELL_HD inline PointQ8 leaf_origin(uint64_t key) {
+  const Voxel v = leaf_of_key(key);
+  return {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
+}
+
+/// A sheet triangle with its doubled area and what its moments about the leaf's origin are made of: most triangles lie
+/// in one cell, and need no more.
 struct PatchTriangle {
   uint32_t a, b, c, area2;
+  Local corner_sum;
+  int64_t squares;
+
+  ISOSHELL_HD PieceSum whole() const {
+    return {area2, int64_t(area2) * corner_sum.x, int64_t(area2) * corner_sum.y, int64_t(area2) * corner_sum.z,
+            area2 * squares};
+  }
 };
 
 /// Triangles by the leaf of their smallest vertex: so all of a leaf's triangles are close to it.
@@ -76,9 +90,11 @@ struct FillPatch {
   View<PatchTriangle> out;
   ISOSHELL_HD void operator()(int64_t leaf) const {
     int64_t at = first[leaf];
+    const PointQ8 origin = leaf_origin(patch.corners.leaf_key[leaf]);
     patch.visit(leaf, [&](TriangleIndices t) {
       const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
-      out[at++] = {t.a, t.b, t.c, uint32_t(isqrt(uint64_t(dot(n, n))))};
+      const Local a = local(position[t.a], origin), b = local(position[t.b], origin), c = local(position[t.c], origin);
+      out[at++] = {t.a, t.b, t.c, uint32_t(isqrt(uint64_t(dot(n, n)))), corner_sum(a, b, c), sum_of_squares(a, b, c)};
     });
   }
 };
@@ -141,12 +157,6 @@ ISOSHELL_HD inline Int128 add_to_cell(CellSum& cell, const PieceSum& s, Local d)
          Int128(12 * square(d)) * s.mass;
 }
 
-/// Centre of a leaf: origin of its local coordinates.
-ISOSHELL_HD inline PointQ8 leaf_origin(uint64_t key) {
-  const Voxel v = leaf_of_key(key);
-  return {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
-}
-
 /// Adds the pieces of one leaf's triangles to their cells, and writes the leaf's part of the energy.
 template <int kSlots = 64>
 struct SumLeaf {
@@ -186,8 +196,8 @@ struct SumLeaf {
   template <class Add>
   ISOSHELL_HD void add_triangle(const PatchTriangle& t, PointQ8 origin, Add add) const {
     const uint32_t id[3] = {label[t.a], label[t.b], label[t.c]};
+    if (id[0] == id[1] && id[1] == id[2]) return add(id[0], t.whole());
     const Local p[3] = {local(position[t.a], origin), local(position[t.b], origin), local(position[t.c], origin)};
-    if (id[0] == id[1] && id[1] == id[2]) return add(id[0], piece_sum(t.area2, p[0], p[1], p[2]));
     const SplitTriangle split{{p[0], p[1], p[2]},
                               {local(seed[id[0]], origin), local(seed[id[1]], origin), local(seed[id[2]], origin)},
                               t.area2};

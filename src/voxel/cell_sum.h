@@ -31,10 +31,15 @@ ISOSHELL_HD inline Local local(PointQ8 p, PointQ8 origin) { return {p.x - origin
 
 ISOSHELL_HD inline int64_t square(Local u) { return int64_t(u.x) * u.x + int64_t(u.y) * u.y + int64_t(u.z) * u.z; }
 
+ISOSHELL_HD inline Local corner_sum(Local a, Local b, Local c) {
+  return {a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z};
+}
+ISOSHELL_HD inline int64_t sum_of_squares(Local a, Local b, Local c) {
+  return square(a) + square(b) + square(c) + square(corner_sum(a, b, c));
+}
 ISOSHELL_HD inline PieceSum piece_sum(int64_t area2, Local a, Local b, Local c) {
-  const Local sum = {a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z};
-  return {area2, area2 * sum.x, area2 * sum.y, area2 * sum.z,
-          area2 * (square(a) + square(b) + square(c) + square(sum))};
+  const Local sum = corner_sum(a, b, c);
+  return {area2, area2 * sum.x, area2 * sum.y, area2 * sum.z, area2 * sum_of_squares(a, b, c)};
 }
 
 /// |v - a|^2 - |v - b|^2: negative where a is nearer. Exact, and linear in v.

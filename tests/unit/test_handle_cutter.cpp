@@ -86,7 +86,8 @@ TEST_CASE("handle cutter: contacts of a voxel are those of the definition", "[sh
   }
 }
 
-TEST_CASE("handle cutter: a ring is cut where its ranks are highest, or not when it may have a handle", "[sheet][unit]") {
+TEST_CASE("handle cutter: a ring is cut where its ranks are highest, or not when it may have a handle",
+          "[sheet][unit]") {
   const auto ring = [](int x, int y, int z) { return square_ring(x, y, z, 3, 16); };
   HandleCutter cut = cutter_of(ring);
   cut.grow(0, [] {});
