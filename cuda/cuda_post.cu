@@ -1,6 +1,7 @@
 // CUDA's improve_mesh.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
+#include "cuda/label_forms.cuh"
 #include "cuda/post_kernels.cuh"
 #include "stages/post_body.h"
 

@@ -280,7 +280,10 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   if (seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
-  if (report.dual.failed_cells == 0) timed(report, "post", [&] { improve_mesh(p.sheet, {}, seeds, dual, context); });
+  PostOptions post;
+  post.fit = options.fit;
+  post.uniform_area = options.uniform_area;
+  if (report.dual.failed_cells == 0) timed(report, "post", [&] { improve_mesh(p.sheet, post, seeds, dual, context); });
   TriangleMesh mesh = to_world(dual, p.surface.frame);
   note_digest(options, report, "mesh", mesh);
   return mesh;

@@ -28,6 +28,8 @@ struct RemeshOptions {
   double tolerance = -1;    ///< relative fall of the energy a pass; negative means the method's own
   double max_step_vox = 0;  ///< u; 0 means the method's own
   uint64_t seed = 0;
+  Fit fit = Fit::balanced;
+  bool uniform_area = false;  ///< triangles of even size rather than of the best shape
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
   bool want_digests = false;  ///< fill RemeshReport::digests
 };

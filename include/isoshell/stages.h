@@ -140,14 +140,21 @@ SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet&
 void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds,
                         Context& context);
 
+/// Where vertices of the result lie.
+enum class Fit {
+  balanced,  ///< where the mesh straddles the surface: least distance on average and at tips, for its shapes
+  surface,   ///< on the sheet, that is on the input
+};
 struct PostOptions {
   int32_t flip_rounds = 6;       ///< independent sets each time
   int32_t smoothing_steps = 60;  ///< 0 leaves vertices where they are: flips only
   int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
+  Fit fit = Fit::balanced;
+  bool uniform_area = false;  ///< triangles of even size rather than of the best shape
 };
-/// Valence flips, shape matching and a search around the worst triangles of a closed mesh whose vertices are the seeds;
-/// homes and positions of the seeds follow. Result: still closed and 2-manifold, same genus. Returns the number of
-/// flips.
+/// Valence flips, shape matching, a fit to the surface and searches around the worst triangles of a closed mesh whose
+/// vertices are the seeds; homes and positions of the seeds follow. Result: still closed and 2-manifold, same genus.
+/// Returns the number of flips.
 int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context);
 
 /// Final positions in the world.

@@ -1,8 +1,12 @@
-// improve_mesh (see stages.h): valence flips, shape-matching smoothing with momentum and a search around the worst
-// triangles. Every step is a Jacobi step or an independent set, so the order of the work cannot show.
+// improve_mesh (see stages.h): valence flips, shape-matching smoothing with momentum, a fit to the surface and searches
+// around the worst triangles. Every step is a Jacobi step or an independent set, so the order of the work cannot show.
 #pragma once
 
+#include <algorithm>
+
 #include "isoshell/stages.h"
+#include "stages/label_body.h"
+#include "stages/post_fit.h"
 #include "stages/post_flips.h"
 #include "stages/post_guard.h"
 #include "stages/post_search.h"
@@ -12,8 +16,12 @@ namespace isoshell {
 namespace post {
 
 constexpr int kStepsOffSheet = 8;
+constexpr int kSamplesPerTriangle = 9;  ///< fewer miss tips, more change little
+constexpr double kStiffness = 1.5;      ///< less is nearer to the surface, more has better triangles
 // No step may make a triangle below its bound worse; bounds rise to where the search begins.
-constexpr double kPoorMerit = 0.8, kFairMerit = 0.9, kGoodMerit = 1;
+constexpr double kPoorMerit = 0.8, kFairMerit = 0.9, kFineMerit = 0.97, kGoodMerit = 1;
+// Weight of the mean size of triangles against their own. Shapes are best with little.
+constexpr double kEvenness = 0.1, kUniformEvenness = 4;
 
 struct TakeNormal {
   View<const Normal8> sheet_normal;
@@ -41,8 +49,10 @@ struct ByIndices {
 template <class Exec>
 class Improvement {
  public:
-  Improvement(Exec& exec, const Sheet& sheet, SeedSet& seeds, DualMesh& mesh)
+  Improvement(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh)
       : exec_(exec),
+        sheet_(sheet),
+        evenness_(options.uniform_area ? kUniformEvenness : kEvenness),
         seeds_(seeds),
         mesh_(mesh),
         vertices_(mesh.position.size()),
@@ -55,6 +65,7 @@ class Improvement {
     claim_ = exec.template make<uint64_t>(vertices_);
     moved_ = exec.template make<PointQ8>(vertices_);
     previous_ = exec.template make<PointQ8>(vertices_);
+    on_sheet_ = exec.template make<PointQ8>(vertices_);
     moved_home_ = exec.template make<uint32_t>(vertices_);
     harmed_ = exec.template make<uint32_t>(vertices_);
     connect();
@@ -66,33 +77,77 @@ class Improvement {
     return flip_edges(exec_, FlipKey{view(), mesh_.position.view(), least_merit}, claim_.view(), rounds);
   }
 
-  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little.
+  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where that one
+  /// harms, vertices return to where they last were on the sheet.
   void smooth(int steps, double momentum, double least_merit) {
-    SmoothOptions options;
+    SmoothOptions options = smooth_options(0.2);
     options.momentum = momentum;
-    options.edge_q8 = edge_q8_;
-    options.most_q8 = 0.2 * edge_q8_;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
+    exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     for (int left = steps - 1; left >= 0; --left) {
       options.onto_sheet = left % kStepsOffSheet == 0;
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
       exec_.for_each("smooth", vertices_,
                      SmoothVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(),
                                   moved_.view()});
-      take_step(least_merit);
+      take_step(least_merit, options.onto_sheet ? on_sheet_.view() : mesh_.position.view());
+      if (options.onto_sheet) exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     }
   }
 
-  /// Looks for better places for the corners of triangles below `wanted_merit`.
-  void search(int rounds, double wanted_merit) {
+  /// Attaches samples of the sheet to the triangles around the vertices that they are nearest to.
+  void attach_samples() {
+    update_seeds();
+    Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
+    label_sheet(exec_, sheet_, seeds_, seed_spacing(doubled_area_q16(exec_, sheet_), vertices_), label.view());
+    const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * mesh_.triangles.size()));
+    const int64_t count = (sheet_.vertex_count() + stride - 1) / stride;
+    sample_ = exec_.template make<FitSample>(count);
+    rest_sq_ = exec_.template make<int64_t>(count);
+    triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
+    vertex_pull_ = exec_.template make<VertexPull>(vertices_);
+    exec_.for_each("attach samples", count,
+                   AttachSample{view(), mesh_.position.view(), sheet_.position.view(), sheet_.normal.view(),
+                                label.view(), stride, sample_.view()});
+  }
+
+  /// Steps towards the samples. `grow`: the largest residuals count most.
+  void fit(int steps, double damping, bool grow, double least_merit) {
+    FitOptions options;
+    options.smooth = smooth_options(0.1);
+    options.stiffness = kStiffness * double(sample_.size()) / double(vertices_);
+    options.damping = damping;
+    for (int s = 0; s < steps; ++s) {
+      exec_.fill(triangle_pull_.view(), TrianglePull{});
+      exec_.fill(vertex_pull_.view(), VertexPull{});
+      exec_.for_each("pull corners", sample_.size(),
+                     PullCorners{view(),
+                                 mesh_.position.view(),
+                                 {rms_q8_, 0.1 * edge_q8_, grow},
+                                 sample_.view(),
+                                 triangle_pull_.view(),
+                                 vertex_pull_.view(),
+                                 rest_sq_.view()});
+      options.rms_q8 = rms_q8_ =
+          rounded_sqrt(double(exec_.sum(sample_.size(), RestSq{rest_sq_.view()})) / double(sample_.size()));
+      exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
+      exec_.for_each("fit", vertices_,
+                     FitVertex{view(), walk_, options, mesh_.position.view(), triangle_pull_.view(),
+                               vertex_pull_.view(), moved_home_.view(), moved_.view()});
+      take_step(least_merit, mesh_.position.view());
+    }
+  }
+
+  /// Looks for better places for the corners of triangles below kGoodMerit.
+  void search(int rounds, bool onto_sheet) {
     for (int r = 0; r < rounds; ++r) {
       exec_.fill(harmed_.view(), 0u);
       exec_.for_each("mark poor", mesh_.triangles.size(),
-                     MarkPoor{mesh_.triangles.view(), mesh_.position.view(), wanted_merit, harmed_.view()});
+                     MarkPoor{mesh_.triangles.view(), mesh_.position.view(), kGoodMerit, harmed_.view()});
       const Buffer<uint32_t> chosen = exec_.select(vertices_, MayMove{view(), harmed_.view(), uint64_t(r)});
       if (chosen.empty()) return;
       exec_.for_each("search", chosen.size(),
-                     SearchVertex{view(), walk_, chosen.view(), edge_q8_, r % 2 == 1, true, mesh_.position.view(),
+                     SearchVertex{view(), walk_, chosen.view(), edge_q8_, r % 2 == 1, onto_sheet, mesh_.position.view(),
                                   seeds_.home.view()});
     }
   }
@@ -100,18 +155,29 @@ class Improvement {
   void finish() {
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
     exec_.sort(mesh_.triangles.view(), ByIndices{});
-    exec_.copy(View<const PointQ8>(mesh_.position.view()), seeds_.position.view());
-    exec_.for_each("seed normals", vertices_, TakeNormal{walk_.normal, seeds_.home.view(), seeds_.normal.view()});
+    update_seeds();
   }
 
  private:
   MeshView view() { return {mesh_.triangles.view(), twin_.view(), valence_.view(), outgoing_.view()}; }
 
-  /// What was moved becomes the position, except where that would harm.
-  void take_step(double least_merit) {
-    undo_harm(
-        exec_, mesh_.triangles.view(), least_merit,
-        RestoreHarmed{mesh_.position.view(), seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
+  SmoothOptions smooth_options(double most_edges) const {
+    SmoothOptions options;
+    options.evenness = evenness_;
+    options.edge_q8 = edge_q8_;
+    options.most_q8 = most_edges * edge_q8_;
+    return options;
+  }
+
+  void update_seeds() {
+    exec_.copy(View<const PointQ8>(mesh_.position.view()), seeds_.position.view());
+    exec_.for_each("seed normals", vertices_, TakeNormal{walk_.normal, seeds_.home.view(), seeds_.normal.view()});
+  }
+
+  /// What was moved becomes the position, except where that would harm: there `before` does.
+  void take_step(double least_merit, View<const PointQ8> before) {
+    undo_harm(exec_, mesh_.triangles.view(), least_merit,
+              RestoreHarmed{before, seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
     std::swap(previous_, mesh_.position);
     std::swap(mesh_.position, moved_);
     std::swap(seeds_.home, moved_home_);
@@ -128,27 +194,42 @@ class Improvement {
   }
 
   Exec& exec_;
+  const Sheet& sheet_;
+  double evenness_;
   SeedSet& seeds_;
   DualMesh& mesh_;
   int64_t vertices_, half_edges_;
   WalkOntoSheet walk_;
   double edge_q8_ = 0;  ///< mean length
+  double rms_q8_ = 0;   ///< of the samples' residuals, 0 before they were first looked at
   Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, harmed_;
   Buffer<uint64_t> claim_;
-  Buffer<PointQ8> moved_, previous_;
+  Buffer<PointQ8> moved_, previous_, on_sheet_;
+  Buffer<FitSample> sample_;
+  Buffer<int64_t> rest_sq_;
+  Buffer<TrianglePull> triangle_pull_;
+  Buffer<VertexPull> vertex_pull_;
 };
 
 }  // namespace post
 
 template <class Exec>
 int64_t improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh) {
-  post::Improvement<Exec> work(exec, sheet, seeds, mesh);
+  post::Improvement<Exec> work(exec, sheet, options, seeds, mesh);
   int64_t flips = work.flip(options.flip_rounds, post::kPoorMerit);
   if (options.smoothing_steps > 0) {
     work.smooth(options.smoothing_steps, 0.95, post::kPoorMerit);
     flips += work.flip(options.flip_rounds, post::kPoorMerit);
-    work.smooth(options.smoothing_steps / 4, 0.5, post::kFairMerit);
-    work.search(options.search_rounds, post::kGoodMerit);
+    work.smooth(options.smoothing_steps / 8, 0.5, post::kFairMerit);
+    const bool balanced = options.fit == Fit::balanced;
+    if (balanced) {
+      work.attach_samples();
+      work.fit(6, 1, false, post::kPoorMerit);
+      work.fit(5, 0.6, true, post::kFairMerit);
+      work.search(options.search_rounds, false);
+      work.fit(3, 0.6, true, post::kFineMerit);
+    }
+    work.search(options.search_rounds, !balanced);
   }
   work.finish();
   return flips;

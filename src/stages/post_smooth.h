@@ -8,6 +8,8 @@
 
 namespace isoshell::post {
 
+constexpr double kRadiusOfEdge = 0.5773502691896258;  ///< circumradius of the equilateral triangle of edge 1
+
 struct SmoothOptions {
   double momentum = 0;     ///< part of the last move that is added
   double evenness = 0.1;   ///< weight of the mean size against the triangle's own, 0 to 1
@@ -39,7 +41,7 @@ struct SmoothVertex {
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
-    const double radius_q8 = options.edge_q8 * 0.5773502691896258;
+    const double radius_q8 = options.edge_q8 * kRadiusOfEdge;
     Vector sum = {0, 0, 0}, normal = {0, 0, 0};
     for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
       sum = sum + to_equilateral_corner(p, from[b], from[c], options.evenness, radius_q8);

@@ -53,6 +53,9 @@ TEST_CASE("args: options reach the library with their units", "[cli][args]") {
   CHECK(arguments({"--resolution", "256"}).remesh.resolution == 256);
   CHECK(arguments({"--voxel-size", "0.5"}).remesh.voxel_size_world == 0.5);
   CHECK(arguments({"--method", "shell"}).remesh.method == Method::shell);
+  CHECK(arguments({"--fit", "surface"}).remesh.fit == Fit::surface);
+  CHECK(arguments({}).remesh.fit == Fit::balanced);
+  CHECK(arguments({"--uniform-area"}).remesh.uniform_area);
   CHECK(arguments({"--seed", "18446744073709551615"}).remesh.seed == 18446744073709551615ull);
   CHECK(arguments({"--tolerance", "0"}).remesh.tolerance == 0);
   CHECK(arguments({"--close-gaps", "0"}).remesh.closing_vox == 0);

@@ -1,5 +1,6 @@
 // Post-processing on sheets of many shapes: the mesh stays what it is, and its triangles get better.
 #include <algorithm>
+#include <cmath>
 
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
@@ -57,6 +58,19 @@ double least_merit(const DualMesh& mesh) {
   for (const TriangleIndices& t : mesh.triangles)
     least = std::min(least, post::merit_of(mesh.position[t.a], mesh.position[t.b], mesh.position[t.c]));
   return least;
+}
+
+/// Root mean square of the distances of the sheet's vertices to the mesh, by brute force.
+double distance_q8(const Sheet& sheet, const DualMesh& mesh) {
+  double sum = 0;
+  for (const PointQ8& p : sheet.position) {
+    int64_t best = INT64_MAX;
+    for (const TriangleIndices& t : mesh.triangles)
+      best = std::min(best, distance_sq_q16(p, closest_point_on_triangle(p, mesh.position[t.a], mesh.position[t.b],
+                                                                         mesh.position[t.c])));
+    sum += double(best);
+  }
+  return std::sqrt(sum / double(sheet.vertex_count()));
 }
 
 bool same(const DualMesh& a, const DualMesh& b) {
@@ -145,5 +159,50 @@ TEST_CASE("post: one thread and two give the same bytes", "[post][stage]") {
       else
         CHECK(same(first, mesh));
     }
+  }
+}
+
+TEST_CASE("post: a balanced fit is nearer to the surface than vertices on it, which surface gives", "[post][stage]") {
+  TestContext context;
+  for (Start& s : starts()) {
+    if (s.name == "torus, not relaxed") continue;
+    INFO(s.name);
+    PostOptions options;
+    double distance[2];
+    for (const Fit fit : {Fit::balanced, Fit::surface}) {
+      options.fit = fit;
+      SeedSet seeds = copy_of(s.seeds);
+      DualMesh mesh = copy_of(s.mesh);
+      improve_mesh(s.sheet, options, seeds, mesh, context);
+      distance[int(fit)] = distance_q8(s.sheet, mesh);
+      if (fit == Fit::balanced) continue;
+      for (const PointQ8& p : mesh.position) {
+        int64_t best = INT64_MAX;
+        for (const TriangleIndices& t : s.sheet.triangles)
+          best = std::min(best,
+                          distance_sq_q16(p, closest_point_on_triangle(p, s.sheet.position[t.a], s.sheet.position[t.b],
+                                                                       s.sheet.position[t.c])));
+        CHECK(best <= 3);  // rounding
+      }
+    }
+    CHECK(distance[0] < 0.8 * distance[1]);
+  }
+}
+
+TEST_CASE("post: areas are more even when that is asked for", "[post][stage]") {
+  TestContext context;
+  for (Start& s : starts()) {
+    if (s.name != "torus" && s.name != "sphere" && s.name != "two bodies") continue;
+    double cv[2];
+    for (const bool uniform : {false, true}) {
+      PostOptions options;
+      options.uniform_area = uniform;
+      SeedSet seeds = copy_of(s.seeds);
+      DualMesh mesh = copy_of(s.mesh);
+      improve_mesh(s.sheet, options, seeds, mesh, context);
+      cv[int(uniform)] = measure_quality(to_world(mesh, s.sheet.frame)).area_cv;
+    }
+    INFO(s.name);
+    CHECK(cv[1] < cv[0]);
   }
 }

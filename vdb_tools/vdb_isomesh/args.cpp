@@ -29,7 +29,7 @@ struct Raw {
   int64_t vertices = 0;
   double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
-  std::string seed, close_gaps, method, device, stop_after, require, max_memory, progress;
+  std::string seed, close_gaps, method, fit, device, stop_after, require, max_memory, progress;
   bool verbose = false, quiet = false, help = false, version = false;
 };
 
@@ -70,6 +70,11 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
          "the method's own");
   option(relaxation, "--step", raw.step, "U", "longest move of a seed in a pass, in voxels", "the method's own");
   option(relaxation, "--seed", raw.seed, "N", "start of the random generator", "0");
+
+  const char* shape = "Shape of the result";
+  option(shape, "--fit", raw.fit, "balanced|surface",
+         "balanced: vertices where the mesh is closest to the surface; surface: vertices on it", "balanced");
+  flag(shape, "--uniform-area", a.remesh.uniform_area, "triangles of even size rather than of the best shape");
 
   const char* files = "Files";
   option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off or vdb", "by its name");
@@ -244,6 +249,7 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);
   if (!raw.method.empty())
     o.method = chosen<Method>("--method", raw.method, {{"sheet", Method::sheet}, {"shell", Method::shell}});
+  if (!raw.fit.empty()) o.fit = chosen<Fit>("--fit", raw.fit, {{"balanced", Fit::balanced}, {"surface", Fit::surface}});
   if (!raw.device.empty()) set_device(raw.device, a);
   if (!raw.stop_after.empty())
     a.stop_after = chosen<StopAfter>("--stop-after", raw.stop_after,

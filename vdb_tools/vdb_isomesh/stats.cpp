@@ -118,6 +118,7 @@ Json device_json(const DeviceInfo& d) {
 }
 
 const char* method_name(Method method) { return method == Method::shell ? "shell" : "sheet"; }
+const char* fit_name(Fit fit) { return fit == Fit::surface ? "surface" : "balanced"; }
 
 }  // namespace
 
@@ -151,7 +152,8 @@ std::string options_json(const RemeshOptions& o) {
   const Json j = {{"vertices", o.vertices},     {"edge-length", o.edge_length_world},
                   {"band", o.band_vox},         {"method", method_name(o.method)},
                   {"iterations", o.max_passes}, {"tolerance", o.tolerance},
-                  {"step", o.max_step_vox},     {"seed", o.seed}};
+                  {"step", o.max_step_vox},     {"seed", o.seed},
+                  {"fit", fit_name(o.fit)},     {"uniform-area", o.uniform_area}};
   return j.dump();
 }
 
@@ -170,6 +172,8 @@ void adopt_options(const std::string& json, const std::string& path, const Argum
     adopt("tolerance", o.tolerance);
     adopt("step", o.max_step_vox);
     adopt("seed", o.seed);
+    adopt("uniform-area", o.uniform_area);
+    if (!a.was_given("fit")) o.fit = j.at("fit") == "surface" ? Fit::surface : Fit::balanced;
     if (!a.was_given("method")) o.method = j.at("method") == "shell" ? Method::shell : Method::sheet;
   } catch (const Json::exception& e) {
     throw Error(ErrorCode::unreadable_input, "read",

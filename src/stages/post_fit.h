@@ -1,0 +1,91 @@
+// The fit: vertices move to where the mesh straddles the surface instead of being inscribed in it, against the shape of
+// the triangles. The sums of the samples are lumped to the vertices: a Jacobi step each, with the fixed point of the
+// least squares of all samples.
+#pragma once
+
+#include "stages/post_samples.h"
+#include "stages/post_smooth.h"
+#include "stages/sheet_walk.h"
+
+namespace isoshell::post {
+
+struct FitOptions {
+  SmoothOptions smooth;
+  double stiffness = 0;  ///< weight of the shape, in samples
+  double damping = 1;    ///< part of the move that is made
+  double rms_q8 = 0;     ///< of the samples' residuals
+};
+
+/// A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
+struct Symmetric {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  ISOSHELL_HD void add(double w, Vector d) {
+    xx += w * d.x * d.x, xy += w * d.x * d.y, xz += w * d.x * d.z;
+    yy += w * d.y * d.y, yz += w * d.y * d.z, zz += w * d.z * d.z;
+  }
+  /// x of A x = b for a positive definite A.
+  ISOSHELL_HD Vector solve(Vector b) const {
+    const double a = yy * zz - yz * yz, c = xz * yz - xy * zz, d = xy * yz - xz * yy, e = xx * zz - xz * xz,
+                 f = xy * xz - xx * yz, g = xx * yy - xy * xy;
+    return 1 / (xx * a + xy * c + xz * d) *
+           Vector{a * b.x + c * b.y + d * b.z, c * b.x + e * b.y + f * b.z, d * b.x + f * b.y + g * b.z};
+  }
+};
+
+/// The place between what the samples and the shapes of the triangles ask for.
+struct FitVertex {
+  MeshView mesh;
+  WalkOntoSheet walk;
+  FitOptions options;
+  View<const PointQ8> from;
+  View<const TrianglePull> triangle_pull;
+  View<const VertexPull> vertex_pull;
+  View<uint32_t> home;
+  View<PointQ8> to;
+
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const PointQ8 p = from[v];
+    const double radius_q8 = options.smooth.edge_q8 * kRadiusOfEdge;
+    Vector shape = {0, 0, 0}, normal = {0, 0, 0}, pull = {0, 0, 0};
+    Symmetric a;
+    const uint32_t start = mesh.outgoing[v];
+    uint32_t h = start;
+    do {
+      const PointQ8 b = from[mesh.to(h)], c = from[mesh.opposite(h)];
+      shape = shape + to_equilateral_corner(p, b, c, options.smooth.evenness, radius_q8);
+      const Vector n = normal_of(p, b, c), d = unit(n);
+      normal = normal + n;
+      const TrianglePull& asked = triangle_pull[h / 3];
+      a.add(double(asked.weight[h % 3]), d);
+      pull = pull + double(asked.pull[h % 3]) * d;
+      h = mesh.twin[previous_half_edge(h)];
+    } while (h != start);
+    add_samples_beyond(vertex_pull[v], a, pull);
+    home[v] = walk.nearest_vertex(home[v], p);
+    add_anchor(from_to(p, walk.closest_around(home[v], p)), a, pull);
+    normal = unit(normal);
+    shape = 1 / double(mesh.valence[v]) * shape;
+    shape = shape - dot(shape, normal) * normal;
+    const double stiffness = options.stiffness * kPullScale;
+    a.xx += stiffness, a.yy += stiffness, a.zz += stiffness;
+    const Vector move = options.damping * a.solve(pull + stiffness * shape);
+    to[v] = moved_by(p, at_most(move, options.smooth.most_q8));
+  }
+
+ private:
+  ISOSHELL_HD static void add_samples_beyond(const VertexPull& asked, Symmetric& a, Vector& pull) {
+    a.xx += double(asked.weight[0]), a.xy += double(asked.weight[1]), a.xz += double(asked.weight[2]);
+    a.yy += double(asked.weight[3]), a.yz += double(asked.weight[4]), a.zz += double(asked.weight[5]);
+    pull = pull + Vector{double(asked.pull[0]), double(asked.pull[1]), double(asked.pull[2])};
+  }
+  /// The planes around a tip meet beyond it: a vertex far off the surface is held back.
+  ISOSHELL_HD void add_anchor(Vector off, Symmetric& a, Vector& pull) const {
+    const double off_sq = dot(off, off), far_sq = 9 * options.rms_q8 * options.rms_q8;
+    if (!(far_sq > 0) || off_sq <= far_sq) return;
+    const double part = off_sq / far_sq, w = 4 * kPullScale * (part < kLargestWeight ? part : kLargestWeight);
+    a.add(w / off_sq, off);
+    pull = pull + w * off;
+  }
+};
+
+}  // namespace isoshell::post

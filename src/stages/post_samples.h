@@ -1,0 +1,203 @@
+// What the surface asks of the mesh: samples are sheet vertices, each attached to the closest triangle of the mesh;
+// their residuals, summed as integers, pull the corners.
+#pragma once
+
+#include "stages/post_mesh.h"
+#include "stages/post_shape.h"
+
+namespace isoshell::post {
+
+/// A point of the surface and the triangle of the mesh that it belongs to.
+struct FitSample {
+  PointQ8 position;
+  Normal8 normal;
+  uint32_t triangle;
+};
+
+/// The point of a triangle closest to q, in barycentric coordinates, and what is left to q.
+struct Foot {
+  double weight[3];
+  Vector rest;
+};
+ISOSHELL_HD inline Foot foot_on_triangle(PointQ8 q, PointQ8 a, PointQ8 b, PointQ8 c) {
+  const Vector ab = from_to(a, b), ac = from_to(a, c), aq = from_to(a, q), bq = from_to(b, q), cq = from_to(c, q);
+  const double d1 = dot(ab, aq), d2 = dot(ac, aq), d3 = dot(ab, bq), d4 = dot(ac, bq), d5 = dot(ab, cq),
+               d6 = dot(ac, cq);
+  if (d1 <= 0 && d2 <= 0) return {{1, 0, 0}, aq};
+  if (d3 >= 0 && d4 <= d3) return {{0, 1, 0}, bq};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double t = d1 - d3 > 0 ? d1 / (d1 - d3) : 0;
+    return {{1 - t, t, 0}, aq - t * ab};
+  }
+  if (d6 >= 0 && d5 <= d6) return {{0, 0, 1}, cq};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double t = d2 - d6 > 0 ? d2 / (d2 - d6) : 0;
+    return {{1 - t, 0, t}, aq - t * ac};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double length = (d4 - d3) + (d5 - d6), t = length > 0 ? (d4 - d3) / length : 0;
+    return {{0, 1 - t, t}, bq - t * (ac - ab)};
+  }
+  const double sum = va + vb + vc, v = vb / sum, w = vc / sum;
+  return {{1 - v - w, v, w}, aq - (v * ab + w * ac)};
+}
+
+/// Every stride-th sheet vertex, on the triangle around its label's vertex that is closest and faces its way.
+struct AttachSample {
+  MeshView mesh;
+  View<const PointQ8> position;
+  View<const PointQ8> sheet_position;
+  View<const Normal8> sheet_normal;
+  View<const uint32_t> label;
+  int64_t stride;
+  View<FitSample> sample;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const int64_t s = i * stride;
+    FitSample out{sheet_position[s], sheet_normal[s], kNone};
+    double best = 0;
+    const uint32_t start = mesh.outgoing[label[s]];
+    uint32_t h = start;
+    do {
+      const TriangleIndices t = mesh.triangles[h / 3];
+      const PointQ8 a = position[t.a], b = position[t.b], c = position[t.c];
+      const Vector rest = foot_on_triangle(out.position, a, b, c).rest;
+      const double distance_sq = dot(rest, rest);
+      if ((out.triangle == kNone || distance_sq < best) && faces(out.normal, normal_of(a, b, c)))
+        out.triangle = h / 3, best = distance_sq;
+      h = mesh.twin[previous_half_edge(h)];
+    } while (h != start);
+    sample[i] = out;
+  }
+  ISOSHELL_HD static bool faces(Normal8 n, Vector normal) {
+    return n.x * normal.x + n.y * normal.y + n.z * normal.z > 0;
+  }
+};
+
+/// Integer sums of what samples ask for. A sample over the inside of a triangle pulls along its normal; one beyond an
+/// edge or a corner pulls the ends towards itself.
+struct TrianglePull {
+  int64_t weight[3], pull[3];  ///< per corner; scaled by kPullScale
+};
+struct VertexPull {
+  int64_t weight[6], pull[3];  ///< sum of w d d^T (xx, xy, xz, yy, yz, zz) and of w r d
+};
+constexpr double kPullScale = 1024;
+constexpr double kLargestWeight = 64;
+
+struct PullOptions {
+  double rms_q8 = 0;  ///< of the residuals; 0: all samples weigh the same
+  double far_q8 = 0;  ///< samples farther than this look around
+  bool grow = false;  ///< weights grow with the residual, so that the largest shrink
+};
+
+/// Lets a sample slide to a closer triangle near its own, and adds what it asks for.
+struct PullCorners {
+  MeshView mesh;
+  View<const PointQ8> position;
+  PullOptions options;
+  View<FitSample> sample;
+  View<TrianglePull> triangle_pull;
+  View<VertexPull> vertex_pull;
+  View<int64_t> rest_sq;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    FitSample s = sample[i];
+    if (s.triangle == kNone) {
+      rest_sq[i] = 0;
+      return;
+    }
+    Foot foot = foot_on(s.triangle, s.position);
+    const uint32_t before = s.triangle;
+    for (int step = 0; step < 4 && slide(s, foot); ++step) {
+    }
+    if (s.triangle != before) sample[i].triangle = s.triangle;
+    const double distance_sq = dot(foot.rest, foot.rest);
+    rest_sq[i] = int64_t(distance_sq);
+    add(s, foot, distance_sq);
+  }
+
+ private:
+  ISOSHELL_HD Foot foot_on(uint32_t t, PointQ8 q) const {
+    const TriangleIndices i = mesh.triangles[t];
+    return foot_on_triangle(q, position[i.a], position[i.b], position[i.c]);
+  }
+  /// To the closest of the triangles that share the edge that the foot lies on, or, where it lies on a corner or far
+  /// from the sample, any corner. False when that is the sample's own.
+  ISOSHELL_HD bool slide(FitSample& s, Foot& foot) const {
+    const int zeros = (foot.weight[0] <= 0) + (foot.weight[1] <= 0) + (foot.weight[2] <= 0);
+    double best = dot(foot.rest, foot.rest);
+    const bool far = best > options.far_q8 * options.far_q8;
+    if (zeros == 0 && !far) return false;
+    const uint32_t own = s.triangle;
+    const auto consider = [&](uint32_t t) {
+      const TriangleIndices i = mesh.triangles[t];
+      const PointQ8 a = position[i.a], b = position[i.b], c = position[i.c];
+      const Foot there = foot_on_triangle(s.position, a, b, c);
+      const double distance_sq = dot(there.rest, there.rest);
+      if (distance_sq < best && AttachSample::faces(s.normal, normal_of(a, b, c)))
+        best = distance_sq, s.triangle = t, foot = there;
+    };
+    if (zeros == 1 && !far) {  // on the edge opposite of the corner without weight
+      consider(mesh.twin[own * 3 + (foot.weight[0] <= 0 ? 1 : (foot.weight[1] <= 0 ? 2 : 0))] / 3);
+      return s.triangle != own;
+    }
+    const bool at[3] = {foot.weight[0] > 0, foot.weight[1] > 0, foot.weight[2] > 0};
+    for (uint32_t k = 0; k < 3; ++k) {
+      if (!far && !at[k]) continue;
+      const uint32_t start = own * 3 + k;
+      for (uint32_t h = mesh.twin[previous_half_edge(start)]; h != start; h = mesh.twin[previous_half_edge(h)])
+        consider(h / 3);
+    }
+    return s.triangle != own;
+  }
+  /// Samples far beyond the mean residual always weigh more.
+  ISOSHELL_HD double weight_of(double distance_sq) const {
+    if (!(options.rms_q8 > 0)) return 1;
+    const double part = rounded_sqrt(distance_sq) / options.rms_q8;
+    double w = options.grow ? part : 1;
+    if (w < 0.25) w = 0.25;
+    if (part > 4) w *= part * part / 16;
+    return w < kLargestWeight ? w : kLargestWeight;
+  }
+  ISOSHELL_HD static int64_t scaled(double x) { return int64_t(x * kPullScale); }
+  ISOSHELL_HD void add(const FitSample& s, const Foot& foot, double distance_sq) const {
+    const double w = weight_of(distance_sq);
+    const TriangleIndices i = mesh.triangles[s.triangle];
+    const Vector normal = unit(normal_of(position[i.a], position[i.b], position[i.c]));
+    const double along = dot(foot.rest, normal);
+    // Beyond an edge or a corner, unless that is as good as along the normal, or level with the triangle.
+    const bool beyond = distance_sq > 1 && along * along < 0.96 * distance_sq && along * along > 0.04 * distance_sq;
+    for (int k = 0; k < 3; ++k) {
+      if (!(foot.weight[k] > 0)) continue;
+      if (beyond)
+        add(vertex_pull[corner(i, k)], w * foot.weight[k], foot.rest, distance_sq);
+      else
+        add(triangle_pull[s.triangle], k, w * foot.weight[k], along);
+    }
+  }
+  ISOSHELL_HD static void add(TrianglePull& sum, int k, double w, double along) {
+    atomic_add(sum.weight[k], scaled(w));
+    atomic_add(sum.pull[k], scaled(w * along));
+  }
+  ISOSHELL_HD static void add(VertexPull& sum, double w, Vector rest, double distance_sq) {
+    const double part = w / distance_sq;
+    atomic_add(sum.weight[0], scaled(part * rest.x * rest.x));
+    atomic_add(sum.weight[1], scaled(part * rest.x * rest.y));
+    atomic_add(sum.weight[2], scaled(part * rest.x * rest.z));
+    atomic_add(sum.weight[3], scaled(part * rest.y * rest.y));
+    atomic_add(sum.weight[4], scaled(part * rest.y * rest.z));
+    atomic_add(sum.weight[5], scaled(part * rest.z * rest.z));
+    atomic_add(sum.pull[0], scaled(w * rest.x));
+    atomic_add(sum.pull[1], scaled(w * rest.y));
+    atomic_add(sum.pull[2], scaled(w * rest.z));
+  }
+};
+
+struct RestSq {
+  View<const int64_t> rest_sq;
+  ISOSHELL_HD int64_t operator()(int64_t i) const { return rest_sq[i]; }
+};
+
+}  // namespace isoshell::post
