@@ -26,6 +26,6 @@ DualMesh cuda_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualR
 SeedSet cuda_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
 int64_t cuda_six_volume_vox(const Sheet&, Context&);
 void cuda_drop_crowded_seeds(const DualMesh&, int64_t, int64_t, SeedSet&, Context&);
-int64_t cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
+PostReport cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 
 }  // namespace isoshell

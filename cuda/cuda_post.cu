@@ -7,8 +7,8 @@
 
 namespace isoshell {
 
-int64_t cuda_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                          Context& context) {
+PostReport cuda_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                             Context& context) {
   CudaExecutor exec(context, "post");
   return improve_mesh_body(exec, *OnDevice<Sheet>(exec, sheet), options, on_device(exec, seeds), on_device(exec, mesh));
 }

@@ -283,7 +283,14 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   PostOptions post;
   post.fit = options.fit;
   post.uniform_area = options.uniform_area;
-  if (report.dual.failed_cells == 0) timed(report, "post", [&] { improve_mesh(p.sheet, post, seeds, dual, context); });
+  if (report.dual.failed_cells == 0) {
+    report.post = timed(report, "post", [&] { return improve_mesh(p.sheet, post, seeds, dual, context); });
+    report.post_done = true;
+  }
+  if (report.post.self_intersections > 0)
+    report.warnings.push_back(std::to_string(report.post.self_intersections) +
+                              " pairs of triangles intersect: parts of the surface are nearer to one another than its "
+                              "edges are long; ask for more --vertices");
   TriangleMesh mesh = to_world(dual, p.surface.frame);
   note_digest(options, report, "mesh", mesh);
   return mesh;

@@ -52,6 +52,8 @@ struct RemeshReport {
   bool topology_agrees = false;    ///< components and genus of the sheet equal the input's
   RelaxReport relax;
   DualReport dual;
+  PostReport post;         ///< of the final mesh, when post_done
+  bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections
   int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was tried; see memory_estimate.h
   std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry
   std::map<std::string, std::string> digests;

@@ -152,10 +152,17 @@ struct PostOptions {
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
 };
+struct PostReport {
+  int64_t flips = 0;
+  int64_t undone_vertices = 0;     ///< went back because of intersections; counted each time
+  int64_t self_intersections = 0;  ///< pairs of triangles that still intersect; not looked for after flips only
+};
 /// Valence flips, shape matching, a fit to the surface and searches around the worst triangles of a closed mesh whose
-/// vertices are the seeds; homes and positions of the seeds follow. Result: still closed and 2-manifold, same genus.
-/// Returns the number of flips.
-int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context);
+/// vertices are the seeds; homes and positions of the seeds follow. Where triangles intersect in the end, exactly
+/// tested, the vertices around go back to where they were on the sheet, then to where they began. Result: still closed
+/// and 2-manifold, same genus.
+PostReport improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                        Context& context);
 
 /// Final positions in the world.
 TriangleMesh to_world(const DualMesh& mesh, const LatticeFrame& frame);

@@ -23,7 +23,7 @@ void cpu_attach_to_sheet(const Sheet&, SeedSet&, int, Context&);
 VoronoiLabels cpu_flood_shell(const Shell&, const SeedSet&, Context&);
 DualMesh cpu_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
 SeedSet cpu_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
-int64_t cpu_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
+PostReport cpu_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 int64_t cpu_six_volume_vox(const Sheet&, Context&);
 void cpu_drop_crowded_seeds(const DualMesh&, int64_t, int64_t, SeedSet&, Context&);
 SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);

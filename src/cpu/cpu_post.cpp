@@ -2,12 +2,13 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/label_lanes.h"
 #include "stages/post_body.h"
 
 namespace isoshell {
 
-int64_t cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                         Context& context) {
+PostReport cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                            Context& context) {
   TbbExecutor exec(context, "post");
   return run_with_threads(
       context, [&] { return improve_mesh_body(exec, *OnHost(sheet), options, on_host(seeds), on_host(mesh)); });

@@ -42,10 +42,9 @@ ISOSHELL_VECTOR_VERSIONS void compare(VertexLanes& v, int count, const SeedForm*
       }
     else
       for (int i = 0; i < count; ++i) {
-        const int32_t along =
-            f.normal_x * v.normal_x[i] + f.normal_y * v.normal_y[i] + f.normal_z * v.normal_z[i];
-        const int32_t here = f.constant + f.x * v.x[i] + f.y * v.y[i] + f.z * v.z[i] +
-                             (along < label::kOpposite ? f.penalty : 0);
+        const int32_t along = f.normal_x * v.normal_x[i] + f.normal_y * v.normal_y[i] + f.normal_z * v.normal_z[i];
+        const int32_t here =
+            f.constant + f.x * v.x[i] + f.y * v.y[i] + f.z * v.z[i] + (along < label::kOpposite ? f.penalty : 0);
         v.best[i] = here < v.least[i] ? s : v.best[i];
         v.least[i] = here < v.least[i] ? here : v.least[i];
       }
@@ -94,8 +93,8 @@ class LeafSeeds {
   SeedForm form(const label::LabelSeed& s) const {
     const Local p = local(s.position, bounds_.lo);
     const bool may_pay = label::cost_range(bounds_, s.position, s.normal, penalty_q16_).may_oppose;
-    return {p.x * p.x + p.y * p.y + p.z * p.z, -2 * p.x,   -2 * p.y,   -2 * p.z,
-            s.normal.x,                        s.normal.y, s.normal.z, may_pay ? int32_t(penalty_q16_) : 0};
+    return {p.x * p.x + p.y * p.y + p.z * p.z,  -2 * p.x, -2 * p.y, -2 * p.z, s.normal.x, s.normal.y, s.normal.z,
+            may_pay ? int32_t(penalty_q16_) : 0};
   }
 
  private:

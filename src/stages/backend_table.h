@@ -31,7 +31,7 @@ struct BackendTable {
   VoronoiLabels (*flood_shell)(const Shell&, const SeedSet&, Context&);
   DualMesh (*triangulate_dual)(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
   SeedSet (*subdivide_seeds)(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
-  int64_t (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
+  PostReport (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
   int64_t (*six_volume_vox)(const Sheet&, Context&);
   void (*drop_crowded_seeds)(const DualMesh&, int64_t excess, int64_t protected_count, SeedSet&, Context&);
 };

@@ -3,7 +3,8 @@
 
 namespace isoshell {
 
-int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context) {
+PostReport improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                        Context& context) {
   return backend_for(context).improve_mesh(sheet, options, seeds, mesh, context);
 }
 

@@ -9,6 +9,7 @@
 #include "stages/post_fit.h"
 #include "stages/post_flips.h"
 #include "stages/post_guard.h"
+#include "stages/post_intersections.h"
 #include "stages/post_search.h"
 #include "stages/post_smooth.h"
 
@@ -16,6 +17,7 @@ namespace isoshell {
 namespace post {
 
 constexpr int kStepsOffSheet = 8;
+constexpr int kUndoRounds = 3;
 constexpr int kSamplesPerTriangle = 9;  ///< fewer miss tips, more change little
 constexpr double kStiffness = 1.5;      ///< less is nearer to the surface, more has better triangles
 // No step may make a triangle below its bound worse; bounds rise to where the search begins.
@@ -23,11 +25,42 @@ constexpr double kPoorMerit = 0.8, kFairMerit = 0.9, kFineMerit = 0.97, kGoodMer
 // Weight of the mean size of triangles against their own. Shapes are best with little.
 constexpr double kEvenness = 0.1, kUniformEvenness = 4;
 
-struct TakeNormal {
-  View<const Normal8> sheet_normal;
-  View<const uint32_t> home;
+/// Seeds go where the vertices are: position, home and normal.
+struct UpdateSeed {
+  WalkOntoSheet walk;
+  View<const PointQ8> vertex;
+  View<PointQ8> position;
   View<Normal8> normal;
-  ISOSHELL_HD void operator()(int64_t v) const { normal[v] = sheet_normal[home[v]]; }
+  View<uint32_t> home;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    position[v] = vertex[v];
+    home[v] = walk.nearest_vertex(home[v], vertex[v]);
+    normal[v] = walk.normal[home[v]];
+  }
+};
+
+/// Marks the neighbours of marked vertices too.
+struct SpreadMarks {
+  MeshView mesh;
+  View<const uint32_t> marked;
+  View<uint32_t> spread;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    uint32_t any = marked[v];
+    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t) { any |= marked[b]; });
+    spread[v] = any;
+  }
+};
+struct ReturnMarked {
+  View<const uint32_t> marked;
+  View<const PointQ8> to;
+  View<PointQ8> position;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    if (marked[v]) position[v] = to[v];
+  }
+};
+struct IsMarked {
+  View<const uint32_t> marked;
+  ISOSHELL_HD int64_t operator()(int64_t v) const { return marked[v]; }
 };
 
 struct RotateTriangle {
@@ -66,6 +99,8 @@ class Improvement {
     moved_ = exec.template make<PointQ8>(vertices_);
     previous_ = exec.template make<PointQ8>(vertices_);
     on_sheet_ = exec.template make<PointQ8>(vertices_);
+    begin_ = exec.template make<PointQ8>(vertices_);
+    exec.copy(View<const PointQ8>(mesh.position.view()), begin_.view());
     moved_home_ = exec.template make<uint32_t>(vertices_);
     harmed_ = exec.template make<uint32_t>(vertices_);
     connect();
@@ -77,8 +112,8 @@ class Improvement {
     return flip_edges(exec_, FlipKey{view(), mesh_.position.view(), least_merit}, claim_.view(), rounds);
   }
 
-  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where that one
-  /// harms, vertices return to where they last were on the sheet.
+  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where that
+  /// one harms, vertices return to where they last were on the sheet.
   void smooth(int steps, double momentum, double least_merit) {
     SmoothOptions options = smooth_options(0.2);
     options.momentum = momentum;
@@ -152,6 +187,26 @@ class Improvement {
     }
   }
 
+  /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are
+  /// done: first to the sheet, then to where they began. A round that does not help takes more vertices in the next.
+  void undo_intersections(PostReport& report) {
+    Buffer<uint32_t> spread = exec_.template make<uint32_t>(vertices_);
+    const int64_t spacing_vox = int64_t(edge_q8_) / kOneVoxelQ8 + 1;
+    for (int round = 0;; ++round) {
+      report.self_intersections = find_intersections(exec_, {mesh_.triangles.view(), mesh_.position.view()},
+                                                     sheet_.corners.block_dims, spacing_vox, harmed_.view());
+      if (report.self_intersections == 0 || round == 2 * kUndoRounds) return;
+      for (int rings = round % kUndoRounds; rings >= 0; --rings) {
+        exec_.for_each("spread marks", vertices_, SpreadMarks{view(), harmed_.view(), spread.view()});
+        std::swap(harmed_, spread);
+      }
+      report.undone_vertices += exec_.sum(vertices_, IsMarked{harmed_.view()});
+      exec_.for_each(
+          "return marked", vertices_,
+          ReturnMarked{harmed_.view(), round < kUndoRounds ? on_sheet_.view() : begin_.view(), mesh_.position.view()});
+    }
+  }
+
   void finish() {
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
     exec_.sort(mesh_.triangles.view(), ByIndices{});
@@ -170,8 +225,9 @@ class Improvement {
   }
 
   void update_seeds() {
-    exec_.copy(View<const PointQ8>(mesh_.position.view()), seeds_.position.view());
-    exec_.for_each("seed normals", vertices_, TakeNormal{walk_.normal, seeds_.home.view(), seeds_.normal.view()});
+    exec_.for_each(
+        "update seeds", vertices_,
+        UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(), seeds_.home.view()});
   }
 
   /// What was moved becomes the position, except where that would harm: there `before` does.
@@ -204,7 +260,7 @@ class Improvement {
   double rms_q8_ = 0;   ///< of the samples' residuals, 0 before they were first looked at
   Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, harmed_;
   Buffer<uint64_t> claim_;
-  Buffer<PointQ8> moved_, previous_, on_sheet_;
+  Buffer<PointQ8> moved_, previous_, on_sheet_, begin_;
   Buffer<FitSample> sample_;
   Buffer<int64_t> rest_sq_;
   Buffer<TrianglePull> triangle_pull_;
@@ -214,12 +270,14 @@ class Improvement {
 }  // namespace post
 
 template <class Exec>
-int64_t improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh) {
+PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds,
+                             DualMesh& mesh) {
   post::Improvement<Exec> work(exec, sheet, options, seeds, mesh);
-  int64_t flips = work.flip(options.flip_rounds, post::kPoorMerit);
+  PostReport report;
+  report.flips = work.flip(options.flip_rounds, post::kPoorMerit);
   if (options.smoothing_steps > 0) {
     work.smooth(options.smoothing_steps, 0.95, post::kPoorMerit);
-    flips += work.flip(options.flip_rounds, post::kPoorMerit);
+    report.flips += work.flip(options.flip_rounds, post::kPoorMerit);
     work.smooth(options.smoothing_steps / 8, 0.5, post::kFairMerit);
     const bool balanced = options.fit == Fit::balanced;
     if (balanced) {
@@ -230,9 +288,10 @@ int64_t improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& opt
       work.fit(3, 0.6, true, post::kFineMerit);
     }
     work.search(options.search_rounds, !balanced);
+    work.undo_intersections(report);
   }
   work.finish();
-  return flips;
+  return report;
 }
 
 }  // namespace isoshell

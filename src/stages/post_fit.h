@@ -61,8 +61,7 @@ struct FitVertex {
       h = mesh.twin[previous_half_edge(h)];
     } while (h != start);
     add_samples_beyond(vertex_pull[v], a, pull);
-    home[v] = walk.nearest_vertex(home[v], p);
-    add_anchor(from_to(p, walk.closest_around(home[v], p)), a, pull);
+    add_anchor(v, p, a, pull);
     normal = unit(normal);
     shape = 1 / double(mesh.valence[v]) * shape;
     shape = shape - dot(shape, normal) * normal;
@@ -79,9 +78,13 @@ struct FitVertex {
     pull = pull + Vector{double(asked.pull[0]), double(asked.pull[1]), double(asked.pull[2])};
   }
   /// The planes around a tip meet beyond it: a vertex far off the surface is held back.
-  ISOSHELL_HD void add_anchor(Vector off, Symmetric& a, Vector& pull) const {
-    const double off_sq = dot(off, off), far_sq = 9 * options.rms_q8 * options.rms_q8;
-    if (!(far_sq > 0) || off_sq <= far_sq) return;
+  ISOSHELL_HD void add_anchor(int64_t v, PointQ8 p, Symmetric& a, Vector& pull) const {
+    const double far_sq = 9 * options.rms_q8 * options.rms_q8;
+    if (!(far_sq > 0) || double(distance_sq_q16(p, walk.position[home[v]])) <= far_sq) return;
+    home[v] = walk.nearest_vertex(home[v], p);
+    const Vector off = from_to(p, walk.closest_around(home[v], p));
+    const double off_sq = dot(off, off);
+    if (off_sq <= far_sq) return;
     const double part = off_sq / far_sq, w = 4 * kPullScale * (part < kLargestWeight ? part : kLargestWeight);
     a.add(w / off_sq, off);
     pull = pull + w * off;

@@ -72,9 +72,11 @@ TEST_CASE("args: options reach the library with their units", "[cli][args]") {
 }
 
 TEST_CASE("args: gates are a list", "[cli][args]") {
-  const Gates g = arguments({"--require", "closed,manifold,genus=3,components=2,min-angle=20.5"}).gates;
+  const Gates g =
+      arguments({"--require", "closed,manifold,no-self-intersections,genus=3,components=2,min-angle=20.5"}).gates;
   CHECK(g.closed);
   CHECK(g.manifold);
+  CHECK(g.no_self_intersections);
   CHECK(g.genus == 3);
   CHECK(g.components == 2);
   CHECK(g.min_angle_deg == 20.5);

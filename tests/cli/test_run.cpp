@@ -59,6 +59,7 @@ TEST_CASE("run: statistics have every key of schema 1, and null for what is not 
   CHECK(j["counts"]["triangles"] == 596);
   CHECK(j["topology"]["genus"] == 0);
   CHECK(j["topology"]["manifold"] == true);
+  CHECK(j["topology"]["self_intersections"] == 0);
   CHECK(j["distance"]["to_input_max"].is_null());
   CHECK(j["device"] == "cpu");
   CHECK(j["device_details"].is_null());

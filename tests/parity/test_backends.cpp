@@ -219,8 +219,9 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
   both.stage("improved mesh", &Products::dual, [](const Products& p, Context& c) {
     SeedSet seeds = to_host(p.seeds);
     DualMesh mesh = to_host(p.dual);
-    const int64_t flips = improve_mesh(p.sheet, {}, seeds, mesh, c);
-    return made(std::move(mesh), std::to_string(flips) + " flips, seeds " + digest_text(hash_arrays(seeds)));
+    const PostReport report = improve_mesh(p.sheet, {}, seeds, mesh, c);
+    return made(std::move(mesh), std::to_string(report.flips) + " flips, " + std::to_string(report.self_intersections) +
+                                     " intersections, seeds " + digest_text(hash_arrays(seeds)));
   });
 }
 

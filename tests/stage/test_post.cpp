@@ -130,7 +130,7 @@ TEST_CASE("post: flips alone move nothing and make valences more even", "[post][
   for (Start& s : starts()) {
     SeedSet seeds = copy_of(s.seeds);
     DualMesh mesh = copy_of(s.mesh);
-    const int64_t flips = improve_mesh(s.sheet, {6, 0, 0}, seeds, mesh, context);
+    const int64_t flips = improve_mesh(s.sheet, {6, 0, 0}, seeds, mesh, context).flips;
     const auto unevenness = [](const DualMesh& m) {
       std::vector<int> valence(size_t(m.position.size()));
       for (const TriangleIndices& t : m.triangles) ++valence[t.a], ++valence[t.b], ++valence[t.c];

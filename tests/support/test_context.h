@@ -79,12 +79,12 @@ inline SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const S
                                TestContext& context) {
   return to_host(subdivide_seeds(sheet, mesh, seeds, target, context.plain()));
 }
-inline int64_t improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                            TestContext& context) {
-  const int64_t flips = improve_mesh(sheet, options, seeds, mesh, context.plain());
+inline PostReport improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                               TestContext& context) {
+  const PostReport report = improve_mesh(sheet, options, seeds, mesh, context.plain());
   seeds = to_host(seeds);
   mesh = to_host(mesh);
-  return flips;
+  return report;
 }
 
 }  // namespace isoshell

@@ -87,7 +87,9 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
 
   const char* run = "Run";
   option(run, "--require", raw.require, "LIST",
-         "gates on the result, exit 6 when one fails: closed, manifold, genus=G, components=N, min-angle=DEG", "");
+         "gates on the result, exit 6 when one fails: closed, manifold, no-self-intersections, genus=G, components=N, "
+         "min-angle=DEG",
+         "");
   option(run, "--device", raw.device, "auto|cpu|cuda[:N]", "where to run", "auto");
   option(run, "--threads", raw.threads, "N", "CPU threads", "all");
   option(run, "--max-memory", raw.max_memory, "SIZE",
@@ -182,6 +184,8 @@ void set_gate(const std::string& gate, Gates& gates) {
     gates.closed = true;
   else if (name == "manifold" && !has_value)
     gates.manifold = true;
+  else if (name == "no-self-intersections" && !has_value)
+    gates.no_self_intersections = true;
   else if (name == "genus" && has_value)
     gates.genus = parse_count("--require genus", value);
   else if (name == "components" && has_value)
@@ -189,10 +193,11 @@ void set_gate(const std::string& gate, Gates& gates) {
   else if (name == "min-angle" && has_value) {
     gates.min_angle_deg = parse_number("--require min-angle", value);
     check_range("--require min-angle", *gates.min_angle_deg, 0, 60);
-  } else if (name == "max-deviation" || name == "no-self-intersections") {
+  } else if (name == "max-deviation") {
     refuse("--require " + name + " is not available yet; leave it out");
   } else {
-    refuse("--require has '" + gate + "'; gates are closed, manifold, genus=G, components=N, min-angle=DEG");
+    refuse("--require has '" + gate +
+           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, min-angle=DEG");
   }
 }
 

@@ -16,11 +16,11 @@ enum class StopAfter { mesh, shell, voronoi };
 
 /// Conditions on the result; a run that misses one exits with 6.
 struct Gates {
-  bool closed = false, manifold = false;
+  bool closed = false, manifold = false, no_self_intersections = false;
   std::optional<int64_t> genus, components;
   std::optional<double> min_angle_deg;
 
-  bool any() const { return closed || manifold || genus || components || min_angle_deg; }
+  bool any() const { return closed || manifold || no_self_intersections || genus || components || min_angle_deg; }
 };
 
 struct Arguments {

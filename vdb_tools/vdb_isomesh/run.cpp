@@ -251,6 +251,12 @@ class Run {
     if (g.closed)
       gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
     if (g.manifold) gate(t.is_closed_manifold(), "manifold: the mesh is not a closed 2-manifold");
+    if (g.no_self_intersections)
+      gate(record_.report.post_done && record_.report.post.self_intersections == 0,
+           "no-self-intersections: " +
+               (record_.report.post_done
+                    ? counted(record_.report.post.self_intersections, "pair", "pairs") + " intersect"
+                    : std::string("the mesh is no closed 2-manifold and was not tested")));
     if (g.genus)
       gate(t.genus == *g.genus, "genus=" + std::to_string(*g.genus) + ": the mesh has " +
                                     (t.genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(t.genus)));

@@ -67,7 +67,7 @@ Json topology_json(const RunRecord& r) {
             {"boundary_loops", nullptr},
             {"nonmanifold_edges", nullptr},
             {"nonmanifold_vertices", nullptr},
-            {"self_intersections", nullptr},
+            {"self_intersections", r.report.post_done ? Json(r.report.post.self_intersections) : Json()},
             {"sheet_components", r.report.sheet.components},
             {"sheet_genus", r.report.sheet.genus},
             {"cut_handles", r.report.sheet.cut_handles},

@@ -1,0 +1,104 @@
+// Do two triangles meet outside of the corners that they share? Exact, in integers.
+//
+// Budget, coordinates < 2^22: differences < 2^23, cross products < 2^47, and their products with a third difference
+// < 2^72, the one 128-bit sum here.
+#pragma once
+
+#include "voxel/exact_int.h"
+
+namespace isoshell {
+
+/// Sign of the volume of (a, b, c, d): positive when d lies on the side that (b - a) x (c - a) points to.
+ISOSHELL_HD inline int side_of_plane(PointQ8 a, PointQ8 b, PointQ8 c, PointQ8 d) {
+  const Vec64 n = cross(difference(b, a), difference(c, a)), r = difference(d, a);
+  const Int128 volume = Int128(n.x) * r.x + Int128(n.y) * r.y + Int128(n.z) * r.z;
+  return (volume > 0) - (volume < 0);
+}
+
+/// A point of the plane in which a triangle is seen best: without the axis of the normal's largest component.
+struct Point2 {
+  int64_t x, y;
+};
+ISOSHELL_HD inline Point2 seen_along(PointQ8 p, int axis) {
+  return axis == 0 ? Point2{p.y, p.z} : (axis == 1 ? Point2{p.z, p.x} : Point2{p.x, p.y});
+}
+ISOSHELL_HD inline int turn(Point2 a, Point2 b, Point2 c) {
+  const int64_t area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  return (area > 0) - (area < 0);
+}
+/// c lies on the line through a and b: is it on the closed segment?
+ISOSHELL_HD inline bool within_segment(Point2 a, Point2 b, Point2 c) {
+  return (c.x - a.x) * (c.x - b.x) <= 0 && (c.y - a.y) * (c.y - b.y) <= 0;
+}
+ISOSHELL_HD inline bool segments_meet(Point2 a, Point2 b, Point2 c, Point2 d) {
+  const int s = turn(a, b, c), t = turn(a, b, d), u = turn(c, d, a), v = turn(c, d, b);
+  if (s * t < 0 && u * v < 0) return true;
+  return (s == 0 && within_segment(a, b, c)) || (t == 0 && within_segment(a, b, d)) ||
+         (u == 0 && within_segment(c, d, a)) || (v == 0 && within_segment(c, d, b));
+}
+ISOSHELL_HD inline bool triangle_holds(Point2 a, Point2 b, Point2 c, Point2 p) {
+  const int s = turn(a, b, p), t = turn(b, c, p), u = turn(c, a, p);
+  return (s >= 0 && t >= 0 && u >= 0) || (s <= 0 && t <= 0 && u <= 0);
+}
+
+/// Axis of the largest component of a triangle's normal; -1 for a triangle without area.
+ISOSHELL_HD inline int best_axis(PointQ8 a, PointQ8 b, PointQ8 c) {
+  const Vec64 n = cross(difference(b, a), difference(c, a));
+  const int64_t x = n.x < 0 ? -n.x : n.x, y = n.y < 0 ? -n.y : n.y, z = n.z < 0 ? -n.z : n.z;
+  if (x == 0 && y == 0 && z == 0) return -1;
+  return x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
+}
+
+/// Closed segment pq against closed triangle abc that has an area.
+ISOSHELL_HD inline bool segment_meets_triangle(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b, PointQ8 c) {
+  const int side_p = side_of_plane(a, b, c, p), side_q = side_of_plane(a, b, c, q);
+  if (side_p * side_q > 0) return false;
+  if (side_p == 0 && side_q == 0) {
+    const int axis = best_axis(a, b, c);
+    const Point2 p2 = seen_along(p, axis), q2 = seen_along(q, axis), a2 = seen_along(a, axis), b2 = seen_along(b, axis),
+                 c2 = seen_along(c, axis);
+    return triangle_holds(a2, b2, c2, p2) || segments_meet(p2, q2, a2, b2) || segments_meet(p2, q2, b2, c2) ||
+           segments_meet(p2, q2, c2, a2);
+  }
+  const int s = side_of_plane(p, q, a, b), t = side_of_plane(p, q, b, c), u = side_of_plane(p, q, c, a);
+  return (s >= 0 && t >= 0 && u >= 0) || (s <= 0 && t <= 0 && u <= 0);
+}
+
+/// A triangle by the ids and the places of its corners.
+struct CornersOfTriangle {
+  uint32_t id[3];
+  PointQ8 at[3];
+};
+
+/// Two different closed triangles: do they meet outside of what they share? Corners are shared by id. False for
+/// triangles without area, and for three shared corners.
+ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const CornersOfTriangle& t) {
+  if (best_axis(s.at[0], s.at[1], s.at[2]) < 0 || best_axis(t.at[0], t.at[1], t.at[2]) < 0) return false;
+  int shared = 0, own_s = 0, own_t = 0, corner_s = 0, corner_t = 0;  // the sums of the places give the place left over
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (s.id[i] == t.id[j]) ++shared, own_s += i, own_t += j, corner_s = i, corner_t = j;
+  if (shared == 3) return false;
+  if (shared == 2) {
+    // Around a common edge they overlap only when one is folded onto the other.
+    const int c = 3 - own_s, d = 3 - own_t;
+    const PointQ8 a = s.at[(c + 1) % 3], b = s.at[(c + 2) % 3];
+    if (side_of_plane(a, b, s.at[c], t.at[d]) != 0) return false;
+    const int axis = best_axis(a, b, s.at[c]);
+    const Point2 a2 = seen_along(a, axis), b2 = seen_along(b, axis);
+    return turn(a2, b2, seen_along(s.at[c], axis)) == turn(a2, b2, seen_along(t.at[d], axis));
+  }
+  if (shared == 1) {
+    // What they have in common starts at the corner and ends at a side opposite of it.
+    const int i = corner_s, j = corner_t;
+    return segment_meets_triangle(s.at[(i + 1) % 3], s.at[(i + 2) % 3], t.at[0], t.at[1], t.at[2]) ||
+           segment_meets_triangle(t.at[(j + 1) % 3], t.at[(j + 2) % 3], s.at[0], s.at[1], s.at[2]);
+  }
+  for (int i = 0; i < 3; ++i)
+    if (segment_meets_triangle(s.at[i], s.at[(i + 1) % 3], t.at[0], t.at[1], t.at[2]) ||
+        segment_meets_triangle(t.at[i], t.at[(i + 1) % 3], s.at[0], s.at[1], s.at[2]))
+      return true;
+  return false;
+}
+
+}  // namespace isoshell
