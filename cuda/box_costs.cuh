@@ -3,6 +3,7 @@
 
 #include "cuda/seed_buckets.cuh"
 #include "cuda/sheet_patches.cuh"
+#include "cuda/warp.cuh"
 
 namespace isoshell::cuda_relax {
 
@@ -12,31 +13,24 @@ struct PatchBox {
   Local lo, hi;
   uint32_t normal_lo, normal_hi;  ///< packed
 
+  /// How far a seed is outside the box, on each axis.
+  __device__ Local outside(const SeedRecord& s) const {
+    const auto axis = [](int32_t lo, int32_t hi, int32_t d) { return max(max(lo - d, d - hi), 0); };
+    return {axis(lo.x, hi.x, s.x - origin.x), axis(lo.y, hi.y, s.y - origin.y), axis(lo.z, hi.z, s.z - origin.z)};
+  }
   __device__ int32_t extent() const { return max(max(hi.x - lo.x, hi.y - lo.y), hi.z - lo.z); }
   __device__ bool near() const { return within(lo, kMaxLocal) && within(hi, kMaxLocal); }
   __device__ static bool within(Local u, int32_t limit) {
     return u.x > -limit && u.x < limit && u.y > -limit && u.y < limit && u.z > -limit && u.z < limit;
   }
 };
-__device__ inline PatchBox box_of(const Patch& p) {
-  return {p.origin, {p.lo[0], p.lo[1], p.lo[2]}, {p.hi[0], p.hi[1], p.hi[2]}, pack(p.normal_lo), pack(p.normal_hi)};
+__device__ inline PatchBox box_of(const Patch& patch) {
+  const PatchBounds b = patch.bounds;
+  return {b.origin, {b.lo[0], b.lo[1], b.lo[2]}, {b.hi[0], b.hi[1], b.hi[2]}, b.normal_lo, b.normal_hi};
 }
 
 /// Root of a squared distance in q16, rounded up, perhaps by a little more.
 __device__ inline int32_t reach_of(int64_t sq_q16) { return int32_t(sqrtf(float(sq_q16)) * 1.00001f) + 1; }
-
-__device__ inline int64_t min_over_warp(int64_t x) {
-  for (int d = 16; d > 0; d >>= 1) x = min(x, __shfl_xor_sync(~0u, x, d));
-  return x;
-}
-__device__ inline uint32_t min_over_warp(uint32_t x) {
-#if __CUDA_ARCH__ >= 800
-  return __reduce_min_sync(~0u, x);
-#else
-  for (int d = 16; d > 0; d >>= 1) x = min(x, __shfl_xor_sync(~0u, x, d));
-  return x;
-#endif
-}
 
 /// Smallest and largest cost of a seed over the box. Cost is uint32_t, which holds them while reach and box are short
 /// (see fits), or int64_t; `none` stands for what it does not hold.

@@ -8,22 +8,18 @@ namespace isoshell::cuda_relax {
 /// The most that a vertex of a patch pays at the nearest of some winners.
 struct MostAtVertices {
   const SheetPass* pass;
-  int64_t number;
+  const Patch* patch;
+  WarpScratch* scratch;
 
-  __device__ __noinline__ int64_t operator()(const Winners& winners, int count) const {
-    const Patch& patch = pass->patches.patch[number];
-    int64_t most = 0;
-    for (int i = int(threadIdx.x & 31); i < patch.vertices; i += 32) {
-      const int64_t v = patch.vertex_first + i;
-      const SeedRecord normal{0, 0, 0, pass->patches.normal[v]};
-      most = max(most, nearest_winner(winners, count, pass->patches.vertex[v].local(), normal.normal(),
-                                      pass->search.penalty_q16)
-                           .cost);
-    }
-    for (int d = 16; d > 0; d >>= 1) most = max(most, __shfl_xor_sync(~0u, most, d));
-    return most;
-  }
+  __device__ int64_t operator()(const Winners&, int count) const { return label_far(*pass, *patch, count, *scratch); }
 };
+
+/// The slow search, for patches that find_near does not do.
+__device__ __noinline__ inline SearchResult find_all(const SheetPass& pass, const Patch& patch, int32_t reach,
+                                                     WarpScratch& scratch) {
+  return find_winners(pass.search, box_of(patch), reach, scratch.search, scratch.winners,
+                      MostAtVertices{&pass, &patch, &scratch});
+}
 
 /// Patches with more candidates than winners: many of them, and no more cells than winners can be.
 class ManyCandidates {
@@ -53,7 +49,7 @@ class ManyCandidates {
   };
   __device__ Nearest nearest(int i, int count) const {
     const Local u = pass_.patches.vertex[patch_.vertex_first + i].local();
-    const PointQ8 v = {patch_.origin.x + u.x, patch_.origin.y + u.y, patch_.origin.z + u.z};
+    const PointQ8 v = {patch_.bounds.origin.x + u.x, patch_.bounds.origin.y + u.y, patch_.bounds.origin.z + u.z};
     const Normal8 normal = SeedRecord{0, 0, 0, pass_.patches.normal[patch_.vertex_first + i]}.normal();
     Nearest best{INT64_MAX, 0};
     uint32_t best_id = kNone;
@@ -72,7 +68,7 @@ class ManyCandidates {
     int count = 0;
     for (int w = 0; w < kMaxMany / 32; ++w) {
       const uint32_t word = scratch_.used[w];
-      const int place = count + __popc(word & ((1u << lane_) - 1));
+      const int place = count + lanes_before(word);
       if (word >> lane_ & 1 && place < kMaxWinners) scratch_.search.id[place] = scratch_.many[w * 32 + lane_];
       count += __popc(word);
     }
@@ -95,18 +91,16 @@ class ManyCandidates {
 };
 
 /// The result has more winners than there may be when the patch must be summed directly.
-__device__ __noinline__ inline SearchResult label_from_many(const SheetPass& pass, int64_t leaf, SearchResult found,
-                                                            WarpScratch& scratch) {
-  const Patch& patch = pass.patches.patch[leaf];
+__device__ __noinline__ inline SearchResult label_from_many(const SheetPass& pass, const Patch& patch,
+                                                            SearchResult found, WarpScratch& scratch) {
   PatchSearch search(pass.search, box_of(patch), scratch.search);
   ManyCandidates(pass, patch, scratch).label_vertices(search, found);
   return found;
 }
 
 /// A patch with more cells than that: each lane labels the corners of its triangles by itself.
-__device__ __noinline__ inline Int128 sum_patch_directly(const SheetPass& pass, int64_t leaf, int64_t limit) {
+__device__ __noinline__ inline Int128 sum_patch_directly(const SheetPass& pass, const Patch& patch, int64_t limit) {
   Int128 energy = 0;
-  const Patch& patch = pass.patches.patch[leaf];
   const PatchBox box = box_of(patch);
   const int32_t reach = reach_of(limit);
   for (int t = int(threadIdx.x & 31); t < patch.triangles; t += 32) {
@@ -117,9 +111,10 @@ __device__ __noinline__ inline Int128 sum_patch_directly(const SheetPass& pass, 
     for (int i = 0; i < 3; ++i) {
       const int64_t v = patch.vertex_first + triangle.corner(i);
       split.p[i] = pass.patches.vertex[v].local();
-      const PointQ8 p = {patch.origin.x + split.p[i].x, patch.origin.y + split.p[i].y, patch.origin.z + split.p[i].z};
+      const PointQ8 p = {patch.bounds.origin.x + split.p[i].x, patch.bounds.origin.y + split.p[i].y,
+                         patch.bounds.origin.z + split.p[i].z};
       id[i] = label_directly(pass.search, box, reach, p, SeedRecord{0, 0, 0, pass.patches.normal[v]}.normal());
-      split.s[i] = local(pass.search.seed[id[i]].position(), patch.origin);
+      split.s[i] = local(pass.search.seed[id[i]].position(), patch.bounds.origin);
     }
     const auto add = [&](int i, const PieceSum& piece) {
       energy += relax_sheet::add_to_cell(pass.cell[id[i]], piece, split.s[i]);

@@ -1,4 +1,6 @@
 // CUDA's relax_on_sheet: passes of two kernels over patches, the plain body where a sheet has no patches.
+#include <algorithm>
+
 #include "cuda/cuda_backend.h"
 #include "cuda/label_forms.cuh"
 #include "cuda/relax_sheet_pass.cuh"
@@ -11,11 +13,18 @@ using namespace cuda_relax;
 constexpr int kThreads = 128;
 unsigned blocks_for(int64_t count, int per_block) { return unsigned((count + per_block - 1) / per_block); }
 
-/// About three cells at most, so that lists of candidates stay short; few enough that patches take about the same time
-/// and that small sheets, too, give every multiprocessor some.
+int multiprocessors() {
+  int device = 0, count = 0;
+  require_success(cudaGetDevice(&device), "cudaGetDevice");
+  require_success(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+  return count;
+}
+
+/// About four cells at most, so that lists of candidates stay short; few enough that patches take about the same time
+/// and that small sheets, too, give every multiprocessor some. Leaves have about 65 vertices.
 int own_vertices_for(int64_t h_sq_q16, int64_t vertices) {
-  constexpr int64_t kFewest = 32, kMost = 96, kPatches = 4096;
-  const int64_t of_cells = 3 * h_sq_q16 >> (2 * kFractionBits), of_sheet = vertices / kPatches;
+  constexpr int64_t kFewest = 40, kMost = 160, kPatches = 3000;
+  const int64_t of_cells = 4 * h_sq_q16 >> (2 * kFractionBits), of_sheet = vertices / kPatches;
   const int64_t least = of_cells < of_sheet ? of_cells : of_sheet;
   return int(least < kFewest ? kFewest : least > kMost ? kMost : least);
 }
@@ -45,14 +54,15 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
   SheetMove move{moving,           cells.data(), records.data(),  buckets.grid,       buckets.table(1),
                  buckets.table(0), state.data(), progress.data(), options.max_passes, count};
   start_seeds<<<blocks_for(count, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
-  first_reach<<<blocks_for(parts, kThreads), kThreads, 0, exec.stream()>>>(pass.patches, spacing.h_q8, reach.data());
+  exec.fill(reach.view(), int32_t(spacing.h_q8 * 5 / 4));
   exec.check("start passes");
+  const unsigned sum_blocks = unsigned(std::min(parts, int64_t(kSumBlocks) * multiprocessors()));
   int searched = 0;
   return run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
     pass.search.table = move.from = buckets.table(searched);
     searched = 1 - searched;
     move.to = buckets.table(searched);
-    sum_patches<<<blocks_for(parts, kSumWarps), kSumWarps * 32, 0, exec.stream()>>>(pass);
+    sum_patches<<<sum_blocks, 32, 0, exec.stream()>>>(pass);
     move_seeds<<<blocks_for(count, kMoveThreads / kWalkLanes), kMoveThreads, 0, exec.stream()>>>(move);
     exec.check("relaxation pass");
   });

@@ -14,6 +14,41 @@ struct Landing {
   PointQ8 point;
 };
 
+/// Every case of it, for the few that the next one leaves.
+__device__ __noinline__ inline PointQ8 closest_point_by_cases(PointQ8 p, PointQ8 a, PointQ8 b, PointQ8 c) {
+  return closest_point_on_triangle(p, a, b, c);
+}
+
+/// closest_point_on_triangle with the same numbers, but lanes that go for a corner, an edge or the inside go one way:
+/// each says where it starts and how far it goes along two sides, and all divide and round at once.
+__device__ inline PointQ8 closest_point_at_once(PointQ8 p, PointQ8 a, PointQ8 b, PointQ8 c) {
+  const Offset32 none{0, 0, 0}, ab = offset_between(a, b), ac = offset_between(a, c), ap = offset_between(a, p),
+                                bp = offset_between(b, p), cp = offset_between(c, p);
+  const double d1 = double(dot(ab, ap)), d2 = double(dot(ac, ap)), d3 = double(dot(ab, bp)), d4 = double(dot(ac, bp)),
+               d5 = double(dot(ab, cp)), d6 = double(dot(ac, cp));
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  PointQ8 from = a;
+  Offset32 first = ab, second = ac;
+  double v = vb, w = vc, whole = va + vb + vc;
+  bool inside = true;
+  const auto along = [&](PointQ8 start, Offset32 edge, double part, double length) {
+    from = start, first = edge, second = none, v = part, w = 0, whole = length, inside = false;
+  };
+  // The first case that holds comes last.
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) along(b, offset_between(b, c), d4 - d3, (d4 - d3) + (d5 - d6));
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) along(a, ac, d2, d2 - d6);
+  if (d6 >= 0 && d5 <= d6) along(c, none, 0, 1);
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) along(a, ab, d1, d1 - d3);
+  if (d3 >= 0 && d4 <= d3) along(b, none, 0, 1);
+  if (d1 <= 0 && d2 <= 0) along(a, none, 0, 1);
+  if (inside && whole <= 0x1p-40 * double(dot(ab, ab)) * double(dot(ac, ac))) return closest_point_by_cases(p, a, b, c);
+  v /= whole;
+  w /= whole;
+  return {from.x + round_to_int(v * double(first.x) + w * double(second.x)),
+          from.y + round_to_int(v * double(first.y) + w * double(second.y)),
+          from.z + round_to_int(v * double(first.z) + w * double(second.z))};
+}
+
 /// All lanes of the warp call it; those of a group with the same arguments.
 __device__ inline Landing walk_together(const WalkOntoSheet& sheet, uint32_t from, PointQ8 target, bool active) {
   const int lane = threadIdx.x & (kWalkLanes - 1);
@@ -53,7 +88,7 @@ __device__ inline Landing walk_together(const WalkOntoSheet& sheet, uint32_t fro
   at.point = sheet.position[at.vertex];
   for (int64_t n = begin + lane; n < end; n += kWalkLanes) {
     if (n >= begin + kWalkLanes) load(n);
-    const PointQ8 q = closest_point_on_triangle(target, a, b, c);
+    const PointQ8 q = closest_point_at_once(target, a, b, c);
     const int64_t d = distance_sq_q16(q, target);
     if (d < least) least = d, first = n, at.point = q;
   }

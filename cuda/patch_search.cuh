@@ -17,12 +17,18 @@ struct SeedSearch {
   int64_t penalty_q16;
 };
 
+/// Where a candidate is, from the patch's origin.
+struct alignas(16) WinnerPlace {
+  int32_t x, y, z;
+  uint32_t packed_normal;
+  __device__ operator Local() const { return {x, y, z}; }
+};
+
 /// Candidates of one patch, by ascending id.
 struct Winners {
   int4 form[kMaxWinners];  ///< |s|^2 - 2 s.v, s and v from the patch's origin: constant, then per x, y and z
-  Local place[kMaxWinners];
+  WinnerPlace place[kMaxWinners];
   uint32_t id[kMaxWinners];
-  uint32_t packed_normal[kMaxWinners];
 };
 
 /// Scratch of the search: numbers of the seeds in 32 full buckets.
@@ -32,8 +38,8 @@ struct SearchScratch {
 
 struct SearchResult {
   int count;      ///< above kMaxWinners: overflow, and no winners are given
-  int best;       ///< place of the best seed among the winners
-  bool narrow;    ///< forms hold every cost in 32 bits, no penalty to pay
+  bool near;      ///< forms hold every cost in 32 bits, penalties apart
+  bool narrow;    ///< and there is no penalty to pay
   int64_t limit;  ///< no label's cost is above this
   int32_t reach;  ///< how far the search had to look
 };
@@ -48,13 +54,65 @@ class PatchSearch {
   /// most that a vertex pays at the nearest of some winners.
   template <class Cost, class Most>
   __device__ SearchResult find(int32_t reach, Winners& out, Most most_at) {
-    SearchResult result{-1, 0, false, INT64_MAX, reach};
+    SearchResult result{-1, false, false, INT64_MAX, reach};
     while (BoxCosts<Cost>::fits(box_, result.reach))
       if (look<Cost>(result, out, most_at)) {
         keep<Cost>(out, result);
         break;
       }
     return result;
+  }
+
+  /// The quick way, for few seeds near the box: looks once, and not for seeds beyond `reach`. Those stay out rightly
+  /// where every label costs at most reach^2; the limit does not promise that. False when it does not do.
+  __device__ bool find_near(int32_t reach, Winners& out, SearchResult& result) {
+    if (!BoxCosts<uint32_t>::fits(box_, reach)) return false;
+    set_reach(reach);
+    if (cells_ > kFewCells) return false;
+    collect<true>(0);
+    if (next_ < cells_ || __any_sync(~0u, has_spilt_)) return false;
+    const BoxCosts<uint32_t> costs(box_, search_.penalty_q16);
+    if (total_ > 32) drop_far(reach);
+    if (total_ > 2 * 32) return false;
+    constexpr uint32_t kNothing = CostBounds<uint32_t>::none();
+    uint32_t id[2] = {kNone, kNone};
+    SeedRecord seed[2] = {};
+    CostBounds<uint32_t> range[2] = {{kNothing, kNothing, kNothing}, {kNothing, kNothing, kNothing}};
+#pragma unroll
+    for (int r = 0; r < 2; ++r)
+      if (32 * r + lane_ < total_) {
+        id[r] = scratch_.id[32 * r + lane_];
+        seed[r] = search_.seed[id[r]];
+        range[r] = costs.of(seed[r], reach);
+      }
+    const bool second = range[1].hi < range[0].hi;
+    const uint32_t mine = second ? range[1].hi : range[0].hi, least = warp_min(mine);
+    if (least == kNothing) return false;
+    const int lane = __ffs(int(__ballot_sync(~0u, mine == least))) - 1;
+    best_id_ = __shfl_sync(~0u, second ? id[1] : id[0], lane);
+    best_may_pay_ = __shfl_sync(~0u, int(second ? range[1].may_oppose : range[0].may_oppose), lane);
+    const SeedRecord best = {__shfl_sync(~0u, second ? seed[1].x : seed[0].x, lane),
+                             __shfl_sync(~0u, second ? seed[1].y : seed[0].y, lane),
+                             __shfl_sync(~0u, second ? seed[1].z : seed[0].z, lane), 0};
+    unsigned kept[2];
+    bool may_oppose = false;
+#pragma unroll
+    for (int r = 0; r < 2; ++r) {
+      const bool in =
+          range[r].lo <= least &&
+          (id[r] == best_id_ || !costs.beaten(best, best_id_, best_may_pay_, seed[r], id[r], range[r].always_opposes));
+      may_oppose |= in && range[r].may_oppose;
+      kept[r] = __ballot_sync(~0u, in);
+    }
+    result.count = __popc(kept[0]) + __popc(kept[1]);
+    if (result.count > kMaxWinners) return false;
+    if (kept[0] >> lane_ & 1) put(out, lanes_before(kept[0]), id[0], seed[0]);
+    if (kept[1] >> lane_ & 1) put(out, __popc(kept[0]) + lanes_before(kept[1]), id[1], seed[1]);
+    result.limit = least;
+    result.reach = reach;
+    result.narrow = !__any_sync(~0u, may_oppose);
+    sort(out, result);
+    return true;
   }
 
   /// Again with a limit that is known to hold. Returns the number of candidates; writes their ids to `ids` as far as
@@ -69,7 +127,7 @@ class PatchSearch {
         const bool in = base + lane_ < total;
         const uint32_t id = in ? batch[base + lane_] : 0;
         const unsigned kept = __ballot_sync(~0u, in && costs.of(search_.seed[id], reach).lo <= limit);
-        const int place = count + __popc(kept & ((1u << lane_) - 1));
+        const int place = count + lanes_before(kept);
         if (kept >> lane_ & 1 && place < room) ids[place] = id;
         count += __popc(kept);
       }
@@ -78,11 +136,10 @@ class PatchSearch {
     return count;
   }
 
-  /// Winners from a list of at most kMaxWinners ids, in its order. The best is any.
+  /// Winners from a list of at most kMaxWinners ids, in its order.
   __device__ void take(const uint32_t* ids, int count, Winners& out, SearchResult& result) const {
     if (lane_ < count) put(out, lane_, ids[lane_], search_.seed[ids[lane_]]);
     result.count = count;
-    result.best = 0;
     __syncwarp();
   }
 
@@ -104,7 +161,7 @@ class PatchSearch {
         if (range.hi < best) best = range.hi, best_id_ = id, best_may_pay_ = range.may_oppose;
       }
     });
-    const Cost least = min_over_warp(best), least_far = min_over_warp(best_far);
+    const Cost least = warp_min(best), least_far = warp_min(best_far);
     // Any of the best will do.
     const int lane = __ffs(int(__ballot_sync(~0u, best == least))) - 1;
     best_id_ = __shfl_sync(~0u, best_id_, lane);
@@ -146,48 +203,47 @@ class PatchSearch {
              (!has_best || id == best_id_ || !costs.beaten(best, best_id_, best_may_pay_, s, id, range.always_opposes));
         may_oppose |= in && range.may_oppose;
         const unsigned kept = __ballot_sync(~0u, in);
-        const int place = count + __popc(kept & ((1u << lane_) - 1));
+        const int place = count + lanes_before(kept);
         if (in && place < kMaxWinners) put(out, place, id, s);
         count += __popc(kept);
       }
     });
     result.reach = reach_of(result.limit);
     result.count = count;
-    result.narrow = !__any_sync(~0u, may_oppose) && box_.near();
-    if (count <= kMaxWinners) sort(best_id_, out, result);
+    result.narrow = !__any_sync(~0u, may_oppose);
+    if (count <= kMaxWinners) sort(out, result);
   }
 
   __device__ void put(Winners& out, int place, uint32_t id, const SeedRecord& s) const {
     out.id[place] = id;
-    out.place[place] = {s.x - box_.origin.x, s.y - box_.origin.y, s.z - box_.origin.z};
-    out.packed_normal[place] = s.packed_normal;
+    out.place[place] = {s.x - box_.origin.x, s.y - box_.origin.y, s.z - box_.origin.z, s.packed_normal};
   }
 
-  /// By id, with their forms.
-  __device__ void sort(uint32_t best_id, Winners& out, SearchResult& result) const {
+  /// By id, with their forms. A seed that is there twice (see collect) stays so.
+  __device__ void sort(Winners& out, SearchResult& result) const {
     __syncwarp();
-    uint32_t id = kNone, packed_normal = 0;
-    Local s{0, 0, 0};
+    uint32_t id = kNone;
+    WinnerPlace s{0, 0, 0, 0};
     if (lane_ < result.count) {
       id = out.id[lane_];
-      packed_normal = out.packed_normal[lane_];
       s = out.place[lane_];
     }
     int rank = 0;
-    for (int c = 0; c < result.count; ++c) rank += __shfl_sync(~0u, id, c) < id;
-    __syncwarp();
+#pragma unroll 1
+    for (int c = 0; c < result.count; ++c) {
+      const uint32_t other = __shfl_sync(~0u, id, c);
+      rank += other < id || (other == id && c < lane_);
+    }
     // Forms stay below 3 * 2^28 + 2 * 3 * 2^27.
     const bool near = PatchBox::within(s, 1 << 14);
     if (lane_ < result.count) {
       out.id[rank] = id;
-      out.packed_normal[rank] = packed_normal;
       out.place[rank] = s;
       out.form[rank] =
           near ? make_int4(s.x * s.x + s.y * s.y + s.z * s.z, -2 * s.x, -2 * s.y, -2 * s.z) : make_int4(0, 0, 0, 0);
     }
-    result.narrow = __all_sync(~0u, near) && result.narrow;
-    const unsigned is_best = __ballot_sync(~0u, lane_ < result.count && id == best_id);
-    result.best = is_best ? __shfl_sync(~0u, rank, __ffs(int(is_best)) - 1) : 0;
+    result.near = __all_sync(~0u, near) && box_.near();
+    result.narrow = result.near && result.narrow;
     __syncwarp();
   }
 
@@ -196,10 +252,18 @@ class PatchSearch {
   template <class Each>
   __device__ void for_each_batch(Each each) {
     for (int base = 0; base < cells_; base = next_) {
-      if (base != collected_) collect(base);
+      if (base != collected_) collect<false>(base);
       each(scratch_.id, total_);
     }
     if (const uint32_t spilt = search_.table.spill[0]) each(search_.table.spill + 1, int(spilt));
+  }
+
+  static constexpr int kFewCells = 1 << 10;  ///< the most that a quick search looks at
+
+  /// a / b; for few cells by a product that is off by less than what separates such quotients.
+  template <bool kFew>
+  __device__ static int quotient(int a, int b) {
+    return kFew ? int(__fdividef(float(a) + 0.5f, float(b))) : a / b;
   }
 
   __device__ void set_reach(int32_t reach) {
@@ -215,32 +279,37 @@ class PatchSearch {
     collected_ = -1;
   }
 
-  /// Numbers of the seeds in cells base .. next_ - 1 of the box, as many as the scratch holds.
+  /// Numbers of the seeds in cells base .. next_ - 1 of the box, as many as the scratch holds. Hashed cells share
+  /// buckets: unless strangers may stay, each seed is met in its own cell only.
+  template <bool kStrangers>
   __device__ void collect(int base) {
     __syncwarp();
     total_ = 0;
     next_ = base;
-    while (next_ < cells_ && collect_cells(next_)) next_ += 32;
-    if (search_.grid.hash_mask) drop_strangers();
+#pragma unroll 1
+    while (next_ < cells_ && collect_cells<kStrangers>(next_)) next_ += 32;
+    if (!kStrangers && search_.grid.hash_mask) drop_strangers();
     collected_ = base;
     __syncwarp();
   }
 
   /// Adds the seeds of 32 cells; false when there is no room for them.
+  template <bool kStrangers>
   __device__ bool collect_cells(int base) {
     int count = 0, x = 0, y = 0, z = 0;
     const uint4* bucket = reinterpret_cast<const uint4*>(search_.table.bucket);
     uint4 part[2] = {};
     if (base + lane_ < cells_) {
       const int c = base + lane_;
-      const int row = c / dims_[1];
+      const int row = quotient<kStrangers>(c, dims_[1]);
       z = first_[2] + c - row * dims_[1];
-      x = row / dims_[0];
+      x = quotient<kStrangers>(row, dims_[0]);
       y = first_[1] + row - x * dims_[0];
       x += first_[0];
       bucket += int64_t(search_.grid.bucket(x, y, z)) * (sizeof(SeedBucket) / sizeof(uint4));
       part[0] = bucket[0];
       part[1] = bucket[1];
+      has_spilt_ |= part[0].x > kBucketSeeds;
       count = int(min(part[0].x, uint32_t(kBucketSeeds)));
     }
     int at = count;
@@ -253,7 +322,7 @@ class PatchSearch {
     uint32_t* to = scratch_.id + total_ + at - count;
     total_ += added;
     const auto put = [&](int i, uint32_t id) {
-      if (i < count) to[i] = in_cell(id, x, y, z);
+      if (i < count) to[i] = kStrangers ? id : in_cell(id, x, y, z);
     };
     put(0, part[0].y), put(1, part[0].z), put(2, part[0].w);
     put(3, part[1].x), put(4, part[1].y), put(5, part[1].z), put(6, part[1].w);
@@ -265,7 +334,23 @@ class PatchSearch {
     return true;
   }
 
-  /// Hashed cells share buckets: each seed is met in its own cell only.
+  /// Leaves those of the collected seeds that are within reach of the box.
+  __device__ void drop_far(int32_t reach) {
+    int kept = 0;
+#pragma unroll 1
+    for (int base = 0; base < total_; base += 32) {
+      const bool in = base + lane_ < total_;
+      const uint32_t id = in ? scratch_.id[base + lane_] : 0;
+      const Local away = box_.outside(search_.seed[id]);
+      const bool near = in && uint64_t(square(away)) <= uint64_t(int64_t(reach) * reach);
+      const unsigned lanes = __ballot_sync(~0u, near);
+      if (near) scratch_.id[kept + lanes_before(lanes)] = id;
+      kept += __popc(lanes);
+      __syncwarp();
+    }
+    total_ = kept;
+  }
+
   __device__ uint32_t in_cell(uint32_t id, int x, int y, int z) const {
     return search_.grid.hash_mask && !search_.grid.holds(x, y, z, search_.seed[id].position()) ? kNone : id;
   }
@@ -276,7 +361,7 @@ class PatchSearch {
     for (int base = 0; base < total_; base += 32) {
       const uint32_t id = base + lane_ < total_ ? scratch_.id[base + lane_] : kNone;
       const unsigned mine = __ballot_sync(~0u, id != kNone);
-      if (id != kNone) scratch_.id[kept + __popc(mine & ((1u << lane_) - 1))] = id;
+      if (id != kNone) scratch_.id[kept + lanes_before(mine)] = id;
       kept += __popc(mine);
       __syncwarp();
     }
@@ -289,7 +374,7 @@ class PatchSearch {
   const int lane_;
   int first_[3] = {}, dims_[2] = {}, cells_ = 0, collected_ = -1, next_ = 0, total_ = 0;
   uint32_t best_id_ = 0;
-  bool best_may_pay_ = false;
+  bool best_may_pay_ = false, has_spilt_ = false;
 };
 
 template <class Most>

@@ -1,10 +1,10 @@
-// Sums of the clipped cells of one patch, by one warp: labels of its vertices, its triangles by the number of cells
-// that share them, and their pieces added up per candidate. Arithmetic is that of voxel/cell_sum.h.
+// Sums of the clipped cells of one patch, by one warp: labels of its vertices, the moments that each vertex owns to its
+// label, and what triangles between labels move from one to another. Arithmetic is that of voxel/cell_sum.h.
 #pragma once
 
 #include "cuda/pass_end.cuh"
+#include "cuda/patch_pieces.cuh"
 #include "cuda/patch_winners.cuh"
-#include "stages/relax_sheet_body.h"
 
 namespace isoshell::cuda_relax {
 
@@ -20,15 +20,8 @@ struct SheetPass {
   int32_t tolerance_ppb;
 };
 
-/// Pieces on their way from the lanes that cut them to the sums. Lane 5 c + q adds up moment q of winner c, c + 6 ...
-struct PieceExchange {
-  int64_t piece[32 * 5];  ///< per lane
-  unsigned lanes_of[kMaxWinners];
-  int64_t sum[kMaxWinners * 5];  ///< per winner
-};
-
 struct TriangleQueue {
-  uint16_t triangle[64];
+  PackedTriangle triangle[64];
 };
 
 constexpr int kMaxMany = 256;
@@ -41,252 +34,261 @@ struct WarpScratch {
   union {
     SearchScratch search;
     PieceExchange exchange;
+    LabelSums::Words words;
   };
-  uint8_t label[kMaxPatchVertices];
+  alignas(4) uint8_t label[kMaxPatchVertices];
   uint32_t used[kMaxMany / 32];
-  TriangleQueue whole, cut, junction;  ///< triangles in one cell, in two, in three
+  TriangleQueue split, junction;  ///< triangles in several cells, and of these those in three
 };
 
-/// Sums of a patch's pieces per winner, but of the best seed only what the rest does not tell: its cell gets the
-/// patch's total less the others' sums, plus `correction` where pieces do not add up to their triangle.
+/// Labels by any distance and penalty; see label_vertices.
+__device__ __noinline__ inline int64_t label_far(const SheetPass& pass, const Patch& patch, int count,
+                                                 WarpScratch& scratch) {
+  int64_t most = 0;
+  for (int i = int(threadIdx.x & 31); i < patch.vertices; i += 32) {
+    const int64_t v = patch.vertex_first + i;
+    const NearestWinner nearest =
+        nearest_winner(scratch.winners, count, pass.patches.vertex[v].local(),
+                       SeedRecord{0, 0, 0, pass.patches.normal[v]}.normal(), pass.search.penalty_q16);
+    scratch.label[i] = uint8_t(nearest.number);
+    most = max(most, nearest.cost);
+  }
+  __syncwarp();
+  return warp_max(most);
+}
+
+/// Labels the vertices of a patch with the numbers of its winners; returns the most that one of them pays.
+__device__ inline int64_t label_vertices(const SheetPass& pass, const Patch& patch, const SearchResult& found,
+                                         WarpScratch& scratch) {
+  if (!found.near || (!found.narrow && pass.search.penalty_q16 >= kMaxNearPenalty))
+    return label_far(pass, patch, found.count, scratch);
+  const PatchVertex* vertex = pass.patches.vertex + patch.vertex_first;
+  const uint32_t* normal = pass.patches.normal + patch.vertex_first;
+  constexpr int kAtOnce = 4;
+  uint32_t most = 0;
+  for (int base = int(threadIdx.x & 31); base - int(threadIdx.x & 31) < patch.vertices; base += 32 * kAtOnce) {
+    Local v[kAtOnce];
+    int best[kAtOnce];
+    int32_t least[kAtOnce];
+#pragma unroll
+    for (int r = 0; r < kAtOnce; ++r)
+      v[r] = base + 32 * r < patch.vertices ? vertex[base + 32 * r].local() : Local{0, 0, 0};
+    if (found.narrow) {
+      winners_at(scratch.winners, found.count, v, best, least);
+    } else {
+      uint32_t n[kAtOnce];
+#pragma unroll
+      for (int r = 0; r < kAtOnce; ++r) n[r] = base + 32 * r < patch.vertices ? normal[base + 32 * r] : 0;
+      winners_at(scratch.winners, found.count, v, n, int32_t(pass.search.penalty_q16), best, least);
+    }
+#pragma unroll
+    for (int r = 0; r < kAtOnce; ++r)
+      if (base + 32 * r < patch.vertices) {
+        scratch.label[base + 32 * r] = uint8_t(best[r]);
+        most = max(most, uint32_t(least[r]) + in_patch::square32(v[r]));
+      }
+  }
+  __syncwarp();
+  return warp_max(most);
+}
+
+/// Sums of a labelled patch's cells.
 class PatchSums {
  public:
-  __device__ PatchSums(const SheetPass& pass, const Patch& patch, const SearchResult& found, WarpScratch& scratch)
-      : pass_(pass), patch_(patch), found_(found), scratch_(scratch), lane_(threadIdx.x & 31) {
-    for (int i = lane_; i < 5 * found_.count; i += 32) scratch_.exchange.sum[i] = 0;
-    scratch_.exchange.lanes_of[lane_] = 0;
-  }
-
-  __device__ void label_vertices() {
-    const PatchVertex* vertex = pass_.patches.vertex + patch_.vertex_first;
-    const uint32_t* normal = pass_.patches.normal + patch_.vertex_first;
-    if (!found_.narrow) {
-      for (int i = lane_; i < patch_.vertices; i += 32)
-        scratch_.label[i] = uint8_t(winner_at(scratch_.winners, found_.count, vertex[i].local(),
-                                              SeedRecord{0, 0, 0, normal[i]}.normal(), pass_.search.penalty_q16));
-      __syncwarp();
-      return;
-    }
-    constexpr int kAtOnce = 4;
-    for (int base = lane_; base < patch_.vertices; base += 32 * kAtOnce) {
-      Local v[kAtOnce];
-      int best[kAtOnce];
-#pragma unroll
-      for (int r = 0; r < kAtOnce; ++r)
-        v[r] = base + 32 * r < patch_.vertices ? vertex[base + 32 * r].local() : Local{0, 0, 0};
-      winners_at(scratch_.winners, found_.count, v, best);
-#pragma unroll
-      for (int r = 0; r < kAtOnce; ++r)
-        if (base + 32 * r < patch_.vertices) scratch_.label[base + 32 * r] = uint8_t(best[r]);
-    }
-    __syncwarp();
-  }
-
-  __device__ void sum_triangles() {
-    int whole = 0, cut = 0, junction = 0;
-    // One round more than there are triangles empties the queues.
-    for (int base = 0; base < patch_.triangles + 32; base += 32) {
-      const int t = base + lane_;
-      int cells = 0;
-      if (t < patch_.triangles) {
-        const PackedTriangle triangle = pass_.patches.triangle[patch_.triangle_first + t];
-        const int a = label(triangle, 0), b = label(triangle, 1), c = label(triangle, 2);
-        if (a == b && b == c)
-          cells = a == found_.best ? 0 : 1;
-        else
-          cells = a == b || b == c || c == a ? 2 : 3;
-      }
-      push(scratch_.whole, whole, cells == 1, t);
-      push(scratch_.cut, cut, cells == 2, t);
-      push(scratch_.junction, junction, cells == 3, t);
-      const int enough = base < patch_.triangles ? 32 : 1;
-      if (whole >= enough) whole = drain<32>(scratch_.whole, whole, [&](int n, int i) { add_whole(n, i); });
-      if (cut >= enough) cut = drain<32>(scratch_.cut, cut, [&](int n, int i) { add_cut(n, i); });
-      while (junction >= min(enough, kJunctions))
-        junction = drain<kJunctions>(scratch_.junction, junction, [&](int n, int i) { add_junctions(n, i); });
-    }
-  }
+  __device__ PatchSums(const SheetPass& pass, const Patch& patch, int winners, WarpScratch& scratch)
+      : pass_(pass), patch_(patch), winners_(winners), scratch_(scratch), lane_(threadIdx.x & 31) {}
 
   /// Adds the sums to the cells; returns the lane's part of the energy.
-  __device__ Int128 flush() {
-    int64_t* sums = scratch_.exchange.sum;
-    if (lane_ < 5) {
-      const PieceSum& t = patch_.total;
-      int64_t rest = lane_ == 0   ? t.mass
-                     : lane_ == 1 ? t.first_x
-                     : lane_ == 2 ? t.first_y
-                     : lane_ == 3 ? t.first_z
-                                  : t.second;
-      for (int c = 0; c < found_.count; ++c) rest += c == found_.best ? sums[c * 5 + lane_] : -sums[c * 5 + lane_];
-      sums[found_.best * 5 + lane_] = rest;
+  __device__ Int128 add_to_cells() {
+    Int128 energy = 0;
+    for (int base = 0; base < winners_; base += kLabelsAtOnce) {
+      const int count = min(winners_ - base, kLabelsAtOnce);
+      LabelSums sums(base, count);
+      const PieceBytes* owned = pass_.patches.owned + patch_.owned_first;
+      for (int v = 0; v < patch_.own; v += 32) sums.add(owned[v + lane_], scratch_.label + v);
+      move_between_labels(sums);
+      sums.put(scratch_.words);
+      if (lane_ < count) energy += add_sum(LabelSums::sum_of(scratch_.words, lane_), base + lane_);
+      __syncwarp();
     }
-    __syncwarp();
-    if (lane_ >= found_.count) return 0;
-    const PieceSum s = {sums[lane_ * 5], sums[lane_ * 5 + 1], sums[lane_ * 5 + 2], sums[lane_ * 5 + 3],
-                        sums[lane_ * 5 + 4]};
-    if (s.mass == 0 && s.first_x == 0 && s.first_y == 0 && s.first_z == 0 && s.second == 0) return 0;
-    return relax_sheet::add_to_cell(pass_.cell[scratch_.winners.id[lane_]], s, scratch_.winners.place[lane_]);
+    return energy;
   }
 
  private:
+  __device__ Int128 add_sum(const PieceSum& s, int winner) const {
+    if (s.mass == 0 && s.first_x == 0 && s.first_y == 0 && s.first_z == 0 && s.second == 0) return 0;
+    return in_patch::add_to_cell(pass_.cell[scratch_.winners.id[winner]], s, scratch_.winners.place[winner]);
+  }
+
+  /// A piece that goes from one label to another.
+  struct Moved {
+    PieceSum piece;
+    uint32_t from, to;
+    bool is_two;  ///< of a triangle in two cells
+  };
+
+  /// The pieces of triangles that are not in their owner's cell.
+  __device__ void move_between_labels(LabelSums& sums) {
+    const PackedTriangle* triangle = pass_.patches.triangle + patch_.triangle_first;
+    const int count = patch_.triangles;
+    int split = 0, junctions = 0;
+    PackedTriangle next = lane_ < count ? triangle[lane_] : PackedTriangle{0, 0};
+    // One round more than there are triangles empties the queues.
+    for (int base = 0;; base += 32) {
+      const bool last = base >= count;
+      if (!last) {
+        const PackedTriangle t = next;  // where there is none, all corners are one
+        next = base + 32 + lane_ < count ? triangle[base + 32 + lane_] : PackedTriangle{0, 0};
+        const int a = label(t, 0), b = label(t, 1), c = label(t, 2);
+        push(scratch_.split, split, a != b || b != c, t);
+      }
+      // Cuts first; the junctions among them follow.
+      for (;;) {
+        Moved moved;
+        if (split >= (last ? 1 : 32)) {
+          const int now = min(split, 32);
+          const PackedTriangle t = take(scratch_.split, split, now);
+          moved = cut(t, lane_ < now);
+          push(scratch_.junction, junctions, lane_ < now && !moved.is_two, t);
+        } else if (junctions >= (last ? 1 : kJunctions)) {
+          const int now = min(junctions, kJunctions);
+          moved = junction(take(scratch_.junction, junctions, now), now);
+        } else {
+          break;
+        }
+        sums.move(moved.piece, moved.from, moved.to, scratch_.exchange);
+      }
+      if (last) break;
+    }
+  }
+
   __device__ int label(const PackedTriangle& t, int i) const { return scratch_.label[t.corner(i)]; }
 
-  __device__ void push(TriangleQueue& queue, int& count, bool in, int triangle) {
+  __device__ void push(TriangleQueue& queue, int& count, bool in, const PackedTriangle& triangle) {
     const unsigned lanes = __ballot_sync(~0u, in);
-    if (in) queue.triangle[count + __popc(lanes & ((1u << lane_) - 1))] = uint16_t(triangle);
+    if (lanes == 0) return;
+    if (in) queue.triangle[count + lanes_before(lanes)] = triangle;
     count += __popc(lanes);
     __syncwarp();
   }
 
-  /// Works on up to kMost triangles of the queue, one a lane; returns how many are left.
-  template <int kMost, class Work>
-  __device__ int drain(TriangleQueue& queue, int count, Work work) {
-    const int now = min(count, kMost);
-    const int triangle = queue.triangle[lane_ < now ? lane_ : 0];
-    const int later = lane_ < count - now ? queue.triangle[now + lane_] : 0;
-    __syncwarp();
-    if (lane_ < count - now) queue.triangle[lane_] = uint16_t(later);  // at most 32 stay
-    work(now, triangle);
-    __syncwarp();
-    return count - now;
-  }
-
-  struct Corners {
-    Local p[3];
-    int label[3];
-    uint32_t area2;
-  };
-  __device__ PackedTriangle packed(int triangle) const {
-    return pass_.patches.triangle[patch_.triangle_first + triangle];
-  }
-  __device__ Corners corners(const PackedTriangle& t) const {
-    Corners c;
-    c.area2 = t.area2;
-#pragma unroll
-    for (int i = 0; i < 3; ++i) {
-      c.p[i] = pass_.patches.vertex[patch_.vertex_first + t.corner(i)].local();
-      c.label[i] = label(t, i);
+  /// The queue's first triangles, one a lane; the first again where there are no more.
+  __device__ PackedTriangle take(TriangleQueue& queue, int& count, int now) {
+    const PackedTriangle triangle = queue.triangle[lane_ < now ? lane_ : 0];
+    count -= now;
+    if (count > 0) {
+      const PackedTriangle later = queue.triangle[lane_ < count ? now + lane_ : 0];
+      __syncwarp();
+      if (lane_ < count) queue.triangle[lane_] = later;  // at most 32 stay
     }
-    return c;
-  }
-  __device__ SplitTriangle split(const Corners& c) const {
-    const Local* s = scratch_.winners.place;
-    return {{c.p[0], c.p[1], c.p[2]}, {s[c.label[0]], s[c.label[1]], s[c.label[2]]}, c.area2};
+    __syncwarp();
+    return triangle;
   }
 
-  __device__ void add_whole(int count, int triangle) {
-    const Corners c = corners(packed(triangle));
-    exchange(lane_ < count, c.label[0], piece_sum(c.area2, c.p[0], c.p[1], c.p[2]));
+  __device__ Local corner(const PackedTriangle& t, int i) const {
+    return pass_.patches.vertex[patch_.vertex_first + t.corner(i)].local();
   }
+  __device__ Local seed(int label) const { return scratch_.winners.place[label]; }
 
-  __device__ void add_cut(int count, int triangle) {
-    const PackedTriangle t = packed(triangle);
-    const int a = label(t, 0), b = label(t, 1);
-    // From the corner that is alone on: which corner comes first changes no piece.
-    const Corners c = corners(t.from_corner(b == label(t, 2) ? 0 : a == b ? 2 : 1));
-    PieceSum one{}, rest{};
-    split(c).two_cells(0, [&](int corner, const PieceSum& piece) {
-      if (corner == 0)
-        one = piece;
-      else
-        rest = piece;
-    });
-    const bool in = lane_ < count, one_best = c.label[0] == found_.best;
-    exchange(in, one_best ? c.label[1] : c.label[0], one_best ? rest : one);
-    const bool both = in && !one_best && c.label[1] != found_.best;
-    if (__any_sync(~0u, both)) exchange(both, c.label[1], rest);
+  /// Triangles in two cells, one a lane: one corner is alone in its cell.
+  __device__ Moved cut(const PackedTriangle& t, bool in) const {
+    const int label_of[3] = {label(t, 0), label(t, 1), label(t, 2)};
+    const int alone = label_of[1] == label_of[2] ? 0 : label_of[2] == label_of[0] ? 1 : 2;
+    const int next = alone == 2 ? 0 : alone + 1, last = alone == 0 ? 2 : alone - 1;
+    const Local p = corner(t, alone), q = corner(t, next), r = corner(t, last);
+    const int here = in_patch::pick(alone, label_of[0], label_of[1], label_of[2]),
+              other = in_patch::pick(next, label_of[0], label_of[1], label_of[2]);
+    const bool two = alone != 2 || label_of[0] == label_of[1];
+    PieceSum piece = in_patch::corner_piece32(int32_t(t.area2), p, q, r, seed(here), seed(other));
+    const bool owner_alone = t.owner() == alone;
+    if (owner_alone) piece = in_patch::piece_sum32(int32_t(t.area2), p, q, r) - piece;
+    const uint32_t from = owner_alone ? here : other, to = owner_alone ? other : here;
+    return {piece, in && two ? from : kNoLabel, in && two ? to : kNoLabel, two};
   }
 
   static constexpr int kJunctions = 8;  ///< at once, four lanes each
 
-  /// Lane i < 3 of four cuts the piece of corner i; the last one gives the best seed what the pieces do not add up to.
-  __device__ void add_junctions(int count, int triangle) {
-    triangle = __shfl_sync(~0u, triangle, lane_ >> 2);
-    const bool in = lane_ >> 2 < count;
-    const int i = lane_ & 3, group = lane_ & ~3;
-    const Corners c = corners(packed(triangle));
-    const SplitTriangle whole = split(c), mine = from_corner(whole, i);
-    const unsigned separating = __ballot_sync(~0u, i < 3 && mine.separates(0)) >> group & 7;
+  /// Triangles in three cells (see SplitTriangle::three_cells). Lane i < 3 of four cuts the piece of corner i; the last
+  /// one takes the whole from the owner, and gives it to the corner that gets what the others leave, if there is one.
+  /// Each has two triangles at its corner, (p, at_q, inner) and (p, inner, at_r), of which the second may be nothing.
+  __device__ Moved junction(PackedTriangle t, int count) const {
+    using in_patch::pick;
+    t = {__shfl_sync(~0u, t.corners, lane_ >> 2), __shfl_sync(~0u, t.area2, lane_ >> 2)};
+    const int group = lane_ & ~3, i = min(lane_ & 3, 2), next = i == 2 ? 0 : i + 1, last = i == 0 ? 2 : i - 1;
+    const bool has_corner = (lane_ & 3) < 3;
+    const int number[3] = {label(t, i), label(t, next), label(t, last)};
+    const in_patch::Junction mine{{corner(t, i), corner(t, next), corner(t, last)},
+                                  {seed(number[0]), seed(number[1]), seed(number[2])}};
+    const unsigned separating = __ballot_sync(~0u, has_corner && mine.separates()) >> group & 7;
     const int k = separating ? __ffs(int(separating)) - 1 : -1;  // the corner whose seed keeps the other two apart
-    int64_t* slot = scratch_.exchange.piece + lane_ * 5;
-    if (k >= 0) {
-      const Local other = i == (k + 1) % 3 ? mine.s[2] : mine.s[1];
-      put(slot, SplitTriangle{{mine.p[0], mine.p[1], mine.p[2]}, {mine.s[0], other, other}, mine.area2}.corner(0, 1));
-    } else {
-      const SplitTriangle::Barycentric x = whole.meeting_point();
-      const Local meet = whole.point_at(x);
-      const int32_t x_mine[3] = {pick(i, x.x[0], x.x[1], x.x[2]), pick(i, x.x[1], x.x[2], x.x[0]),
-                                 pick(i, x.x[2], x.x[0], x.x[1])};
-      put(slot, mine.around_meeting(0, meet, {{x_mine[0], x_mine[1], x_mine[2]}}));
+    // The bisectors that cut the sides: with the neighbours' seeds, or both with the one in between.
+    const Local other_q = k == last ? mine.s[2] : mine.s[1], other_r = k == next ? mine.s[1] : mine.s[2];
+    const int32_t on_q = crossing(mine, other_q, 1), on_r = crossing(mine, other_r, 2);
+    Local at_q = in_patch::between32(mine.p[0], mine.p[1], on_q),
+          at_r = in_patch::between32(mine.p[0], mine.p[2], on_r);
+    Local inner = at_r;
+    int32_t part = in_patch::part_of(int32_t(t.area2), on_q, on_r), second_part = 0;
+    uint32_t from = kNoLabel, to = number[0];
+    const auto of_corner = [&](int c) { return uint32_t(c == i ? number[0] : c == next ? number[1] : number[2]); };
+    if (__any_sync(~0u, k < 0)) {
+      const int32_t weight = meeting_weight(mine, group, i);
+      const int32_t weight_1 = __shfl_sync(~0u, weight, group + 1), weight_2 = __shfl_sync(~0u, weight, group + 2);
+      if (k < 0) {
+        const int32_t x[3] = {kOneQ15 - weight_1 - weight_2, weight_1, weight_2};
+        inner = meeting_point(t, weight_1, weight_2);
+        part = in_patch::part_of(int32_t(t.area2), on_q, pick(last, x[0], x[1], x[2]));
+        second_part = in_patch::part_of(int32_t(t.area2), on_r, pick(next, x[0], x[1], x[2]));
+      }
     }
-    __syncwarp();
-    const int64_t* of_group = scratch_.exchange.piece + group * 5;
-    PieceSum sum = whole.total();
-    if (k >= 0 && i == k)
-      sum = sum - piece_at(of_group + (k + 1) % 3 * 5) - piece_at(of_group + (k + 2) % 3 * 5);
-    else if (i == 3)
-      sum = piece_at(of_group) + piece_at(of_group + 5) + piece_at(of_group + 10) - sum;
-    __syncwarp();
-    if (i == k || i == 3) put(slot, sum);
-    const int label = i == 3 ? found_.best : pick(i, c.label[0], c.label[1], c.label[2]);
-    add_slots(in && (i == 3 ? k < 0 : label != found_.best), label);
-  }
-
-  template <class T>
-  __device__ static T pick(int i, T a, T b, T c) {
-    return i == 0 ? a : i == 1 ? b : c;
-  }
-  __device__ static Local pick(int i, Local a, Local b, Local c) {
-    return {pick(i, a.x, b.x, c.x), pick(i, a.y, b.y, c.y), pick(i, a.z, b.z, c.z)};
-  }
-  /// The same triangle from corner i on; any for i = 3.
-  __device__ static SplitTriangle from_corner(const SplitTriangle& t, int i) {
-    return {{pick(i, t.p[0], t.p[1], t.p[2]), pick(i, t.p[1], t.p[2], t.p[0]), pick(i, t.p[2], t.p[0], t.p[1])},
-            {pick(i, t.s[0], t.s[1], t.s[2]), pick(i, t.s[1], t.s[2], t.s[0]), pick(i, t.s[2], t.s[0], t.s[1])},
-            t.area2};
-  }
-
-  __device__ static void put(int64_t* to, const PieceSum& piece) {
-    to[0] = piece.mass, to[1] = piece.first_x, to[2] = piece.first_y, to[3] = piece.first_z, to[4] = piece.second;
-  }
-  __device__ static PieceSum piece_at(const int64_t* from) { return {from[0], from[1], from[2], from[3], from[4]}; }
-
-  /// Adds each lane's piece to its winner.
-  __device__ void exchange(bool in, int label, const PieceSum& piece) {
-    if (in) put(scratch_.exchange.piece + lane_ * 5, piece);
-    add_slots(in, label);
-  }
-
-  /// Sum of the lane's moment over the pieces of some lanes.
-  __device__ int64_t sum_from(unsigned lanes) const {
-    int64_t sum = 0;
-    for (; lanes; lanes &= lanes - 1) sum += scratch_.exchange.piece[(__ffs(int(lanes)) - 1) * 5 + lane_ % 5];
-    return sum;
-  }
-
-  /// The same for pieces that lie in the lanes' slots.
-  __device__ void add_slots(bool in, int label) {
-    PieceExchange& x = scratch_.exchange;
-    const unsigned active = __ballot_sync(~0u, in);
-    if (in) x.lanes_of[label] = __match_any_sync(active, label);
-    __syncwarp();
-    if (found_.count <= 3) {
-      // Room for two lanes a moment, one for each half of the warp.
-      const unsigned half = lane_ < 15 ? 0x0000ffffu : lane_ < 30 ? 0xffff0000u : 0;
-      int64_t sum = sum_from(x.lanes_of[lane_ / 5 % 3] & half);
-      sum += __shfl_down_sync(~0u, sum, 15);
-      if (lane_ < 5 * found_.count) x.sum[lane_] += sum;
-    } else if (lane_ < 30) {
-      for (int c = lane_ / 5; c < found_.count; c += 6) x.sum[5 * c + lane_ % 5] += sum_from(x.lanes_of[c]);
+    if (k >= 0) from = of_corner(k);
+    if (k == i) from = to = kNoLabel;
+    if (!has_corner) {
+      at_q = mine.p[1], inner = mine.p[2];
+      part = int32_t(t.area2), second_part = 0;
+      from = of_corner(t.owner()), to = k >= 0 ? of_corner(k) : kNoLabel;
+      if (from == to) from = to = kNoLabel;
     }
-    __syncwarp();
-    if (in) x.lanes_of[label] = 0;
-    __syncwarp();
+    if (lane_ >> 2 >= count) from = to = kNoLabel;
+    return {in_patch::piece_sum32(part, mine.p[0], at_q, inner) +
+                in_patch::piece_sum32(second_part, mine.p[0], inner, at_r),
+            from, to, false};
+  }
+
+  /// Where the bisector of its first seed with another crosses the side to corner `end`.
+  __device__ static int32_t crossing(const in_patch::Junction& j, Local other, int end) {
+    return in_patch::crossing32(nearer(j.p[0], j.s[0], other), nearer(j.p[end], j.s[0], other));
+  }
+
+  /// SplitTriangle::meeting_point, of which lane i of four gives the weight of corner i.
+  __device__ static int32_t meeting_weight(const in_patch::Junction& j, int group, int i) {
+    // The seeds in the triangle's order.
+    const Local s0 = in_patch::pick(i, j.s[0], j.s[2], j.s[1]), s1 = in_patch::pick(i, j.s[1], j.s[0], j.s[2]),
+                s2 = in_patch::pick(i, j.s[2], j.s[1], j.s[0]);
+    const double f1 = double(nearer(j.p[1], s0, s1)), g1 = double(nearer(j.p[1], s0, s2)),
+                 f2 = double(nearer(j.p[2], s0, s1)), g2 = double(nearer(j.p[2], s0, s2));
+    double w = f1 * g2 - f2 * g1;
+    const auto total = [&] {
+      const double w0 = __shfl_sync(~0u, w, group), w1 = __shfl_sync(~0u, w, group + 1),
+                   w2 = __shfl_sync(~0u, w, group + 2);
+      return w0 + w1 + w2;
+    };
+    const double before = total();
+    w = before != 0 ? w / before : 1.0 / 3;
+    if (!(w > 0)) w = 0;
+    return int32_t(w / total() * kOneQ15);
+  }
+
+  __device__ Local meeting_point(const PackedTriangle& t, int32_t weight_1, int32_t weight_2) const {
+    const Local a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+    const auto at = [&](int32_t a, int32_t b, int32_t c) {
+      return a + int32_t((int64_t(b - a) * weight_1 + int64_t(c - a) * weight_2 + kOneQ15 / 2) >> 15);
+    };
+    return {at(a.x, b.x, c.x), at(a.y, b.y, c.y), at(a.z, b.z, c.z)};
   }
 
   const SheetPass& pass_;
   const Patch& patch_;
-  const SearchResult& found_;
+  const int winners_;
   WarpScratch& scratch_;
   const int lane_;
 };

@@ -5,17 +5,46 @@
 
 namespace isoshell::cuda_relax {
 
-/// Numbers of the winners at kCount vertices, by the 32-bit forms.
+/// Numbers of the winners at kCount vertices, by the 32-bit forms, and what the forms give there.
 template <int kCount>
-__device__ inline void winners_at(const Winners& winners, int count, const Local (&v)[kCount], int (&best)[kCount]) {
-  int32_t least[kCount];
+__device__ inline void winners_at(const Winners& winners, int count, const Local (&v)[kCount], int (&best)[kCount],
+                                  int32_t (&least)[kCount]) {
 #pragma unroll
   for (int i = 0; i < kCount; ++i) best[i] = 0, least[i] = INT32_MAX;
+#pragma unroll 1
   for (int c = 0; c < count; ++c) {
     const int4 f = winners.form[c];
 #pragma unroll
     for (int i = 0; i < kCount; ++i) {
       const int32_t here = f.x + f.y * v[i].x + f.z * v[i].y + f.w * v[i].z;
+      best[i] = here < least[i] ? c : best[i];
+      least[i] = min(here, least[i]);
+    }
+  }
+}
+template <int kCount>
+__device__ inline void winners_at(const Winners& winners, int count, const Local (&v)[kCount], int (&best)[kCount]) {
+  int32_t least[kCount];
+  winners_at(winners, count, v, best, least);
+}
+
+constexpr int32_t kMaxNearPenalty = 1 << 28;  ///< forms and such a penalty stay within 32 bits
+
+/// The same with penalties, for vertices of these normals.
+template <int kCount>
+__device__ inline void winners_at(const Winners& winners, int count, const Local (&v)[kCount],
+                                  const uint32_t (&packed_normal)[kCount], int32_t penalty_q16, int (&best)[kCount],
+                                  int32_t (&least)[kCount]) {
+#pragma unroll
+  for (int i = 0; i < kCount; ++i) best[i] = 0, least[i] = INT32_MAX;
+#pragma unroll 1
+  for (int c = 0; c < count; ++c) {
+    const int4 f = winners.form[c];
+    const uint32_t normal = winners.place[c].packed_normal;
+#pragma unroll
+    for (int i = 0; i < kCount; ++i) {
+      const bool pays = __dp4a(int(normal), int(packed_normal[i]), 0) < label::kOpposite;
+      const int32_t here = f.x + f.y * v[i].x + f.z * v[i].y + f.w * v[i].z + (pays ? penalty_q16 : 0);
       best[i] = here < least[i] ? c : best[i];
       least[i] = min(here, least[i]);
     }
@@ -33,8 +62,8 @@ __device__ inline NearestWinner nearest_winner(const Winners& winners, int count
                                                int64_t penalty_q16) {
   NearestWinner best{INT64_MAX, 0};
   for (int c = 0; c < count; ++c) {
-    const Local s = winners.place[c];
-    const SeedRecord record{0, 0, 0, winners.packed_normal[c]};
+    const WinnerPlace s = winners.place[c];
+    const SeedRecord record{0, 0, 0, s.packed_normal};
     const int64_t here =
         square({v.x - s.x, v.y - s.y, v.z - s.z}) + (dot(normal, record.normal()) < label::kOpposite ? penalty_q16 : 0);
     if (here < best.cost) best = {here, c};

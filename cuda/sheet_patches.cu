@@ -1,6 +1,7 @@
 // Makes SheetPatches: one warp a patch, its foreign vertices gathered in a hash table.
 #include "cuda/seed_buckets.cuh"
 #include "cuda/sheet_patches.cuh"
+#include "cuda/warp.cuh"
 
 namespace isoshell::cuda_relax {
 namespace {
@@ -36,11 +37,14 @@ struct PatchSource {
   /// Calls each(triangle) for those of the patch: their smallest vertex is one of its own. One lane a vertex.
   template <class Each>
   __device__ void for_each_triangle(const Part& part, int lane, Each each) const {
-    for (int64_t v = part.begin + lane; v < part.end; v += 32)
-      for (int64_t n = vertex_first[v]; n < vertex_first[v + 1]; ++n) {
-        const TriangleIndices t = triangles[vertex_triangles[n]];
-        if (t.a >= v && t.b >= v && t.c >= v) each(t);
-      }
+    for (int64_t v = part.begin + lane; v < part.end; v += 32) for_each_triangle_of(v, each);
+  }
+  template <class Each>
+  __device__ void for_each_triangle_of(int64_t v, Each each) const {
+    for (int64_t n = vertex_first[v]; n < vertex_first[v + 1]; ++n) {
+      const TriangleIndices t = triangles[vertex_triangles[n]];
+      if (t.a >= v && t.b >= v && t.c >= v) each(t);
+    }
   }
 };
 
@@ -90,7 +94,12 @@ struct CountParts {
   }
 };
 
-__global__ void count_patches(PatchSource source, int64_t* vertices, int64_t* triangles, int* misfits) {
+/// What the patches have of each kind: per patch, then where each begins.
+struct PatchCounts {
+  int64_t *vertices, *triangles, *owned;
+};
+
+__global__ void count_patches(PatchSource source, PatchCounts counts, int* misfits) {
   __shared__ ForeignVertices all[kWarps];
   const int lane = threadIdx.x & 31;
   const int64_t number = int64_t(blockIdx.x) * kWarps + (threadIdx.x >> 5);
@@ -103,36 +112,25 @@ __global__ void count_patches(PatchSource source, int64_t* vertices, int64_t* tr
   __syncwarp();
   if (lane) return;
   const int64_t count = part.end - part.begin + foreign.taken;
-  vertices[number] = count;
-  triangles[number] = foreign.triangles;
-  if (count > kMaxPatchVertices || foreign.triangles > 65535) atomicAdd(misfits, 1);
-}
-
-__device__ inline int64_t warp_sum(int64_t x) {
-  for (int d = 16; d > 0; d >>= 1) x += __shfl_xor_sync(~0u, x, d);
-  return x;
-}
-__device__ inline int warp_min(int x) {
-  for (int d = 16; d > 0; d >>= 1) x = min(x, __shfl_xor_sync(~0u, x, d));
-  return x;
-}
-__device__ inline int warp_max(int x) {
-  for (int d = 16; d > 0; d >>= 1) x = max(x, __shfl_xor_sync(~0u, x, d));
-  return x;
+  counts.vertices[number] = count;
+  counts.triangles[number] = foreign.triangles;
+  counts.owned[number] = (part.end - part.begin + 31) / 32 * 32;
+  if (count > kMaxPatchVertices || foreign.triangles > kMaxPatchTriangles) atomicAdd(misfits, 1);
 }
 
 struct PatchTarget {
-  const int64_t* vertex_first;
-  const int64_t* triangle_first;
+  PatchCounts first;
   Patch* patch;
   PatchVertex* vertex;
   uint32_t* normal;
   PackedTriangle* triangle;
+  PieceBytes* owned;
   int* misfits;
 };
 
 __global__ void fill_patches(PatchSource source, PatchTarget to) {
   __shared__ ForeignVertices all[kWarps];
+  __shared__ PieceExchange exchange[kWarps];
   const int lane = threadIdx.x & 31;
   const int64_t number = int64_t(blockIdx.x) * kWarps + (threadIdx.x >> 5);
   if (number >= source.patches) return;
@@ -144,7 +142,7 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   __syncwarp();
 
   const PointQ8 origin = relax_sheet::leaf_origin(source.corners.leaf_key[part.leaf]);
-  const int64_t first = to.vertex_first[number];
+  const int64_t first = to.first.vertices[number];
   label::Bounds bounds = label::empty_bounds();
   bool fits = true;
   const auto put = [&](int place, uint32_t v) {
@@ -173,35 +171,44 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   __syncwarp();
 
   PieceSum total{0, 0, 0, 0, 0};
-  const int64_t triangle_first = to.triangle_first[number];
-  source.for_each_triangle(part, lane, [&](TriangleIndices t) {
-    const PointQ8 a = source.position[t.a], b = source.position[t.b], c = source.position[t.c];
-    const Vec64 n = cross(difference(b, a), difference(c, a));
-    const uint32_t area2 = uint32_t(isqrt(uint64_t(dot(n, n))));
-    const auto place = [&](uint32_t v) { return uint32_t(v < own_end ? int(v - own) : foreign.place_of(v)); };
-    to.triangle[triangle_first + atomicAdd(&foreign.triangles, 1)] = {place(t.a) | place(t.b) << 10 | place(t.c) << 20,
-                                                                      area2};
-    total = total + piece_sum(area2, local(a, origin), local(b, origin), local(c, origin));
-  });
+  const int64_t triangle_first = to.first.triangles[number], owned_first = to.first.owned[number];
+  for (int64_t base = own; base < own_end; base += 32) {
+    PieceSum owned{0, 0, 0, 0, 0};
+    const int64_t v = base + lane;
+    if (v < own_end)
+      source.for_each_triangle_of(v, [&](TriangleIndices t) {
+        const PointQ8 a = source.position[t.a], b = source.position[t.b], c = source.position[t.c];
+        const Vec64 n = cross(difference(b, a), difference(c, a));
+        const uint32_t area2 = uint32_t(isqrt(uint64_t(dot(n, n))));
+        const auto place = [&](uint32_t u) { return uint32_t(u < own_end ? int(u - own) : foreign.place_of(u)); };
+        const uint32_t owner = t.a == v ? 0 : t.b == v ? 1 : 2;
+        to.triangle[triangle_first + atomicAdd(&foreign.triangles, 1)] = {
+            place(t.a) | place(t.b) << 10 | place(t.c) << 20 | owner << 30, area2};
+        owned = owned + piece_sum(area2, local(a, origin), local(b, origin), local(c, origin));
+      });
+    total = total + owned;
+    __syncwarp();
+    to.owned[owned_first + base - own + lane] = bytes_of(owned, exchange[threadIdx.x >> 5]);
+  }
   __syncwarp();
   Patch patch;
   patch.vertex_first = first;
   patch.triangle_first = triangle_first;
+  patch.owned_first = owned_first;
   patch.total = {warp_sum(total.mass), warp_sum(total.first_x), warp_sum(total.first_y), warp_sum(total.first_z),
                  warp_sum(total.second)};
-  patch.origin = origin;
-  patch.lo[0] = int16_t(warp_min(bounds.lo.x) - origin.x);
-  patch.lo[1] = int16_t(warp_min(bounds.lo.y) - origin.y);
-  patch.lo[2] = int16_t(warp_min(bounds.lo.z) - origin.z);
-  patch.hi[0] = int16_t(warp_max(bounds.hi.x) - origin.x);
-  patch.hi[1] = int16_t(warp_max(bounds.hi.y) - origin.y);
-  patch.hi[2] = int16_t(warp_max(bounds.hi.z) - origin.z);
-  patch.normal_lo = {int8_t(warp_min(bounds.normal_lo.x)), int8_t(warp_min(bounds.normal_lo.y)),
-                     int8_t(warp_min(bounds.normal_lo.z))};
-  patch.normal_hi = {int8_t(warp_max(bounds.normal_hi.x)), int8_t(warp_max(bounds.normal_hi.y)),
-                     int8_t(warp_max(bounds.normal_hi.z))};
+  const auto lowest = [](int32_t lo, int32_t from) { return int16_t(warp_min(lo) - from); };
+  const auto highest = [](int32_t hi, int32_t from) { return int16_t(warp_max(hi) - from); };
+  const Normal8 lo = bounds.normal_lo, hi = bounds.normal_hi;
+  patch.bounds = {origin,
+                  pack({int8_t(warp_min(lo.x)), int8_t(warp_min(lo.y)), int8_t(warp_min(lo.z))}),
+                  {lowest(bounds.lo.x, origin.x), lowest(bounds.lo.y, origin.y), lowest(bounds.lo.z, origin.z)},
+                  {highest(bounds.hi.x, origin.x), highest(bounds.hi.y, origin.y), highest(bounds.hi.z, origin.z)},
+                  pack({int8_t(warp_max(hi.x)), int8_t(warp_max(hi.y)), int8_t(warp_max(hi.z))})};
+  patch.own = uint16_t(own_end - own);
   patch.vertices = uint16_t(places);
   patch.triangles = uint16_t(foreign.triangles);
+  fits &= patch.total.mass < kMaxPatchMass;
   if (!fits) atomicAdd(to.misfits, 1);
   if (lane == 0) to.patch[number] = patch;
 }
@@ -219,24 +226,27 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const Sheet& sheet, int max_
       sheet.vertex_first.view(), sheet.vertex_triangles.view(), patch_first.data(),  count};
   const unsigned blocks = unsigned((count + kWarps - 1) / kWarps);
   SheetPatches out;
-  Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1);
+  Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),
+                  owned = exec.make<int64_t>(count + 1);
   Buffer<int> misfits = exec.make<int>(1);
-  exec.fill(vertices.view(), int64_t(0));
-  exec.fill(triangles.view(), int64_t(0));
+  for (Buffer<int64_t>* counts : {&vertices, &triangles, &owned}) exec.fill(counts->view(), int64_t(0));
   exec.fill(misfits.view(), 0);
-  count_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(source, vertices.data(), triangles.data(), misfits.data());
+  const PatchCounts counts{vertices.data(), triangles.data(), owned.data()};
+  count_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(source, counts, misfits.data());
   exec.check("count patches");
   const int64_t copies = exec.exclusive_scan(vertices.view());
   exec.exclusive_scan(triangles.view());
+  const int64_t owned_slots = exec.exclusive_scan(owned.view());
   out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
   if (!out.fits) return out;
   out.patch = exec.make<Patch>(count);
   out.vertex = exec.make<PatchVertex>(copies);
   out.normal = exec.make<uint32_t>(copies);
   out.triangle = exec.make<PackedTriangle>(sheet.triangles.size());
+  out.owned = exec.make<PieceBytes>(owned_slots);
   fill_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(
-      source, {vertices.data(), triangles.data(), out.patch.data(), out.vertex.data(), out.normal.data(),
-               out.triangle.data(), misfits.data()});
+      source, {counts, out.patch.data(), out.vertex.data(), out.normal.data(), out.triangle.data(), out.owned.data(),
+               misfits.data()});
   exec.check("fill patches");
   out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
   return out;

@@ -1,9 +1,10 @@
 // The sheet cut into patches, parts of a leaf of about the same size, each with all that a pass reads of it: copies of
 // its vertices and of those around it that its triangles use, triangles by their places among these, bounds, and the
-// moments of the whole.
+// moments of the whole and of each of its own vertices. A triangle is its smallest vertex's own.
 #pragma once
 
 #include "cuda/executor_cuda.cuh"
+#include "cuda/label_sums.cuh"
 #include "isoshell/sheet.h"
 #include "stages/relax_sheet_body.h"
 #include "voxel/cell_sum.h"
@@ -19,30 +20,26 @@ struct alignas(8) PatchVertex {
   __device__ Local local() const { return {x, y, z}; }
 };
 
-/// Places of the corners among the patch's vertices, 10 bits each, and the doubled area.
+/// Places of the corners among the patch's vertices, 10 bits each, which of them it belongs to, and the doubled area.
 struct alignas(8) PackedTriangle {
   uint32_t corners, area2;
   __device__ int corner(int i) const { return int(corners >> (10 * i)) & 1023; }
-  /// The same triangle from corner i on.
-  __device__ PackedTriangle from_corner(int i) const {
-    return {(corners >> (10 * i) | corners << (30 - 10 * i)) & 0x3fffffffu, area2};
-  }
+  __device__ int owner() const { return int(corners >> 30); }
+};
+
+/// Bounds of the vertices, and the normals', packed.
+struct alignas(16) PatchBounds {
+  PointQ8 origin;
+  uint32_t normal_lo;
+  int16_t lo[3], hi[3];  ///< from the origin
+  uint32_t normal_hi;
 };
 
 struct alignas(16) Patch {
-  int64_t vertex_first, triangle_first;
-  PieceSum total;  ///< of all triangles
-  PointQ8 origin;
-  int16_t lo[3], hi[3];  ///< of the vertices
-  Normal8 normal_lo, normal_hi;
-  uint16_t vertices, triangles;
-
-  __device__ label::Bounds bounds() const {
-    return {{origin.x + lo[0], origin.y + lo[1], origin.z + lo[2]},
-            {origin.x + hi[0], origin.y + hi[1], origin.z + hi[2]},
-            normal_lo,
-            normal_hi};
-  }
+  PatchBounds bounds;
+  int64_t vertex_first, triangle_first, owned_first;
+  uint16_t own, vertices, triangles, unused;  ///< a patch's own vertices come first
+  PieceSum total;                             ///< of all triangles
 };
 
 struct PatchesView {
@@ -50,6 +47,7 @@ struct PatchesView {
   const PatchVertex* vertex;
   const uint32_t* normal;  ///< packed, per vertex
   const PackedTriangle* triangle;
+  const PieceBytes* owned;  ///< moments of the own vertices' triangles, 32 vertices by 32 lanes
   int64_t count;
 };
 
@@ -58,9 +56,12 @@ struct SheetPatches {
   Buffer<PatchVertex> vertex;
   Buffer<uint32_t> normal;
   Buffer<PackedTriangle> triangle;
+  Buffer<PieceBytes> owned;
   bool fits = true;  ///< false: the sheet breaks a limit of patches; relax with the plain body
 
-  PatchesView view() const { return {patch.data(), vertex.data(), normal.data(), triangle.data(), patch.size()}; }
+  PatchesView view() const {
+    return {patch.data(), vertex.data(), normal.data(), triangle.data(), owned.data(), patch.size()};
+  }
 };
 
 /// Makes the patches of a sheet in device memory, with at most so many vertices of their own.

@@ -122,6 +122,18 @@ TEST_CASE("relax on both: all seeds in one bucket", "[relax][cuda]") {
   same_after({1, 2, 20}, seeds, 0, on_sheet(sheet));
 }
 
+TEST_CASE("relax on both: seeds far from most of the sheet, and coming closer", "[relax][cuda]") {
+  // A pass looks no farther than labels reached in the one before: here most have farther seeds, then nearer ones.
+  const Sheet sheet = torus_sheet();
+  SeedSet seeds = seeds_on(sheet, 60);
+  for (int64_t i = 2; i < seeds.size(); ++i) {
+    seeds.home[i] = uint32_t(40 * i);
+    seeds.position[i] = sheet.position[seeds.home[i]];
+    seeds.normal[i] = sheet.normal[seeds.home[i]];
+  }
+  same_after({1, 2, 3, 8, 40}, seeds, 0, on_sheet(sheet));
+}
+
 TEST_CASE("relax on both: triangles too large for patches", "[relax][cuda]") {
   const Sheet sheet = sheet_of_soup(shapes::torus(2, 0.7, 24, 12), 256, 1, 1);
   same_after({1, 2, 20}, seeds_on(sheet, 40), 0, on_sheet(sheet));
