@@ -11,7 +11,6 @@ namespace {
 using namespace cuda_relax;
 
 constexpr int kThreads = 128;
-unsigned blocks_for(int64_t count, int per_block) { return unsigned((count + per_block - 1) / per_block); }
 
 int multiprocessors() {
   int device = 0, count = 0;

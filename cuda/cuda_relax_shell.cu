@@ -8,7 +8,6 @@ namespace {
 using namespace cuda_relax;
 
 constexpr int kThreads = 128;
-unsigned blocks_for(int64_t count, int per_block) { return unsigned((count + per_block - 1) / per_block); }
 
 RelaxReport relax_by_leaves(CudaExecutor& exec, const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
                             SeedSet& seeds, const RelaxOptions& options) {

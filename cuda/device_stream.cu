@@ -52,11 +52,14 @@ DeviceStream* take_stream(int device) {
         return taken;
       }
   }
+  int processors = 0;
+  require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
+                  "cudaDeviceGetAttribute");
   cudaStream_t stream;
   require_success(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
   void* pinned;
   require_success(cudaMallocHost(&pinned, DeviceStream::kPinnedBytes), "cudaMallocHost");
-  return new DeviceStream(device, stream, pinned);
+  return new DeviceStream(device, processors, stream, pinned);
 }
 
 __global__ void probe() {}
@@ -108,8 +111,8 @@ DeviceStream& DeviceStream::of(Context& context) {
   return stream;
 }
 
-DeviceStream::DeviceStream(int device, cudaStream_t stream, void* pinned)
-    : device_(device), stream_(stream), pinned_(pinned) {}
+DeviceStream::DeviceStream(int device, int processors, cudaStream_t stream, void* pinned)
+    : device_(device), processors_(processors), stream_(stream), pinned_(pinned) {}
 
 /// Null when the device has no more.
 void* DeviceStream::take(int64_t bytes) {

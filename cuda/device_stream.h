@@ -16,6 +16,9 @@ namespace isoshell {
 /// Throws Error{internal} that names the call when `status` is an error.
 void require_success(cudaError_t status, const char* call);
 
+/// Thread blocks for `count` elements.
+inline unsigned blocks_for(int64_t count, int64_t per_block) { return unsigned((count + per_block - 1) / per_block); }
+
 /// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Small
 /// blocks that were freed are handed out again without asking the driver: a run takes a thousand of them. Lives as long
 /// as the process: contexts borrow it, and Buffers may outlive them.
@@ -24,7 +27,7 @@ class DeviceStream final : public Memory {
   /// The context's own; made, and its device chosen, at first use. Throws: no_device.
   static DeviceStream& of(Context& context);
 
-  DeviceStream(int device, cudaStream_t stream, void* pinned);
+  DeviceStream(int device, int processors, cudaStream_t stream, void* pinned);
   MemorySpace space() const override { return MemorySpace::cuda; }
   void* allocate(int64_t bytes) override;
   void free(void* data, int64_t bytes) noexcept override;
@@ -32,6 +35,12 @@ class DeviceStream final : public Memory {
 
   void copy_to_device(void* to, const void* from, int64_t bytes);
   int device() const { return device_; }
+  /// As many thread blocks as are needed, but no more than `per_processor` for each of the device's multiprocessors.
+  unsigned resident_blocks(int64_t needed, int per_processor) const {
+    const int64_t most = int64_t(processors_) * per_processor;
+    return unsigned(needed < 1 ? 1 : needed < most ? needed : most);
+  }
+  int processors() const { return processors_; }
   cudaStream_t stream() const { return stream_; }
   /// Waits for everything in the stream.
   void synchronize();
@@ -46,7 +55,7 @@ class DeviceStream final : public Memory {
   void* take(int64_t bytes);
   void release_kept() noexcept;
 
-  int device_;
+  int device_, processors_;
   cudaStream_t stream_;
   void* pinned_;
   int64_t limit_ = 0;

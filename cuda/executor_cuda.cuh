@@ -19,7 +19,7 @@ namespace isoshell {
 namespace cuda_steps {
 
 constexpr int kThreads = 128;
-inline unsigned blocks_for(int64_t count) { return unsigned((count + kThreads - 1) / kThreads); }
+inline unsigned blocks_for(int64_t count) { return isoshell::blocks_for(count, kThreads); }
 __device__ inline int64_t thread_number() { return int64_t(blockIdx.x) * blockDim.x + threadIdx.x; }
 
 template <class Step>

@@ -62,7 +62,6 @@ __global__ void list_kept(View<const uint32_t> words, View<const uint32_t> rank,
 }
 
 constexpr int kThreads = 256;
-unsigned blocks_for(int64_t count) { return unsigned((count + kThreads - 1) / kThreads); }
 
 }  // namespace
 
@@ -85,14 +84,14 @@ void sort_keys_async(DeviceStream& stream, View<uint64_t> keys, int bits) {
 }
 
 void rank_kept_async(DeviceStream& stream, View<const uint32_t> words, View<uint32_t> rank) {
-  count_kept<<<blocks_for(words.size + 1), kThreads, 0, stream.stream()>>>(words, rank);
+  count_kept<<<blocks_for(words.size + 1, kThreads), kThreads, 0, stream.stream()>>>(words, rank);
   require_success(cudaGetLastError(), "count kept");
   exclusive_scan_async(stream, rank);
 }
 
 void list_kept_async(DeviceStream& stream, View<const uint32_t> words, View<const uint32_t> rank, View<uint32_t> out) {
   if (words.empty()) return;
-  list_kept<<<blocks_for(words.size * 32), kThreads, 0, stream.stream()>>>(words, rank, out);
+  list_kept<<<blocks_for(words.size * 32, kThreads), kThreads, 0, stream.stream()>>>(words, rank, out);
   require_success(cudaGetLastError(), "list kept");
 }
 

@@ -14,7 +14,7 @@ namespace flood_kernels {
 constexpr int kRoundsPerLook = 8;  ///< even: worklists trade places every round
 constexpr int kThreads = 256;
 constexpr int kBlockThreads = 1024;  ///< that share a block of leaves
-constexpr unsigned kBlocks = 528;  ///< as many as stay resident on a large device; each takes several nodes if need be
+constexpr int kBlocks = 4;           ///< a multiprocessor; each takes several nodes if need be
 
 /// The tail of a worklist that is filled from its end.
 struct Worklist {
@@ -200,8 +200,6 @@ __global__ void turn_queues(Start start, int64_t* listed) {
   *listed = count;
 }
 
-inline unsigned blocks_for(int64_t most) { return unsigned(most < 1 ? 1 : most < kBlocks ? most : kBlocks); }
-
 }  // namespace flood_kernels
 
 inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
@@ -216,10 +214,11 @@ inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
   Queue leaves(exec, blocked.leaf_key.size), blocks(exec, entries);
   sheet_steps::FloodState state = {outside.view(), passed_on.view(), leaves.list_of(0), blocks.list_of(0), 1};
   const Start start = {state, {leaves.left.view(), blocks.left.view()}, {leaves.capacity, blocks.capacity}};
+  const auto resident = [&](int64_t needed) { return exec.device().resident_blocks(needed, kBlocks); };
   const int64_t words = std::max(outside.leaf.size() * 8, passed_on.size() * 64);
-  start_flood<<<blocks_for((words + kThreads - 1) / kThreads), kThreads, 0, exec.stream()>>>(start);
+  start_flood<<<resident(blocks_for(words, kThreads)), kThreads, 0, exec.stream()>>>(start);
   exec.check("start flood");
-  enter_from_border<<<blocks_for(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
+  enter_from_border<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
   exec.check("enter from the border");
   int64_t* const listed = static_cast<int64_t*>(exec.device().pinned());
   do {
@@ -227,9 +226,9 @@ inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
       state.leaves = leaves.list_of(round + 1);
       state.blocks = blocks.list_of(round + 1);
       ++state.next_round;
-      flood_blocks<<<blocks_for(entries), kBlockThreads, 0, exec.stream()>>>(state, blocks.of(round));
+      flood_blocks<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, blocks.of(round));
       exec.check("flood blocks");
-      flood_leaves<<<blocks_for((leaves.capacity + 31) / 32), kThreads, 0, exec.stream()>>>(state, leaves.of(round));
+      flood_leaves<<<resident(blocks_for(leaves.capacity, 32)), kThreads, 0, exec.stream()>>>(state, leaves.of(round));
       exec.check("flood leaves");
     }
     turn_queues<<<1, 1, 0, exec.stream()>>>(start, listed);
