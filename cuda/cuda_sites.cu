@@ -149,14 +149,22 @@ struct PlanShare {
   }
 };
 
+/// Elements of a warp at a time: a lane each, fewer where there are too few for all warps.
+__device__ int elements_of_warp(int64_t size) {
+  const int64_t warps = int64_t(gridDim.x) * kWarps, share = (size + warps - 1) / warps;
+  return int(share < 32 ? share : 32);
+}
+
 template <class Source>
 __global__ void __launch_bounds__(kWarps * 32, 8) mark_leaves(Source source, leaf_marks::Marks marks) {
   __shared__ PlanShare shares[kWarps];
   PlanShare& share = shares[threadIdx.x >> 5];
   const int lane = int(threadIdx.x & 31);
-  const int64_t size = source.size(), step = int64_t(gridDim.x) * blockDim.x;
-  for (int64_t first = cuda_steps::thread_number() - lane; first < size; first += step) {
-    const bool some = first + lane < size && source.plan_leaves(first + lane, marks, share.plan[lane]);
+  const int64_t size = source.size(), warps = int64_t(gridDim.x) * kWarps;
+  const int elements = elements_of_warp(size);
+  for (int64_t first = (cuda_steps::thread_number() >> 5) * elements; first < size; first += warps * elements) {
+    const bool some =
+        lane < elements && first + lane < size && source.plan_leaves(first + lane, marks, share.plan[lane]);
     const int32_t candidates = share.enter(some ? share.leaves_of(lane) : 0);
     for (int32_t i = lane; i < candidates; i += 32) {
       const Candidate c = share.candidate(i);
@@ -233,9 +241,10 @@ __global__ void __launch_bounds__(kWarps * 32) mark_voxels_of_leaves(Source sour
   PlanShare& share = shares[threadIdx.x >> 5];
   Meeting* queue = queues[threadIdx.x >> 5];
   const int lane = int(threadIdx.x & 31);
-  const int64_t size = source.size(), step = int64_t(gridDim.x) * blockDim.x;
-  for (int64_t first = cuda_steps::thread_number() - lane; first < size; first += step) {
-    const bool some = first + lane < size && source.plan_voxels(first + lane, share.plan[lane]);
+  const int64_t size = source.size(), warps = int64_t(gridDim.x) * kWarps;
+  const int elements = elements_of_warp(size);
+  for (int64_t first = (cuda_steps::thread_number() >> 5) * elements; first < size; first += warps * elements) {
+    const bool some = lane < elements && first + lane < size && source.plan_voxels(first + lane, share.plan[lane]);
     const bool tiny = some && Source::kWhole && is_by_columns(share.plan[lane]);
     const int32_t columns = share.enter(tiny ? (share.plan[lane].last[0] + 1) * (share.plan[lane].last[1] + 1) : 0);
     for (int32_t i = lane; i < columns; i += 32) {
@@ -282,7 +291,8 @@ SiteSet voxelize_on_device(CudaExecutor& exec, const LatticeSurface& surface) {
   const BlockGrid grid = block_grid(surface.frame);
   const SurfaceView view = view_of(surface);
   const int64_t triangles = view.triangles.size;
-  const unsigned small_blocks = cuda_steps::blocks_for(triangles), large_blocks = 132 * 4;
+  const unsigned small_blocks = cuda_steps::blocks_for(triangles),
+                 large_blocks = exec.device().resident_blocks(triangles, 4);
   static_assert(cuda_steps::kThreads == kWarps * 32, "blocks_for counts blocks of this size");
   SiteSet sites;
   VoxelSet& set = sites.voxels;

@@ -31,7 +31,7 @@ ISOSHELL_HD constexpr int second_axis(int shadow) { return shadow == 0 ? 1 : 2; 
 struct Plan {
   int32_t base[3];          ///< the window's lowest voxel
   uint8_t last[3];          ///< highest voxel of the triangle's bounding range in the window, relative to base
-  uint8_t narrow;           ///< not 0 when plane values near the triangle fit 32 bits
+  uint8_t narrow;           ///< not 0 when plane values in leaves that the triangle meets fit 32 bits
   Side side[3][3];          ///< by shadow: xy, xz, yz
   int32_t normal[3][2];     ///< 64-bit numbers in halves, so that plans can lie an odd number of words apart; z >= 0
   int32_t low[2], high[2];  ///< for voxels
@@ -87,7 +87,9 @@ ISOSHELL_HD inline void plan_plane(const Vec64& n, int64_t low, int64_t high, Pl
   split(low + positive_part(n.x) + positive_part(n.y) + n.z, plan.low);
   split(high + positive_part(-n.x) + positive_part(-n.y), plan.high);
   const int64_t size = positive_part(n.x) + positive_part(-n.x) + positive_part(n.y) + positive_part(-n.y) + n.z;
-  plan.narrow = size < (int64_t(1) << 26);
+  // In a leaf that the plane meets, values are at most eight times that from 0, and a step further at the end of a
+  // loop.
+  plan.narrow = size < (int64_t(1) << 31) / 10;
 }
 
 /// A plan for the part of a triangle in a range of at most kWindow voxels; false when the range is empty.
