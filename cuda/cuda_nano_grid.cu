@@ -53,17 +53,19 @@ __global__ void mark_root_tiles(VoxelSetView set, RootTiles tiles, uint32_t* use
   if (!mark) atomicOr(&mark, 1u);
 }
 
-/// A box that every other box stretches.
-__global__ void empty_boxes(Nodes nodes) {
-  const int i = int(threadIdx.x) / 6, side = int(threadIdx.x) % 6;
-  if (i > nodes.at.uppers) return;
-  int32_t* box =
-      i == nodes.at.uppers ? nodes.root_box() : reinterpret_cast<int32_t*>(nodes.upper(i) + nodes.fields.upper.box);
-  box[side] = side < 3 ? INT_MAX : INT_MIN;
+/// Boxes of the upper nodes and the root that every other box stretches.
+__device__ void empty_boxes(const Nodes& nodes) {
+  for (int t = int(threadIdx.x); t < 6 * (nodes.at.uppers + 1); t += kThreads) {
+    const int i = t / 6, side = t % 6;
+    int32_t* box =
+        i == nodes.at.uppers ? nodes.root_box() : reinterpret_cast<int32_t*>(nodes.upper(i) + nodes.fields.upper.box);
+    box[side] = side < 3 ? INT_MAX : INT_MIN;
+  }
 }
 
 /// Eight lanes a leaf, each with the mask's word of its x.
 __global__ void __launch_bounds__(kThreads) write_leaves(VoxelSetView set, Nodes nodes) {
+  if (blockIdx.x == 0) empty_boxes(nodes);
   const int64_t thread = cuda_steps::thread_number(), l = thread >> 3;
   const int x = int(thread & 7);
   const bool some = l < nodes.at.leaves;
@@ -235,8 +237,7 @@ Buffer<std::byte> build(CudaExecutor& exec, const VoxelSet& voxels, const Lattic
   require_success(cudaMemsetAsync(nodes.bytes + nodes.at.first_upper, 0,
                                   size_t(nodes.at.first_lower - nodes.at.first_upper), exec.stream()),
                   "clear upper nodes");
-  empty_boxes<<<1, 6 * (RootTiles::kMost + 1), 0, exec.stream()>>>(nodes);
-  write_leaves<<<unsigned((nodes.at.leaves * 8 + kThreads - 1) / kThreads), kThreads, 0, exec.stream()>>>(set, nodes);
+  write_leaves<<<blocks_for(nodes.at.leaves * 8, kThreads), kThreads, 0, exec.stream()>>>(set, nodes);
   write_lowers<<<unsigned(nodes.at.lowers), kThreads, 0, exec.stream()>>>(set, tiles, nodes);
   write_world_box<<<1, 1, 0, exec.stream()>>>(nodes, nano_shift(frame, 0), nano_shift(frame, 1), nano_shift(frame, 2),
                                               frame.voxel_size);
