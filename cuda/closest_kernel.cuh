@@ -19,20 +19,41 @@ class Worker {
   static constexpr int kUnroll = kBand > 0 ? 8 : 1;
 
  public:
-  __device__ Worker(const Input& in, const Output& out, Shared<Keys, kReach>& shared, const uint32_t* table)
+  __device__ Worker(const Input& in, const Output& out, Shared<kReach, kBand, Keys>& shared, const uint32_t* table)
       : in_(in), out_(out), s_(shared), table_(table), lane_(int(threadIdx.x & 31)) {}
 
   __device__ void run(uint32_t first_leaf, int leaves) {
     const Voxel at = leaf_of_key(in_.shell.leaf_key[first_leaf]);
     const Voxel row = {at.x & ~7, at.y, at.z};
-    order_ = Keys::order(row, kReach);
     const uint32_t shell_leaves = find_shell_leaves(row);
     const uint32_t present = (shell_leaves >> kReach) & ((1u << leaves) - 1) << (at.x & 7 & -leaves);
-    const int lo = __ffs(int(present)) - 1, hi = 31 - __clz(int(present));
-    const uint32_t occupied = find_site_leaves(row, lo, hi) & shell_leaves;
-    if constexpr (Keys::kDecoderEntries > 1) fill_decoder();
-    if constexpr (kLarge<Keys>) fill_along_z();
-    __syncwarp();
+    const uint32_t occupied = find_site_leaves(row, __ffs(int(present)) - 1, 31 - __clz(int(present))) & shell_leaves;
+    const uint32_t over_border = kLarge<Keys> || !site_order::is_mixed(row) ? 0 : 1u << site_order::border_leaf(row);
+#pragma unroll 1
+    for (int part = 0; part < 2; ++part) {
+      const uint32_t of_part = part == 0 ? present & ~over_border : present & over_border;
+      if (!of_part) continue;
+      if (lane_ == 0) Keys::set_order(row, kReach, part != 0, s_.order);
+      __syncwarp();
+      if constexpr (Shared<kReach, kBand, Keys>::kNearest > 1) fill_along_z();
+      __syncwarp();
+      walk(of_part, occupied);
+    }
+  }
+
+  /// Values for what is left of the voxels that may have sites as far as the band.
+  __device__ void finish() {
+    if constexpr (kFar) find_far_sites();
+  }
+
+ private:
+  static constexpr bool kFar = kBand > kMostSteps<kBand>;
+  __device__ int band() const { return kBand > 0 ? kBand : in_.band_vox; }
+  __device__ int most_steps() const { return kBand > 0 ? kMostSteps<kBand> : in_.band_vox; }
+
+  /// The leaves of a row, by place along x.
+  __device__ void walk(uint32_t leaves, uint32_t occupied) {
+    const int lo = __ffs(int(leaves)) - 1, hi = 31 - __clz(int(leaves));
     for (int place = lo; place <= hi + 2 * kReach; ++place) {
       if (occupied >> place & 1)
         pass_z_and_y(place);
@@ -40,13 +61,10 @@ class Worker {
         s_.some[place] = 0;
       __syncwarp();
       const int leaf = place - 2 * kReach;
-      if (leaf >= lo && (present >> leaf & 1)) pass_x(leaf);
+      if (leaf >= lo && (leaves >> leaf & 1)) pass_x(leaf);
       __syncwarp();
     }
   }
-
- private:
-  __device__ int band() const { return kBand > 0 ? kBand : in_.band_vox; }
   __device__ uint32_t* plane(int place, int x) { return s_.keys[place % W::kSpan] + x * Keys::kPlaneWords; }
 
   __device__ uint32_t find_shell_leaves(Voxel row) {
@@ -61,33 +79,29 @@ class Worker {
   __device__ uint32_t find_site_leaves(Voxel row, int lo, int hi) {
     uint32_t occupied = 0;
 #pragma unroll 1
-    for (int i = lo * W::kColumns + lane_; i < (hi + W::kSpan) * W::kColumns; i += 32) {
-      const int place = i / W::kColumns, column = i % W::kColumns;
-      const uint32_t leaf = find_leaf(
-          in_.sites, {row.x - kReach + place, row.y - kReach + column / W::kSpan, row.z - kReach + column % W::kSpan});
-      s_.site_leaf[i] = leaf;
-      if (leaf != kNone) occupied |= 1u << place;
+    for (int i = lo * W::kSpan + lane_; i < (hi + W::kSpan) * W::kSpan; i += 32) {
+      const int place = i / W::kSpan, y = i % W::kSpan;
+      const Voxel first = {row.x - kReach + place, row.y - kReach + y, row.z - kReach};
+      if (find_leaves_along_z(in_.sites, first, W::kSpan, s_.site_leaf + i * W::kSpan)) occupied |= 1u << place;
     }
-    return or_of_warp(occupied);
+    return warp_or(occupied);
   }
 
-  /// From the digits of a key to leaves in the window: their place in it, five bits, then two each for x, y and z.
-  __device__ void fill_decoder() {
-#pragma unroll 1
-    for (int i = lane_; i < 54; i += 32) {
-      const int x = i / 9 % 3, y = i / 3 % 3, z = i % 3;
-      const int digits = order_.leaf(0, x, i >= 27) + order_.leaf(1, y, y >= order_.before[1]) +
-                         order_.leaf(2, z, z >= order_.before[2]);
-      s_.decoder[digits >> 3] = uint16_t((x * 9 + y * 3 + z) | x << 5 | y << 7 | z << 9);
-    }
+  /// For the window of a leaf, by place along x.
+  __device__ void fill_sites(int leaf) {
+    if (lane_ >= 27) return;
+    const int x = lane_ / 9, y = lane_ / 3 % 3, z = lane_ % 3;
+    const uint32_t digits = s_.order.digits[0][x] + s_.order.digits[1][y] + s_.order.digits[2][z];
+    s_.sites[digits >> 3] = {s_.site_leaf[leaf * W::kColumns + lane_] * 8,
+                             (leaf + x) % W::kSpan * int(sizeof(s_.keys[0])) | (8 - 8 * z) * (1 << 24)};
   }
 
   __device__ void fill_along_z() {
 #pragma unroll 1
-    for (int i = lane_; i < 4 * (band() + 2); i += 32) {
+    for (int i = lane_; i < 4 * (most_steps() + 2); i += 32) {
       const int z = W::kMiddle + 2 * (i & 3), steps = i >> 2;
-      s_.along_z[0][i & 3][steps] = Keys::from_below(order_, z, steps, band());
-      s_.along_z[1][i & 3][steps] = Keys::from_above(order_, z, steps, band());
+      s_.along_z[0][i & 3][most_steps() + 1 - steps] = Keys::from_below(s_.order, z, steps, most_steps(), band());
+      s_.along_z[1][i & 3][steps] = Keys::from_above(s_.order, z, steps, most_steps(), band());
     }
   }
 
@@ -97,6 +111,11 @@ class Worker {
                          : __ldg(reinterpret_cast<const unsigned long long*>(&in_.words[int64_t(leaf) * 8 + x].bits));
   }
 
+  __device__ void load_words(int place, int leaf_y, int x, uint64_t (&word)[W::kSpan]) const {
+#pragma unroll
+    for (int leaf_z = 0; leaf_z < W::kSpan; ++leaf_z) word[leaf_z] = site_word(place, leaf_y, leaf_z, x);
+  }
+
   /// Keys of the leaf at `place` from the sites in its slice across x. A lane has one x and two z.
   __device__ void pass_z_and_y(int place) {
     Pair best[8];
@@ -104,7 +123,7 @@ class Worker {
     for (int y = 0; y < 8; ++y) best[y] = Keys::no_pair(band());
     const int x = lane_ >> 2, pair = lane_ & 3;
     if constexpr (kBand > 0 && kBand <= 3) {
-      if (order_.jump[2] == 0)
+      if (s_.order.jump_z == 0)
         rows_by_table<false>(place, x, pair, best);
       else
         rows_by_table<true>(place, x, pair, best);
@@ -112,12 +131,13 @@ class Worker {
       rows_by_bits(place, x, pair, best);
     }
     uint32_t* to = plane(place, x) + pair * int(sizeof(Pair) / 4);
-    bool some = false;
+    Pair least = best[0];
 #pragma unroll
     for (int y = 0; y < 8; ++y) {
       *reinterpret_cast<Pair*>(to + y * int(sizeof(Pair))) = best[y];
-      some |= Keys::first(best[y]) < Keys::none(band()) || Keys::second(best[y]) < Keys::none(band());
+      least = Keys::smaller(least, best[y]);
     }
+    const bool some = min(Keys::first(least), Keys::second(least)) < Keys::none(band());
     const uint32_t lanes = __ballot_sync(kAllLanes, some);
     if (lane_ == 0) s_.some[place] = lanes;
   }
@@ -131,10 +151,12 @@ class Worker {
 #pragma unroll
       for (int to = 0; to < 8; ++to) best[to] = Keys::lower(v, cost[to], best[to]);
     } else {
+      const Pair less = Keys::at_most(v, kMostSteps<kBand> * kMostSteps<kBand>);
 #pragma unroll
       for (int to = 0; to < 8; ++to) {
         const int step = from - W::kMiddle - to;
-        if (step >= -kBand && step <= kBand) best[to] = Keys::lower(v, Keys::cost(step * step), best[to]);
+        if (step < -kMostSteps<kBand> || step > kMostSteps<kBand>) continue;
+        best[to] = Keys::lower(Keys::fits(step * step, kBand) ? v : less, Keys::cost(step * step), best[to]);
       }
     }
   }
@@ -145,11 +167,11 @@ class Worker {
     const int up = pair == 0 ? 3 : pair == 1 ? 1 : 0, down = pair == 2 ? 1 : pair == 3 ? 3 : 0;
     const uint32_t own = 0x01010101u * ((0xffu << up & 0xffu) >> down);
     const int side = pair < 2 ? 0 : 2, side_up = pair < 2 ? 0 : 8 - down, side_down = pair < 2 ? 8 - up : 0;
-    const uint32_t* table = table_ + 8 + pair * 256;
+    const uint32_t* table = table_ + kNearestWords + pair * 256;
 #pragma unroll
     for (int leaf = 0; leaf < 3; ++leaf) {
       const uint64_t middle = site_word(place, leaf, 1, x), other = site_word(place, leaf, side, x);
-      const uint32_t code = Keys::row_code(order_, leaf, 0);
+      const uint32_t code = Keys::row_code(s_.order, leaf, 0);
       uint32_t bytes[2];
       bytes[0] = (uint32_t(middle) << up >> down & own) | (uint32_t(other) << side_up >> side_down & ~own);
       bytes[1] = (uint32_t(middle >> 32) << up >> down & own) | (uint32_t(other >> 32) << side_up >> side_down & ~own);
@@ -158,51 +180,67 @@ class Worker {
         const int y = leaf * 8 + in_leaf;
         if (y < W::kMiddle - kBand || y >= W::kMiddle + 8 + kBand) continue;
         Pair v = table[bytes[in_leaf >> 2] >> (8 * (in_leaf & 3)) & 255];
-        if (kBorderZ) v = Keys::fix_z(order_, v);
+        if (kBorderZ) v = Keys::fix_z(s_.order, v);
         lower_all(v + code + uint32_t(in_leaf) * kBoth, y, best);
       }
     }
   }
 
-  __device__ Pair along_z(int pair, uint32_t left, uint32_t right) const {
-    const uint32_t stop = right | 2u << band();
-    const Nearest nearest = {W::kMiddle + 2 * pair, __clz(int(left)) - 31 + band(), 31 - __clz(int(stop & (0 - stop)))};
-    if constexpr (kLarge<Keys>)
-      return Keys::lower(s_.along_z[0][pair][nearest.left], 0, s_.along_z[1][pair][nearest.right]);
-    else
-      return Keys::along_z(order_, nearest);
+  /// Keys along z from the sites among the bits of a row: z is the highest of `below`, z + 1 the lowest of
+  /// `above`.
+  __device__ Pair along_z(int pair, uint32_t below, uint32_t above) const {
+    below |= 1u << (30 - most_steps());
+    above |= 2u << most_steps();
+    return Keys::smaller(s_.along_z[0][pair][1 + most_steps() - __clz(int(below))],
+                         s_.along_z[1][pair][31 - __clz(int(above & (0 - above)))]);
   }
 
   /// Any band: nearest bits below and above the pair, row by row.
   __device__ void rows_by_bits(int place, int x, int pair, Pair (&best)[8]) const {
     const int z = W::kMiddle + 2 * pair;
-    const uint32_t window = (2u << band()) - 1;
+    uint64_t words[kBand > 0 ? W::kSpan : 1][W::kSpan];  // loaded together where there are few
+    if constexpr (kBand > 0)
+#pragma unroll
+      for (int leaf = 0; leaf < W::kSpan; ++leaf) load_words(place, leaf, x, words[leaf]);
 #pragma unroll kUnroll
     for (int leaf = 0; leaf < W::kSpan; ++leaf) {
-      if (leaf * 8 + 8 <= W::kMiddle - band() || leaf * 8 >= W::kMiddle + 8 + band()) continue;
-      uint64_t word[W::kSpan], any = 0;
+      if (leaf * 8 + 8 <= W::kMiddle - most_steps() || leaf * 8 >= W::kMiddle + 8 + most_steps()) continue;
+      if constexpr (kBand == 0) load_words(place, leaf, x, words[0]);
+      const uint64_t(&word)[W::kSpan] = words[kBand > 0 ? leaf : 0];
+      uint64_t any = 0;
 #pragma unroll
-      for (int leaf_z = 0; leaf_z < W::kSpan; ++leaf_z) any |= word[leaf_z] = site_word(place, leaf, leaf_z, x);
-      if (!__any_sync(kAllLanes, any != 0)) continue;
+      for (int leaf_z = 0; leaf_z < W::kSpan; ++leaf_z) any |= word[leaf_z];
 #pragma unroll kUnroll
       for (int half = 0; half < 2; ++half) {
+        const uint32_t some = warp_or(uint32_t(any >> (32 * half)));
+        if (!some) continue;
         uint32_t rows[W::kSpan];
 #pragma unroll
         for (int leaf_z = 0; leaf_z < W::kSpan; ++leaf_z) rows[leaf_z] = uint32_t(word[leaf_z] >> (32 * half));
 #pragma unroll
         for (int in_half = 0; in_half < 4; ++in_half) {
           const int in_leaf = half * 4 + in_half, y = leaf * 8 + in_leaf;
-          if (y < W::kMiddle - band() || y >= W::kMiddle + 8 + band()) continue;
-          uint32_t low = 0, high = 0;
-#pragma unroll
-          for (int leaf_z = 0; leaf_z < W::kSpan; ++leaf_z)
-            (leaf_z < 4 ? low : high) |= (rows[leaf_z] >> (8 * in_half) & 255) << (8 * (leaf_z & 3));
-          const uint32_t left = __funnelshift_r(low, high, z - band()) & window;
-          const uint32_t right = __funnelshift_r(low, high, z + 1) & window;
-          if (!__any_sync(kAllLanes, (left | right) != 0)) continue;
-          lower_all(Keys::add_row(along_z(pair, left, right), Keys::row_code(order_, leaf, in_leaf)), y, best);
+          if (y < W::kMiddle - most_steps() || y >= W::kMiddle + 8 + most_steps()) continue;
+          if (!(some >> (8 * in_half) & 255)) continue;
+          const Pair v = Keys::add_row(nearest_in_row(rows, in_half, pair, z), Keys::row_code(s_.order, leaf, in_leaf));
+          lower_all(v, y, best);
         }
       }
+    }
+  }
+
+  /// Rows of several leaves along z, four of each to a word.
+  __device__ Pair nearest_in_row(const uint32_t (&rows)[W::kSpan], int row, int pair, int z) const {
+    if constexpr (W::kSpan == 3) {
+      const uint32_t two = __byte_perm(rows[0], rows[1], uint32_t(row | (4 + row) << 4));
+      const uint32_t bits = __byte_perm(two, rows[2], uint32_t(0x10 | (4 + row) << 8));
+      return along_z(pair, bits << (31 - z), bits >> (z + 1));
+    } else {
+      uint32_t low = 0, high = 0;
+#pragma unroll
+      for (int leaf_z = 0; leaf_z < W::kSpan; ++leaf_z)
+        (leaf_z < 4 ? low : high) |= (rows[leaf_z] >> (8 * row) & 255) << (8 * (leaf_z & 3));
+      return along_z(pair, low << (31 - z), __funnelshift_r(low, high, z + 1));
     }
   }
 
@@ -219,79 +257,49 @@ class Worker {
 #pragma unroll kUnroll
       for (int in_leaf = 0; in_leaf < 8; ++in_leaf) {
         const int x = l * 8 + in_leaf;
-        if (x < W::kMiddle - band() || x >= W::kMiddle + 8 + band()) continue;
-        if (!(some >> (4 * in_leaf) & 15)) continue;
+        if (x < W::kMiddle - most_steps() || x >= W::kMiddle + 8 + most_steps()) continue;
+        if (kLarge<Keys> && !(some >> (4 * in_leaf) & 15)) continue;
         const Pair v = *reinterpret_cast<const Pair*>(from + in_leaf * Keys::kPlaneWords);
-        lower_all(Keys::add_plane(v, Keys::plane_code(order_, l, leaf + l, in_leaf)), x, best);
+        lower_all(Keys::add_plane(v, Keys::plane_code(s_.order, l, leaf + l, in_leaf)), x, best);
       }
     }
-    if constexpr (Keys::kValues)
-      write_values(leaf, best);
-    else
-      write_mask(s_.shell_leaf[leaf + kReach], best);
-  }
-
-  __device__ static uint64_t spread(uint32_t bits) {
-    uint64_t b = bits;
-    b = (b | b << 16) & 0x0000ffff0000ffffull;
-    b = (b | b << 8) & 0x00ff00ff00ff00ffull;
-    b = (b | b << 4) & 0x0f0f0f0f0f0f0f0full;
-    b = (b | b << 2) & 0x3333333333333333ull;
-    return (b | b << 1) & 0x5555555555555555ull;
-  }
-
-  __device__ void write_mask(uint32_t leaf, const Pair (&best)[8]) {
-    uint32_t even = 0, odd = 0;
-#pragma unroll
-    for (int x = 0; x < 8; ++x) {
-      const uint32_t lo = __ballot_sync(kAllLanes, Keys::first(best[x]) < Keys::none(band()));
-      const uint32_t hi = __ballot_sync(kAllLanes, Keys::second(best[x]) < Keys::none(band()));
-      if (lane_ == x) even = lo, odd = hi;
-    }
-    int voxels = __popc(even) + __popc(odd);
-    if (lane_ < 8) out_.mask[leaf].word[lane_] = spread(even) | spread(odd) << 1;
-    for (int offset = 4; offset > 0; offset >>= 1) voxels += __shfl_xor_sync(kAllLanes, voxels, offset);
-    if (lane_ == 0) out_.count[leaf] = voxels;
+    write_values(leaf, best);
   }
 
   /// Active voxels first go into a list, so that all lanes work on the next, longer step.
   __device__ void write_values(int leaf, const Pair (&best)[8]) {
     const uint32_t number = s_.shell_leaf[leaf + kReach];
+    if constexpr (!kLarge<Keys>) fill_sites(leaf);
     const auto* mask = reinterpret_cast<const unsigned long long*>(in_.shell.mask.data[number].word);
     const uint64_t below = (uint64_t(1) << (2 * lane_)) - 1;
-    int before = lane_ < 8 ? __popcll(__ldg(mask + lane_)) : 0;  // of the words up to this lane's
-    for (int offset = 1; offset < 8; offset <<= 1) {
-      const int other = __shfl_up_sync(kAllLanes, before, unsigned(offset));
-      if (lane_ >= offset) before += other;
-    }
-    const int64_t start = in_.shell.first[number];
-    uint32_t* sites = out_.closest_site + start;
-    uint16_t* distances = out_.distance_sq_vox + start;
-#pragma unroll
+    int64_t start = in_.shell.first[number];
+    int done = 0;
+#pragma unroll 1
     for (int from = 0; from < 8; from += kListed<Keys>) {
-      const int done = from == 0 ? 0 : __shfl_sync(kAllLanes, before, from - 1);
-      const int count = __shfl_sync(kAllLanes, before, from + kListed<Keys> - 1) - done;
+      int count = 0;
 #pragma unroll
-      for (int x = from; x < from + kListed<Keys>; ++x) {
-        int at = __popcll(__ldg(mask + x) & below);
-        if (x > from) at += __shfl_sync(kAllLanes, before, x - 1) - done;
-        const bool first = Keys::first(best[x]) < Keys::none(band());
-        if (first) put(at, Keys::first(best[x]), x * 64 + lane_ * 2);
-        if (Keys::second(best[x]) < Keys::none(band())) put(at + first, Keys::second(best[x]), x * 64 + lane_ * 2 + 1);
+      for (int x = 0; x < kListed<Keys>; ++x) {
+        const uint64_t word = __ldg(mask + from + x);
+        const uint32_t two = uint32_t(word >> (2 * lane_));
+        const int at = count + __popcll(word & below);
+        Pair v = best[x];
+#pragma unroll
+        for (int later = kListed<Keys>; later < 8; later += kListed<Keys>)
+          if (from == later) v = best[later + x];
+        const int offset = (from + x) * 64 + lane_ * 2;
+        if (two & 1) put(at, Keys::first(v), offset);
+        if (two & 2) put(at + int(two & 1), Keys::second(v), offset + 1);
+        count += __popcll(word);
       }
       __syncwarp();
-#pragma unroll 1
-      for (int i = lane_; i < count; i += 32) {
-        const uint32_t key = kLarge<Keys> ? s_.list[i] : s_.list[i] >> 16;
-        const int offset = kLarge<Keys> ? s_.offset[i] : int(s_.list[i] & 511);
-        sites[done + i] = site_of(leaf, key, offset);
-        distances[done + i] = uint16_t(key >> Keys::kBits);
-      }
-      if (from + kListed<Keys> < 8) __syncwarp();
+      write_list(start, count, number, done);
+      start += count;
+      done += count;
+      __syncwarp();
     }
   }
   __device__ void put(int at, uint32_t key, int offset) {
-    if constexpr (sizeof(Pair) > 4) {
+    if constexpr (kLarge<Keys>) {
       s_.list[at] = key;
       s_.offset[at] = uint16_t(offset);
     } else {
@@ -299,53 +307,97 @@ class Worker {
     }
   }
 
-  __device__ SiteWord word_of(uint32_t leaf, int x) const {
-    const uint4 raw = __ldg(reinterpret_cast<const uint4*>(&in_.words[int64_t(leaf) * 8 + x]));
-    return {uint64_t(raw.x) | uint64_t(raw.y) << 32, raw.z};
-  }
-  __device__ static uint32_t site_number(const SiteWord& word, int bit) {
-    return word.first + uint32_t(__popcll(word.bits & ((uint64_t(1) << bit) - 1)));
+  /// Writes the values of `count` listed voxels; `done` of their leaf come before them.
+  __device__ void write_list(int64_t start, int count, uint32_t leaf, int done) {
+    uint32_t* const sites = out_.closest_site + start;
+    uint16_t* const distances = out_.distance_sq_vox + start;
+#pragma unroll 1
+    for (int first = 0; first < count; first += 32) {
+      const uint32_t i = uint32_t(first + lane_);
+      uint32_t distance_sq = 0;
+      int offset = 0;
+      if (i < uint32_t(count)) {
+        const uint32_t key = kLarge<Keys> ? s_.list[i] : s_.list[i] >> 16;
+        offset = kLarge<Keys> ? s_.offset[i] : int(s_.list[i] & 511);
+        distance_sq = key >> Keys::kBits;
+        const bool beyond = kFar && distance_sq > uint32_t(kBand * kBand);  // the passes found no site
+        sites[i] = beyond ? kNone : site_of(key, offset);
+        distances[i] = uint16_t(beyond ? uint32_t(kBand * kBand) : distance_sq);
+      }
+      if constexpr (kFar) keep_far(distance_sq >= uint32_t(kBand * kBand), leaf, done + int(i), offset);
+    }
   }
 
-  __device__ uint32_t site_of(int leaf, uint32_t key, int offset) {
+  /// Keeps this lane's voxel for find_far_sites if `far`.
+  __device__ void keep_far(bool far, uint32_t leaf, int place, int offset) {
+    const uint32_t lanes = __ballot_sync(kAllLanes, far);
+    if (!lanes) return;
+    if (far) {
+      const int at = far_count_ + __popc(lanes & ((1u << lane_) - 1));
+      s_.far.leaf[at] = leaf;
+      s_.far.place[at] = uint32_t(place << 9 | offset);
+    }
+    far_count_ += __popc(lanes);
+    if (far_count_ < 32) return;
+    find_far_sites();
+    far_count_ -= 32;
+    __syncwarp();
+    if (lane_ < far_count_) {
+      s_.far.leaf[lane_] = s_.far.leaf[32 + lane_];
+      s_.far.place[lane_] = s_.far.place[32 + lane_];
+    }
+    __syncwarp();
+  }
+
+  __device__ void find_far_sites() {
+    __syncwarp();
+    if (lane_ < far_count_) lower_to_far_site<kBand>(in_, out_, s_.far.leaf[lane_], s_.far.place[lane_]);
+  }
+
+  __device__ SiteWord word_of(uint32_t number) const {
+    const uint4 raw = __ldg(reinterpret_cast<const uint4*>(&in_.words[number]));
+    return {uint64_t(raw.x) | uint64_t(raw.y) << 32, raw.z};
+  }
+
+  __device__ uint32_t site_of(uint32_t key, int offset) const {
     if constexpr (kLarge<Keys>) {
-      const int column = int(key >> 12 & 7) * W::kSpan + int(key >> 9 & 7), x = int(key >> 6 & 7);
-      return site_number(word_of(s_.site_leaf[int(key >> 15 & 15) * W::kColumns + column], x), int(key & 63));
+      const int column = int(key >> 12 & 7) * W::kSpan + int(key >> 9 & 7);
+      const uint32_t leaf = s_.site_leaf[int(key >> 15 & 15) * W::kColumns + column];
+      return site_number(word_of(leaf * 8 + (key >> 6 & 7)), int(key & 63));
     } else {
-      const int where = s_.decoder[key >> 3 & 127], x = int(key & 7);
-      const SiteWord word = word_of(s_.site_leaf[leaf * W::kColumns + (where & 31)], x);
-      const int leaf_y = where >> 7 & 3, leaf_z = where >> 9, z = offset & 7;
-      int slot = leaf % W::kSpan + (where >> 5 & 3);
-      if (slot >= W::kSpan) slot -= W::kSpan;
-      const auto* after_y = reinterpret_cast<const uint16_t*>(s_.keys[slot] + x * Keys::kPlaneWords);
-      const uint32_t key_y = after_y[offset & 63];
-      const int y = int(key_y & 7), dy = leaf_y * 8 + y - W::kMiddle - (offset >> 3 & 7);
-      const int dz = reinterpret_cast<const uint8_t*>(table_)[int(key_y >> Keys::kBits) - dy * dy];
-      // In the voxel's own leaf both ends of the distance may hold a site; the lower one comes first.
-      const int low = z - dz, place_low = y * 8 + (low & 7);
-      const bool below = leaf_z == 0 || (leaf_z == 1 && low >= 0 && (word.bits >> place_low & 1));
-      return site_number(word, below ? place_low : y * 8 + ((z + dz) & 7));
+      const SiteLeaf leaf = s_.sites[key >> 3 & 63];
+      const uint32_t x = key & 7;
+      const SiteWord word = word_of(leaf.first_word + x);
+      const uint32_t plane = uint32_t(leaf.keys_and_z & 0xffff) + x * (4 * Keys::kPlaneWords);
+      const uint32_t after_y = *reinterpret_cast<const uint16_t*>(reinterpret_cast<const char*>(s_.keys) + plane +
+                                                                  uint32_t(offset & 63) * 2);
+      const uint32_t y = after_y & 7;
+      // Of the site's row the pass along z took the nearest one; seen from another leaf that is the first or last one.
+      const int z = min(max((offset & 7) + (leaf.keys_and_z >> 24), 0), 7);
+      const uint32_t row = uint32_t(word.bits >> (8 * y)) & 255;
+      return site_number(word, int(8 * y + reinterpret_cast<const uint8_t*>(table_)[z * 256 + row]));
     }
   }
 
   const Input& in_;
   const Output& out_;
-  Shared<Keys, kReach>& s_;
+  Shared<kReach, kBand, Keys>& s_;
   const uint32_t* table_;
   const int lane_;
-  typename Keys::Order order_;
+  int far_count_ = 0;
 };
 
 template <int kReach, int kBand, class Keys>
 constexpr int64_t shared_bytes() {
-  return int64_t(sizeof(Shared<Keys, kReach>)) * kWarps<Keys, kReach> + 4 * kTableWords<kBand>;
+  return int64_t(sizeof(Shared<kReach, kBand, Keys>)) * kWarps<kReach, kBand, Keys> + 4 * kTableWords<kBand>;
 }
 
 template <int kReach, int kBand, class Keys>
-__global__ void __launch_bounds__(kWarps<Keys, kReach> * 32) closest_sites(Rows rows, Input in, Output out) {
+__global__ void __launch_bounds__(kWarps<kReach, kBand, Keys> * 32, kBand > 0 ? 4 : 1)
+    closest_sites(Rows rows, const __grid_constant__ Input in, const __grid_constant__ Output out) {
   extern __shared__ uint4 memory[];
-  auto* shared = reinterpret_cast<Shared<Keys, kReach>*>(memory);
-  auto* table = reinterpret_cast<uint32_t*>(shared + kWarps<Keys, kReach>);
+  auto* shared = reinterpret_cast<Shared<kReach, kBand, Keys>*>(memory);
+  auto* table = reinterpret_cast<uint32_t*>(shared + kWarps<kReach, kBand, Keys>);
   fill_tables<kBand, Keys>(table, in.band_vox);
   __syncthreads();
   Worker<kReach, kBand, Keys> worker(in, out, shared[threadIdx.x >> 5], table);
@@ -354,9 +406,10 @@ __global__ void __launch_bounds__(kWarps<Keys, kReach> * 32) closest_sites(Rows 
     uint32_t row = 0;
     if ((threadIdx.x & 31) == 0) row = atomicAdd(rows.next, 1u);
     row = __shfl_sync(kAllLanes, row, 0);
-    if (row >= count) return;
+    if (row >= count) break;
     worker.run(rows.first_leaf[row], rows.leaves);
   }
+  worker.finish();
 }
 
 }  // namespace closest

@@ -1,11 +1,10 @@
 // CUDA's build_shell: leaves within reach of the sites, their masks, and with the counts in hand their values, which go
-// straight to their places. Masks come from growing bitmaps where the band is small, else from the distance transform
-// itself without its sites.
+// straight to their places.
 #include "cuda/closest_kernel.cuh"
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
 #include "cuda/leaf_marks.cuh"
-#include "cuda/reach_kernel.cuh"
+#include "cuda/shell_masks.h"
 #include "voxel/closest.h"
 
 namespace isoshell {
@@ -16,22 +15,52 @@ constexpr int kMarkThreads = 256;
 /// Distance along one axis from place `at` of a leaf to the leaf `leaves` away.
 __device__ int gap(int at, int leaves) { return leaves > 0 ? 8 * leaves - at : leaves < 0 ? at - 8 * leaves - 7 : 0; }
 
+/// The leaves around a leaf, all of the cube where it is small, else those that the band may reach.
+template <int kReach>
+struct Neighbours {
+  static constexpr int kSpan = 2 * kReach + 1, kMost = kSpan * kSpan * kSpan;
+  static constexpr bool kAll = kReach == 1;
+  int3 listed[kAll ? 1 : kMost];
+  int count;
+
+  __device__ static int3 of_cube(int n) {
+    return {n / (kSpan * kSpan) - kReach, n / kSpan % kSpan - kReach, n % kSpan - kReach};
+  }
+  __device__ int size() const { return kAll ? kMost : count; }
+  __device__ int3 operator[](int n) const { return kAll ? of_cube(n) : listed[n]; }
+
+  /// By a whole thread block.
+  __device__ void list(int band) {
+    if (kAll) return;
+    if (threadIdx.x == 0) count = 0;
+    __syncthreads();
+    for (int n = int(threadIdx.x); n < kMost; n += kMarkThreads) {
+      const int3 by = of_cube(n);
+      const int gx = closest::leaf_gap(by.x), gy = closest::leaf_gap(by.y), gz = closest::leaf_gap(by.z);
+      if (gx * gx + gy * gy + gz * gz <= band * band) listed[atomicAdd(&count, 1)] = by;
+    }
+    __syncthreads();
+  }
+};
+
 /// Marks every leaf that has a voxel within the band of a site: exactly the leaves of the shell. A warp a leaf of
 /// sites, a lane a neighbour; the table says which voxels of a leaf are close enough to which neighbour.
 template <int kReach>
 __global__ void __launch_bounds__(kMarkThreads) mark_reached(VoxelSetView sites, int band, leaf_marks::Marks marks) {
-  constexpr int kSpan = 2 * kReach + 1, kNeighbours = kSpan * kSpan * kSpan;
-  __shared__ uint64_t table[8][kNeighbours];
-  for (int i = int(threadIdx.x); i < 8 * kNeighbours; i += kMarkThreads) {
-    const int n = i % kNeighbours, ly = n / kSpan % kSpan - kReach, lz = n % kSpan - kReach;
-    const int gx = gap(i / kNeighbours, n / (kSpan * kSpan) - kReach);
+  __shared__ uint64_t table[8][Neighbours<kReach>::kMost];
+  __shared__ Neighbours<kReach> neighbours;
+  neighbours.list(band);
+  const int count = neighbours.size();
+  for (int i = int(threadIdx.x); i < 8 * count; i += kMarkThreads) {
+    const int3 by = neighbours[i % count];
+    const int gx = gap(i / count, by.x);
     uint64_t near = 0;
     for (int y = 0; y < 8; ++y)
       for (int z = 0; z < 8; ++z) {
-        const int gy = gap(y, ly), gz = gap(z, lz);
+        const int gy = gap(y, by.y), gz = gap(z, by.z);
         near |= uint64_t(gx * gx + gy * gy + gz * gz <= band * band) << (8 * y + z);
       }
-    table[i / kNeighbours][n] = near;
+    table[i / count][i % count] = near;
   }
   __syncthreads();
   const int lane = int(threadIdx.x & 31);
@@ -40,11 +69,11 @@ __global__ void __launch_bounds__(kMarkThreads) mark_reached(VoxelSetView sites,
     const Voxel at = leaf_of_key(sites.leaf_key[l]);
     uint64_t word[8];
     for (int x = 0; x < 8; ++x) word[x] = sites.mask[l].word[x];
-    for (int n = lane; n < kNeighbours; n += 32) {
+    for (int n = lane; n < count; n += 32) {
       uint64_t near = 0;
       for (int x = 0; x < 8; ++x) near |= word[x] & table[x][n];
-      const int x = at.x + n / (kSpan * kSpan) - kReach, y = at.y + n / kSpan % kSpan - kReach,
-                z = at.z + n % kSpan - kReach;
+      const int3 by = neighbours[n];
+      const int x = at.x + by.x, y = at.y + by.y, z = at.z + by.z;
       if (near && marks.inside(x, y, z)) marks.mark(x, y, z);
     }
   }
@@ -87,105 +116,30 @@ __global__ void number_words(VoxelSetView sites, closest::SiteWord* words) {
 /// Longer rows compute less twice, shorter ones keep all processors busy.
 int32_t row_leaves(int64_t leaves) { return leaves < 40000 ? 2 : leaves < 150000 ? 4 : 8; }
 
-struct Arguments {
-  closest::Rows rows;
-  closest::Input in;
-  closest::Output out;
-};
-
-/// A distance transform that fills the device.
-struct Transform {
-  void (*kernel)(closest::Rows, closest::Input, closest::Output);
-  unsigned blocks, threads;
-  int shared_bytes;
-
-  void run(CudaExecutor& exec, const Arguments& a, const char* name) const {
-    kernel<<<blocks, threads, size_t(shared_bytes), exec.stream()>>>(a.rows, a.in, a.out);
-    exec.check(name);
-  }
-};
-
 template <int kReach, int kBand, class Keys>
-Transform transform(CudaExecutor& exec) {
-  Transform t = {closest::closest_sites<kReach, kBand, Keys>, 0, closest::kWarps<Keys, kReach> * 32,
-                 int(closest::shared_bytes<kReach, kBand, Keys>())};
-  require_success(cudaFuncSetAttribute(t.kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, t.shared_bytes),
-                  "cudaFuncSetAttribute");
-  int blocks = 0, processors = 0;
-  require_success(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, t.kernel, int(t.threads), size_t(t.shared_bytes)),
-      "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
-  require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, exec.device().device()),
-                  "cudaDeviceGetAttribute");
-  t.blocks = unsigned(blocks * processors);
-  return t;
-}
-
-template <class Keys>
-Transform wide_transform(CudaExecutor& exec, int32_t band_vox) {
-  const int reach = reach_leaves(band_vox);
-  return reach == 1   ? transform<1, 0, Keys>(exec)
-         : reach == 2 ? transform<2, 0, Keys>(exec)
-                      : transform<3, 0, Keys>(exec);
-}
-
-Transform transform_to_sites(CudaExecutor& exec, int32_t band_vox) {
-  static_assert(closest::SmallPair::kMaxBand == 5, "one case each");
-  switch (band_vox) {
-    case 1:
-      return transform<1, 1, closest::SmallPair>(exec);
-    case 2:
-      return transform<1, 2, closest::SmallPair>(exec);
-    case 3:
-      return transform<1, 3, closest::SmallPair>(exec);
-    case 4:
-      return transform<1, 4, closest::SmallPair>(exec);
-    case 5:
-      return transform<1, 5, closest::SmallPair>(exec);
-    default:
-      return wide_transform<closest::LargePair>(exec, band_vox);
-  }
-}
-
-/// The paper's bands, unrolled, and all others.
-Transform transform_to_masks(CudaExecutor& exec, int32_t band_vox) {
-  if (band_vox == 6) return transform<1, 6, closest::DistancePair>(exec);
-  if (band_vox == 9) return transform<2, 9, closest::DistancePair>(exec);
-  return wide_transform<closest::DistancePair>(exec, band_vox);
+closest::Transform transform(CudaExecutor& exec) {
+  return transform_of(exec, closest::closest_sites<kReach, kBand, Keys>, closest::kWarps<kReach, kBand, Keys>,
+                      closest::shared_bytes<kReach, kBand, Keys>());
 }
 
 template <int kBand>
-void grow(CudaExecutor& exec, const Arguments& a) {
-  const int64_t threads = a.in.shell.leaf_key.size * 16;
-  reach::grow_sites<kBand>
-      <<<unsigned((threads + reach::kThreads - 1) / reach::kThreads), reach::kThreads, 0, exec.stream()>>>(
-          a.in.sites, a.in.shell, a.out.mask, a.out.count);
-  exec.check("shell masks");
-}
-
-void find_masks(CudaExecutor& exec, const Arguments& a) {
-  static_assert(reach::kMaxBand == 4, "one case each");
-  switch (a.in.band_vox) {
-    case 1:
-      return grow<1>(exec, a);
-    case 2:
-      return grow<2>(exec, a);
-    case 3:
-      return grow<3>(exec, a);
-    case 4:
-      return grow<4>(exec, a);
-    default:
-      transform_to_masks(exec, a.in.band_vox).run(exec, a, "shell masks");
+closest::Transform transform_to_sites(CudaExecutor& exec, int32_t band_vox) {
+  if constexpr (kBand <= closest::SmallPair::kMaxBand) {
+    if (band_vox == kBand) return transform<1, kBand, closest::SmallPair>(exec);
+    return transform_to_sites<kBand + 1>(exec, band_vox);
+  } else {
+    static_assert(reach_leaves(kBand) == 2 && reach_leaves(kMaxBandVox) == 3, "five or seven leaves across");
+    return reach_leaves(band_vox) == 2 ? transform<2, 0, closest::LargePair>(exec)
+                                       : transform<3, 0, closest::LargePair>(exec);
   }
 }
 
 /// The shell's leaves, and their index but for masks and first.
 VoxelSet find_shell_leaves(CudaExecutor& exec, const VoxelSetView& sites, int32_t band_vox) {
   LeafMarks marks(exec, sites.block_dims);
-  const int64_t most = 132 * 8, needed = (sites.leaf_key.size * 32 + kMarkThreads - 1) / kMarkThreads;
   const auto kernel = band_vox <= 8 ? mark_reached<1> : band_vox <= 16 ? mark_reached<2> : mark_reached<3>;
-  if (needed > 0)
-    kernel<<<unsigned(needed < most ? needed : most), kMarkThreads, 0, exec.stream()>>>(sites, band_vox, marks.marks());
+  const unsigned blocks = exec.device().resident_blocks(blocks_for(sites.leaf_key.size * 32, kMarkThreads), 8);
+  kernel<<<blocks, kMarkThreads, 0, exec.stream()>>>(sites, band_vox, marks.marks());
   exec.check("mark shell leaves");
   return marks.list(exec);
 }
@@ -221,9 +175,9 @@ void fill_shell(CudaExecutor& exec, const VoxelSetView& sites, Shell& shell) {
   RowList list(exec, set.view());
   const Buffer<closest::SiteWord> words = words_of(exec, sites);
   const closest::Input in = {sites, set.view(), words.data(), shell.band_vox};
-  find_masks(exec, {list.rows(0), in, {set.mask.data(), set.first.data(), nullptr, nullptr}});
+  find_shell_masks(exec, {list.rows(0), in, {set.mask.data(), set.first.data(), nullptr, nullptr}});
   exclusive_scan_async(exec.device(), set.first.view());
-  const Transform to_sites = transform_to_sites(exec, shell.band_vox);  // while the device is busy
+  const closest::Transform to_sites = transform_to_sites<1>(exec, shell.band_vox);  // while the device is busy
   set.active = exec.value(View<const int64_t>(set.first.view()), set.leaf_count());
   shell.closest_site = exec.make<uint32_t>(set.active);
   shell.distance_sq_vox = exec.make<uint16_t>(set.active);

@@ -43,37 +43,42 @@ ISOSHELL_HD inline BorderRanks border_ranks(const int32_t from[3], const int bef
   return out;
 }
 
-/// Mixed-radix ranks for windows of three leaves, sized to fit ten bits with a digit of 8 below: along each axis
-/// `step` a leaf and `jump` more behind the border.
+/// Mixed-radix ranks for windows of three leaves, sized to fit nine bits with a digit of 8 below: along each axis
+/// `step` a leaf and `jump` more behind the border. A border along x that lies in the window of one leaf of the row
+/// only counts where there are others, and then only for that leaf: an order is for the leaves whose windows it is in,
+/// or for all others.
 struct SmallOrder {
-  int before[3];  ///< leaves before the border; along x counted from the first leaf of the row's window
+  int before[3];  ///< leaves of the window before the border
   int step[3], jump[3];
 
-  ISOSHELL_HD int leaf(int axis, int at, bool behind) const { return at * step[axis] + (behind ? jump[axis] : 0); }
+  ISOSHELL_HD int leaf(int axis, int at) const { return at * step[axis] + (at >= before[axis] ? jump[axis] : 0); }
 };
+/// Leaf of the row whose window reaches over a border along x.
+ISOSHELL_HD inline int border_leaf(Voxel row) { return row.x & 8 ? kRowLeaves - 1 : 0; }
+/// Whether that leaf needs an order of its own.
+ISOSHELL_HD inline bool is_mixed(Voxel row) {
+  return before_border(row.y - 1, 3) < 3 || before_border(row.z - 1, 3) < 3;
+}
+
 /// `row` holds the leaf coordinates of the row's first leaf.
-ISOSHELL_HD inline SmallOrder small_order(Voxel row) {
-  const int32_t from[3] = {row.x - 1, row.y - 1, row.z - 1};
+ISOSHELL_HD inline SmallOrder small_order(Voxel row, bool over_border) {
+  const int32_t from[3] = {row.x - 1 + border_leaf(row), row.y - 1, row.z - 1};
   SmallOrder o;
-  o.before[0] = before_border(from[0], kRowLeaves + 2);
-  o.before[1] = before_border(from[1], 3);
-  o.before[2] = before_border(from[2], 3);
+  for (int axis = 0; axis < 3; ++axis) o.before[axis] = before_border(from[axis], 3);
   const BorderRanks ranks = border_ranks(from, o.before);
-  const bool split_y = o.before[1] < 3, split_z = o.before[2] < 3;
-  o.step[2] = 8;
-  o.step[1] = o.step[2] * (split_z ? 2 : 3);
-  o.step[0] = o.step[1] * (split_y ? 2 : 3);
-  int digit = o.step[0] * 3, side[3];
+  if (!over_border) o.before[0] = 3;
+  int digit = 8;
+  for (int axis = 2; axis >= 0; --axis) {
+    o.step[axis] = digit;
+    o.jump[axis] = 0;
+    digit *= o.before[axis] < 3 ? 2 : 3;
+  }
   for (int rank = 0; rank < 3; ++rank)
     for (int axis = 0; axis < 3; ++axis) {
-      if (ranks.rank[axis] != rank) continue;
-      const bool split = axis == 0 || (axis == 1 ? split_y : split_z);
-      side[axis] = split ? digit : 0;
-      if (split) digit *= 2;
+      if (ranks.rank[axis] != rank || o.before[axis] == 3) continue;
+      o.jump[axis] = digit - o.before[axis] * o.step[axis];
+      digit *= 2;
     }
-  o.jump[0] = side[0];
-  o.jump[1] = split_y ? side[1] - o.before[1] * o.step[1] : 0;
-  o.jump[2] = split_z ? side[2] - o.before[2] * o.step[2] : 0;
   return o;
 }
 
