@@ -1,10 +1,12 @@
 // From triangles on the device to sites, shell with exact closest sites, and NanoVDB index grid, all in its memory.
-//   bench_cuda_shell MESH [--resolutions 512,1024,...] [--bands 1,3,...] [--triangles N] [--repeats N]
+//   bench_cuda_shell MESH [--resolutions 512,1024,...] [--bands 1,3,...] [--triangles N] [--repeats N] [--digests 1]
 // The longest side is nine tenths of a resolution; faces are split at the middles of their edges until there are N.
-// JSON on standard output: medians over the repeats, by events in the stream that the stages use.
+// JSON on standard output: medians over the repeats, by events in the stream that the stages use. With --digests the
+// host computes sites and shell, too, and the digests of both are compared.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -26,6 +28,7 @@ struct Arguments {
   std::vector<int> resolutions = {512, 1024, 2048, 4096, 8192}, bands = {3, 9};
   size_t triangles = 200000;
   int repeats = 20;
+  bool digests = false;
 };
 
 std::vector<int> numbers(const std::string& list) {
@@ -39,7 +42,8 @@ Arguments parse(int argc, char** argv) {
   Arguments a;
   if (argc < 2) {
     std::fprintf(stderr,
-                 "usage: bench_cuda_shell MESH [--resolutions LIST] [--bands LIST] [--triangles N] [--repeats N]\n");
+                 "usage: bench_cuda_shell MESH [--resolutions LIST] [--bands LIST] [--triangles N] [--repeats N] "
+                 "[--digests 1]\n");
     std::exit(2);
   }
   a.mesh = argv[1];
@@ -49,6 +53,7 @@ Arguments parse(int argc, char** argv) {
     if (key == "--bands") a.bands = numbers(argv[i + 1]);
     if (key == "--triangles") a.triangles = size_t(std::atol(argv[i + 1]));
     if (key == "--repeats") a.repeats = std::atoi(argv[i + 1]);
+    if (key == "--digests") a.digests = std::atoi(argv[i + 1]) != 0;
   }
   return a;
 }
@@ -149,6 +154,31 @@ json measure(const LatticeSurface& surface, int band_vox, int repeats, Context& 
   return row;
 }
 
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Digests and counts of the products on both sides; the device's go first and are gone before the host's are made.
+json compare(const LatticeSurface& on_host, const LatticeSurface& on_device, int band_vox, Context& host,
+             Context& device) {
+  json row;
+  const auto describe = [&](const char* side, const LatticeSurface& surface, Context& context) {
+    const double start = seconds();
+    const SiteSet sites = to_host(voxelize(surface, context));
+    const Shell shell = to_host(build_shell(sites, {band_vox}, context));
+    row[side] = {{"seconds", seconds() - start},
+                 {"sites", sites.voxels.voxel_count()},
+                 {"active_voxels", shell.voxels.voxel_count()},
+                 {"site_digest", digest_text(digest(sites))},
+                 {"shell_digest", digest_text(digest(shell))}};
+  };
+  describe("device", on_device, device);
+  describe("host", on_host, host);
+  bool equal = true;
+  for (const char* key : {"sites", "active_voxels", "site_digest", "shell_digest"})
+    equal = equal && row["device"][key] == row["host"][key];
+  row["equal"] = equal;
+  return row;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -175,6 +205,10 @@ int main(int argc, char** argv) try {
       std::fprintf(stderr, "%5d d %2d: %8.3f + %8.3f + %7.3f = %8.3f ms, %.2f B a voxel\n", resolution, band_vox,
                    row["voxelize_ms"].get<double>(), row["shell_ms"].get<double>(), row["grid_ms"].get<double>(),
                    row["total_ms"].get<double>(), row["peak_bytes_per_active"].get<double>());
+      if (args.digests) {
+        row["digests"] = compare(snapped, surface, band_vox, host, device);
+        std::fprintf(stderr, "%s\n", row["digests"].dump().c_str());
+      }
       rows.push_back(row);
     }
   }
