@@ -287,8 +287,12 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
       work.search(options.search_rounds, false);
       work.fit(3, 0.6, true, post::kFineMerit);
     }
-    work.search(options.search_rounds, !balanced);
+    work.search(3 * options.search_rounds, !balanced);
     work.undo_intersections(report);
+    if (report.undone_vertices > 0) {  // what went back may be poor
+      work.search(3 * options.search_rounds, true);
+      work.undo_intersections(report);
+    }
   }
   work.finish();
   return report;
