@@ -3,6 +3,7 @@
 # Takes the headers from a Debian suite with an apt state of its own, so that the system's sources stay as they are.
 #   scripts/test_newer_nanovdb.sh [suite]        (default: forky)
 # An existing header tree can be used instead: NANOVDB_INCLUDE=/path/that/holds/nanovdb scripts/test_newer_nanovdb.sh
+# ISOSHELL_CUDA=on builds the CUDA backend against it too, for this machine's device, and tests that.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 suite=${1:-forky}
@@ -23,7 +24,10 @@ if [ ! -d "$include/nanovdb" ]; then
   rm -rf "$state"
 fi
 
-cmake -S . -B build-newer-nanovdb -DISOSHELL_VDB=OFF -DISOSHELL_TOOLS=OFF -DISOSHELL_BENCH=OFF -DNanoVDB_INCLUDE_DIR="$include"
+cuda=${ISOSHELL_CUDA:-off}
+cmake -S . -B build-newer-nanovdb -DISOSHELL_VDB=OFF -DISOSHELL_TOOLS=OFF -DISOSHELL_BENCH=OFF -DISOSHELL_CUDA="$cuda" \
+  -DCMAKE_CUDA_ARCHITECTURES=native -DNanoVDB_INCLUDE_DIR="$include"
 cmake --build build-newer-nanovdb --target test_nano -j "$(nproc)"
 build-newer-nanovdb/tests/test_nano --success | grep -m1 "NanoVDB 32" || true
 build-newer-nanovdb/tests/test_nano
+[ "$cuda" != on ] || build-newer-nanovdb/tests/test_nano --cuda
