@@ -97,6 +97,7 @@ class CudaExecutor {
   template <class T>
   T value(View<const T> values, int64_t i) {
     static_assert(sizeof(T) <= DeviceStream::kPinnedBytes, "read back through the pinned words");
+    static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
     read_back(values.data + i, 0, sizeof(T));
     stream_.synchronize();
     return *static_cast<const T*>(stream_.pinned());
@@ -137,6 +138,7 @@ class CudaExecutor {
 
   template <class T, class Less = std::less<T>>
   void sort(View<T> keys, Less less = {}) {
+    static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
     if (keys.size < 2) return;
     if constexpr (std::is_same_v<T, uint64_t> && std::is_same_v<Less, std::less<T>>) {
       sort_keys_async(stream_, keys);

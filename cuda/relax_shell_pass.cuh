@@ -30,6 +30,7 @@ struct alignas(16) ShellLeaf {
   OffsetSums total;  ///< of all voxels
   uint16_t lo, hi;   ///< corners of the voxels' box, as offsets
   uint16_t voxels;
+  uint16_t zero[5] = {};
 };
 
 struct ShellPass {

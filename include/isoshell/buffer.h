@@ -49,8 +49,13 @@ Memory& host_memory();
 int64_t host_memory_peak_bytes();
 void reset_host_memory_peak();
 
-/// Owns an array of trivially copyable T in one memory space. Moves, never copies. Elements may be reached from the
-/// host only in host memory: see to_host.h.
+/// Whether every byte of T belongs to a member: copies and sorts read them all, and nothing writes padding. Types with
+/// floating-point members, which the language's trait leaves out, specialise it.
+template <class T>
+constexpr bool kHasNoPadding = std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>;
+
+/// Owns an array of trivially copyable T in one memory space. Moves, never copies. Elements may be
+/// reached from the host only in host memory: see to_host.h.
 template <class T>
 class Buffer {
  public:
@@ -74,6 +79,7 @@ class Buffer {
   /// A copy in host memory.
   Buffer to_host() const {
     Buffer copy(size_);
+    static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
     if (size_ > 0) memory_->copy_to_host(copy.data_, data_, size_bytes());
     return copy;
   }

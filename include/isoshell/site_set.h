@@ -15,6 +15,7 @@ struct SiteSet {
 struct SiteSample {
   int16_t dx, dy, dz;  ///< q8, from the voxel's centre, at most half its diagonal (222) long; may leave the voxel
   Normal8 normal;      ///< of the triangle, as oriented in the input
+  uint8_t zero[3];     ///< fill the word
   uint32_t triangle;   ///< index in LatticeSurface::triangles
 };
 

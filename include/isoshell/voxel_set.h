@@ -21,6 +21,7 @@ struct LeafBlock {
   uint64_t word[64];    ///< bit per leaf, in key order
   uint32_t first_leaf;  ///< number of the block's first leaf
   uint16_t before[64];  ///< leaves of this block in words before this one
+  uint32_t zero;        ///< fills the last word
 };
 
 /// What a kernel sees of a VoxelSet. Lookups cost one table read, one bit test and one popcount.

@@ -18,7 +18,7 @@ namespace flood {
 struct Start {
   int64_t voxel;
   int64_t distance_sq_q16;
-  uint32_t seed;
+  uint32_t seed, zero = 0;
 };
 struct StartLess {
   ISOSHELL_HD bool operator()(const Start& a, const Start& b) const {

@@ -21,6 +21,9 @@ struct PassState {
   ISOSHELL_HD void add(int64_t pass_energy) { energy[passes++ % kKept] = pass_energy; }
 };
 
+template <>
+constexpr bool kHasNoPadding<PassState> = sizeof(PassState) == (PassState::kKept + 3) * sizeof(int64_t);
+
 /// An exact sum that may pass 64 bits, as two that do not: of the terms' upper parts and of their lower 32 bits.
 struct SplitSum {
   int64_t high, low;

@@ -34,7 +34,7 @@ struct MeshView {
 
 struct DirectedEdge {
   uint64_t ends;  ///< smaller vertex << 32 | larger vertex
-  uint32_t half_edge;
+  uint32_t half_edge, zero = 0;
 };
 struct ByEnds {
   ISOSHELL_HD bool operator()(const DirectedEdge& a, const DirectedEdge& b) const {

@@ -29,7 +29,7 @@ struct StandsForEdge {
 /// Where a new seed may go: the middle of an edge, or of a triangle. Larger ones come first, then smaller indices.
 struct Place {
   int64_t size;
-  uint32_t index;
+  uint32_t index, zero = 0;
 };
 struct LargestFirst {
   ISOSHELL_HD bool operator()(const Place& p, const Place& q) const {

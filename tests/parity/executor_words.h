@@ -12,7 +12,7 @@ namespace isoshell::parity {
 
 /// One operation of canary_cases.h on bits of operands; see CanaryStep.
 struct CanaryOperands {
-  uint32_t operation;
+  uint64_t operation;
   uint64_t a, b, c;
 };
 
