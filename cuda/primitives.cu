@@ -1,8 +1,11 @@
 // Scans, sorts and compaction.
+#include <climits>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
+#include <string>
 
 #include "cuda/primitives.h"
+#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
@@ -33,9 +36,22 @@ void run_cub(DeviceStream& stream, const char* name, Algorithm algorithm) {
   require_success(algorithm(scratch.data(), bytes), name);
 }
 
+/// Scans of CUB before 2.7 (CUDA 12.0 to 12.6) take an int, and would cut a longer count off without a word.
+void require_scannable(int64_t count) {
+#if CUB_VERSION < 200700
+  if (count > INT_MAX)
+    throw Error(ErrorCode::internal, "cuda",
+                "a scan of " + std::to_string(count) + " elements: this build's CUDA scans at most " +
+                    std::to_string(INT_MAX) + "; build with CUDA 12.8 or newer, or use --device cpu");
+#else
+  (void)count;
+#endif
+}
+
 template <class T>
 void exclusive_scan(DeviceStream& stream, View<T> values) {
   if (values.empty()) return;
+  require_scannable(values.size);
   run_cub(stream, "exclusive scan", [&](void* scratch, size_t& bytes) {
     return cub::DeviceScan::ExclusiveSum(scratch, bytes, values.data, values.data, values.size, stream.stream());
   });
@@ -43,6 +59,7 @@ void exclusive_scan(DeviceStream& stream, View<T> values) {
 template <class T>
 void inclusive_scan(DeviceStream& stream, View<T> values) {
   if (values.empty()) return;
+  require_scannable(values.size);
   run_cub(stream, "inclusive scan", [&](void* scratch, size_t& bytes) {
     return cub::DeviceScan::InclusiveSum(scratch, bytes, values.data, values.data, values.size, stream.stream());
   });
