@@ -28,4 +28,8 @@ int64_t cuda_six_volume_vox(const Sheet&, Context&);
 void cuda_drop_crowded_seeds(const DualMesh&, int64_t, int64_t, SeedSet&, Context&);
 PostReport cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 
+/// What a body that needs a shell on its way calls.
+class CudaExecutor;
+Shell build_shell_by(CudaExecutor&, const SiteSet&, const ShellOptions&);
+
 }  // namespace isoshell

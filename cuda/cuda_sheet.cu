@@ -10,6 +10,10 @@
 
 namespace isoshell {
 
+Shell build_shell_by(CudaExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
+  return cuda_build_shell(sites, options, exec.context());
+}
+
 Sheet cuda_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
                        const SiteSamples& samples, const SheetOptions& options, Context& context) {
   CudaExecutor exec(context, "sheet");

@@ -5,8 +5,7 @@
 
 namespace isoshell {
 
-/// Completes a VoxelSet whose leaf_key (ascending, unique) and mask are filled: first, blocks and block_table.
-/// `extent_vox` is the lattice's size. Leaves must have at least one active voxel.
-void index_leaves(VoxelSet& set, const int32_t extent_vox[3]);
+/// index_leaves (see stages/index_leaves.h) of a set that was read or written on the host.
+void index_host_leaves(VoxelSet& set, const int32_t extent_vox[3]);
 
 }  // namespace isoshell

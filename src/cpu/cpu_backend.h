@@ -29,4 +29,8 @@ void cpu_drop_crowded_seeds(const DualMesh&, int64_t, int64_t, SeedSet&, Context
 SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 
+/// What a body that needs a shell on its way calls.
+class TbbExecutor;
+Shell build_shell_by(TbbExecutor&, const SiteSet&, const ShellOptions&);
+
 }  // namespace isoshell

@@ -8,6 +8,10 @@
 
 namespace isoshell {
 
+Shell build_shell_by(TbbExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
+  return cpu_build_shell(sites, options, exec.context());
+}
+
 Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
                       const SiteSamples& samples, const SheetOptions& options, Context& context) {
   TbbExecutor exec(context, "sheet");

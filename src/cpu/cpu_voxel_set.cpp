@@ -1,11 +1,11 @@
-// index_leaves for sets that were read or written on the host.
+// index_leaves on the CPU, for sets that no stage made.
 #include "core/voxel_set.h"
 #include "cpu/executor_tbb.h"
 #include "stages/index_leaves.h"
 
 namespace isoshell {
 
-void index_leaves(VoxelSet& set, const int32_t extent_vox[3]) {
+void index_host_leaves(VoxelSet& set, const int32_t extent_vox[3]) {
   Context context;
   TbbExecutor exec(context, "index");
   index_leaves(exec, set, extent_vox);

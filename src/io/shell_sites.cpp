@@ -10,16 +10,15 @@
 
 namespace isoshell {
 
-SiteSet sites_of_shell(const Shell& on_any_side, const LatticeFrame& frame) {
-  const OnHost<Shell> on_host(on_any_side);
-  const Shell& shell = *on_host;
-  const VoxelSetView view = shell.voxels.view();
-  const int64_t leaves = shell.voxels.leaf_count();
+SiteSet sites_of_shell(const Shell& of, const LatticeFrame& frame) {
+  const OnHost<Shell> shell(of);
+  const VoxelSetView view = shell->voxels.view();
+  const int64_t leaves = shell->voxels.leaf_count();
   Buffer<LeafMask> mask(leaves);
   tbb::parallel_for(int64_t(0), leaves, [&](int64_t l) {
     LeafMask sites{};
     for_each_active(view, l, [&](int offset, int64_t i) {
-      if (shell.distance_sq_vox[i] == 0) sites.word[offset >> 6] |= uint64_t(1) << (offset & 63);
+      if (shell->distance_sq_vox[i] == 0) sites.word[offset >> 6] |= uint64_t(1) << (offset & 63);
     });
     mask[l] = sites;
   });
@@ -39,7 +38,7 @@ SiteSet sites_of_shell(const Shell& on_any_side, const LatticeFrame& frame) {
     sites.voxels.leaf_key[at] = view.leaf_key[l];
     sites.voxels.mask[at++] = mask[l];
   }
-  index_leaves(sites.voxels, frame.extent_vox);
+  index_host_leaves(sites.voxels, frame.extent_vox);
   return sites;
 }
 

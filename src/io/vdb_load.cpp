@@ -164,7 +164,7 @@ VoxelSet voxels_of(const StageReader& file, const char* name, const GridT& grid,
     file.require(!leaves[size_t(l)]->getValueMask().isOff(), name, l, "is a leaf without active voxels");
     file.require(l == 0 || set.leaf_key[l - 1] < set.leaf_key[l], name, l, "is not in the order of leaf keys");
   }
-  index_leaves(set, frame.extent_vox);
+  index_host_leaves(set, frame.extent_vox);
   return set;
 }
 

@@ -11,11 +11,7 @@ namespace leaf_index {
 struct CountVoxels {
   View<const LeafMask> mask;
   View<int64_t> count;
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    int64_t voxels = 0;
-    for (const uint64_t word : mask[leaf].word) voxels += popcount64(word);
-    count[leaf] = voxels;
-  }
+  ISOSHELL_HD void operator()(int64_t leaf) const { count[leaf] = voxels_in(mask[leaf]); }
 };
 
 /// 1 where a leaf is the first of its block.

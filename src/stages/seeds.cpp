@@ -14,13 +14,12 @@ namespace {
 
 /// Longest side of the sites' box in voxels: that is what resolution means. Only asked for in a message.
 int32_t resolution_of(const VoxelSet& voxels) {
-  const OnHost<VoxelSet> on_host(voxels);
-  const VoxelSet& sites = *on_host;
+  const OnHost<VoxelSet> sites(voxels);
   int32_t lo[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, hi[3] = {-1, -1, -1}, longest = 0;
-  const VoxelSetView view = sites.view();
-  for (int64_t l = 0; l < sites.leaf_count(); ++l)
+  const VoxelSetView view = sites->view();
+  for (int64_t l = 0; l < sites->leaf_count(); ++l)
     for_each_active(view, l, [&](int offset, int64_t) {
-      const Voxel v = voxel_at(leaf_of_key(sites.leaf_key[l]), offset);
+      const Voxel v = voxel_at(leaf_of_key(view.leaf_key[l]), offset);
       const int32_t at[3] = {v.x, v.y, v.z};
       for (int axis = 0; axis < 3; ++axis) {
         lo[axis] = std::min(lo[axis], at[axis]);

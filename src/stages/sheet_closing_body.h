@@ -131,20 +131,19 @@ Solid complement_of_outside(Exec& exec, const VoxelSetView& walls) {
 /// Result: with outside(r) the voxels that a path of face neighbours, all farther than r from every site (centre to
 /// centre), joins to the border, the solid is every voxel farther than r from outside(r). r = 0: every voxel that is
 /// not outside. The solid holds all sites; holes up to 2 r voxels wide close. Sites keep 2 r + 1 voxels off the border.
-/// Cost: r > 0 builds two shells of thickness r, so peak memory grows with r.
+/// Cost: r > 0 builds two shells of thickness r by the executor's build_shell_by, so peak memory grows with r.
 template <class Exec>
 Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   using namespace sheet_steps;
   const VoxelSetView site_view = sites.voxels.view();
   if (closing_vox == 0) return complement_of_outside(exec, site_view);
   Solid solid;
-  ShellOptions band;
-  band.band_vox = closing_vox;
-  solid.blocked = build_shell(sites, band, exec.context()).voxels;
+  const ShellOptions band{closing_vox};
+  solid.blocked = build_shell_by(exec, sites, band).voxels;
   solid.outside = find_outside(exec, solid.blocked.view());
   // The voxel of the outside nearest to any other voxel is one of its rim: a step towards that voxel leaves the
   // outside.
-  solid.set = build_shell(rim_of_outside(exec, solid.outside.view()), band, exec.context()).voxels;
+  solid.set = build_shell_by(exec, rim_of_outside(exec, solid.outside.view()), band).voxels;
   exec.for_each("remove the thickened outside", solid.set.leaf_count(),
                 RemoveThickenedOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
   index_leaves(exec, solid.set, BlockExtent(site_view).vox);

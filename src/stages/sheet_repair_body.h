@@ -118,13 +118,9 @@ struct IsSet {
   ISOSHELL_HD bool operator()(int64_t i) const { return flag[i] != 0; }
 };
 
-struct CountVoxels {
+struct VoxelsIn {
   View<const LeafMask> mask;
-  ISOSHELL_HD int64_t operator()(int64_t i) const {
-    int64_t count = 0;
-    for (const uint64_t w : mask[i].word) count += popcount64(w);
-    return count;
-  }
+  ISOSHELL_HD int64_t operator()(int64_t i) const { return voxels_in(mask[i]); }
 };
 
 }  // namespace sheet_steps
@@ -149,7 +145,7 @@ int64_t make_well_composed(Exec& exec, Solid& solid) {
       exec.fill(look.view(), 1u);
       continue;
     }
-    total += exec.sum(added.size(), CountVoxels{added.view()});
+    total += exec.sum(added.size(), VoxelsIn{added.view()});
     exec.fill(look.view(), 0u);
     exec.for_each("add voxels", list.size(),
                   AddVoxels{solid.view(), list.view(), added.view(), solid.set.mask.view(), look.view()});

@@ -99,9 +99,7 @@ struct MarkVoxels {
     LeafMask marked = {};
     for (int64_t i = first[l]; i < first[l + 1]; ++i) mark_voxels(surface.triangle(triangle[i]), leaf, marked);
     mask[l] = marked;
-    int64_t voxels = 0;
-    for (uint64_t word : marked.word) voxels += popcount64(word);
-    count[l] = voxels;
+    count[l] = voxels_in(marked);
   }
 };
 

@@ -63,6 +63,12 @@ ISOSHELL_HD inline int lowest_bit(uint64_t w) {
 #endif
 }
 
+ISOSHELL_HD inline int voxels_in(const LeafMask& mask) {
+  int voxels = 0;
+  for (const uint64_t word : mask.word) voxels += popcount64(word);
+  return voxels;
+}
+
 /// Active voxels of the leaf before this offset.
 ISOSHELL_HD inline int rank_in_leaf(const LeafMask& mask, int offset) {
   int rank = 0;

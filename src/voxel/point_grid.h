@@ -56,47 +56,63 @@ ISOSHELL_HD inline void visit_box(const PointGridView& grid, const BoxQ8& box, V
     for (int32_t cy = grid_coordinate(grid, box.lo.y, 1); cy <= y_hi; ++cy) visit_row(grid, cx, cy, z_lo, z_hi, visit);
 }
 
-/// Calls visit(const GridPoint&) outwards from the box until every point at squared distance <= visit.bound_q16() of it
-/// was visited; the bound may fall on the way, and points that are farther may be visited too.
-template <class Visit>
-ISOSHELL_HD inline void visit_around(const PointGridView& grid, const BoxQ8& box, Visit& visit) {
-  const int32_t lo[3] = {grid_coordinate(grid, box.lo.x, 0), grid_coordinate(grid, box.lo.y, 1),
-                         grid_coordinate(grid, box.lo.z, 2)};
-  const int32_t hi[3] = {grid_coordinate(grid, box.hi.x, 0), grid_coordinate(grid, box.hi.y, 1),
-                         grid_coordinate(grid, box.hi.z, 2)};
-  const int32_t box_lo[3] = {box.lo.x, box.lo.y, box.lo.z}, box_hi[3] = {box.hi.x, box.hi.y, box.hi.z};
-  for (int32_t ring = 0;; ++ring) {
-    int32_t from[3], to[3];
-    // Points in cells beyond this ring are farther from the box than `gap` on some axis.
-    int64_t gap = int64_t(1) << 40;
+/// The cells at a distance of `ring` cells from those that meet a box: the surface of a block of cells, cut to the
+/// grid.
+struct CellRing {
+  static constexpr int64_t kNothingBeyond = int64_t(1) << 40;
+
+  int32_t lo[3], hi[3];    ///< cells that meet the box
+  int32_t from[3], to[3];  ///< the block
+  int32_t ring;
+  int64_t gap = kNothingBeyond;  ///< points in cells beyond the ring are farther from the box on some axis, in q8
+
+  ISOSHELL_HD CellRing(const PointGridView& grid, const BoxQ8& box, int32_t number) : ring(number) {
+    const int32_t box_lo[3] = {box.lo.x, box.lo.y, box.lo.z}, box_hi[3] = {box.hi.x, box.hi.y, box.hi.z};
     for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = grid_coordinate(grid, box_lo[axis], axis);
+      hi[axis] = grid_coordinate(grid, box_hi[axis], axis);
       from[axis] = lo[axis] - ring;
       to[axis] = hi[axis] + ring;
       if (from[axis] <= 0)
         from[axis] = 0;
-      else {
-        const int64_t below = int64_t(box_lo[axis]) - (int64_t(from[axis]) << grid.shift);
-        gap = below < gap ? below : gap;
-      }
+      else
+        come_closer(int64_t(box_lo[axis]) - (int64_t(from[axis]) << grid.shift));
       if (to[axis] >= grid.dims[axis] - 1)
         to[axis] = grid.dims[axis] - 1;
-      else {
-        const int64_t above = (int64_t(to[axis] + 1) << grid.shift) - 1 - box_hi[axis];
-        gap = above < gap ? above : gap;
-      }
+      else
+        come_closer((int64_t(to[axis] + 1) << grid.shift) - 1 - box_hi[axis]);
     }
-    for (int32_t cx = from[0]; cx <= to[0]; ++cx)
-      for (int32_t cy = from[1]; cy <= to[1]; ++cy) {
-        const bool inner = ring > 0 && cx > lo[0] - ring && cx < hi[0] + ring && cy > lo[1] - ring && cy < hi[1] + ring;
-        if (!inner) {
-          visit_row(grid, cx, cy, from[2], to[2], visit);
-          continue;
-        }
-        if (lo[2] - ring >= 0) visit_row(grid, cx, cy, lo[2] - ring, lo[2] - ring, visit);
-        if (hi[2] + ring < grid.dims[2]) visit_row(grid, cx, cy, hi[2] + ring, hi[2] + ring, visit);
-      }
-    if (gap == int64_t(1) << 40) return;
-    if (gap >= 0 && gap * gap >= visit.bound_q16()) return;
+  }
+
+  /// Whether no point beyond the ring is at most at this squared distance.
+  ISOSHELL_HD bool reaches(int64_t bound_q16) const {
+    return gap == kNothingBeyond || (gap >= 0 && gap * gap >= bound_q16);
+  }
+  /// Calls visit(const GridPoint&) for the points in the ring's cells of row (cx, cy) of the block.
+  template <class Visit>
+  ISOSHELL_HD void visit_in_row(const PointGridView& grid, int32_t cx, int32_t cy, Visit& visit) const {
+    const bool inner = ring > 0 && cx > lo[0] - ring && cx < hi[0] + ring && cy > lo[1] - ring && cy < hi[1] + ring;
+    if (!inner) {
+      visit_row(grid, cx, cy, from[2], to[2], visit);
+      return;
+    }
+    if (lo[2] - ring >= 0) visit_row(grid, cx, cy, lo[2] - ring, lo[2] - ring, visit);
+    if (hi[2] + ring < grid.dims[2]) visit_row(grid, cx, cy, hi[2] + ring, hi[2] + ring, visit);
+  }
+
+ private:
+  ISOSHELL_HD void come_closer(int64_t to_border) { gap = to_border < gap ? to_border : gap; }
+};
+
+/// Calls visit(const GridPoint&) outwards from the box until every point at squared distance <= visit.bound_q16() of it
+/// was visited; the bound may fall on the way, and points that are farther may be visited too.
+template <class Visit>
+ISOSHELL_HD inline void visit_around(const PointGridView& grid, const BoxQ8& box, Visit& visit) {
+  for (int32_t number = 0;; ++number) {
+    const CellRing ring(grid, box, number);
+    for (int32_t cx = ring.from[0]; cx <= ring.to[0]; ++cx)
+      for (int32_t cy = ring.from[1]; cy <= ring.to[1]; ++cy) ring.visit_in_row(grid, cx, cy, visit);
+    if (ring.reaches(visit.bound_q16())) return;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"

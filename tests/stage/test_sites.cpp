@@ -113,7 +113,7 @@ TEST_CASE("sites: the index equals the one that is built from leaves and masks",
   expect.mask = Buffer<LeafMask>(got.leaf_count());
   std::copy(got.leaf_key.begin(), got.leaf_key.end(), expect.leaf_key.begin());
   std::copy(got.mask.begin(), got.mask.end(), expect.mask.begin());
-  index_leaves(expect, s.frame.extent_vox);
+  index_host_leaves(expect, s.frame.extent_vox);
   CHECK(std::equal(got.block_dims, got.block_dims + 3, expect.block_dims));
   CHECK(std::equal(got.first.begin(), got.first.end(), expect.first.begin(), expect.first.end()));
   CHECK(

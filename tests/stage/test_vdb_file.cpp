@@ -53,7 +53,7 @@ VoxelSet voxel_set(const std::map<uint64_t, LeafMask>& leaves, const int32_t ext
     set.leaf_key[l] = key;
     set.mask[l++] = mask;
   }
-  index_leaves(set, extent_vox);
+  index_host_leaves(set, extent_vox);
   return set;
 }
 

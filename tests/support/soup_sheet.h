@@ -58,7 +58,7 @@ inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t
   }
   sheet.corners.leaf_key = to_buffer(keys);
   sheet.corners.mask = to_buffer(masks);
-  index_leaves(sheet.corners, sheet.frame.extent_vox);
+  index_host_leaves(sheet.corners, sheet.frame.extent_vox);
 
   const int64_t count = int64_t(order.size());
   sheet.position = Buffer<PointQ8>(count);

@@ -32,7 +32,7 @@ inline SiteSet make_site_set(const std::vector<Voxel>& voxels, Extent extent) {
     }
     sites.voxels.mask[leaf].word[code[i] >> 6 & 7] |= uint64_t(1) << (code[i] & 63);
   }
-  index_leaves(sites.voxels, extent.data());
+  index_host_leaves(sites.voxels, extent.data());
   return sites;
 }
 

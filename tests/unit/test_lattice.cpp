@@ -38,7 +38,7 @@ TEST_CASE("voxel set: every active voxel is found at its index and no other is",
     for (int w = 0; w < 8; ++w) set.mask[l].word[w] = random_bits(2, uint64_t(l * 8 + w));
   }
   const int32_t extent[3] = {4096, 4096, 4096};
-  index_leaves(set, extent);
+  index_host_leaves(set, extent);
   const VoxelSetView view = set.view();
   for (int64_t l = 0; l < 40; ++l) {
     int64_t expect = set.first[l];
