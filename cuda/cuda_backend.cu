@@ -1,5 +1,6 @@
 // The CUDA backend's table.
 #include "cuda/cuda_backend.h"
+#include "cuda/device_stream.h"
 
 namespace isoshell {
 
@@ -27,6 +28,7 @@ const BackendTable* cuda_backend() {
       cuda_improve_mesh,
       cuda_six_volume_vox,
       cuda_drop_crowded_seeds,
+      [](Context& context) { DeviceStream::of(context).synchronize(); },
   };
   return &table;
 }

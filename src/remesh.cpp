@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <type_traits>
 
 #include "choose_grid.h"
 #include "core/copy_product.h"
@@ -30,9 +31,9 @@ void book_time(RemeshReport& report, const char* stage, double ms) {
   report.times.push_back({stage, ms});
 }
 
-/// Runs one stage and books its time under its name.
+/// Runs one stage, with all that it leaves to a device, and books its time under its name.
 template <class Work>
-auto timed(RemeshReport& report, const char* stage, Work work) {
+auto timed(RemeshReport& report, const char* stage, Context& context, Work work) {
   using Clock = std::chrono::steady_clock;
   struct Book {
     RemeshReport& report;
@@ -40,13 +41,21 @@ auto timed(RemeshReport& report, const char* stage, Work work) {
     Clock::time_point start = Clock::now();
     ~Book() { book_time(report, stage, std::chrono::duration<double, std::milli>(Clock::now() - start).count()); }
   } book{report, stage};
-  return work();
+  if constexpr (std::is_void_v<decltype(work())>) {
+    work();
+    finish_stages(context);
+  } else {
+    auto product = work();
+    finish_stages(context);
+    return product;
+  }
 }
 
 template <class Product>
-void note_digest(const RemeshOptions& options, RemeshReport& report, const char* name, const Product& product) {
+void note_digest(const RemeshOptions& options, RemeshReport& report, Context& context, const char* name,
+                 const Product& product) {
   if (!options.want_digests) return;
-  timed(report, "digests", [&] { report.digests[name] = digest_text(digest(product)); });
+  timed(report, "digests", context, [&] { report.digests[name] = digest_text(digest(product)); });
 }
 
 /// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose.
@@ -66,8 +75,8 @@ class Preparation {
   Prepared from(LatticeSurface surface, int32_t closing_vox) {
     Prepared p;
     p.surface = std::move(surface);
-    p.sites = timed(report_, "voxelize", [&] { return voxelize(p.surface, context_); });
-    p.samples = timed(report_, "samples", [&] { return sample_sites(p.surface, p.sites, context_); });
+    p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
+    p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
     if (closing_vox >= 0) {
       p.closing_vox = closing_vox;
       p.sheet = sheet(p, closing_vox);
@@ -82,7 +91,7 @@ class Preparation {
     const InputTopology& input = p.surface.topology;
     const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
     const int64_t genus = input.closed && input.oriented ? input.genus : -1;
-    return timed(report_, "sheet", [&] {
+    return timed(report_, "sheet", context_, [&] {
       return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest, genus}, context_);
     });
   }
@@ -146,10 +155,10 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
 
 void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
   if (options.want_shell || options.method == Method::shell) {
-    p.shell = timed(report, "shell", [&] { return build_shell(p.sites, {options.band_vox}, context); });
+    p.shell = timed(report, "shell", context, [&] { return build_shell(p.sites, {options.band_vox}, context); });
     report.active_voxels = p.shell.voxels.voxel_count();
     report.leaves = p.shell.voxels.leaf_count();
-    note_digest(options, report, "shell", p.shell);
+    note_digest(options, report, context, "shell", p.shell);
   }
   report.input = p.surface.topology;
   report.frame = p.surface.frame;
@@ -160,10 +169,10 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.sheet = p.sheet.topology;
   report.topology_compared = report.input.closed && report.input.oriented && report.input.genus >= 0;
   report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
-  note_digest(options, report, "surface", p.surface);
-  note_digest(options, report, "sites", p.sites);
-  note_digest(options, report, "samples", p.samples);
-  note_digest(options, report, "sheet", p.sheet);
+  note_digest(options, report, context, "surface", p.surface);
+  note_digest(options, report, context, "sites", p.sites);
+  note_digest(options, report, context, "samples", p.samples);
+  note_digest(options, report, context, "sheet", p.sheet);
 }
 
 double sheet_area_world(const Sheet& sheet) {
@@ -201,7 +210,8 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
 
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context) {
   report.dirt = soup.dirt;
-  const InputTopology input = timed(report, "topology", [&] { return measure_topology(soup, report.dirt, context); });
+  const InputTopology input =
+      timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
   check_area(input);
@@ -217,7 +227,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
        resolution += std::max(1, resolution / 2)) {
     if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
-    LatticeSurface surface = timed(report, "snap", [&] { return snap_surface(soup, frame, context); });
+    LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
     surface.topology = input;
     Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
     const int64_t gap = compare ? topology_gap(p) : 0;
@@ -242,17 +252,17 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
-    seeds = timed(report, "relax",
+    seeds = timed(report, "relax", context,
                   [&] { return relax_by_levels(p, seed_options, relax_options(options), report.relax, context); });
   } else {
-    seeds = timed(report, "seeds", [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
-    report.relax = timed(report, "relax", [&] {
+    seeds = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
+    report.relax = timed(report, "relax", context, [&] {
       return relax_in_shell(p.shell, p.sites, p.samples, seeds, relax_options(options), context);
     });
-    timed(report, "attach", [&] { attach_to_sheet(p.sheet, seeds, context); });
+    timed(report, "attach", context, [&] { attach_to_sheet(p.sheet, seeds, context); });
   }
   report.seeds = seeds.size();
-  note_digest(options, report, "seeds", seeds);
+  note_digest(options, report, context, "seeds", seeds);
   return seeds;
 }
 
@@ -262,13 +272,13 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   DualMesh dual;
   for (int round = 0;; ++round) {
     DualReport found;
-    dual = timed(report, "dual", [&] { return triangulate_dual(p.sheet, seeds, {}, found, context); });
+    dual = timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, seeds, {}, found, context); });
     report.dual.inserted_seeds += found.inserted_seeds;
     report.dual.relabelled_vertices += found.relabelled_vertices;
     report.dual.repair_rounds += found.repair_rounds;
     report.dual.failed_cells = found.failed_cells;
     if (found.inserted_seeds == 0 || round == kMaxReoptimisations) break;
-    timed(report, "relax", [&] {
+    timed(report, "relax", context, [&] {
       drop_crowded_seeds(dual, std::max<int64_t>(0, seeds.size() - asked), found.inserted_seeds, seeds, context);
       relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context);
     });
@@ -284,7 +294,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   post.fit = options.fit;
   post.uniform_area = options.uniform_area;
   if (report.dual.failed_cells == 0) {
-    report.post = timed(report, "post", [&] { return improve_mesh(p.sheet, post, seeds, dual, context); });
+    report.post = timed(report, "post", context, [&] { return improve_mesh(p.sheet, post, seeds, dual, context); });
     report.post_done = true;
   }
   if (report.post.self_intersections > 0)
@@ -292,7 +302,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
                               " pairs of triangles intersect: parts of the surface are nearer to one another than its "
                               "edges are long; ask for more --vertices");
   TriangleMesh mesh = to_world(dual, p.surface.frame);
-  note_digest(options, report, "mesh", mesh);
+  note_digest(options, report, context, "mesh", mesh);
   return mesh;
 }
 

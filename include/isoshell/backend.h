@@ -26,6 +26,9 @@ struct Context {
 };
 
 /// "cpu" or "cuda": where this context's stages run. Throws: no_device when it asks for CUDA and there is none.
+/// Returns when everything that the context's stages left to a device is done: what times a stage ends with it.
+void finish_stages(Context& context);
+
 const char* backend_name(const Context& context);
 
 }  // namespace isoshell

@@ -27,6 +27,7 @@ const BackendTable& cpu_backend() {
       cpu_improve_mesh,
       cpu_six_volume_vox,
       cpu_drop_crowded_seeds,
+      [](Context&) {},
   };
   return table;
 }

@@ -15,6 +15,8 @@ const BackendTable& backend_for(const Context& context) {
   return cpu_backend();
 }
 
+void finish_stages(Context& context) { backend_for(context).finish_stages(context); }
+
 const char* backend_name(const Context& context) { return backend_for(context).name; }
 
 DeviceInfo device_info(const Context& context) {

@@ -34,6 +34,7 @@ struct BackendTable {
   PostReport (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
   int64_t (*six_volume_vox)(const Sheet&, Context&);
   void (*drop_crowded_seeds)(const DualMesh&, int64_t excess, int64_t protected_count, SeedSet&, Context&);
+  void (*finish_stages)(Context&);
 };
 
 /// Always there.
