@@ -82,7 +82,7 @@ json whole_run(const std::string& mesh, const std::string& label, const RemeshOp
   std::map<std::string, std::vector<double>> stage_ms;
   std::vector<std::string> order;
   RemeshResult result;
-  reset_device_memory_peak();
+  reset_device_memory_peak(context.device);
   for (int i = 0; i <= repeats; ++i) {
     const double took = ms_of([&] { result = remesh(soup, options, context); });
     if (i == 0) continue;  // warm-up
@@ -100,7 +100,7 @@ json whole_run(const std::string& mesh, const std::string& label, const RemeshOp
               {"sheet_vertices", result.report.sheet_vertices},
               {"vertices", result.mesh.vertices.size()},
               {"passes", result.report.relax.passes},
-              {"device_peak_bytes", device_memory_peak_bytes()},
+              {"device_peak_bytes", device_memory_peak_bytes(context.device)},
               {"stages_ms", json::array()}};
   add_spread(row, spread_of(ms));
   for (const std::string& stage : order)
@@ -157,7 +157,7 @@ class StageRows {
   auto run(const char* name, const char* unit, Stage stage, const std::function<int64_t()>& count) {
     auto product = stage();  // warm-up
     cudaDeviceSynchronize();
-    reset_device_memory_peak();
+    reset_device_memory_peak(0);
     std::vector<double> ms;
     for (int i = 0; i < repeats_; ++i)
       ms.push_back(ms_of([&] {
@@ -170,7 +170,7 @@ class StageRows {
                 {"unit", unit},
                 {"items", items},
                 {"million_per_second", double(items) / s.median / 1000},
-                {"device_peak_bytes", device_memory_peak_bytes()}};
+                {"device_peak_bytes", device_memory_peak_bytes(0)}};
     add_spread(row, s);
     rows_.push_back(row);
     return product;

@@ -124,8 +124,8 @@ json measure(const LatticeSurface& surface, int band_vox, int repeats, Context& 
   json row;
   for (int i = -2; i < repeats; ++i) {
     stream.synchronize();
-    reset_device_memory_peak();
-    const int64_t before = device_memory_peak_bytes();
+    reset_device_memory_peak(context.device);
+    const int64_t before = device_memory_peak_bytes(context.device);
     laps.mark(0);
     const SiteSet sites = voxelize(surface, context);
     laps.mark(1);
@@ -137,7 +137,7 @@ json measure(const LatticeSurface& surface, int band_vox, int repeats, Context& 
     if (i < 0) continue;
     for (int lap = 0; lap < 3; ++lap) ms[lap].push_back(laps.ms(lap, lap + 1));
     ms[3].push_back(laps.ms(0, 3));
-    const int64_t active = shell.voxels.voxel_count(), peak = device_memory_peak_bytes() - before;
+    const int64_t active = shell.voxels.voxel_count(), peak = device_memory_peak_bytes(context.device) - before;
     row = {{"sites", sites.voxels.voxel_count()},
            {"site_leaves", sites.voxels.leaf_count()},
            {"active_voxels", active},

@@ -11,55 +11,78 @@
 namespace isoshell {
 namespace {
 
-std::atomic<int64_t> held_bytes{0}, peak_bytes{0};
-
-/// One pool a device, made at first use and never destroyed.
-cudaMemPool_t pool_of(int device) {
-  static std::mutex mutex;
-  static std::vector<cudaMemPool_t> pools;
-  const std::lock_guard<std::mutex> lock(mutex);
-  if (int(pools.size()) <= device) pools.resize(size_t(device) + 1, nullptr);
-  cudaMemPool_t& pool = pools[size_t(device)];
-  if (pool) return pool;
+cudaMemPool_t make_pool(int device) {
   cudaMemPoolProps properties = {};
   properties.allocType = cudaMemAllocationTypePinned;
   properties.location = {cudaMemLocationTypeDevice, device};
+  cudaMemPool_t pool;
   require_success(cudaMemPoolCreate(&pool, &properties), "cudaMemPoolCreate");
   uint64_t keep_all = UINT64_MAX;
   require_success(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &keep_all), "cudaMemPoolSetAttribute");
   return pool;
 }
 
-/// Streams that no context uses at the moment.
-struct FreeStreams {
-  std::mutex mutex;
-  std::vector<DeviceStream*> streams;
+}  // namespace
+
+/// What the streams of a device share.
+struct DevicePool {
+  explicit DevicePool(int number) : device(number), pool(make_pool(number)) {}
+
+  const int device;
+  const cudaMemPool_t pool;
+  std::atomic<int64_t> held_bytes{0}, peak_bytes{0};
+  std::mutex idle_mutex;
+  std::vector<DeviceStream*> idle;  ///< streams that no context uses at the moment
 };
-FreeStreams& free_streams() {
-  static FreeStreams* all = new FreeStreams;  // contexts may end after static objects do
+
+namespace {
+
+struct DevicePools {
+  std::mutex mutex;
+  std::vector<DevicePool*> of_device;
+};
+/// Never destroyed: contexts and Buffers may end after static objects do.
+DevicePools& all_pools() {
+  static DevicePools* all = new DevicePools;
   return *all;
 }
 
+/// Null when the device was not used yet.
+DevicePool* find_pool(int device) {
+  DevicePools& all = all_pools();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  return device >= 0 && device < int(all.of_device.size()) ? all.of_device[size_t(device)] : nullptr;
+}
+
+DevicePool& pool_of(int device) {
+  DevicePools& all = all_pools();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  if (int(all.of_device.size()) <= device) all.of_device.resize(size_t(device) + 1, nullptr);
+  DevicePool*& pool = all.of_device[size_t(device)];
+  if (!pool) pool = new DevicePool(device);
+  return *pool;
+}
+
 DeviceStream* take_stream(int device) {
+  DevicePool& pool = pool_of(device);
   {
-    FreeStreams& all = free_streams();
-    const std::lock_guard<std::mutex> lock(all.mutex);
-    for (DeviceStream*& s : all.streams)
-      if (s->device() == device) {
-        DeviceStream* taken = s;
-        s = all.streams.back();
-        all.streams.pop_back();
-        return taken;
-      }
+    const std::lock_guard<std::mutex> lock(pool.idle_mutex);
+    if (!pool.idle.empty()) {
+      DeviceStream* taken = pool.idle.back();
+      pool.idle.pop_back();
+      return taken;
+    }
   }
   int processors = 0;
   require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
                   "cudaDeviceGetAttribute");
   cudaStream_t stream;
   require_success(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
+  cudaEvent_t event;
+  require_success(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreate");
   void* pinned;
   require_success(cudaMallocHost(&pinned, DeviceStream::kPinnedBytes), "cudaMallocHost");
-  return new DeviceStream(device, processors, stream, pinned);
+  return new DeviceStream(pool, processors, stream, event, pinned);
 }
 
 __global__ void probe() {}
@@ -75,9 +98,10 @@ void require_code(int device) {
 }
 
 void return_stream(void* stream) {
-  FreeStreams& all = free_streams();
-  const std::lock_guard<std::mutex> lock(all.mutex);
-  all.streams.push_back(static_cast<DeviceStream*>(stream));
+  auto* idle = static_cast<DeviceStream*>(stream);
+  DevicePool& pool = pool_of(idle->device());
+  const std::lock_guard<std::mutex> lock(pool.idle_mutex);
+  pool.idle.push_back(idle);
 }
 
 /// Size of the block that serves this many bytes: four sizes from one power of two to the next, so that blocks fit
@@ -106,13 +130,15 @@ DeviceStream& DeviceStream::of(Context& context) {
     context.backend_state = std::shared_ptr<void>(take_stream(context.device), return_stream);
   }
   DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());
-  require_success(cudaSetDevice(stream.device_), "cudaSetDevice");
+  require_success(cudaSetDevice(stream.device()), "cudaSetDevice");
   stream.set_limit(context.memory_limit_bytes);
   return stream;
 }
 
-DeviceStream::DeviceStream(int device, int processors, cudaStream_t stream, void* pinned)
-    : device_(device), processors_(processors), stream_(stream), pinned_(pinned) {}
+DeviceStream::DeviceStream(DevicePool& pool, int processors, cudaStream_t stream, cudaEvent_t event, void* pinned)
+    : pool_(pool), processors_(processors), stream_(stream), event_(event), pinned_(pinned) {}
+
+int DeviceStream::device() const { return pool_.device; }
 
 /// Null when the device has no more.
 void* DeviceStream::take(int64_t bytes) {
@@ -127,9 +153,14 @@ void* DeviceStream::take(int64_t bytes) {
   }
   void* data = nullptr;
   for (int attempt = 0; attempt < 2; ++attempt) {
-    if (cudaMallocFromPoolAsync(&data, size_t(bytes), pool_of(device_), stream_) == cudaSuccess) return data;
+    if (cudaMallocFromPoolAsync(&data, size_t(bytes), pool_.pool, stream_) == cudaSuccess) return data;
     cudaGetLastError();
     release_kept();
+    const std::lock_guard<std::mutex> lock(pool_.idle_mutex);
+    for (DeviceStream* idle : pool_.idle) {
+      idle->release_kept();
+      cudaStreamSynchronize(idle->stream_);  // the pool hands out at once what no stream may still use
+    }
   }
   return nullptr;
 }
@@ -144,25 +175,25 @@ void DeviceStream::release_kept() noexcept {
 
 void* DeviceStream::allocate(int64_t bytes) {
   if (bytes <= 0) return nullptr;
-  const bool allowed = limit_ <= 0 || held_bytes + bytes <= limit_;
+  const bool allowed = limit_ <= 0 || pool_.held_bytes + bytes <= limit_;
   void* data = allowed ? take(rounded(bytes)) : nullptr;
   if (!data) {
     throw Error(ErrorCode::out_of_memory, "memory",
                 "out of device memory: " + std::to_string(bytes >> 20) + " MiB more than the " +
-                    std::to_string(held_bytes >> 20) + " MiB in use were refused" +
+                    std::to_string(pool_.held_bytes >> 20) + " MiB in use were refused" +
                     (allowed ? "; lower the resolution or use --device cpu"
                              : " by the limit of " + std::to_string(limit_ >> 20) +
                                    " MiB; lower the resolution, raise --max-memory or use --device cpu"));
   }
-  const int64_t held = held_bytes += bytes;
-  int64_t peak = peak_bytes.load();
-  while (held > peak && !peak_bytes.compare_exchange_weak(peak, held)) {
+  const int64_t held = pool_.held_bytes += bytes;
+  int64_t peak = pool_.peak_bytes.load();
+  while (held > peak && !pool_.peak_bytes.compare_exchange_weak(peak, held)) {
   }
   return data;
 }
 
 void DeviceStream::free(void* data, int64_t bytes) noexcept {
-  held_bytes -= bytes;
+  pool_.held_bytes -= bytes;
   if (rounded(bytes) > kLargestKept) {
     cudaFreeAsync(data, stream_);
     return;
@@ -184,7 +215,17 @@ void DeviceStream::copy_to_device(void* to, const void* from, int64_t bytes) {
 
 void DeviceStream::synchronize() { require_success(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
-int64_t device_memory_peak_bytes() { return peak_bytes; }
-void reset_device_memory_peak() { peak_bytes = held_bytes.load(); }
+void DeviceStream::wait_for(const DeviceStream& other) {
+  require_success(cudaEventRecord(other.event_, other.stream_), "cudaEventRecord");
+  require_success(cudaStreamWaitEvent(stream_, other.event_, 0), "cudaStreamWaitEvent");
+}
+
+int64_t device_memory_peak_bytes(int device) {
+  const DevicePool* pool = find_pool(device);
+  return pool ? pool->peak_bytes.load() : 0;
+}
+void reset_device_memory_peak(int device) {
+  if (DevicePool* pool = find_pool(device)) pool->peak_bytes = pool->held_bytes.load();
+}
 
 }  // namespace isoshell

@@ -19,6 +19,8 @@ void require_success(cudaError_t status, const char* call);
 /// Thread blocks for `count` elements.
 inline unsigned blocks_for(int64_t count, int64_t per_block) { return unsigned((count + per_block - 1) / per_block); }
 
+struct DevicePool;
+
 /// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Small
 /// blocks that were freed are handed out again without asking the driver: a run takes a thousand of them. Lives as long
 /// as the process: contexts borrow it, and Buffers may outlive them.
@@ -27,14 +29,14 @@ class DeviceStream final : public Memory {
   /// The context's own; made, and its device chosen, at first use. Throws: no_device.
   static DeviceStream& of(Context& context);
 
-  DeviceStream(int device, int processors, cudaStream_t stream, void* pinned);
+  DeviceStream(DevicePool& pool, int processors, cudaStream_t stream, cudaEvent_t event, void* pinned);
   MemorySpace space() const override { return MemorySpace::cuda; }
   void* allocate(int64_t bytes) override;
   void free(void* data, int64_t bytes) noexcept override;
   void copy_to_host(void* to, const void* from, int64_t bytes) override;
 
   void copy_to_device(void* to, const void* from, int64_t bytes);
-  int device() const { return device_; }
+  int device() const;
   /// As many thread blocks as are needed, but no more than `per_processor` for each of the device's multiprocessors.
   unsigned resident_blocks(int64_t needed, int per_processor) const {
     const int64_t most = int64_t(processors_) * per_processor;
@@ -44,6 +46,9 @@ class DeviceStream final : public Memory {
   cudaStream_t stream() const { return stream_; }
   /// Waits for everything in the stream.
   void synchronize();
+  /// Work that is enqueued from now on starts after all that is in `other`, a stream of the same device. The host does
+  /// not wait.
+  void wait_for(const DeviceStream& other);
   static constexpr int64_t kLargestKept = int64_t(8) << 20;  ///< bytes of a block that is kept when freed
   /// A few words of pinned host memory for read-backs.
   static constexpr int64_t kPinnedBytes = 4096;
@@ -55,8 +60,10 @@ class DeviceStream final : public Memory {
   void* take(int64_t bytes);
   void release_kept() noexcept;
 
-  int device_, processors_;
+  DevicePool& pool_;
+  int processors_;
   cudaStream_t stream_;
+  cudaEvent_t event_;  ///< for others to wait for
   void* pinned_;
   int64_t limit_ = 0;
   std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread

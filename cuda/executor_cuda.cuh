@@ -191,18 +191,36 @@ class CudaExecutor {
     check("sum");
   }
 
-  /// A copy of any Buffer in this device's memory.
+  /// Whether steps may use a product as it lies: made in this stream, so in the order of its work.
+  template <class Product>
+  bool owns(const Product& product) const {
+    return &memory_of(product) == &stream_;
+  }
+
+  /// A copy of any Buffer in this stream's memory. The owner of the Buffer may free it right away: another stream of
+  /// the device waits for the copy; what lies on another device goes through the host.
   template <class T>
   Buffer<T> to_device(const Buffer<T>& from) {
+    if (from.space() == MemorySpace::cuda) {
+      auto& owner = static_cast<DeviceStream&>(from.memory());
+      if (owner.device() == stream_.device()) return copy_in_order(from, owner);
+      return to_device(from.to_host());
+    }
     Buffer<T> copy = make<T>(from.size());
-    if (from.space() == MemorySpace::host)
-      stream_.copy_to_device(copy.data(), from.data(), from.size_bytes());
-    else
-      this->copy(from.view(), copy.view());
+    stream_.copy_to_device(copy.data(), from.data(), from.size_bytes());
     return copy;
   }
 
  private:
+  template <class T>
+  Buffer<T> copy_in_order(const Buffer<T>& from, DeviceStream& owner) {
+    Buffer<T> copy = make<T>(from.size());
+    stream_.wait_for(owner);
+    this->copy(from.view(), copy.view());
+    owner.wait_for(stream_);
+    return copy;
+  }
+
   template <class Keep>
   Buffer<uint32_t> select_of_few(int64_t count, Keep keep) {
     Buffer<uint32_t> room = make<uint32_t>(count);
@@ -229,12 +247,12 @@ class CudaExecutor {
   DeviceStream& stream_;
 };
 
-/// A product where the device can read it: itself, or a copy that lives as long as this.
+/// A product where steps can read it: itself, or a copy that lives as long as this.
 template <class Product>
 class OnDevice {
  public:
   OnDevice(CudaExecutor& exec, const Product& product) : product_(&product) {
-    if (space_of(product) == MemorySpace::cuda) return;
+    if (exec.owns(product)) return;
     copy_ = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
     product_ = &copy_;
   }
@@ -247,11 +265,10 @@ class OnDevice {
   Product copy_;
 };
 
-/// Brings a product that a stage changes to the device.
+/// Brings a product that a stage changes to the executor's memory.
 template <class Product>
 Product& on_device(CudaExecutor& exec, Product& product) {
-  if (space_of(product) != MemorySpace::cuda)
-    product = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
+  if (!exec.owns(product)) product = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
   return product;
 }
 

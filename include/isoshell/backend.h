@@ -10,8 +10,9 @@ namespace isoshell {
 
 enum class Backend { best, cpu, cuda };
 
-/// Passed to every stage, by one thread at a time. Not copied; outlives the call. Products that lie in
-/// a device's memory belong to their context: another one takes them through to_host.
+/// Passed to every stage, by one thread at a time. Not copied; outlives the call. Products of one context may be given
+/// to another: one that works on a device copies them first where it did not make them itself. A product must not be
+/// changed or destroyed while a stage of another context takes it.
 struct Context {
   Backend backend = Backend::best;
   int device = 0;                  ///< CUDA device number
@@ -25,10 +26,10 @@ struct Context {
   std::shared_ptr<void> backend_state;
 };
 
-/// "cpu" or "cuda": where this context's stages run. Throws: no_device when it asks for CUDA and there is none.
 /// Returns when everything that the context's stages left to a device is done: what times a stage ends with it.
 void finish_stages(Context& context);
 
+/// "cpu" or "cuda": where this context's stages run. Throws: no_device when it asks for CUDA and there is none.
 const char* backend_name(const Context& context);
 
 }  // namespace isoshell

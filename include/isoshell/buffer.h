@@ -74,12 +74,13 @@ class Buffer {
 
   int64_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  MemorySpace space() const { return memory_ ? memory_->space() : MemorySpace::host; }
+  MemorySpace space() const { return memory().space(); }
+  Memory& memory() const { return memory_ ? *memory_ : host_memory(); }
   int64_t size_bytes() const { return size_ * int64_t(sizeof(T)); }
   /// A copy in host memory.
   Buffer to_host() const {
-    Buffer copy(size_);
     static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
+    Buffer copy(size_);
     if (size_ > 0) memory_->copy_to_host(copy.data_, data_, size_bytes());
     return copy;
   }

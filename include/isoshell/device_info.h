@@ -21,9 +21,8 @@ struct DeviceInfo {
 /// them.
 DeviceInfo device_info(const Context& context);
 
-/// Largest number of bytes that Buffers held on all devices at one time since the last reset; 0 in a build without
-/// CUDA.
-int64_t device_memory_peak_bytes();
-void reset_device_memory_peak();
+/// Largest number of bytes that Buffers held on a CUDA device at one time since the last reset; 0 where none did.
+int64_t device_memory_peak_bytes(int device);
+void reset_device_memory_peak(int device);
 
 }  // namespace isoshell

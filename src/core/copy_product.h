@@ -60,21 +60,26 @@ DualMesh copy_product(const DualMesh& m, Copy copy) {
   return {copy(m.position), copy(m.triangles)};
 }
 
-inline MemorySpace space_of(const VoxelSet& v) { return v.leaf_key.space(); }
-inline MemorySpace space_of(const LatticeSurface& s) { return s.points.space(); }
-inline MemorySpace space_of(const SiteSet& s) { return space_of(s.voxels); }
-inline MemorySpace space_of(const SiteSamples& s) { return s.sample.space(); }
-inline MemorySpace space_of(const Shell& s) { return space_of(s.voxels); }
-inline MemorySpace space_of(const Sheet& s) { return s.position.space(); }
-inline MemorySpace space_of(const SeedSet& s) { return s.position.space(); }
-inline MemorySpace space_of(const VoronoiLabels& l) { return l.voxel_seed.space(); }
-inline MemorySpace space_of(const DualMesh& m) { return m.position.space(); }
+/// Where the arrays of a product lie.
+inline Memory& memory_of(const VoxelSet& v) { return v.leaf_key.memory(); }
+inline Memory& memory_of(const LatticeSurface& s) { return s.points.memory(); }
+inline Memory& memory_of(const SiteSet& s) { return memory_of(s.voxels); }
+inline Memory& memory_of(const SiteSamples& s) { return s.sample.memory(); }
+inline Memory& memory_of(const Shell& s) { return memory_of(s.voxels); }
+inline Memory& memory_of(const Sheet& s) { return s.position.memory(); }
+inline Memory& memory_of(const SeedSet& s) { return s.position.memory(); }
+inline Memory& memory_of(const VoronoiLabels& l) { return l.voxel_seed.memory(); }
+inline Memory& memory_of(const DualMesh& m) { return m.position.memory(); }
+
+template <class Product>
+Product host_copy(const Product& product) {
+  return copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
+}
 
 /// Brings a product that a stage changes to the host.
 template <class Product>
 Product& on_host(Product& product) {
-  if (space_of(product) != MemorySpace::host)
-    product = copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
+  if (memory_of(product).space() != MemorySpace::host) product = host_copy(product);
   return product;
 }
 
@@ -83,8 +88,8 @@ template <class Product>
 class OnHost {
  public:
   explicit OnHost(const Product& product) : product_(&product) {
-    if (space_of(product) == MemorySpace::host) return;
-    copy_ = copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
+    if (memory_of(product).space() == MemorySpace::host) return;
+    copy_ = host_copy(product);
     product_ = &copy_;
   }
   OnHost(const OnHost&) = delete;

@@ -4,14 +4,6 @@
 #include "core/copy_product.h"
 
 namespace isoshell {
-namespace {
-
-template <class Product>
-Product host_copy(const Product& product) {
-  return copy_product(product, [](const auto& buffer) { return buffer.to_host(); });
-}
-
-}  // namespace
 
 LatticeSurface to_host(const LatticeSurface& surface) { return host_copy(surface); }
 SiteSet to_host(const SiteSet& sites) { return host_copy(sites); }

@@ -2,6 +2,7 @@
 // run.
 #include "isoshell/error.h"
 #include "isoshell/isoshell.h"
+#include "parity/cuda_streams.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -54,8 +55,49 @@ TEST_CASE("device: a stage beyond the memory limit ends with out_of_memory and g
   Context cpu;
   cpu.backend = Backend::cpu;
   CHECK(whole == digest(voxelize(surface, cpu)));
-  reset_device_memory_peak();
-  CHECK(device_memory_peak_bytes() == 0);
+  reset_device_memory_peak(context.device);
+  CHECK(device_memory_peak_bytes(context.device) == 0);
+}
+
+TEST_CASE("device: a copy for another context is of what was enqueued before it", "[device]") {
+  Context from, to;
+  from.backend = to.backend = Backend::cuda;
+  for (const int64_t count : {int64_t(1), int64_t(1000), int64_t(1) << 26}) {
+    CAPTURE(count);
+    CHECK(parity::wrong_in_copy(from, to, count) == 0);
+  }
+  to.backend = Backend::best;
+  to.device = 1;
+  if (std::string(backend_name(to)) != "cuda") {
+    WARN("one device only: nothing is copied between two");
+    return;
+  }
+  CHECK(parity::wrong_in_copy(from, to, int64_t(1) << 24) == 0);
+}
+
+TEST_CASE("device: contexts take each other's products and change them", "[device]") {
+  const LatticeSurface surface = ball();
+  const auto run = [&](Context& one, Context& other) {
+    Shell shell;
+    SeedSet seeds;
+    {
+      const SiteSet sites = voxelize(surface, one);
+      shell = build_shell(sites, {3}, other);
+      const SiteSamples samples = sample_sites(surface, sites, other);
+      seeds = place_seeds(sites, samples, {300, 0}, one);
+      relax_in_shell(shell, sites, samples, seeds, {5, 0, 0}, other);
+    }
+    relax_in_shell(shell, voxelize(surface, other), sample_sites(surface, voxelize(surface, one), other), seeds,
+                   {5, 0, 0}, one);
+    return std::vector<uint64_t>{digest(shell), digest(seeds)};
+  };
+  Context cpu, one, other;
+  cpu.backend = Backend::cpu;
+  one.backend = other.backend = Backend::cuda;
+  const std::vector<uint64_t> expected = run(cpu, cpu);
+  for (int round = 0; round < 10; ++round) CHECK(run(one, other) == expected);
+  CHECK(run(one, cpu) == expected);
+  CHECK(run(cpu, other) == expected);
 }
 
 TEST_CASE("device: every stage stops when its context is cancelled", "[device]") {

@@ -301,7 +301,7 @@ class Run {
   int finish() {
     record_.total_ms = ms_since(start_);
     record_.host_peak_bytes = process_peak_bytes();
-    record_.device_peak_bytes = device_memory_peak_bytes();
+    record_.device_peak_bytes = device_memory_peak_bytes(context_.device);
     for (const std::string& text : record_.report.warnings) warn(text);
     if (!a_.stats.empty()) write_text(a_.stats, stats_json(a_, record_));
     tell_result();
