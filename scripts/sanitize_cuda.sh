@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # Small runs of the command on the device under compute-sanitizer: memory, races in shared memory, reads of memory that
 # nothing wrote, barriers. One line a tool and run; exit status 1 when one complains. Works in a bundle too.
-#   sanitize_cuda.sh [-o LOG_FOLDER] [COMMAND]        COMMAND is vdb_isomesh beside this file or in build/cuda
+#   sanitize_cuda.sh [-o LOG_FOLDER] [-t "TOOLS"] [COMMAND]   COMMAND is vdb_isomesh beside this file or in build/cuda
 set -uo pipefail
 root=$(cd "$(dirname "$0")" && pwd)
 [ -x "$root/vdb_isomesh" ] || root=$(dirname "$root")
 logs=
-while getopts o: option; do
+tools="memcheck initcheck racecheck synccheck"
+while getopts o:t: option; do
   case $option in
     o) logs=$OPTARG ;;
+    t) tools=$OPTARG ;;
     *) sed -n 4p "$0" >&2; exit 2 ;;
   esac
 done
@@ -40,7 +42,7 @@ sanitize() { # tool, name, arguments of the command...
   [ "$status" -eq 0 ] || failed=1
 }
 
-for tool in memcheck initcheck racecheck synccheck; do
+for tool in $tools; do
   sanitize $tool box "$work/closed.off" "$work/out.off" --vertices 60 --resolution 24
   sanitize $tool open "$work/open.off" "$work/out.off" --vertices 60 --resolution 24 --close-gaps 6vox
   sanitize $tool scan "$scan" "$work/out.off" --vertices 300 --resolution 48
