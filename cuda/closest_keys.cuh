@@ -47,11 +47,11 @@ struct SmallPair {
   __device__ static Pair no_pair(int band) { return none(band) * kBoth; }
   /// Keys from a site `steps` below z, or above z + 1.
   __device__ static Pair from_below(const Order& o, int z, int steps, int most, int band) {
-    const uint32_t leaf = o.digits[2][(z - steps) >> 3];
+    const uint32_t leaf = o.digits[2][max(z - steps, 0) >> 3];  // a site farther than most has no leaf
     return key(steps, leaf, most, band) | key(steps + 1, leaf, most, band) << 16;
   }
   __device__ static Pair from_above(const Order& o, int z, int steps, int most, int band) {
-    const uint32_t leaf = o.digits[2][(z + 1 + steps) >> 3];
+    const uint32_t leaf = o.digits[2][min(z + 1 + steps, 23) >> 3];
     return key(steps + 1, leaf, most, band) | key(steps, leaf, most, band) << 16;
   }
   __device__ static uint32_t key(int steps, uint32_t digits, int most, int band) {
@@ -118,8 +118,6 @@ struct LargePair {
   __device__ static Pair lower(Pair v, uint32_t cost, Pair best) {
     return {min(v.lo + cost, best.lo), min(v.hi + cost, best.hi)};
   }
-  __device__ static Pair at_most(Pair v, int) { return v; }
-  __device__ static bool fits(int, int) { return true; }
   __device__ static Pair smaller(Pair a, Pair b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
   __device__ static uint32_t first(Pair v) { return v.lo; }
   __device__ static uint32_t second(Pair v) { return v.hi; }

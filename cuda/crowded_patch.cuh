@@ -1,4 +1,5 @@
-// Patches with more candidates than their list holds: two slower ways, both exact.
+// Patches that the short search leaves: the search of all seeds in reach, and two slower ways, all exact, for patches
+// with more candidates than their list holds.
 #pragma once
 
 #include "cuda/patch_sums.cuh"

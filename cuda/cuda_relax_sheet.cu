@@ -1,6 +1,4 @@
 // CUDA's relax_on_sheet: passes of two kernels over patches, the plain body where a sheet has no patches.
-#include <algorithm>
-
 #include "cuda/cuda_backend.h"
 #include "cuda/label_forms.cuh"
 #include "cuda/relax_sheet_pass.cuh"
@@ -11,13 +9,6 @@ namespace {
 using namespace cuda_relax;
 
 constexpr int kThreads = 128;
-
-int multiprocessors() {
-  int device = 0, count = 0;
-  require_success(cudaGetDevice(&device), "cudaGetDevice");
-  require_success(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
-  return count;
-}
 
 /// About four cells at most, so that lists of candidates stay short; few enough that patches take about the same time
 /// and that small sheets, too, give every multiprocessor some. Leaves have about 65 vertices.
@@ -55,7 +46,7 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
   start_seeds<<<blocks_for(count, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
   exec.fill(reach.view(), int32_t(spacing.h_q8 * 5 / 4));
   exec.check("start passes");
-  const unsigned sum_blocks = unsigned(std::min(parts, int64_t(kSumBlocks) * multiprocessors()));
+  const unsigned sum_blocks = exec.device().resident_blocks(parts, kSumBlocks);
   int searched = 0;
   return run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
     pass.search.table = move.from = buckets.table(searched);

@@ -22,12 +22,13 @@ __device__ inline Local between32(Local a, Local b, int32_t t_q15) {
           a.z + ((b.z - a.z) * t_q15 + kOneQ15 / 2 >> 15)};
 }
 
-/// The correctly rounded quotient of numbers between 1 and 2^60: what a / b comes to where it need not look for others.
+/// The correctly rounded quotient of numbers between 1 and 2^60: the steps of a / b where it need not look for others.
 __device__ inline float divide(float a, float b) {
   float r;
   asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(b));
   r = __fmaf_rn(r, __fmaf_rn(-b, r, 1), r);
-  const float q = __fmul_rn(a, r);
+  float q = __fmul_rn(a, r);
+  q = __fmaf_rn(r, __fmaf_rn(-b, q, a), q);
   return __fmaf_rn(r, __fmaf_rn(-b, q, a), q);
 }
 

@@ -234,6 +234,7 @@ class PatchSearch {
       const uint32_t other = __shfl_sync(~0u, id, c);
       rank += other < id || (other == id && c < lane_);
     }
+    __syncwarp();  // all have read
     // Forms stay below 3 * 2^28 + 2 * 3 * 2^27.
     const bool near = PatchBox::within(s, 1 << 14);
     if (lane_ < result.count) {

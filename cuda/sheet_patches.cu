@@ -208,6 +208,7 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   patch.own = uint16_t(own_end - own);
   patch.vertices = uint16_t(places);
   patch.triangles = uint16_t(foreign.triangles);
+  patch.unused = 0;
   fits &= patch.total.mass < kMaxPatchMass;
   if (!fits) atomicAdd(to.misfits, 1);
   if (lane == 0) to.patch[number] = patch;

@@ -11,7 +11,7 @@ namespace isoshell {
 namespace {
 
 constexpr double kSitesPerArea = 1.74;        // sqrt(3): a plane along the diagonal; 1 along an axis
-constexpr double kBytesPerSheetVertex = 220;  // and its site: leaves, samples, triangle lists, scratch
+constexpr double kBytesPerSheetVertex = 260;  // and its site: leaves, samples, triangle lists, scratch
 constexpr double kBytesPerActiveVoxel = 14;
 constexpr double kBytesPerKeptVoxel = 80;  // of a shell that is kept to be written: OpenVDB's grids beside ours
 constexpr double kBytesPerTriangle = 150;  // soup, surface, welding and edge keys

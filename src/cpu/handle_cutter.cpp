@@ -77,25 +77,23 @@ uint32_t HandleCutter::grown_around(int64_t voxel) const {
   return bits;
 }
 
-int64_t HandleCutter::unvisited_of_lowest_rank() const {
-  int64_t best = -1;
-  for (int64_t v = 0; v < int64_t(flags_.size()); ++v)
-    if (is(v, kSolid, kSolid | kVisited) && (best < 0 || rank_[size_t(v)] < rank_[size_t(best)])) best = v;
-  return best;
-}
-
-void HandleCutter::visit_component(int64_t start) {
+/// Visits the component of a voxel; returns its first of the lowest rank.
+int64_t HandleCutter::visit_component(int64_t start) {
   std::vector<int64_t> stack{start};
+  int64_t lowest = start;
   flags_[size_t(start)] |= kVisited;
   while (!stack.empty()) {
     const int64_t v = stack.back();
     stack.pop_back();
+    const int rank = rank_[size_t(v)], least = rank_[size_t(lowest)];
+    if (rank < least || (rank == least && v < lowest)) lowest = v;
     for_each_around(v, [&](int64_t n) {
       if (!is(n, kSolid, kSolid | kVisited)) return;
       flags_[size_t(n)] |= kVisited;
       stack.push_back(n);
     });
   }
+  return lowest;
 }
 
 /// Whatever waited in vain around it gets another chance.
@@ -121,6 +119,7 @@ void HandleCutter::grow_from(int64_t start, const std::function<void()>& check) 
       continue;
     }
     const int64_t v = queue.voxels[queue.first++];
+    if (queue.first > kMostLeft && 2 * queue.first > queue.voxels.size()) queue.drop_left();
     flags_[size_t(v)] &= uint8_t(~kWaiting);
     if (is_simple(grown_around(v))) add_grown(v);
     if ((++looked_at & 0xffff) == 0) check();
@@ -161,11 +160,8 @@ void HandleCutter::close_cuts(int64_t handles) {
 }
 
 void HandleCutter::grow(int64_t handles, const std::function<void()>& check) {
-  for (int64_t start; (start = unvisited_of_lowest_rank()) >= 0;) {
-    check();
-    visit_component(start);
-    grow_from(start, check);
-  }
+  for (int64_t v = 0; v < int64_t(flags_.size()); ++v)
+    if (is(v, kSolid, kSolid | kVisited)) grow_from(visit_component(v), check);
   close_cuts(handles);
 }
 

@@ -26,7 +26,7 @@ inline bool is_simple(uint32_t solid) {
   return c.solid == 1 && c.empty == 1;
 }
 
-/// A box of voxels whose outermost layer stays empty. Two bytes a voxel, and eight for each that waits.
+/// A box of voxels whose outermost layer stays empty. Two bytes a voxel, and up to sixteen for each that waits.
 class HandleCutter {
  public:
   static constexpr int kRanks = 256;
@@ -56,14 +56,19 @@ class HandleCutter {
   struct Queue {
     std::vector<int64_t> voxels;
     size_t first = 0;  ///< those before it have left
+    void drop_left() {
+      voxels.erase(voxels.begin(), voxels.begin() + std::ptrdiff_t(first));
+      first = 0;
+    }
   };
+
+  static constexpr size_t kMostLeft = 1 << 12;
 
   bool is(int64_t voxel, int flags, int of) const { return (flags_[size_t(voxel)] & of) == flags; }
   template <class Visit>
   void for_each_around(int64_t voxel, Visit visit) const;
   uint32_t grown_around(int64_t voxel) const;
-  int64_t unvisited_of_lowest_rank() const;
-  void visit_component(int64_t start);
+  int64_t visit_component(int64_t start);
   void grow_from(int64_t start, const std::function<void()>& check);
   void add_grown(int64_t voxel);
   void close_cuts(int64_t handles);

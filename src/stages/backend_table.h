@@ -17,8 +17,8 @@ struct BackendTable {
   /// From the sheet of all `walls`, which are the sites or what cut_false_handles makes of them.
   Sheet (*build_sheet)(const LatticeSurface&, const SiteSet& walls, const SiteSet&, const SiteSamples&,
                        const SheetOptions&, Context&);
-  /// Result: the sites less those that close handles beyond `genus`, with the solid voxels around these. Empty when it
-  /// does not fit.
+  /// Result: the sites less those that close handles beyond `genus`, with the solid voxels around these. Empty when
+  /// the box around the sites is too large.
   SiteSet (*cut_false_handles)(const SiteSet&, const SiteSamples&, int64_t genus, Context&);
   SiteSet (*coarsen_sites)(const SiteSet&, Context&);
   Sheet (*build_outline)(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);

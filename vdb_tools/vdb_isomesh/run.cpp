@@ -155,6 +155,12 @@ class Run {
   SeedSet relaxed_seeds(Source& source, const Prepared& prepared) {
     if (!source.stage || !source.stage->seeds) return isoshell::relax(prepared, options_, record_.report, context_);
     record_.report.seeds = source.stage->seeds->size();
+    for (const uint32_t home : source.stage->seeds->home)
+      if (int64_t(home) >= prepared.sheet.vertex_count())
+        throw Error(ErrorCode::unreadable_input, a_.input,
+                    "a seed sits on vertex " + std::to_string(home) + " of a sheet that has " +
+                        std::to_string(prepared.sheet.vertex_count()) +
+                        "; the file's surface and seeds do not belong together: save it anew");
     return std::move(*source.stage->seeds);
   }
 
