@@ -345,6 +345,7 @@ class PatchSearch {
       const Local away = box_.outside(search_.seed[id]);
       const bool near = in && uint64_t(square(away)) <= uint64_t(int64_t(reach) * reach);
       const unsigned lanes = __ballot_sync(~0u, near);
+      __syncwarp();  // all have read
       if (near) scratch_.id[kept + lanes_before(lanes)] = id;
       kept += __popc(lanes);
       __syncwarp();
@@ -362,6 +363,7 @@ class PatchSearch {
     for (int base = 0; base < total_; base += 32) {
       const uint32_t id = base + lane_ < total_ ? scratch_.id[base + lane_] : kNone;
       const unsigned mine = __ballot_sync(~0u, id != kNone);
+      __syncwarp();  // all have read
       if (id != kNone) scratch_.id[kept + lanes_before(mine)] = id;
       kept += __popc(mine);
       __syncwarp();
