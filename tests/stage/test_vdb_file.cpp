@@ -92,6 +92,7 @@ Products make_products(int64_t site_count, int64_t point_count, int64_t seed_cou
          int16_t(int(random(257)) - 128),
          int16_t(int(random(257)) - 128),
          {0, 0, 127},
+         {},
          0};
 
   p.surface.points = Buffer<PointQ8>(point_count);

@@ -25,7 +25,7 @@ inline PaperSetup paper_setup(const voxel_shapes::Named& shape, int32_t band_vox
   for (int64_t i = 0; i < out.samples.sample.size(); ++i) {
     const uint64_t r = random_bits(77, uint64_t(i));
     const auto part = [&](int shift) { return int16_t(int32_t((r >> shift & 0xffff) % 257) - 128); };
-    out.samples.sample[i] = {part(0), part(16), part(32), normal8({part(8), part(24), part(40)}), uint32_t(i)};
+    out.samples.sample[i] = {part(0), part(16), part(32), normal8({part(8), part(24), part(40)}), {}, uint32_t(i)};
   }
   TestContext context;
   out.shell = build_shell(out.sites, {band_vox}, context);
