@@ -19,10 +19,9 @@ int own_vertices_for(int64_t h_sq_q16, int64_t vertices) {
   return int(least < kFewest ? kFewest : least > kMost ? kMost : least);
 }
 
-RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const SheetPatches& patches, int64_t area2,
-                             SeedSet& seeds, const RelaxOptions& options) {
+RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const SheetPatches& patches,
+                             const SeedSpacing& spacing, SeedSet& seeds, const RelaxOptions& options) {
   const int64_t count = seeds.size(), parts = patches.patch.size();
-  const SeedSpacing spacing = seed_spacing(area2, count);
   SeedBuckets buckets = make_seed_buckets(exec, sheet.corners.block_dims, 2 * spacing.h_q8, count, 2);
   Buffer<SeedRecord> records = exec.make<SeedRecord>(count);
   Buffer<PointQ8> last = exec.make<PointQ8>(count);
@@ -33,13 +32,11 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
 
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};
-  const int64_t max_step = options.max_step_q8 > 0 ? options.max_step_q8 : spacing.h_q8 * 2 / 5;
-  const relax_sheet::MovingSeeds moving{
-      walk, seeds.position.view(), last.view(), seeds.home.view(), seeds.normal.view(), max_step};
+  const relax_sheet::MovingSeeds moving = relax_sheet::moving_seeds(walk, seeds, last.view(), spacing, options);
   SheetPass pass{patches.view(),       {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},
                  reach.data(),         int32_t(spacing.h_q8 / 8),
                  cells.data(),         state.data(),
-                 progress.data(),      relax_sheet::energy_shift(area2, spacing.h_sq_q16),
+                 progress.data(),      relax_sheet::energy_shift(spacing),
                  options.tolerance_ppb};
   SheetMove move{moving,           cells.data(), records.data(),  buckets.grid,       buckets.table(1),
                  buckets.table(0), state.data(), progress.data(), options.max_passes, count};
@@ -64,11 +61,11 @@ RelaxReport cuda_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxO
   CudaExecutor exec(context, "relax_sheet");
   const OnDevice<Sheet> here(exec, sheet);
   on_device(exec, seeds);
-  const int64_t area2 = doubled_area_q16(exec, *here);
-  const SheetPatches patches = make_sheet_patches(
-      exec, *here, own_vertices_for(seed_spacing(area2, seeds.size()).h_sq_q16, here->vertex_count()));
+  const SeedSpacing spacing = seed_spacing(exec, *here, seeds.size());
+  const SheetPatches patches =
+      make_sheet_patches(exec, *here, own_vertices_for(spacing.h_sq_q16, here->vertex_count()));
   if (!patches.fits) return relax_on_sheet_body(exec, *here, seeds, options);
-  return relax_by_patches(exec, *here, patches, area2, seeds, options);
+  return relax_by_patches(exec, *here, patches, spacing, seeds, options);
 }
 
 }  // namespace isoshell

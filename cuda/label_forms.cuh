@@ -28,7 +28,8 @@ class LeafLabeller {
   /// would, the labels are right; else that cost says how far to look.
   __device__ void run() {
     find_bounds();
-    int64_t reach_sq = step_.spacing.h_q8 * step_.spacing.h_q8;
+    const int64_t h_q8 = step_.spacing.h_at(uint32_t(begin_));
+    int64_t reach_sq = h_q8 * h_q8;
     for (;;) {
       const int count = gather(reach_sq);
       int64_t dearest = 0;

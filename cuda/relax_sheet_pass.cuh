@@ -89,9 +89,9 @@ __device__ inline Vec64 way_together(const relax_sheet::CellSum& cell) {
   return {__shfl_sync(~0u, way, group), __shfl_sync(~0u, way, group + 1), __shfl_sync(~0u, way, group + 2)};
 }
 
-/// MovingSeeds::moved.
-__device__ inline PointQ8 moved_by(const relax_sheet::MovingSeeds& seeds, PointQ8 from, Vec64 step) {
-  const int64_t length_sq = dot(step, step), most = seeds.max_step_q8;
+/// MovingSeeds::moved, for a seed at home at a vertex.
+__device__ inline PointQ8 moved_by(const relax_sheet::MovingSeeds& seeds, uint32_t home, PointQ8 from, Vec64 step) {
+  const int64_t length_sq = dot(step, step), most = seeds.lengths.scaled(seeds.max_step_q8, home);
   if (length_sq > most * most) {
     const int64_t length = int64_t(isqrt(uint64_t(length_sq))) + 1;
     const auto shorter = [&](int64_t s) {
@@ -126,7 +126,7 @@ __global__ void __launch_bounds__(kMoveThreads) move_seeds(const __grid_constant
       step = {step.x >> 15, step.y >> 15, step.z >> 15};
       active = moved = exists;
     }
-    const Landing landing = walk_together(seeds.walk, at.vertex, moved_by(seeds, at.point, step), active);
+    const Landing landing = walk_together(seeds.walk, at.vertex, moved_by(seeds, at.vertex, at.point, step), active);
     if (active) at = landing;
     if (leg == 0) centre = at.point;
   }

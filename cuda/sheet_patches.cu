@@ -16,6 +16,7 @@ struct PatchSource {
   View<const TriangleIndices> triangles;
   View<const int64_t> vertex_first;
   View<const uint32_t> vertex_triangles;
+  EdgeLengthsView lengths;
   const int64_t* patch_first;  ///< of each leaf, and in the end how many there are
   int64_t patches;
 
@@ -179,7 +180,7 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
       source.for_each_triangle_of(v, [&](TriangleIndices t) {
         const PointQ8 a = source.position[t.a], b = source.position[t.b], c = source.position[t.c];
         const Vec64 n = cross(difference(b, a), difference(c, a));
-        const uint32_t area2 = uint32_t(isqrt(uint64_t(dot(n, n))));
+        const uint32_t area2 = source.lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
         const auto place = [&](uint32_t u) { return uint32_t(u < own_end ? int(u - own) : foreign.place_of(u)); };
         const uint32_t owner = t.a == v ? 0 : t.b == v ? 1 : 2;
         to.triangle[triangle_first + atomicAdd(&foreign.triangles, 1)] = {
@@ -222,9 +223,9 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const Sheet& sheet, int max_
   exec.for_each("count patches of leaves", leaves + 1,
                 CountParts{View<const int64_t>(sheet.corners.first.view()), patch_first.view(), max_own});
   const int64_t count = exec.exclusive_scan(patch_first.view());
-  const PatchSource source{
-      sheet.corners.view(),      sheet.position.view(),         sheet.normal.view(), sheet.triangles.view(),
-      sheet.vertex_first.view(), sheet.vertex_triangles.view(), patch_first.data(),  count};
+  const PatchSource source{sheet.corners.view(),   sheet.position.view(),     sheet.normal.view(),
+                           sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
+                           lengths_of(sheet),      patch_first.data(),        count};
   const unsigned blocks = unsigned((count + kWarps - 1) / kWarps);
   SheetPatches out;
   Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),

@@ -15,6 +15,12 @@ struct SheetTopology {
   int64_t cut_handles = 0;         ///< false ones, where near parts of the surface share voxels
 };
 
+/// Edge lengths to aim at, where they vary. Only ratios count: the number of seeds decides the rest.
+struct EdgeLengths {
+  Buffer<uint32_t> at;  ///< per sheet vertex; empty: the same everywhere
+  uint32_t least = 0, largest = 0;
+};
+
 /// Result: vertex i is lattice corner i of `corners` in canonical order. Triangles come from the boundary faces of the
 /// solid, two a face, in the order of (solid voxel, face), oriented outward.
 struct Sheet {
@@ -27,6 +33,7 @@ struct Sheet {
   Buffer<int64_t> vertex_first;       ///< vertex_count + 1 offsets into vertex_triangles
   Buffer<uint32_t> vertex_triangles;  ///< ascending per vertex
   SheetTopology topology;
+  EdgeLengths lengths;  ///< empty as built; see set_edge_lengths
 
   int64_t vertex_count() const { return position.size(); }
 };

@@ -45,7 +45,8 @@ Sheet copy_product(const Sheet& s, Copy copy) {
           copy(s.triangles),
           copy(s.vertex_first),
           copy(s.vertex_triangles),
-          s.topology};
+          s.topology,
+          {copy(s.lengths.at), s.lengths.least, s.lengths.largest}};
 }
 template <class Copy>
 SeedSet copy_product(const SeedSet& s, Copy copy) {

@@ -117,7 +117,7 @@ struct LabelLeafInLanes {
     for (int64_t v = begin; v < end; ++v) include(bounds, plain.position[v], plain.normal[v]);
     LabelSeed seeds[kMaxCandidates];
     int64_t limit;
-    int count = plain.gather(bounds, seeds, limit);
+    int count = plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
     if (count > kMaxCandidates) return plain.label_directly(bounds, limit, begin, end);
     const LeafSeeds leaf_seeds(bounds, plain.spacing.penalty_q16);
     if (!leaf_seeds.fit(seeds, count)) return plain.label_from(leaf, seeds, count);

@@ -40,7 +40,7 @@ class Partition {
         first_count_(seeds.size()),
         label_(exec.template make<uint32_t>(sheet.vertex_count())) {
     report_ = {};
-    label_sheet(exec_, sheet_, seeds_, seed_spacing(doubled_area_q16(exec_, sheet_), seeds_.size()), label_.view());
+    label_sheet(exec_, sheet_, seeds_, seed_spacing(exec_, sheet_, seeds_.size()), label_.view());
     grow(exec_, cells_, seeds_.size());
   }
 

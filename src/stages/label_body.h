@@ -7,8 +7,10 @@
 // seeds' largest costs.
 #pragma once
 
+#include <algorithm>
+
 #include "isoshell/seed_set.h"
-#include "isoshell/sheet.h"
+#include "stages/edge_lengths.h"
 #include "stages/point_grid_body.h"
 #include "voxel/leaf.h"
 
@@ -18,16 +20,19 @@ namespace isoshell {
 template <class Exec>
 int64_t doubled_area_q16(Exec& exec, const Sheet& sheet);
 
-/// Seed spacing and what follows from it.
+/// Seed spacing and what follows from it. Where lengths vary it is that of the least length.
 struct SeedSpacing {
   int64_t h_sq_q16;     ///< area per seed
   int64_t h_q8;         ///< its square root
-  int64_t penalty_q16;  ///< 16 h^2
+  int64_t penalty_q16;  ///< 16 h^2; 16 times the least h times the largest where they vary
+  int64_t largest_h_q8;
+  int64_t area2_q16;  ///< of the sheet, doubled
+  EdgeLengthsView lengths;
+
+  ISOSHELL_HD int64_t h_at(uint32_t vertex) const { return lengths.scaled(h_q8, vertex); }
 };
-inline SeedSpacing seed_spacing(int64_t area2_q16, int64_t seeds) {
-  const int64_t h_sq = area2_q16 / 2 / (seeds > 0 ? seeds : 1);
-  return {h_sq, int64_t(isqrt(uint64_t(h_sq))) + 1, 16 * h_sq};
-}
+template <class Exec>
+SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds);
 
 namespace label {
 
@@ -115,16 +120,17 @@ struct LabelLeaf {
     for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
     LabelSeed candidates[kCapacity];
     int64_t limit;
-    const int count = gather(bounds, candidates, limit);
+    const int count = gather(bounds, spacing.h_at(uint32_t(begin)), candidates, limit);
     if (count > kCapacity) return label_directly(bounds, limit, begin, end);
     label_from(leaf, candidates, count);
   }
 
   /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
-  /// costs, taken over those in reach. Returns more than kCapacity when they do not fit.
-  ISOSHELL_HD int gather(const Bounds& bounds, LabelSeed* candidates, int64_t& limit) const {
+  /// costs, taken over those in reach; the spacing says how far to look first. Returns more than kCapacity when they do
+  /// not fit.
+  ISOSHELL_HD int gather(const Bounds& bounds, int64_t h_q8, LabelSeed* candidates, int64_t& limit) const {
     const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds.lo, bounds.hi))));
-    for (int64_t reach = diagonal + spacing.h_q8 * 3 / 4;; reach *= 2) {
+    for (int64_t reach = diagonal + h_q8 * 3 / 4;; reach *= 2) {
       limit = INT64_MAX;
       int count = 0;
       for_each_within(bounds, reach * reach, [&](const LabelSeed& s) {
@@ -289,6 +295,12 @@ struct DoubledArea {
   }
 };
 
+struct ShareOfSeeds {
+  DoubledArea area;
+  EdgeLengthsView lengths;
+  ISOSHELL_HD int64_t operator()(int64_t t) const { return lengths.share_of_seeds(area(t), area.triangles[t]); }
+};
+
 }  // namespace label
 
 template <class Exec>
@@ -296,10 +308,26 @@ int64_t doubled_area_q16(Exec& exec, const Sheet& sheet) {
   return exec.sum(sheet.triangles.size(), label::DoubledArea{sheet.position.view(), sheet.triangles.view()});
 }
 
-/// Grid of the current seeds, with cells about as wide as seeds are apart.
+template <class Exec>
+SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds) {
+  const EdgeLengthsView lengths = lengths_of(sheet);
+  const int64_t area2 = doubled_area_q16(exec, sheet);
+  const int64_t shares = lengths.vary()
+                             ? exec.sum(sheet.triangles.size(),
+                                        label::ShareOfSeeds{{sheet.position.view(), sheet.triangles.view()}, lengths})
+                             : area2;
+  const int64_t h_sq = shares / 2 / (seeds > 0 ? seeds : 1), h = int64_t(isqrt(uint64_t(h_sq))) + 1;
+  if (!lengths.vary()) return {h_sq, h, 16 * h_sq, h, area2, lengths};
+  constexpr int64_t kMostPenalty = (int64_t(1) << 28) - 1;  // beyond, labels take slower ways
+  const int64_t largest = h * lengths.largest / lengths.least;
+  return {h_sq, h, std::min(16 * h * largest, kMostPenalty), largest, area2, lengths};
+}
+
+/// Grid of the current seeds, with cells about as wide as seeds are apart; twice that where lengths vary.
 template <class Exec>
 PointGrid grid_of_seeds(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing) {
-  const int64_t spacing_vox = (spacing.h_q8 + kOneVoxelQ8 - 1) / kOneVoxelQ8;
+  const int64_t edge_q8 = std::min(2 * spacing.h_q8, spacing.largest_h_q8);
+  const int64_t spacing_vox = (edge_q8 + kOneVoxelQ8 - 1) / kOneVoxelQ8;
   PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, spacing_vox, seeds.size());
   fill_point_grid(exec, grid, seeds.position.view());
   return grid;

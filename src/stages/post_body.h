@@ -134,7 +134,7 @@ class Improvement {
   void attach_samples() {
     update_seeds();
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
-    label_sheet(exec_, sheet_, seeds_, seed_spacing(doubled_area_q16(exec_, sheet_), vertices_), label.view());
+    label_sheet(exec_, sheet_, seeds_, seed_spacing(exec_, sheet_, vertices_), label.view());
     const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * mesh_.triangles.size()));
     const int64_t count = (sheet_.vertex_count() + stride - 1) / stride;
     sample_ = exec_.template make<FitSample>(count);

@@ -25,10 +25,12 @@ struct CellSum {
 /// Bits that the energy loses at last (twelve times the doubled second moments of all cells about their seeds, summed
 /// exactly), so that it (about 2^6 times area times h^2 at the worst) stays below 2^60: 12 on all but the largest
 /// sheets with the fewest seeds.
-inline int energy_shift(int64_t area2_q16, int64_t h_sq_q16) {
-  int bits = 6;
-  for (int64_t rest = area2_q16; rest > 0; rest >>= 1) ++bits;
-  for (int64_t rest = h_sq_q16; rest > 0; rest >>= 1) ++bits;
+inline int energy_shift(const SeedSpacing& spacing) {
+  const bool vary = spacing.lengths.vary();
+  int bits = vary ? 6 + EdgeLengthsView::kDensityBits : 6;
+  for (int64_t rest = spacing.area2_q16; rest > 0; rest >>= 1) ++bits;
+  const int64_t largest_h_sq = vary ? spacing.largest_h_q8 * spacing.largest_h_q8 : spacing.h_sq_q16;
+  for (int64_t rest = largest_h_sq; rest > 0; rest >>= 1) ++bits;
   return bits - 60 > 12 ? bits - 60 : 12;
 }
 
@@ -38,8 +40,8 @@ ISOSHELL_HD inline PointQ8 leaf_origin(uint64_t key) {
   return {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
 }
 
-/// A sheet triangle with its doubled area and what its moments about the leaf's origin are made of: most triangles lie
-/// in one cell, and need no more.
+/// A sheet triangle with its doubled area, times the density where lengths vary, and what its moments about the leaf's
+/// origin are made of: most triangles lie in one cell, and need no more.
 struct PatchTriangle {
   uint32_t a, b, c, area2;
   Local corner_sum;
@@ -86,6 +88,7 @@ struct CountPatch {
 struct FillPatch {
   VisitPatch patch;
   View<const PointQ8> position;
+  EdgeLengthsView lengths;
   View<const int64_t> first;
   View<PatchTriangle> out;
   ISOSHELL_HD void operator()(int64_t leaf) const {
@@ -94,7 +97,8 @@ struct FillPatch {
     patch.visit(leaf, [&](TriangleIndices t) {
       const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
       const Local a = local(position[t.a], origin), b = local(position[t.b], origin), c = local(position[t.c], origin);
-      out[at++] = {t.a, t.b, t.c, uint32_t(isqrt(uint64_t(dot(n, n)))), corner_sum(a, b, c), sum_of_squares(a, b, c)};
+      const uint32_t mass = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
+      out[at++] = {t.a, t.b, t.c, mass, corner_sum(a, b, c), sum_of_squares(a, b, c)};
     });
   }
 };
@@ -110,8 +114,9 @@ Patches make_patches(Exec& exec, const Sheet& sheet) {
   exec.for_each("count patch triangles", leaves, CountPatch{visit, patches.first.view()});
   exec.exclusive_scan(patches.first.view());
   patches.triangles = exec.template make<PatchTriangle>(sheet.triangles.size());
-  exec.for_each("fill patch triangles", leaves,
-                FillPatch{visit, sheet.position.view(), patches.first.view(), patches.triangles.view()});
+  exec.for_each(
+      "fill patch triangles", leaves,
+      FillPatch{visit, sheet.position.view(), lengths_of(sheet), patches.first.view(), patches.triangles.view()});
   return patches;
 }
 
@@ -220,14 +225,15 @@ struct MovingSeeds {
   View<PointQ8> last;
   View<uint32_t> home;
   View<Normal8> normal;
-  int64_t max_step_q8;
+  int64_t max_step_q8;  ///< where lengths are least
+  EdgeLengthsView lengths;
 
-  /// The step, shortened to the bound.
-  ISOSHELL_HD PointQ8 moved(PointQ8 from, Vec64 step) const {
-    const int64_t length_sq = dot(step, step);
-    if (length_sq > max_step_q8 * max_step_q8) {
+  /// The step of seed i, shortened to the bound where it is at home.
+  ISOSHELL_HD PointQ8 moved(int64_t i, PointQ8 from, Vec64 step) const {
+    const int64_t length_sq = dot(step, step), most = lengths.scaled(max_step_q8, home[i]);
+    if (length_sq > most * most) {
       const int64_t length = int64_t(isqrt(uint64_t(length_sq))) + 1;
-      step = {step.x * max_step_q8 / length, step.y * max_step_q8 / length, step.z * max_step_q8 / length};
+      step = {step.x * most / length, step.y * most / length, step.z * most / length};
     }
     return {from.x + int32_t(step.x), from.y + int32_t(step.y), from.z + int32_t(step.z)};
   }
@@ -239,10 +245,22 @@ struct MovingSeeds {
   }
 };
 
+inline MovingSeeds moving_seeds(const WalkOntoSheet& walk, SeedSet& seeds, View<PointQ8> last,
+                                const SeedSpacing& spacing, const RelaxOptions& options) {
+  const int64_t most = options.max_step_q8;
+  return {walk,
+          seeds.position.view(),
+          last,
+          seeds.home.view(),
+          seeds.normal.view(),
+          most > 0 ? most : spacing.h_q8 * 2 / 5,
+          most > 0 ? EdgeLengthsView{} : spacing.lengths};
+}
+
 /// s + beta (s - last).
 ISOSHELL_HD inline PointQ8 point_ahead(const MovingSeeds& seeds, PointQ8 s, int64_t beta_q15, int64_t i) {
   const Vec64 step = difference(s, seeds.last[i]) * beta_q15;
-  return seeds.moved(s, {step.x >> 15, step.y >> 15, step.z >> 15});
+  return seeds.moved(i, s, {step.x >> 15, step.y >> 15, step.z >> 15});
 }
 
 /// One component of the way from a seed to its cell's centre; `first` is that of the cell, which must have an area.
@@ -250,8 +268,9 @@ ISOSHELL_HD inline int64_t way_to_centre(int64_t first, int64_t mass) { return r
 
 /// Centre of the cell measured at here, no farther than a step. The cell must have an area.
 ISOSHELL_HD inline PointQ8 point_towards_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
-  return seeds.moved(seeds.here[i], {way_to_centre(c.first_x, c.mass), way_to_centre(c.first_y, c.mass),
-                                     way_to_centre(c.first_z, c.mass)});
+  return seeds.moved(
+      i, seeds.here[i],
+      {way_to_centre(c.first_x, c.mass), way_to_centre(c.first_y, c.mass), way_to_centre(c.first_z, c.mass)});
 }
 
 struct LookAhead {
@@ -329,8 +348,7 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   using namespace relax_sheet;
   const int64_t count = seeds.size();
   const Patches patches = make_patches(exec, sheet);
-  const int64_t area2 = doubled_area_q16(exec, sheet);
-  const SeedSpacing spacing = seed_spacing(area2, count);
+  const SeedSpacing spacing = seed_spacing(exec, sheet, count);
   Buffer<uint32_t> labels = exec.template make<uint32_t>(sheet.vertex_count());
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
@@ -342,10 +360,8 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
 
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};
-  const int64_t max_step = options.max_step_q8 > 0 ? options.max_step_q8 : spacing.h_q8 * 2 / 5;
-  const MovingSeeds moving{walk, seeds.position.view(), last.view(), seeds.home.view(), seeds.normal.view(), max_step};
-
-  const FinishPass finish{state.view(), energy.view(), energy_shift(area2, spacing.h_sq_q16), options.tolerance_ppb};
+  const MovingSeeds moving = moving_seeds(walk, seeds, last.view(), spacing, options);
+  const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
 
   return run_passes(exec, state.view(), options.max_passes, [&] {
     exec.for_each("look ahead", count, LookAhead{moving, state.view()});

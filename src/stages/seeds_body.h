@@ -1,5 +1,6 @@
-// place_seeds (see stages.h), written once over an executor. Strata of equal area (or equal count) along the canonical
-// order, one seed at random in each: as even as random seeds get, with a prefix sum and a search instead of a sort.
+// place_seeds (see stages.h), written once over an executor. Strata of equal area (by the edge lengths, where they
+// vary; or of equal count) along the canonical order, one seed at random in each: as even as random seeds get, with a
+// prefix sum and a search instead of a sort.
 #pragma once
 
 #include "isoshell/error.h"
@@ -10,10 +11,10 @@
 namespace isoshell {
 namespace seeds {
 
-struct FillDoubledArea {
-  label::DoubledArea area;
+struct FillShare {
+  label::ShareOfSeeds share;
   View<int64_t> out;
-  ISOSHELL_HD void operator()(int64_t t) const { out[t] = area(t); }
+  ISOSHELL_HD void operator()(int64_t t) const { out[t] = share(t); }
 };
 
 /// Seed i: a point at random in the triangle where stratum i's random area falls.
@@ -21,7 +22,7 @@ struct PlaceOnSheet {
   View<const PointQ8> position;
   View<const Normal8> vertex_normal;
   View<const TriangleIndices> triangles;
-  View<const int64_t> area_before;  ///< exclusive prefix sum of the doubled areas
+  View<const int64_t> area_before;  ///< exclusive prefix sum of the doubled areas, or shares of the seeds
   int64_t total, count;
   uint64_t seed;
   View<PointQ8> out_position;
@@ -73,8 +74,9 @@ template <class Exec>
 SeedSet place_seeds_body(Exec& exec, const Sheet& sheet, const SeedOptions& options) {
   const int64_t triangles = sheet.triangles.size();
   Buffer<int64_t> area_before = exec.template make<int64_t>(triangles);
-  exec.for_each("areas", triangles,
-                seeds::FillDoubledArea{{sheet.position.view(), sheet.triangles.view()}, area_before.view()});
+  exec.for_each(
+      "areas", triangles,
+      seeds::FillShare{{{sheet.position.view(), sheet.triangles.view()}, lengths_of(sheet)}, area_before.view()});
   const int64_t total = exec.exclusive_scan(area_before.view());
   SeedSet out;
   out.position = exec.template make<PointQ8>(options.count);

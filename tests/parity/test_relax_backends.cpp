@@ -83,6 +83,18 @@ TEST_CASE("relax on both: seeds of any density, two sides of a wall included", "
   }
 }
 
+TEST_CASE("relax on both: lengths that vary", "[relax][lengths][cuda]") {
+  for (const bool plate : {false, true})
+    for (const uint32_t ratio : {3u, 16u}) {
+      const Sheet sheet = with_lengths(plate ? plate_sheet() : torus_sheet(), ratio);
+      for (const int64_t count : {8, 400, 1500}) {
+        const SeedSet seeds = seeds_on(sheet, count);
+        same_after({1, 2, 20}, seeds, 0, on_sheet(sheet));
+        label_both(sheet, seeds);
+      }
+    }
+}
+
 TEST_CASE("relax on both: a pass more than a batch, and the stop rule within one", "[relax][cuda]") {
   const Sheet sheet = torus_sheet();
   const SeedSet seeds = seeds_on(sheet, 200);

@@ -1,5 +1,6 @@
 // Seeds on the sheet, their labels, and relaxation.
 #include <algorithm>
+#include <cmath>
 
 #include "cpu/executor_tbb.h"
 #include "isoshell/digest.h"
@@ -50,7 +51,7 @@ std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& se
 
 SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
   TbbExecutor exec(context, "test");
-  return seed_spacing(doubled_area_q16(exec, sheet), seeds.size());
+  return seed_spacing(exec, sheet, seeds.size());
 }
 
 }  // namespace
@@ -71,15 +72,69 @@ TEST_CASE("seeds: every stratum of the sheet's area gets one, near its home", "[
 TEST_CASE("labels: each sheet vertex has its nearest seed, the penalty counted, at any density", "[relax][stage]") {
   TestContext context;
   for (const bool plate : {false, true})
-    for (int64_t count : {8, 30, 400, 1600}) {
-      const Sheet sheet = plate ? plate_sheet() : torus_sheet();
-      const SeedSet seeds = place_seeds(sheet, {count, 1}, context);
-      const SeedSpacing spacing = spacing_of(sheet, seeds, context);
-      const std::vector<uint32_t> expected = brute_force_labels(sheet, seeds, spacing);
-      CHECK(labels_with_capacity<label::kMaxCandidates>(sheet, seeds, spacing, context) == expected);
-      // So few places that most leaves overflow and take the path without lists.
-      CHECK(labels_with_capacity<3>(sheet, seeds, spacing, context) == expected);
+    for (const uint32_t ratio : {1u, 8u}) {
+      Sheet sheet = plate ? plate_sheet() : torus_sheet();
+      if (ratio > 1) sheet = with_lengths(std::move(sheet), ratio);
+      for (int64_t count : {8, 30, 400, 1600}) {
+        const SeedSet seeds = place_seeds(sheet, {count, 1}, context);
+        const SeedSpacing spacing = spacing_of(sheet, seeds, context);
+        const std::vector<uint32_t> expected = brute_force_labels(sheet, seeds, spacing);
+        CHECK(labels_with_capacity<label::kMaxCandidates>(sheet, seeds, spacing, context) == expected);
+        // So few places that most leaves overflow and take the path without lists.
+        CHECK(labels_with_capacity<3>(sheet, seeds, spacing, context) == expected);
+      }
     }
+}
+
+TEST_CASE("lengths: mass and share of a triangle follow the powers, at every area and ratio", "[lengths]") {
+  const uint32_t length[] = {300, 300, 300, 2400, 2400, 2400, 4800};
+  const EdgeLengthsView view{{length, 7}, 300, 4800};
+  const EdgeLengthsView even{};
+  for (const uint32_t area2 : {1u, 1000u, 65536u, 131072u, 1u << 29}) {
+    CHECK(even.mass(area2, {0, 1, 2}) == area2);
+    CHECK(even.share_of_seeds(area2, {0, 1, 2}) == int64_t(area2));
+    CHECK(view.mass(area2, {0, 1, 2}) == 4 * area2);
+    CHECK(view.share_of_seeds(area2, {0, 1, 2}) == int64_t(area2));
+    CHECK(std::abs(double(view.mass(area2, {3, 4, 5})) - area2 / 1024.0) <= 0.6);
+    CHECK(std::abs(double(view.share_of_seeds(area2, {3, 4, 5})) - area2 / 64.0) <= 1);
+    const double mixed = 300.0 / 1000;  // corners of 300, 300 and 2400
+    CHECK(std::abs(double(view.mass(area2, {0, 1, 3})) - 4 * area2 * mixed * mixed * mixed * mixed) <=
+          0.6 + area2 * 1e-3);
+  }
+  CHECK(view.mass(UINT32_MAX, {0, 1, 2}) == UINT32_MAX);  // cut, not wrapped
+  CHECK(view.scaled(100, 6) == 1600);
+  CHECK(even.scaled(100, 6) == 100);
+}
+
+TEST_CASE("lengths: equal ones change nothing in the placing of seeds", "[lengths]") {
+  TestContext context;
+  const Sheet even = torus_sheet(), same = with_lengths(torus_sheet(), 1);
+  CHECK(digest(place_seeds(even, {500, 0}, context)) == digest(place_seeds(same, {500, 0}, context)));
+}
+
+TEST_CASE("lengths: relaxed cells have areas by the square of their lengths", "[lengths][relax]") {
+  TestContext context;
+  TbbExecutor exec(context, "test");
+  const Sheet sheet = with_lengths(torus_sheet(), 4);
+  SeedSet seeds = place_seeds(sheet, {500, 0}, context);
+  relax_on_sheet(sheet, seeds, {60, 0, 0}, context);
+  Buffer<uint32_t> label(sheet.vertex_count());
+  label_sheet(exec, sheet, seeds, spacing_of(sheet, seeds, context), label.view());
+  std::vector<double> area(size_t(seeds.size()));
+  const label::DoubledArea doubled{sheet.position.view(), sheet.triangles.view()};
+  for (int64_t t = 0; t < sheet.triangles.size(); ++t) {
+    const TriangleIndices i = sheet.triangles[t];
+    for (const uint32_t v : {i.a, i.b, i.c}) area[label[v]] += double(doubled(t)) / 3;
+  }
+  double mean = 0, error = 0;
+  std::vector<double> part;
+  for (int64_t s = 0; s < seeds.size(); ++s) {
+    const double length = sheet.lengths.at[seeds.home[s]];
+    part.push_back(area[size_t(s)] / (length * length));
+    mean += part.back() / double(seeds.size());
+  }
+  for (const double p : part) error += std::abs(p / mean - 1) / double(seeds.size());
+  CHECK(error < 0.15);
 }
 
 TEST_CASE("relax: the energy falls towards that of hexagons", "[relax][stage]") {

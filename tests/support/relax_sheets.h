@@ -1,12 +1,27 @@
 // Sheets that relaxation is tested on.
 #pragma once
 
+#include <algorithm>
+
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
 
 namespace isoshell {
 
 inline Sheet torus_sheet() { return sheet_of_soup(shapes::torus(2, 0.7, 160, 70), 256, 1, 1); }
+
+/// With lengths that grow along x from 1 to `ratio`.
+inline Sheet with_lengths(Sheet sheet, uint32_t ratio) {
+  EdgeLengths& lengths = sheet.lengths;
+  int32_t lo = INT32_MAX, hi = 0;
+  for (const PointQ8& p : sheet.position) lo = std::min(lo, p.x), hi = std::max(hi, p.x);
+  lengths.least = 1000;
+  lengths.largest = 1000 * ratio;
+  lengths.at = Buffer<uint32_t>(sheet.vertex_count());
+  for (int64_t v = 0; v < sheet.vertex_count(); ++v)
+    lengths.at[v] = 1000 + uint32_t(int64_t(1000) * (ratio - 1) * (sheet.position[v].x - lo) / (hi - lo));
+  return sheet;
+}
 
 /// Two walls two voxels apart with opposite normals.
 inline Sheet plate_sheet() {
