@@ -218,7 +218,9 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   const bool compare = input.closed && input.oriented && input.genus >= 0;
   const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
   const int32_t first = first_resolution(options, input.area_world, lo, hi);
-  const int32_t cap = free_grid && compare ? std::min(4 * first, kMaxResolution) : first;
+  // Each component takes four vertices at least: where there are fewer, no grid brings the input's topology.
+  const bool reachable = compare && vertex_target(options, input.area_world) >= 4 * input.components;
+  const int32_t cap = free_grid && reachable ? std::min(4 * first, kMaxResolution) : first;
 
   Prepared best;
   int64_t best_gap = INT64_MAX;

@@ -6,6 +6,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/io/volume_file.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"

@@ -1,4 +1,5 @@
 // Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
+#include "io/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
 
@@ -22,6 +23,12 @@ void save_voronoi(const std::string& path, const LatticeSurface&, const SiteSamp
 void save_preview(const std::string& path, const LatticeFrame&, const Shell&, const VoronoiLabels&,
                   const StageWriteOptions&) {
   throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions&) {
+  throw_without_openvdb(ErrorCode::unreadable_input, source.name());
+}
+bool unpack_stream(View<const char>, bool, View<char>) {
+  throw_without_openvdb(ErrorCode::unreadable_input, "a packed .nvdb file");
 }
 StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
 

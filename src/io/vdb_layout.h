@@ -43,9 +43,9 @@ VdbLayout read_vdb_header(const std::string& path, View<const char> bytes);
 VdbLayout read_vdb_layout(const std::string& path, View<const char> bytes);
 
 /// Walks the tree of a grid without decompressing it: every count, mask and length must be borne out by the bytes, so
-/// that OpenVDB cannot be led astray by them. Throws: unreadable_input, also for a grid type that is not a number or a
-/// vector of three.
-void check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid);
+/// that OpenVDB cannot be led astray by them. Result: bytes that the tree takes in memory. Throws: unreadable_input,
+/// also for a grid type that is not a number or a vector of three.
+int64_t check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid);
 
 /// Checksum of a file's bytes without its tag, in the form of a tag that is recognised as ours.
 std::string vdb_checksum_tag(View<const char> bytes);

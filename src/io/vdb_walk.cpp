@@ -13,6 +13,7 @@ namespace {
 constexpr uint32_t kZip = 1, kActiveMask = 2, kBlosc = 4;
 constexpr int64_t kBloscHeaderBytes = 16, kPaddedBytes = 128;
 constexpr int64_t kCoordBytes = 12;
+constexpr int64_t kLeafBytes = 192, kNodeBytes = 10240;  // beside their values: masks, allocation
 
 /// How values are stored in front of a block: see OpenVDB's io/Compression.h for the meaning of 0 to 6.
 struct InactiveCode {
@@ -44,7 +45,7 @@ class TreeWalk {
     if (compression_ > (kZip | kActiveMask | kBlosc)) in_.fail("unknown compression " + std::to_string(compression_));
   }
 
-  void run() {
+  int64_t run() {
     skip_transform();
     if (in_.value<uint32_t>("count of buffers") != 1) in_.fail("a tree must have one buffer");
     in_.take(value_bytes_, "background");
@@ -53,9 +54,13 @@ class TreeWalk {
     for (uint32_t i = 0; i < children; ++i) {
       in_.take(kCoordBytes, "origin of a node");
       walk_node<5>();
+      ++uppers_;
     }
     for (int64_t l = 0; l < leaves_; ++l) walk_values(512, count_on(mask(512)));
     if (in_.at() != end_) in_.fail("the grid goes on for " + std::to_string(end_ - in_.at()) + " bytes after its tree");
+    const int64_t leaf_bytes = 512 * value_bytes_ + kLeafBytes, tile_bytes = std::max<int64_t>(value_bytes_, 8);
+    return leaves_ * leaf_bytes + lowers_ * (4096 * tile_bytes + kNodeBytes) +
+           uppers_ * (32768 * tile_bytes + kNodeBytes);
   }
 
  private:
@@ -90,7 +95,7 @@ class TreeWalk {
     walk_values(kBits, count_on(mask(kBits)));
     for (int64_t c = 0; c < children; ++c) {
       if constexpr (kLog2 == 5)
-        walk_node<4>();
+        walk_node<4>(), ++lowers_;
       else
         mask(512), ++leaves_;
     }
@@ -135,13 +140,13 @@ class TreeWalk {
 
   VdbCursor in_;
   uint32_t compression_;
-  int64_t end_, value_bytes_ = 0, stored_bytes_ = 0, leaves_ = 0;
+  int64_t end_, value_bytes_ = 0, stored_bytes_ = 0, leaves_ = 0, lowers_ = 0, uppers_ = 0;
 };
 
 }  // namespace
 
-void check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid) {
-  TreeWalk(path, bytes, grid).run();
+int64_t check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid) {
+  return TreeWalk(path, bytes, grid).run();
 }
 
 }  // namespace isoshell

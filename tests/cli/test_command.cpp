@@ -53,7 +53,7 @@ TEST_CASE("command: an input that cannot be read exits with 3 and is named", "[c
                "property float z\nend_header\n0 0 0\n");
   CHECK(contains(folder.run("cloud.ply out.ply").err, "point clouds are not read yet"));
   folder.write("smoke.nvdb", "x");
-  CHECK(contains(folder.run("smoke.nvdb out.ply").err, "volumes are not read yet"));
+  CHECK(contains(folder.run("smoke.nvdb out.ply").err, "truncated"));
   folder.write("text.txt", "x");
   CHECK(contains(folder.run("text.txt out.ply").err, "--input-format"));
   folder.write("liar.off", "OFF\n100 200 0\n0 0 0\n");

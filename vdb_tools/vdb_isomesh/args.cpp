@@ -19,15 +19,15 @@ namespace {
 constexpr const char* kDescription =
     "vdb_isomesh INPUT OUTPUT [options]\n\n"
     "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
-    "INPUT   mesh (.obj .ply .stl .off) or a stage file that this command wrote (.vdb); - reads standard\n"
-    "        input and needs --input-format\n"
+    "INPUT   mesh (.obj .ply .stl .off), volume (.vdb .nvdb; FILE.vdb:NAME names a grid), or a stage file\n"
+    "        that this command wrote (.vdb); - reads standard input and needs --input-format\n"
     "OUTPUT  mesh (.ply .obj .stl .off), or .vdb with --stop-after; - writes standard output and needs\n"
     "        --output-format";
 
 /// What CLI11 fills in before it is checked and turned into Arguments.
 struct Raw {
   int64_t vertices = 0;
-  double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0;
+  double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0, iso = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
   std::string seed, close_gaps, method, fit, device, stop_after, require, max_memory, progress;
   bool verbose = false, quiet = false, help = false, version = false;
@@ -77,7 +77,9 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   flag(shape, "--uniform-area", a.remesh.uniform_area, "triangles of even size rather than of the best shape");
 
   const char* files = "Files";
-  option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off or vdb", "by its name");
+  option(files, "--iso", raw.iso, "V", "value of a volume's surface; a fog volume needs it", "0 in a level set");
+  option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off, vdb or nvdb",
+         "by its name");
   option(files, "--output-format", a.output_format, "F", "format of OUTPUT: ply, obj, stl, off or vdb", "by its name");
   option(files, "--save-shell", a.save_shell, "F.vdb", "keep the shell; a run can resume from it", "");
   option(files, "--save-voronoi", a.save_voronoi, "F.vdb", "keep the Voronoi volume; a run can resume from it", "");
@@ -213,8 +215,21 @@ std::string extension_of(const std::string& path) {
                                                                                  : lower_extension(path.substr(dot));
 }
 
+/// FILE.vdb:NAME and FILE.nvdb:NAME.
+void split_off_grid(Arguments& a) {
+  const size_t slash = a.input.find_last_of('/'), start = slash == std::string::npos ? 0 : slash;
+  const size_t colon = a.input.find(".vdb:", start), nano_colon = a.input.find(".nvdb:", start);
+  const size_t at = std::min(colon == std::string::npos ? colon : colon + 4,
+                             nano_colon == std::string::npos ? nano_colon : nano_colon + 5);
+  if (at == std::string::npos) return;
+  a.grid = a.input.substr(at + 1);
+  a.input.resize(at);
+  if (a.grid.empty()) refuse("INPUT names no grid behind its colon");
+}
+
 /// Formats by name or option; "-" has no name to go by.
 void settle_formats(Arguments& a) {
+  split_off_grid(a);
   a.input_format = lower_extension(a.input_format);
   a.output_format = lower_extension(a.output_format);
   if (a.input == "-" && a.input_format.empty()) refuse("INPUT is standard input; say what it holds by --input-format");
@@ -250,6 +265,10 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (ranged("tolerance", raw.tolerance, 0, 1)) o.tolerance = raw.tolerance;
   if (ranged("step", raw.step, 1.0 / kOneVoxelQ8, 1000)) o.max_step_vox = raw.step;
   if (ranged("threads", double(raw.threads), 1, 4096)) a.threads = int(raw.threads);
+  if (a.was_given("iso")) {
+    if (!std::isfinite(raw.iso)) refuse("--iso must be a finite number");
+    a.iso = raw.iso;
+  }
   if (!raw.seed.empty()) o.seed = parse_seed(raw.seed);
   if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);
   if (!raw.method.empty())

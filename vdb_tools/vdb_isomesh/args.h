@@ -25,6 +25,8 @@ struct Gates {
 
 struct Arguments {
   std::string input, output;
+  std::string grid;  ///< of INPUT given as FILE.vdb:NAME
+  std::optional<double> iso;
   std::string input_format, output_format;  ///< lower case, without a dot; empty means by the name
   RemeshOptions remesh;
   std::vector<std::string> given;  ///< long names of the options that were given, without dashes

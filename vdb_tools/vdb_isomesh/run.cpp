@@ -105,16 +105,34 @@ class Run {
       case InputKind::stage:
         read_stage_file(source);
         break;
-      default:
+      case InputKind::volume:
+        read_volume_file(source.soup);
+        break;
+      case InputKind::points:
         throw Error(ErrorCode::unreadable_input, "read",
-                    a_.input + ": " + (record_.input.kind == InputKind::points ? "point clouds" : "volumes") +
-                        " are not read yet; give a mesh (.obj .ply .stl .off) or a stage file");
+                    a_.input + ": point clouds are not read yet; give a mesh, a volume or a stage file");
     }
+    if (a_.iso && record_.input.kind != InputKind::volume)
+      throw Error(ErrorCode::usage, "command line", "--iso is for volumes; leave it out");
     return source;
+  }
+
+  void read_volume_file(TriangleSoup& soup) {
+    VolumeInfo volume;
+    soup = read_volume(a_.input, {a_.grid, a_.iso, context_.memory_limit_bytes}, volume);
+    note_soup(soup);
+    std::ostringstream text;
+    text << a_.input << ": grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso
+         << ", voxel size " << volume.voxel_size_world << ", " << counted(volume.blocks, "block");
+    console_.detail(text.str());
   }
 
   void read_soup(TriangleSoup& soup) {
     soup = read_mesh(a_.input, mesh_format(a_.input_format));
+    note_soup(soup);
+  }
+
+  void note_soup(const TriangleSoup& soup) {
     InputFacts& facts = record_.input;
     facts.vertices = int64_t(soup.vertices.size());
     facts.faces = soup.faces_in_file;

@@ -1,0 +1,35 @@
+// Volumes as input: level sets and fog volumes of .vdb and .nvdb files become the closed surface of their zero
+// crossing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/surface_source.h"
+
+namespace isoshell {
+
+struct VolumeReadOptions {
+  std::string grid;           ///< name of the grid; empty takes the only level set, or the only grid that can be meshed
+  std::optional<double> iso;  ///< value of the surface; without it 0 in a level set, and an error in a fog volume
+  int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
+};
+
+/// What was read, for messages and statistics.
+struct VolumeInfo {
+  std::string grid, grid_class;  ///< class as the file says it: "level set", "fog volume", "unknown"
+  double iso = 0;
+  double voxel_size_world = 0;  ///< longest edge of a voxel
+  int64_t blocks = 0;           ///< of 8^3 voxels that hold values of their own
+};
+
+/// Reads one grid and extracts the surface on which its trilinear field has the value `iso`: closed, 2-manifold, with
+/// vertices where lattice edges cross it, oriented towards the side on which the background lies. Every count and
+/// offset in the file is held to its bytes before anything is allocated by it.
+/// Throws: unreadable_input for a damaged file, a value that is not a number, and frustum transforms; nothing_to_mesh
+/// for a grid without the surface or of a type that has none (points, booleans, vectors), naming the grids there are;
+/// usage when the grid or its iso value must be named; out_of_memory over the limit.
+TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info);
+
+}  // namespace isoshell
