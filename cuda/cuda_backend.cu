@@ -17,6 +17,10 @@ const BackendTable* cuda_backend() {
       cpu_backend().cut_false_handles,  // sequential by nature
       cuda_coarsen_sites,
       cuda_build_outline,
+      cuda_set_edge_lengths,
+      cuda_seed_shares,
+      cuda_copy_edge_lengths,
+      cuda_measure_curvature,
       cuda_place_seeds_on_sheet,
       cuda_place_seeds_on_sites,
       cuda_relax_on_sheet,

@@ -14,6 +14,7 @@ constexpr double kVoxelsPerSpacing = 6;  // default grid: a cell is about this m
 constexpr int32_t kMinDefaultResolution = 64;
 constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
 
+constexpr int64_t kUsualVertices = 10000;
 constexpr int32_t kMinResolution = 8;
 constexpr int64_t kMaxVertices = 2147483647;
 
@@ -34,7 +35,7 @@ int32_t asked_voxel_resolution(double longest, double voxel_size) {
 }  // namespace
 
 int64_t vertex_target(const RemeshOptions& options, double area_world) {
-  if (options.edge_length_world <= 0) return options.vertices;
+  if (options.edge_length_world <= 0) return options.vertices > 0 ? options.vertices : kUsualVertices;
   const double per_vertex = kAreaPerEdgeSq * options.edge_length_world * options.edge_length_world;
   const double vertices = area_world / per_vertex;
   if (!(vertices <= double(kMaxVertices))) {  // a tiny length squares to 0
@@ -51,8 +52,30 @@ int32_t first_resolution(const RemeshOptions& options, double area_world, WorldP
   const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
   if (options.voxel_size_world > 0) return asked_voxel_resolution(longest, options.voxel_size_world);
   const double spacing = std::sqrt(area_world / double(vertex_target(options, area_world)));
-  if (!(spacing > 0)) return kMinDefaultResolution;
-  return std::clamp(resolution_for_voxel(longest, spacing / kVoxelsPerSpacing), kMinDefaultResolution, kMaxResolution);
+  return spacing > 0 ? resolution_for_cell(longest, spacing) : kMinDefaultResolution;
+}
+
+int32_t resolution_for_cell(double longest_world, double cell_world) {
+  return std::clamp(resolution_for_voxel(longest_world, cell_world / kVoxelsPerSpacing), kMinDefaultResolution,
+                    kMaxResolution);
+}
+
+double usual_edge_length(const RemeshOptions& options, double area_world) {
+  if (options.edge_length_world > 0) return options.edge_length_world;
+  return std::sqrt(area_world / double(vertex_target(options, area_world)) / kAreaPerEdgeSq);
+}
+
+double sheet_area_world(const Sheet& sheet) {
+  const Buffer<PointQ8> position = sheet.position.to_host();
+  double area = 0;
+  for (TriangleIndices t : sheet.triangles.to_host()) {
+    const WorldPoint a = sheet.frame.to_world(position[t.a]), b = sheet.frame.to_world(position[t.b]),
+                     c = sheet.frame.to_world(position[t.c]);
+    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    area += std::sqrt(nx * nx + ny * ny + nz * nz) / 2;
+  }
+  return area;
 }
 
 }  // namespace isoshell

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "choose_grid.h"
 #include "core/copy_product.h"
 #include "core/seed_count.h"
 #include "voxel/exact_int.h"
@@ -43,18 +44,27 @@ DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
   return mesh;
 }
 
+/// How many cells of the smallest size would cover the sheet, over the number of its cells.
+double crowding_of(const Sheet& sheet, Context& context) {
+  if (sheet.lengths.at.empty()) return 1;
+  const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
+  return area_vox * 2 * kOneVoxelQ8 * kOneVoxelQ8 / double(seed_shares_q16(sheet, context));
+}
+
 /// What the levels relax on: the sheet for the finest, outlines on coarser lattices for the others.
 class Outlines {
  public:
   Outlines(const Prepared& prepared, const std::vector<int64_t>& counts, Context& context) : finest_(prepared.sheet) {
     halvings_.assign(counts.size(), 0);
     const SiteSet* sites = &prepared.sites;
+    const double crowding = crowding_of(finest_, context);
     LatticeFrame frame = prepared.sheet.frame;
     int32_t closing_vox = prepared.closing_vox;
     for (int64_t level = int64_t(counts.size()) - 2; level >= 0; --level) {
       halvings_[size_t(level)] = int(outlines_.size());
-      while ((outlines_.empty() ? finest_.vertex_count() : outlines_.back().vertex_count()) >=
-             4 * kFewestVerticesPerSeed * counts[size_t(level)]) {
+      const double cells = crowding * double(counts[size_t(level)]);
+      while (double((outlines_.empty() ? finest_ : outlines_.back()).vertex_count()) >=
+             4 * kFewestVerticesPerSeed * cells) {
         SiteSet coarser = coarsen_sites(*sites, context);
         frame.voxel_size *= 2;
         frame.resolution = (frame.resolution + 1) / 2;
@@ -65,6 +75,7 @@ class Outlines {
           std::fill(halvings_.begin(), halvings_.begin() + level + 1, int(outlines_.size()));
           return;
         }
+        if (!finest_.lengths.at.empty()) copy_edge_lengths(finest_, int(outlines_.size()) + 1, outline, context);
         sites_ = std::move(coarser);
         sites = &sites_;
         outlines_.push_back(std::move(outline));

@@ -13,6 +13,7 @@
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
+#include "sizing.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -169,23 +170,40 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.sheet = p.sheet.topology;
   report.topology_compared = report.input.closed && report.input.oriented && report.input.genus >= 0;
   report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
+  timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
   note_digest(options, report, context, "surface", p.surface);
   note_digest(options, report, context, "sites", p.sites);
   note_digest(options, report, context, "samples", p.samples);
   note_digest(options, report, context, "sheet", p.sheet);
 }
 
-double sheet_area_world(const Sheet& sheet) {
-  const Buffer<PointQ8> position = sheet.position.to_host();
-  double area = 0;
-  for (TriangleIndices t : sheet.triangles.to_host()) {
-    const WorldPoint a = sheet.frame.to_world(position[t.a]), b = sheet.frame.to_world(position[t.b]),
-                     c = sheet.frame.to_world(position[t.c]);
-    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    area += std::sqrt(nx * nx + ny * ny + nz * nz) / 2;
-  }
-  return area;
+/// A field of one length that decides the count is an edge length.
+RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
+  if (options.sizing && options.vertices <= 0 && options.adaptivity <= 0)
+    if (const double length = even_length_world(*options.sizing, soup); length > 0) options.edge_length_world = length;
+  return options;
+}
+
+/// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
+/// Lengths are first found on the grid that even cells would have.
+int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+                               int32_t usual, RemeshReport& report, Context& context) {
+  memory_allows(estimate_run(soup, input, options, usual), false, report, context);
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
+  LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
+  surface.topology = input;
+  Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+  RemeshReport unsaid;
+  timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
+  if (p.sheet.lengths.at.empty()) return usual;
+  const double cell_world = smallest_cell_vox(options, p, context) * frame.voxel_size;
+  int32_t resolution = resolution_for_cell(frame.voxel_size * (usual - 1), cell_world);
+  while (resolution > usual && context.memory_limit_bytes > 0 &&
+         estimate_run(soup, input, options, resolution).bytes > context.memory_limit_bytes)
+    resolution = std::max(usual, resolution - resolution / 8);
+  return resolution;
 }
 
 RelaxOptions relax_options(const RemeshOptions& options) {
@@ -208,7 +226,8 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   return p;
 }
 
-Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context) {
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+  const RemeshOptions options = with_even_length(asked, soup);
   report.dirt = soup.dirt;
   const InputTopology input =
       timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
@@ -217,10 +236,13 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
   check_area(input);
   const bool compare = input.closed && input.oriented && input.genus >= 0;
   const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
-  const int32_t first = first_resolution(options, input.area_world, lo, hi);
+  const int32_t usual = first_resolution(options, input.area_world, lo, hi);
+  const int32_t first = free_grid && wants_lengths(options)
+                            ? resolution_for_lengths(soup, input, options, usual, report, context)
+                            : usual;
   // Each component takes four vertices at least: where there are fewer, no grid brings the input's topology.
   const bool reachable = compare && vertex_target(options, input.area_world) >= 4 * input.components;
-  const int32_t cap = free_grid && reachable ? std::min(4 * first, kMaxResolution) : first;
+  const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
 
   Prepared best;
   int64_t best_gap = INT64_MAX;
@@ -250,7 +272,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshR
 
 SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
   const double area_world = options.edge_length_world > 0 ? sheet_area_world(p.sheet) : 0;
-  const int64_t target = vertex_target(options, area_world);
+  const int64_t target = p.vertices > 0 ? p.vertices : vertex_target(options, area_world);
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
@@ -303,6 +325,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     report.warnings.push_back(std::to_string(report.post.self_intersections) +
                               " pairs of triangles intersect: parts of the surface are nearer to one another than its "
                               "edges are long; ask for more --vertices");
+  measure_edges(p.sheet, seeds, dual, report.sizing, context);
   TriangleMesh mesh = to_world(dual, p.surface.frame);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "isoshell/sizing.h"
 #include "isoshell/stages.h"
 
 namespace isoshell {
@@ -16,7 +18,7 @@ enum class Method {
 };
 
 struct RemeshOptions {
-  int64_t vertices = 10000;      ///< target count; ignored when edge_length_world is set
+  int64_t vertices = 10000;      ///< target count; ignored when edge_length_world is set; 0: as `sizing` asks for
   double edge_length_world = 0;  ///< 0 means by vertices
   int32_t resolution = 0;        ///< voxels along the longest side; 0 chooses
   double voxel_size_world = 0;   ///< 0 means by resolution
@@ -28,6 +30,9 @@ struct RemeshOptions {
   double tolerance = -1;    ///< relative fall of the energy a pass; negative means the method's own
   double max_step_vox = 0;  ///< u; 0 means the method's own
   uint64_t seed = 0;
+  std::shared_ptr<const SizingField> sizing;  ///< edge lengths to aim at; null: the same everywhere
+  double adaptivity = 0;                      ///< part of the vertices that goes by curvature, 0 to 1
+  double gradation = 1.25;                    ///< most that an edge may be longer than its neighbours, above 1
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
@@ -52,7 +57,8 @@ struct RemeshReport {
   bool topology_agrees = false;    ///< components and genus of the sheet equal the input's
   RelaxReport relax;
   DualReport dual;
-  PostReport post;         ///< of the final mesh, when post_done
+  PostReport post;  ///< of the final mesh, when post_done
+  SizingReport sizing;
   bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections
   int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was tried; see memory_estimate.h
   std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry
@@ -66,8 +72,9 @@ struct Prepared {
   SiteSet sites;
   SiteSamples samples;
   Shell shell;  ///< empty unless the method or want_shell asks for it
-  Sheet sheet;
+  Sheet sheet;  ///< with edge lengths where they vary
   int32_t closing_vox = 0;
+  int64_t vertices = 0;  ///< as many as the sizing field asks for; 0: as the options say
 };
 
 /// Chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the

@@ -62,6 +62,20 @@ Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const Sheet
 /// Six times the volume inside a sheet, in whole voxels, rounded down once.
 int64_t six_volume_vox(const Sheet& sheet, Context& context);
 
+constexpr int64_t kMostLengthSlopeQ16 = int64_t(1) << 24;
+
+/// Gives a sheet edge lengths to aim at: the largest that are nowhere above `raw`, one a vertex in 1/256 voxel, and
+/// grow by at most slope_q16 / 65536 of every edge's length. They are unique. Throws: usage.
+void set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Context& context);
+/// Doubled area of the sheet, that of each triangle over the square of its length, the least length being 1; q16.
+int64_t seed_shares_q16(const Sheet& sheet, Context& context);
+/// Gives an outline the lengths of the sheet it stands for, those of the nearest vertices. `halvings`: how many times
+/// the edge of its voxels was doubled.
+void copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context);
+/// Per vertex how much normals turn a voxel, in 1/65536: the root of the mean square over its edges, of normals that
+/// became the mean of their neighbours' in so many rounds, and smoothed in as many.
+Buffer<uint32_t> measure_curvature(const Sheet& sheet, int32_t rounds, Context& context);
+
 struct SeedOptions {
   int64_t count = 0;  ///< k
   uint64_t seed = 0;  ///< start of the counter-based generator

@@ -16,6 +16,10 @@ Sheet cpu_build_sheet(const LatticeSurface&, const SiteSet& walls, const SiteSet
 SiteSet cpu_cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&);
 SiteSet cpu_coarsen_sites(const SiteSet&, Context&);
 Sheet cpu_build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
+void cpu_set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&);
+int64_t cpu_seed_shares(const Sheet&, Context&);
+void cpu_copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context&);
+Buffer<uint32_t> cpu_measure_curvature(const Sheet&, int32_t rounds, Context&);
 RelaxReport cpu_relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&);
 RelaxReport cpu_relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
                                Context&);

@@ -1,6 +1,7 @@
 // Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
 #include "io/volume_readers.h"
 #include "isoshell/error.h"
+#include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 
 namespace isoshell {
@@ -29,6 +30,9 @@ std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const Vol
 }
 bool unpack_stream(View<const char>, bool, View<char>) {
   throw_without_openvdb(ErrorCode::unreadable_input, "a packed .nvdb file");
+}
+std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_t) {
+  throw_without_openvdb(ErrorCode::unreadable_input, source);
 }
 StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
 

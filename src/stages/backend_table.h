@@ -22,6 +22,10 @@ struct BackendTable {
   SiteSet (*cut_false_handles)(const SiteSet&, const SiteSamples&, int64_t genus, Context&);
   SiteSet (*coarsen_sites)(const SiteSet&, Context&);
   Sheet (*build_outline)(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
+  void (*set_edge_lengths)(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&);
+  int64_t (*seed_shares)(const Sheet&, Context&);
+  void (*copy_edge_lengths)(const Sheet& from, int halvings, Sheet& to, Context&);
+  Buffer<uint32_t> (*measure_curvature)(const Sheet&, int32_t rounds, Context&);
   SeedSet (*place_seeds_on_sheet)(const Sheet&, const SeedOptions&, Context&);
   SeedSet (*place_seeds_on_sites)(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
   RelaxReport (*relax_on_sheet)(const Sheet&, SeedSet&, const RelaxOptions&, Context&);

@@ -104,7 +104,7 @@ class Improvement {
     moved_home_ = exec.template make<uint32_t>(vertices_);
     harmed_ = exec.template make<uint32_t>(vertices_);
     connect();
-    edge_q8_ = double(exec.sum(half_edges_, EdgeLength{view(), mesh_.position.view()})) / double(half_edges_);
+    measure_size();
   }
 
   /// Flips until none is left or `rounds` are done. Returns how many were made.
@@ -135,7 +135,8 @@ class Improvement {
     update_seeds();
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
     label_sheet(exec_, sheet_, seeds_, seed_spacing(exec_, sheet_, vertices_), label.view());
-    const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * mesh_.triangles.size()));
+    const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
+    const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * smallest));
     const int64_t count = (sheet_.vertex_count() + stride - 1) / stride;
     sample_ = exec_.template make<FitSample>(count);
     rest_sq_ = exec_.template make<int64_t>(count);
@@ -150,7 +151,7 @@ class Improvement {
   void fit(int steps, double damping, bool grow, double least_merit) {
     FitOptions options;
     options.smooth = smooth_options(0.1);
-    options.stiffness = kStiffness * double(sample_.size()) / double(vertices_);
+    options.stiffness = kStiffness * double(sample_.size()) / (smallest_fit_ * double(vertices_));
     options.damping = damping;
     for (int s = 0; s < steps; ++s) {
       exec_.fill(triangle_pull_.view(), TrianglePull{});
@@ -158,7 +159,7 @@ class Improvement {
       exec_.for_each("pull corners", sample_.size(),
                      PullCorners{view(),
                                  mesh_.position.view(),
-                                 {rms_q8_, 0.1 * edge_q8_, grow},
+                                 {rms_q8_, 0.1 * size_.edge_q8, grow},
                                  sample_.view(),
                                  triangle_pull_.view(),
                                  vertex_pull_.view(),
@@ -182,7 +183,7 @@ class Improvement {
       const Buffer<uint32_t> chosen = exec_.select(vertices_, MayMove{view(), harmed_.view(), uint64_t(r)});
       if (chosen.empty()) return;
       exec_.for_each("search", chosen.size(),
-                     SearchVertex{view(), walk_, chosen.view(), edge_q8_, r % 2 == 1, onto_sheet, mesh_.position.view(),
+                     SearchVertex{view(), walk_, chosen.view(), size_, r % 2 == 1, onto_sheet, mesh_.position.view(),
                                   seeds_.home.view()});
     }
   }
@@ -191,7 +192,7 @@ class Improvement {
   /// done: first to the sheet, then to where they began. A round that does not help takes more vertices in the next.
   void undo_intersections(PostReport& report) {
     Buffer<uint32_t> spread = exec_.template make<uint32_t>(vertices_);
-    const int64_t spacing_vox = int64_t(edge_q8_) / kOneVoxelQ8 + 1;
+    const int64_t spacing_vox = int64_t(size_.edge_q8) / kOneVoxelQ8 + 1;
     for (int round = 0;; ++round) {
       report.self_intersections = find_intersections(exec_, {mesh_.triangles.view(), mesh_.position.view()},
                                                      sheet_.corners.block_dims, spacing_vox, harmed_.view());
@@ -219,9 +220,22 @@ class Improvement {
   SmoothOptions smooth_options(double most_edges) const {
     SmoothOptions options;
     options.evenness = evenness_;
-    options.edge_q8 = edge_q8_;
-    options.most_q8 = most_edges * edge_q8_;
+    options.size = size_;
+    options.most_edges = most_edges;
     return options;
+  }
+
+  /// Where lengths vary, edges are those of equilateral triangles around the vertices' cells.
+  void measure_size() {
+    constexpr double kEdgeSqOfCell = 1.1547005383792515;
+    const SeedSpacing spacing = seed_spacing(exec_, sheet_, vertices_);
+    size_.lengths = spacing.lengths;
+    if (spacing.lengths.vary()) {
+      size_.edge_q8 = rounded_sqrt(kEdgeSqOfCell * double(spacing.h_sq_q16));
+      smallest_fit_ = double(spacing.area2_q16 / 2) / (double(spacing.h_sq_q16) * double(vertices_));
+    } else {
+      size_.edge_q8 = double(exec_.sum(half_edges_, EdgeLength{view(), mesh_.position.view()})) / double(half_edges_);
+    }
   }
 
   void update_seeds() {
@@ -256,8 +270,9 @@ class Improvement {
   DualMesh& mesh_;
   int64_t vertices_, half_edges_;
   WalkOntoSheet walk_;
-  double edge_q8_ = 0;  ///< mean length
-  double rms_q8_ = 0;   ///< of the samples' residuals, 0 before they were first looked at
+  EdgeSize size_;
+  double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest
+  double rms_q8_ = 0;        ///< of the samples' residuals, 0 before they were first looked at
   Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, harmed_;
   Buffer<uint64_t> claim_;
   Buffer<PointQ8> moved_, previous_, on_sheet_, begin_;

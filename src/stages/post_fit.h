@@ -11,7 +11,7 @@ namespace isoshell::post {
 
 struct FitOptions {
   SmoothOptions smooth;
-  double stiffness = 0;  ///< weight of the shape, in samples
+  double stiffness = 0;  ///< weight of the shape, in samples where edges are shortest: an area has as many everywhere
   double damping = 1;    ///< part of the move that is made
   double rms_q8 = 0;     ///< of the samples' residuals
 };
@@ -45,7 +45,8 @@ struct FitVertex {
 
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
-    const double radius_q8 = options.smooth.edge_q8 * kRadiusOfEdge;
+    const double size = options.smooth.size.ratio(home[v]), edge_q8 = options.smooth.size.at(home[v]),
+                 radius_q8 = edge_q8 * kRadiusOfEdge;
     Vector shape = {0, 0, 0}, normal = {0, 0, 0}, pull = {0, 0, 0};
     Symmetric a;
     const uint32_t start = mesh.outgoing[v];
@@ -65,10 +66,10 @@ struct FitVertex {
     normal = unit(normal);
     shape = 1 / double(mesh.valence[v]) * shape;
     shape = shape - dot(shape, normal) * normal;
-    const double stiffness = options.stiffness * kPullScale;
+    const double stiffness = options.stiffness * (size * size) * kPullScale;
     a.xx += stiffness, a.yy += stiffness, a.zz += stiffness;
     const Vector move = options.damping * a.solve(pull + stiffness * shape);
-    to[v] = moved_by(p, at_most(move, options.smooth.most_q8));
+    to[v] = moved_by(p, at_most(move, options.smooth.most_edges * edge_q8));
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include "stages/post_mesh.h"
 #include "stages/post_shape.h"
+#include "stages/post_size.h"
 #include "stages/sheet_walk.h"
 #include "voxel/random.h"
 
@@ -43,7 +44,7 @@ struct SearchVertex {
   MeshView mesh;
   WalkOntoSheet walk;
   View<const uint32_t> chosen;
-  double edge_q8;
+  EdgeSize edge;
   bool odd;  ///< turns the compass by half a point
   bool onto_sheet;
   View<PointQ8> position;
@@ -62,7 +63,7 @@ struct SearchVertex {
     const double here = worst_merit(v, p, p, 0);
     double best = here;
     PointQ8 best_place = p;
-    double step = 0.16 * edge_q8;
+    double step = 0.16 * edge.at(home[v]);
     for (int size = 0; size < 4; ++size, step *= 0.5)
       for (int point = 0; point < 8; ++point) {
         const PointQ8 place = moved_by(p, step * direction(point, east, north));

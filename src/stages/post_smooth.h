@@ -4,6 +4,7 @@
 
 #include "stages/post_mesh.h"
 #include "stages/post_shape.h"
+#include "stages/post_size.h"
 #include "stages/sheet_walk.h"
 
 namespace isoshell::post {
@@ -11,10 +12,10 @@ namespace isoshell::post {
 constexpr double kRadiusOfEdge = 0.5773502691896258;  ///< circumradius of the equilateral triangle of edge 1
 
 struct SmoothOptions {
-  double momentum = 0;     ///< part of the last move that is added
-  double evenness = 0.1;   ///< weight of the mean size against the triangle's own, 0 to 1
-  double edge_q8 = 0;      ///< mean edge length
-  double most_q8 = 0;      ///< longest move
+  double momentum = 0;    ///< part of the last move that is added
+  double evenness = 0.1;  ///< weight of the mean size against the triangle's own, 0 to 1
+  EdgeSize size;
+  double most_edges = 0;   ///< longest move, in edges
   bool onto_sheet = true;  ///< back onto the sheet, or only along the mesh
 };
 
@@ -41,7 +42,7 @@ struct SmoothVertex {
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
-    const double radius_q8 = options.edge_q8 * kRadiusOfEdge;
+    const double edge_q8 = options.size.at(home[v]), radius_q8 = edge_q8 * kRadiusOfEdge;
     Vector sum = {0, 0, 0}, normal = {0, 0, 0};
     for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
       sum = sum + to_equilateral_corner(p, from[b], from[c], options.evenness, radius_q8);
@@ -49,7 +50,7 @@ struct SmoothVertex {
     });
     normal = unit(normal);
     const Vector wanted = 1 / double(mesh.valence[v]) * sum + options.momentum * from_to(previous[v], p);
-    const Vector move = at_most(wanted - dot(wanted, normal) * normal, options.most_q8);
+    const Vector move = at_most(wanted - dot(wanted, normal) * normal, options.most_edges * edge_q8);
     const PointQ8 target = moved_by(p, move);
     to[v] = target;
     if (!options.onto_sheet) return;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "isoshell/stages.h"
+#include "stages/edge_lengths.h"
 #include "stages/sheet_walk.h"
 
 namespace isoshell {
@@ -26,7 +27,8 @@ struct StandsForEdge {
   }
 };
 
-/// Where a new seed may go: the middle of an edge, or of a triangle. Larger ones come first, then smaller indices.
+/// Where a new seed may go: the middle of an edge, or of a triangle. Larger ones, beside the lengths there, come first,
+/// then smaller indices.
 struct Place {
   int64_t size;
   uint32_t index, zero = 0;
@@ -44,22 +46,27 @@ struct MeasureEdge {
   StandsForEdge edges;
   View<const uint32_t> half_edge;
   View<const PointQ8> position;
+  View<const uint32_t> home;
+  EdgeLengthsView lengths;
   View<Place> out;
   ISOSHELL_HD void operator()(int64_t i) const {
     const Edge e = edges.edge(half_edge[i]);
-    out[i] = {distance_sq_q16(position[e.a], position[e.b]), half_edge[i]};
+    const int64_t length_sq = distance_sq_q16(position[e.a], position[e.b]);
+    out[i] = {lengths.share_of_seeds(length_sq, {home[e.a], home[e.a], home[e.b]}), half_edge[i]};
   }
 };
 struct MeasureTriangle {
   View<const TriangleIndices> triangles;
   View<const PointQ8> position;
+  View<const uint32_t> home;
+  EdgeLengthsView lengths;
   View<Place> out;
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = triangles[i];
     const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
-    out[i] = {
-        int64_t(__builtin_sqrt(double(n.x) * double(n.x) + double(n.y) * double(n.y) + double(n.z) * double(n.z))),
-        uint32_t(i)};
+    const auto area2 =
+        int64_t(__builtin_sqrt(double(n.x) * double(n.x) + double(n.y) * double(n.y) + double(n.z) * double(n.z)));
+    out[i] = {lengths.share_of_seeds(area2, {home[t.a], home[t.b], home[t.c]}), uint32_t(i)};
   }
 };
 
@@ -139,7 +146,8 @@ SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mes
 
   Buffer<Place> edges = exec.template make<Place>(half_edges.size());
   exec.for_each("measure edges", edges.size(),
-                MeasureEdge{stands, half_edges.view(), seeds.position.view(), edges.view()});
+                MeasureEdge{stands, half_edges.view(), seeds.position.view(), seeds.home.view(), lengths_of(sheet),
+                            edges.view()});
   if (on_edges < edges.size()) exec.sort(edges.view(), LargestFirst{});
   const View<Place> chosen{edges.data(), on_edges};
   exec.sort(chosen, ByIndex{});
@@ -148,7 +156,8 @@ SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mes
   if (in_triangles > 0) {
     Buffer<Place> triangles = exec.template make<Place>(mesh.triangles.size());
     exec.for_each("measure triangles", triangles.size(),
-                  MeasureTriangle{mesh.triangles.view(), seeds.position.view(), triangles.view()});
+                  MeasureTriangle{mesh.triangles.view(), seeds.position.view(), seeds.home.view(), lengths_of(sheet),
+                                  triangles.view()});
     exec.sort(triangles.view(), LargestFirst{});
     exec.for_each("seeds in triangles", in_triangles,
                   PutInTriangle{mesh.triangles.view(), triangles.view(), seeds.position.view(), seeds.home.view(),

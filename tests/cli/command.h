@@ -29,6 +29,15 @@ inline std::string content(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// A surface as an OFF file.
+inline void write_off(const fs::path& path, const TriangleSoup& soup) {
+  std::ofstream file(path);
+  file.precision(9);
+  file << "OFF\n" << soup.vertices.size() << " " << soup.triangles.size() << " 0\n";
+  for (const WorldPoint& p : soup.vertices) file << p.x << " " << p.y << " " << p.z << "\n";
+  for (const auto& t : soup.triangles) file << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+}
+
 /// A folder that is deleted at the end of the test, with the command run inside it.
 class Folder {
  public:
@@ -67,14 +76,7 @@ class Folder {
     std::ofstream(path_ / name, std::ios::binary) << text;
   }
 
-  /// A surface as an OFF file.
-  void write_off(const std::string& name, const TriangleSoup& soup) const {
-    std::ofstream file(path_ / name);
-    file.precision(9);
-    file << "OFF\n" << soup.vertices.size() << " " << soup.triangles.size() << " 0\n";
-    for (const WorldPoint& p : soup.vertices) file << p.x << " " << p.y << " " << p.z << "\n";
-    for (const auto& t : soup.triangles) file << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
-  }
+  void write_off(const std::string& name, const TriangleSoup& soup) const { cli::write_off(path_ / name, soup); }
 
  private:
   fs::path path_;

@@ -27,7 +27,7 @@ constexpr const char* kDescription =
 /// What CLI11 fills in before it is checked and turned into Arguments.
 struct Raw {
   int64_t vertices = 0;
-  double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0, iso = 0;
+  double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0, iso = 0, adaptivity = 0, gradation = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
   std::string seed, close_gaps, method, fit, device, stop_after, require, max_memory, progress;
   bool verbose = false, quiet = false, help = false, version = false;
@@ -52,6 +52,12 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   option(size, "--edge-length", raw.edge_length, "L", "edge length to aim at, in world units, instead of --vertices",
          "")
       ->excludes(vertices);
+  option(size, "--sizing", a.sizing, "F.vdb[:GRID]",
+         "edge lengths to aim at, world units, a float grid; without --vertices they alone decide the count", "");
+  option(size, "--adaptivity", raw.adaptivity, "A",
+         "0 to 1: the part of the vertices that goes by curvature rather than by area", "0");
+  option(size, "--gradation", raw.gradation, "G", "most that an edge may be longer than the next, above 1 to 10",
+         "1.25");
 
   const char* grid = "Grid";
   CLI::Option* resolution = option(grid, "--resolution", raw.resolution, "R",
@@ -258,6 +264,11 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   RemeshOptions& o = a.remesh;
   if (ranged("vertices", double(raw.vertices), 4, 2147483647)) o.vertices = raw.vertices;
   if (ranged("edge-length", raw.edge_length, tiny, most)) o.edge_length_world = raw.edge_length;
+  if (ranged("adaptivity", raw.adaptivity, 0, 1)) o.adaptivity = raw.adaptivity;
+  if (ranged("gradation", raw.gradation, 1, 10)) o.gradation = raw.gradation;
+  if (o.gradation <= 1) refuse("--gradation is 1; it must be above 1: at 1 all edges would have one length");
+  if (a.was_given("sizing") && a.sizing.empty()) refuse("--sizing needs the name of a .vdb file");
+  if (!a.sizing.empty() && !a.was_given("vertices")) o.vertices = 0;
   if (ranged("resolution", double(raw.resolution), 8, kMaxResolution)) o.resolution = int32_t(raw.resolution);
   if (ranged("voxel-size", raw.voxel_size, tiny, most)) o.voxel_size_world = raw.voxel_size;
   if (ranged("band", double(raw.band), 1, kMaxBandVox)) o.band_vox = int32_t(raw.band);
@@ -273,6 +284,8 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);
   if (!raw.method.empty())
     o.method = chosen<Method>("--method", raw.method, {{"sheet", Method::sheet}, {"shell", Method::shell}});
+  if (o.method == Method::shell && (!a.sizing.empty() || o.adaptivity > 0))
+    refuse("--sizing and --adaptivity need --method sheet: the paper's loop on the shell has even cells");
   if (!raw.fit.empty()) o.fit = chosen<Fit>("--fit", raw.fit, {{"balanced", Fit::balanced}, {"surface", Fit::surface}});
   if (!raw.device.empty()) set_device(raw.device, a);
   if (!raw.stop_after.empty())
@@ -339,8 +352,8 @@ namespace {
   const size_t dashes = text.find("--"), equals = text.find(" = ");
   if (dashes == std::string::npos || equals == std::string::npos || equals < dashes) refuse(text + "; see --help");
   const std::string option = text.substr(dashes, equals - dashes);
-  const bool real =
-      option == "--edge-length" || option == "--voxel-size" || option == "--tolerance" || option == "--step";
+  const bool real = option == "--edge-length" || option == "--voxel-size" || option == "--tolerance" ||
+                    option == "--step" || option == "--adaptivity" || option == "--gradation";
   refuse(option + " is '" + text.substr(equals + 3) + "'; it must be a " + (real ? "number" : "whole number"));
 }
 

@@ -31,6 +31,7 @@ struct Arguments {
   RemeshOptions remesh;
   std::vector<std::string> given;  ///< long names of the options that were given, without dashes
   std::string save_shell, save_voronoi, stats;
+  std::string sizing;  ///< FILE.vdb[:grid]; empty: even edges
   StopAfter stop_after = StopAfter::mesh;
   Gates gates;
   Backend backend = Backend::best;

@@ -39,6 +39,7 @@ class Run {
   int go() {
     check_outputs(a_);
     Source source = step("read", [&] { return read(); });
+    read_sizing_field();
     if (a_.dry_run) {
       print_estimate(source);
       return 0;
@@ -148,14 +149,23 @@ class Run {
     refuse_given({"resolution", "voxel-size", "close-gaps", "band"}, "is fixed by a stage file");
     source.stage = isoshell::read_stage(a_.input);
     if (source.stage->seeds)
-      refuse_given({"vertices", "edge-length", "method", "iterations", "tolerance", "step", "seed"},
+      refuse_given({"vertices", "edge-length", "sizing", "adaptivity", "gradation", "method", "iterations", "tolerance",
+                    "step", "seed"},
                    "is fixed by a Voronoi stage file");
-    adopt_options(source.stage->info.options_json, a_.input, a_, options_);
+    record_.kept_sizing = adopt_options(source.stage->info.options_json, a_.input, a_, options_);
     options_.band_vox = source.stage->shell.band_vox;
     if (source.stage->seeds && a_.stop_after == StopAfter::shell)
       throw Error(ErrorCode::usage, "command line", "INPUT is past the shell already; leave out --stop-after shell");
     console_.detail(a_.input + ": stage " + source.stage->info.stage + ", " +
                     counted(source.stage->shell.voxels.voxel_count(), "active voxel"));
+  }
+
+  /// The one that was asked for, or that the stage file's run had.
+  void read_sizing_field() {
+    const std::string& from = a_.was_given("sizing") ? a_.sizing : record_.kept_sizing;
+    if (from.empty()) return;
+    options_.sizing = step("sizing", [&] { return read_sizing(from, context_.memory_limit_bytes); });
+    console_.detail("sizing: " + from);
   }
 
   void refuse_given(std::initializer_list<const char*> options, const char* why) {

@@ -100,6 +100,11 @@ Json quality_json(const RunRecord& r) {
           {"area_cv", q.area_cv}};
 }
 
+Json sizing_json(const SizingReport& s) {
+  if (!s.varies) return nullptr;
+  return {{"min", s.least_world}, {"max", s.largest_world}, {"edge_error_mean", s.edge_error_mean}};
+}
+
 Json timings_json(const RunRecord& r) {
   Json j = Json::object();
   for (const auto* times : {&r.times, &r.report.times})
@@ -133,6 +138,7 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   j["counts"] = counts_json(r);
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
+  j["sizing"] = sizing_json(r.report.sizing);
   j["distance"] = {
       {"to_input_mean", nullptr}, {"to_input_max", nullptr}, {"from_input_max", nullptr}, {"unit", "world"}};
   j["energy"] = r.report.relax.energy;
@@ -149,21 +155,29 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
 }
 
 std::string options_json(const RemeshOptions& o) {
-  const Json j = {{"vertices", o.vertices},     {"edge-length", o.edge_length_world},
-                  {"band", o.band_vox},         {"method", method_name(o.method)},
-                  {"iterations", o.max_passes}, {"tolerance", o.tolerance},
-                  {"step", o.max_step_vox},     {"seed", o.seed},
-                  {"fit", fit_name(o.fit)},     {"uniform-area", o.uniform_area}};
+  const Json j = {{"vertices", o.vertices},
+                  {"edge-length", o.edge_length_world},
+                  {"band", o.band_vox},
+                  {"method", method_name(o.method)},
+                  {"iterations", o.max_passes},
+                  {"tolerance", o.tolerance},
+                  {"step", o.max_step_vox},
+                  {"seed", o.seed},
+                  {"fit", fit_name(o.fit)},
+                  {"uniform-area", o.uniform_area},
+                  {"adaptivity", o.adaptivity},
+                  {"gradation", o.gradation},
+                  {"sizing", o.sizing ? o.sizing->source() : ""}};
   return j.dump();
 }
 
-void adopt_options(const std::string& json, const std::string& path, const Arguments& a, RemeshOptions& o) {
+std::string adopt_options(const std::string& json, const std::string& path, const Arguments& a, RemeshOptions& o) {
   try {
     const Json j = Json::parse(json);
     const auto adopt = [&](const char* name, auto& value) {
       if (!a.was_given(name)) value = j.at(name).get<std::decay_t<decltype(value)>>();
     };
-    const bool size_given = a.was_given("vertices") || a.was_given("edge-length");
+    const bool size_given = a.was_given("vertices") || a.was_given("edge-length") || a.was_given("sizing");
     if (!size_given) {
       adopt("vertices", o.vertices);
       adopt("edge-length", o.edge_length_world);
@@ -173,8 +187,11 @@ void adopt_options(const std::string& json, const std::string& path, const Argum
     adopt("step", o.max_step_vox);
     adopt("seed", o.seed);
     adopt("uniform-area", o.uniform_area);
+    if (j.contains("adaptivity")) adopt("adaptivity", o.adaptivity);
+    if (j.contains("gradation")) adopt("gradation", o.gradation);
     if (!a.was_given("fit")) o.fit = j.at("fit") == "surface" ? Fit::surface : Fit::balanced;
     if (!a.was_given("method")) o.method = j.at("method") == "shell" ? Method::shell : Method::sheet;
+    return a.was_given("sizing") ? std::string() : j.value("sizing", "");
   } catch (const Json::exception& e) {
     throw Error(ErrorCode::unreadable_input, "read",
                 path + ": the options kept in this stage file cannot be read (" + e.what() + "); make the file again");

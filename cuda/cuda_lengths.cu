@@ -1,0 +1,28 @@
+// CUDA's edge lengths.
+#include "cuda/cuda_backend.h"
+#include "cuda/executor_cuda.cuh"
+#include "stages/lengths_body.h"
+
+namespace isoshell {
+
+void cuda_set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Context& context) {
+  CudaExecutor exec(context, "lengths");
+  set_edge_lengths_body(exec, on_device(exec, sheet), exec.to_device(raw), slope_q16);
+}
+
+int64_t cuda_seed_shares(const Sheet& sheet, Context& context) {
+  CudaExecutor exec(context, "lengths");
+  return seed_shares_body(exec, *OnDevice<Sheet>(exec, sheet));
+}
+
+void cuda_copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context) {
+  CudaExecutor exec(context, "lengths");
+  copy_edge_lengths_body(exec, *OnDevice<Sheet>(exec, from), halvings, on_device(exec, to));
+}
+
+Buffer<uint32_t> cuda_measure_curvature(const Sheet& sheet, int32_t rounds, Context& context) {
+  CudaExecutor exec(context, "lengths");
+  return measure_curvature_body(exec, *OnDevice<Sheet>(exec, sheet), rounds);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,25 @@
+// Which edge lengths a run aims at: those of a field, shortened where the surface is curved, and bounded by what the
+// grid carries and by how fast lengths may grow.
+#pragma once
+
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// Whether lengths may vary.
+bool wants_lengths(const RemeshOptions& options);
+
+/// The length that a field has at all vertices of the soup, or 0 when it varies or says nothing somewhere.
+double even_length_world(const SizingField& field, const TriangleSoup& soup);
+
+/// Gives the sheet its edge lengths, none when they are all equal; then p.vertices where the field decides it.
+void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
+
+/// Width of the cells where they are smallest, in voxels.
+double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Context& context);
+
+/// How well the edges of the result have the lengths of the sheet at the homes of their ends.
+void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,
+                   Context& context);
+
+}  // namespace isoshell
