@@ -110,7 +110,10 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     relax_on_sheet(sheet, seeds, coarse, context);
     const DualMesh dual = coarse_dual(sheet, seeds, context);
-    seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
+    // An outline may lack handles that the counts were made for: then its mesh has too few edges to split.
+    const bool enough = seeds.size() + dual.triangles.size() / 2 * 3 >= counts[level + 1];
+    seeds =
+        dual.triangles.empty() || !enough ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
     if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);
   }

@@ -5,6 +5,7 @@
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/io/point_file.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"

@@ -49,7 +49,7 @@ TriangleSoup read_ply(const MeshSource& source) {
   const bool has_faces = (layout.faces && layout.faces->count > 0) || (layout.strips && layout.strips->count > 0);
   if (!has_faces && !vertices.points.empty())
     source.nothing_to_mesh("holds " + std::to_string(vertices.points.size()) +
-                           " points and no face; this reader does not mesh point clouds yet, give a file with faces");
+                           " points and no face; read it as a point cloud, or give a file with faces");
   return join_soup(source, std::move(vertices), faces);
 }
 

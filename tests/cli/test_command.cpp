@@ -46,12 +46,12 @@ TEST_CASE("command: an input that cannot be read exits with 3 and is named", "[c
   CHECK(contains(folder.run("gone.off out.ply").err, "gone.off: no such file"));
   CHECK(contains(folder.run(". out.ply --input-format off").err, "is a folder"));
   folder.write("cloud.xyz", "0 0 0\n1 1 1\n");
-  CHECK(folder.run("cloud.xyz out.ply").status == 3);
-  CHECK(contains(folder.run("cloud.xyz out.ply").err, "not read yet"));
+  CHECK(folder.run("cloud.xyz out.ply").status == 5);
+  CHECK(contains(folder.run("cloud.xyz out.ply").err, "only 2 different points"));
   folder.write("cloud.ply",
                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                "property float z\nend_header\n0 0 0\n");
-  CHECK(contains(folder.run("cloud.ply out.ply").err, "point clouds are not read yet"));
+  CHECK(contains(folder.run("cloud.ply out.ply").err, "only 1 different points"));
   folder.write("smoke.nvdb", "x");
   CHECK(contains(folder.run("smoke.nvdb out.ply").err, "truncated"));
   folder.write("text.txt", "x");

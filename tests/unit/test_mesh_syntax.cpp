@@ -229,7 +229,7 @@ TEST_CASE("PLY: points without faces are nothing to mesh, and the message says s
   const Error error =
       error_of([] { read_text_as("ply", kAsciiPly + "end_header\n0 0 0\n0 0 1\n0 1 0\n1 0 0\n0\n0\n0\n"); });
   CHECK(error.code() == ErrorCode::nothing_to_mesh);
-  CHECK(says(error, "does not mesh point clouds yet"));
+  CHECK(says(error, "read it as a point cloud"));
 }
 
 TEST_CASE("STL text: any case, several solids, and equal positions are one vertex", "[mesh_file][unit]") {

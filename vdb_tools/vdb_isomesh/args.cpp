@@ -19,8 +19,9 @@ namespace {
 constexpr const char* kDescription =
     "vdb_isomesh INPUT OUTPUT [options]\n\n"
     "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
-    "INPUT   mesh (.obj .ply .stl .off), volume (.vdb .nvdb; FILE.vdb:NAME names a grid), or a stage file\n"
-    "        that this command wrote (.vdb); - reads standard input and needs --input-format\n"
+    "INPUT   mesh (.obj .ply .stl .off), points (.ply .xyz .pcd), volume (.vdb .nvdb; FILE.vdb:NAME names\n"
+    "        a grid), or a stage file that this command wrote (.vdb); - reads standard input and needs\n"
+    "        --input-format\n"
     "OUTPUT  mesh (.ply .obj .stl .off), or .vdb with --stop-after; - writes standard output and needs\n"
     "        --output-format";
 
@@ -84,7 +85,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
 
   const char* files = "Files";
   option(files, "--iso", raw.iso, "V", "value of a volume's surface; a fog volume needs it", "0 in a level set");
-  option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off, vdb or nvdb",
+  option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off, xyz, pcd, vdb or nvdb",
          "by its name");
   option(files, "--output-format", a.output_format, "F", "format of OUTPUT: ply, obj, stl, off or vdb", "by its name");
   option(files, "--save-shell", a.save_shell, "F.vdb", "keep the shell; a run can resume from it", "");

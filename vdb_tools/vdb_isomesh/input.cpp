@@ -66,7 +66,7 @@ InputKind classify_input(const std::string& path, const std::string& format) {
   if (format == "nvdb") return InputKind::volume;
   if (format == "vdb") return path != "-" && is_stage_file(path) ? InputKind::stage : InputKind::volume;
   refuse(path + ": the format '" + format +
-         "' is not one of obj, ply, stl, off, vdb, nvdb; say which by --input-format");
+         "' is not one of obj, ply, stl, off, xyz, pcd, vdb, nvdb; say which by --input-format");
 }
 
 MeshFormat mesh_format(const std::string& format) {

@@ -2,6 +2,7 @@
 #include "vdb_isomesh/run.h"
 
 #include <chrono>
+#include <cmath>
 #include <sstream>
 #include <type_traits>
 
@@ -16,6 +17,8 @@ namespace isoshell::tool {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -110,12 +113,32 @@ class Run {
         read_volume_file(source.soup);
         break;
       case InputKind::points:
-        throw Error(ErrorCode::unreadable_input, "read",
-                    a_.input + ": point clouds are not read yet; give a mesh, a volume or a stage file");
+        read_point_cloud(source.soup);
+        break;
     }
     if (a_.iso && record_.input.kind != InputKind::volume)
       throw Error(ErrorCode::usage, "command line", "--iso is for volumes; leave it out");
     return source;
+  }
+
+  void read_point_cloud(TriangleSoup& soup) {
+    const PointFormat format = a_.input_format == "ply"   ? PointFormat::ply
+                               : a_.input_format == "xyz" ? PointFormat::xyz
+                                                          : PointFormat::pcd;
+    PointSurfaceInfo points;
+    soup = surface_of_points(read_points(a_.input, format), context_.memory_limit_bytes, points);
+    note_soup(soup);
+    record_.input.vertices = points.points;
+    std::ostringstream text;
+    text << a_.input << ": " << counted(points.points, "point") << ", spacing " << points.spacing_world
+         << ", surface from voxels of " << points.voxel_size_world << ", normals "
+         << (points.normals_given ? "given" : "estimated") << (points.normals_turned ? " and turned" : "");
+    console_.detail(text.str());
+    if (points.open_part < kNotableOpenPart) return;
+    text.str("");
+    text << a_.input << ": " << std::lround(100 * points.open_part)
+         << " % of the surface has no points near it and was closed smoothly";
+    warn(text.str());
   }
 
   void read_volume_file(TriangleSoup& soup) {

@@ -1,0 +1,41 @@
+// Point clouds as input: the closed surface that the points lie on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "isoshell/surface_source.h"
+
+namespace isoshell {
+
+enum class PointFormat { ply, xyz, pcd };
+
+/// Points in world units; `normal` is empty, or one a point, of any length.
+struct PointCloud {
+  std::vector<WorldPoint> position, normal;
+  int64_t nonfinite = 0;  ///< points left out
+};
+
+/// Reads points: PLY without faces, text rows of x y z and perhaps a normal (.xyz), and PCD as text, binary or packed.
+/// Colours and other columns are passed over. `path` "-" reads standard input. Throws: unreadable_input,
+/// nothing_to_mesh when there is no point.
+PointCloud read_points(const std::string& path, PointFormat format);
+
+/// What the surface was made with.
+struct PointSurfaceInfo {
+  int64_t points = 0;           ///< different ones
+  double spacing_world = 0;     ///< typical distance of a point from its neighbours
+  double voxel_size_world = 0;  ///< of the grid that the surface comes from; details below it are lost
+  bool normals_given = false, normals_turned = false;
+  double open_part = 0;  ///< of the surface's vertices, those that bridge where there are no points
+};
+
+/// The surface of the points: the level of a smooth indicator function whose gradient is the points' normals (Poisson
+/// reconstruction), drawn onto the points where there are any. Result: closed, 2-manifold, oriented outward; a scan
+/// from one side is closed on its back. Normals that are missing are estimated from neighbours, those that disagree are
+/// turned along a spanning tree, and all of them so that they point away from the middle. The same for any number of
+/// threads. Cost: 9 bytes a voxel of the points' box.
+/// Throws: nothing_to_mesh for fewer than four different points, out_of_memory over `memory_limit_bytes`, if above 0.
+TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info);
+
+}  // namespace isoshell

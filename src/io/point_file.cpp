@@ -1,0 +1,132 @@
+// Which reader a point cloud gets, and what needs no file of its own: PLY without faces, and text rows.
+#include "isoshell/io/point_file.h"
+
+#include <cmath>
+#include <new>
+
+#include "io/face_collector.h"
+#include "io/ply_body.h"
+#include "io/point_readers.h"
+#include "io/text_scan.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int kMaxColumns = 16;
+constexpr double kUnitTolerance = 0.02;
+constexpr double kMostOdd = 0.02;  // rows without a unit vector among those of a column of normals
+
+std::vector<WorldPoint> ply_vectors(const MeshSource& source, const PlyHeader& header, const char* const names[3]) {
+  PlyMeshLayout layout;
+  layout.vertices = header.find("vertex");
+  for (int axis = 0; layout.vertices && axis < 3; ++axis) {
+    layout.xyz[axis] = layout.vertices->find(names[axis]);
+    if (layout.xyz[axis] < 0 || layout.vertices->properties[size_t(layout.xyz[axis])].is_list) return {};
+  }
+  VertexTable table(source, 0);
+  std::vector<FaceCollector> no_faces;
+  if (header.encoding == PlyEncoding::ascii)
+    read_ply_text(source, header, layout, table, no_faces);
+  else
+    read_ply_binary(source, header, layout, table, no_faces);
+  return std::move(table.points);
+}
+
+/// Whether three columns from `first` on hold unit vectors.
+bool holds_normals(const std::vector<double>& rows, int columns, int first) {
+  if (first + 3 > columns) return false;
+  const size_t count = rows.size() / size_t(columns);
+  size_t odd = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const double* n = &rows[i * size_t(columns) + size_t(first)];
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    odd += !(std::abs(length - 1) < kUnitTolerance);
+  }
+  return double(odd) <= kMostOdd * double(count);
+}
+
+/// Numbers of a row, at most kMaxColumns.
+int count_columns(const char* p, const char* end) {
+  int columns = 0;
+  double value;
+  for (p = skip_blanks(p, end); columns < kMaxColumns && parse_real(p, end, value); p = skip_blanks(p, end)) ++columns;
+  return columns;
+}
+
+void drop_nonfinite(PointCloud& cloud) {
+  size_t kept = 0;
+  for (size_t i = 0; i < cloud.position.size(); ++i) {
+    if (!is_finite(cloud.position[i])) continue;
+    if (!cloud.normal.empty()) cloud.normal[kept] = is_finite(cloud.normal[i]) ? cloud.normal[i] : WorldPoint{0, 0, 0};
+    cloud.position[kept++] = cloud.position[i];
+  }
+  cloud.nonfinite = int64_t(cloud.position.size() - kept);
+  cloud.position.resize(kept);
+  if (!cloud.normal.empty()) cloud.normal.resize(kept);
+}
+
+}  // namespace
+
+PointCloud read_ply_points(const MeshSource& source) {
+  const PlyHeader header = read_ply_header(source);
+  constexpr const char* kPosition[3] = {"x", "y", "z"};
+  constexpr const char* kNormal[3] = {"nx", "ny", "nz"};
+  PointCloud cloud;
+  cloud.position = ply_vectors(source, header, kPosition);
+  cloud.normal = ply_vectors(source, header, kNormal);
+  return cloud;
+}
+
+// Rows of x y z, then perhaps colours and a normal: the first three columns behind them that hold unit vectors. A first
+// row that is a title or a count is passed over.
+PointCloud read_xyz(const MeshSource& source) {
+  const Text text(source);
+  const TextRows rows(text, text.begin(), '#');
+  if (rows.count() == 0) source.nothing_to_mesh("holds no rows of points");
+  const char* const first = rows.find(0);
+  const int64_t head = count_columns(first, line_end(first, text.end())) < 3 ? 1 : 0;
+  const int64_t count = rows.count() - head;
+  if (count == 0) text.refuse(first, "a point needs three numbers; found " + quoted_token(first, text.end()));
+  const char* const sample = rows.find(head);
+  const int columns = count_columns(sample, line_end(sample, text.end()));
+  if (columns < 3) text.refuse(sample, "a point needs three numbers; found " + quoted_token(sample, text.end()));
+  std::vector<double> numbers(size_t(count) * size_t(columns));
+  rows.for_each(head, rows.count(), [&](int64_t row, const char* p, const char* end, int64_t) {
+    for (int c = 0; c < columns; ++c) {
+      p = skip_blanks(p, end);
+      if (!parse_real(p, end, numbers[size_t(row - head) * size_t(columns) + size_t(c)]))
+        text.refuse(p, "a row needs " + std::to_string(columns) + " numbers, as the first one; found " +
+                           quoted_token(p, end) + " instead of one");
+    }
+    return p;
+  });
+  int normals = -1;
+  for (const int column : {3, 6, 7})
+    if (normals < 0 && holds_normals(numbers, columns, column)) normals = column;
+  PointCloud cloud;
+  for (int64_t i = 0; i < count; ++i) {
+    const double* row = &numbers[size_t(i) * size_t(columns)];
+    cloud.position.push_back({row[0], row[1], row[2]});
+    if (normals > 0) cloud.normal.push_back({row[normals], row[normals + 1], row[normals + 2]});
+  }
+  return cloud;
+}
+
+PointCloud read_points(const std::string& path, PointFormat format) {
+  const MeshSource source(path);
+  if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with points");
+  try {
+    PointCloud cloud = format == PointFormat::ply   ? read_ply_points(source)
+                       : format == PointFormat::xyz ? read_xyz(source)
+                                                    : read_pcd(source);
+    drop_nonfinite(cloud);
+    if (cloud.position.empty()) source.nothing_to_mesh("holds no finite point");
+    return cloud;
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::out_of_memory, "read",
+                source.name() + ": " + std::to_string(source.size()) + " bytes do not fit into memory as points");
+  }
+}
+
+}  // namespace isoshell

@@ -1,0 +1,21 @@
+// Normals of points: found from neighbours where the file has none, and turned to agree.
+#pragma once
+
+#include <vector>
+
+#include "io/point_tree.h"
+
+namespace isoshell {
+
+/// The points with what belongs to each of them.
+struct OrientedPoints {
+  std::vector<WorldPoint> position, normal;  ///< normals of length 1, outward; 0 where there is none
+  std::vector<double> area;                  ///< of the surface that a point stands for
+  double spacing = 0;                        ///< median distance of neighbours
+  bool turned = false;                       ///< normals disagreed and were turned along a spanning tree
+};
+
+/// `normal` is empty or has one a position. Positions are different from one another.
+OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<WorldPoint> normal, const PointTree& tree);
+
+}  // namespace isoshell

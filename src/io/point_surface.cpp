@@ -1,0 +1,185 @@
+// From points to a closed surface: normals, indicator function, its level, and a step onto the points.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "io/indicator_grid.h"
+#include "io/iso_surface.h"
+#include "isoshell/error.h"
+#include "isoshell/io/point_file.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kMaxGrid = int64_t(1) << 27;
+constexpr int64_t kBytesPerVoxel = 9;   // value and source, and an eighth of them on the next grid
+constexpr size_t kPullNeighbours = 16;  // points that a vertex follows
+constexpr int kPullSteps = 3;
+constexpr double kSupportVoxels = 3;     // a vertex farther than that from every point bridges
+constexpr double kPullWidth = 1.0;       // of the weights, in voxels or spacings, whichever is larger
+constexpr double kVoxelSpacings = 1.5;   // noise of a scan is about its spacing: finer voxels make handles of it
+constexpr double kMinSupported = 0.1;    // of a component's vertices, else it is a bubble
+constexpr double kSmallestPart = 0.002;  // of all vertices near points; a component with fewer is noise
+
+/// The different points, and their normals in the same order.
+void keep_different(std::vector<WorldPoint>& position, std::vector<WorldPoint>& normal) {
+  std::vector<uint32_t> order(position.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto before = [&](uint32_t a, uint32_t b) {
+    const WorldPoint &p = position[a], &q = position[b];
+    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z != q.z ? p.z < q.z : a < b;
+  };
+  std::sort(order.begin(), order.end(), before);
+  std::vector<WorldPoint> points, normals;
+  for (const uint32_t i : order) {
+    if (!points.empty() && distance_sq(points.back(), position[i]) == 0) continue;
+    points.push_back(position[i]);
+    if (!normal.empty()) normals.push_back(normal[i]);
+  }
+  position = std::move(points);
+  normal = std::move(normals);
+}
+
+/// Squares of distances must neither vanish nor overflow.
+void check_extent(const std::vector<WorldPoint>& position) {
+  double most = 0;
+  for (const WorldPoint& p : position)
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::abs(coordinate(p, axis) - coordinate(position[0], axis)));
+  if (most < 1e-100 || most > 1e100)
+    throw Error(ErrorCode::nothing_to_mesh, "points",
+                "the points span " + std::to_string(most) + ", which no grid can follow; scale them");
+}
+
+/// Moves vertices onto the points around them and tells which have any.
+class Pull {
+ public:
+  Pull(const OrientedPoints& points, const PointTree& tree, double voxel_size)
+      : points_(points), tree_(tree), voxel_size_(voxel_size) {}
+
+  std::vector<uint8_t> run(std::vector<WorldPoint>& vertices) const {
+    std::vector<uint8_t> supported(vertices.size());
+    tbb::parallel_for(size_t(0), vertices.size(), [&](size_t v) {
+      const WorldPoint start = vertices[v];
+      std::vector<PointTree::Near> near;
+      tree_.nearest(start, std::min(kPullNeighbours, points_.position.size()), near);
+      const double away = std::sqrt(near[0].first) / voxel_size_;
+      supported[v] = away < kSupportVoxels;
+      const double part = std::clamp(kSupportVoxels - away, 0.0, 1.0);
+      if (part <= 0) return;
+      WorldPoint p = start;
+      for (int step = 0; step < kPullSteps; ++step) p = pulled(p, near);
+      vertices[v] = {start.x + part * (p.x - start.x), start.y + part * (p.y - start.y),
+                     start.z + part * (p.z - start.z)};
+    });
+    return supported;
+  }
+
+ private:
+  /// Along the mean normal to the mean plane of the points, at most a voxel.
+  WorldPoint pulled(const WorldPoint& p, const std::vector<PointTree::Near>& near) const {
+    const double spacing = std::sqrt(near[std::min<size_t>(6, near.size() - 1)].first) * 0.7071067811865476;
+    const double width = kPullWidth * std::max(voxel_size_, spacing);
+    WorldPoint normal{0, 0, 0};
+    double height = 0, total = 0;
+    for (const auto& [unused, i] : near) {
+      const WorldPoint &q = points_.position[i], &n = points_.normal[i];
+      // A bell without exp: what libraries round differently decides nothing here either.
+      const double t = 1 - distance_sq(p, q) / (9 * width * width);
+      if (t <= 0) continue;
+      const double weight = t * t * t * t * points_.area[i];
+      normal = {normal.x + weight * n.x, normal.y + weight * n.y, normal.z + weight * n.z};
+      height += weight * (n.x * (p.x - q.x) + n.y * (p.y - q.y) + n.z * (p.z - q.z));
+      total += weight;
+    }
+    const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+    if (!(total > 0) || length < 0.5 * total) return p;  // sides that face each other: no plane
+    const double move = std::clamp(-height / total, -voxel_size_, voxel_size_) / length;
+    return {p.x + move * normal.x, p.y + move * normal.y, p.z + move * normal.z};
+  }
+
+  const OrientedPoints& points_;
+  const PointTree& tree_;
+  const double voxel_size_;
+};
+
+/// Leaves out components that hardly any point supports, and numbers the vertices that stay anew.
+void drop_bubbles(TriangleSoup& soup, std::vector<uint8_t>& supported) {
+  std::vector<uint32_t> root(soup.vertices.size());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&](uint32_t v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const auto& t : soup.triangles)
+    for (const uint32_t v : {t[1], t[2]}) {
+      const uint32_t a = find(t[0]), b = find(v);
+      root[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<int64_t> all(root.size(), 0), held(root.size(), 0);
+  for (uint32_t v = 0; v < root.size(); ++v) {
+    ++all[find(v)];
+    held[find(v)] += supported[v];
+  }
+  const double least = kSmallestPart * double(std::accumulate(supported.begin(), supported.end(), int64_t(0)));
+  const auto gone = [&](uint32_t v) {
+    return double(held[find(v)]) < std::max(least, kMinSupported * double(all[find(v)]));
+  };
+  soup.triangles.erase(
+      std::remove_if(soup.triangles.begin(), soup.triangles.end(), [&](const auto& t) { return gone(t[0]); }),
+      soup.triangles.end());
+  std::vector<uint32_t> number(root.size());
+  uint32_t kept = 0;
+  for (uint32_t v = 0; v < root.size(); ++v) {
+    if (gone(v)) continue;
+    soup.vertices[kept] = soup.vertices[v];
+    supported[kept] = supported[v];
+    number[v] = kept++;
+  }
+  for (auto& t : soup.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
+  soup.vertices.resize(kept);
+  supported.resize(kept);
+}
+
+}  // namespace
+
+TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info) {
+  std::vector<WorldPoint> position = cloud.position, normal = cloud.normal;
+  keep_different(position, normal);
+  info.points = int64_t(position.size());
+  info.normals_given = !normal.empty();
+  if (info.points < 4)
+    throw Error(ErrorCode::nothing_to_mesh, "points",
+                "only " + std::to_string(info.points) + " different points; a surface needs at least 4");
+  check_extent(position);
+  const PointTree tree(position);
+  const OrientedPoints points = orient_points(position, std::move(normal), tree);
+  info.spacing_world = points.spacing;
+  info.normals_turned = points.turned;
+  int64_t most = kMaxGrid;
+  if (memory_limit_bytes > 0) most = std::min(most, memory_limit_bytes / 2 / kBytesPerVoxel);
+  if (most < 1 << 15)
+    throw Error(ErrorCode::out_of_memory, "points", "the memory limit leaves no room for a grid; raise --max-memory");
+  const GridShape shape = shape_around(points.position, kVoxelSpacings * points.spacing, most);
+  info.voxel_size_world = shape.voxel_size;
+  std::vector<float> value = solve_indicator(points, shape);
+  const double level = level_at_points(points, shape, value);
+  IndicatorField field(shape, std::move(value), level);
+  field.file = "the points";
+  field.name = "indicator";
+  TriangleSoup soup = extract_iso_surface(field, level);
+  std::vector<uint8_t> supported = Pull(points, tree, shape.voxel_size).run(soup.vertices);
+  drop_bubbles(soup, supported);
+  if (soup.triangles.empty())
+    throw Error(ErrorCode::nothing_to_mesh, "points",
+                "the points enclose nothing: they lie on a line, or too far apart to be one surface");
+  const int64_t held = std::accumulate(supported.begin(), supported.end(), int64_t(0));
+  info.open_part = 1 - double(held) / double(soup.vertices.size());
+  soup.faces_in_file = 0;
+  soup.dirt.nonfinite_vertices = cloud.nonfinite;
+  return soup;
+}
+
+}  // namespace isoshell

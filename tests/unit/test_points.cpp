@@ -1,0 +1,216 @@
+// Point clouds: every way to write them gives the same points, and points give the closed surface they lie on.
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "io/lzf.h"
+#include "io/point_readers.h"
+#include "isoshell/error.h"
+#include "isoshell/stages.h"
+#include "support/catch.h"
+#include "voxel/random.h"
+
+using namespace isoshell;
+
+namespace {
+
+PointCloud parse(const std::string& text, PointFormat format) {
+  const MeshSource source("cloud", {text.data(), int64_t(text.size())});
+  return format == PointFormat::ply   ? read_ply_points(source)
+         : format == PointFormat::xyz ? read_xyz(source)
+                                      : read_pcd(source);
+}
+
+ErrorCode refusal(const std::string& text, PointFormat format) {
+  try {
+    parse(text, format);
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return ErrorCode::internal;
+}
+
+/// A ball's points along a spiral, each moved by up to `noise`; only those above `lowest`.
+PointCloud ball(int count, double lowest, double noise, bool normals) {
+  PointCloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
+    if (z < lowest) continue;
+    const auto shift = [&](uint64_t axis) {
+      return noise * (double(random_bits(axis, uint64_t(i)) >> 11) / double(uint64_t(1) << 52) - 1);
+    };
+    const WorldPoint p{r * std::cos(turn), r * std::sin(turn), z};
+    cloud.position.push_back({10 + 3 * (p.x + shift(0)), 3 * (p.y + shift(1)), 3 * (p.z + shift(2))});
+    if (normals) cloud.normal.push_back(p);
+  }
+  return cloud;
+}
+
+InputTopology topology_of(const TriangleSoup& soup) {
+  Context context;
+  DirtCounts dirt;
+  return measure_topology(soup, dirt, context);
+}
+
+double worst_radius_error(const TriangleSoup& soup, double above) {
+  double worst = 0;
+  for (const WorldPoint& p : soup.vertices) {
+    const double x = (p.x - 10) / 3, y = p.y / 3, z = p.z / 3;
+    if (z > above) worst = std::max(worst, std::abs(std::sqrt(x * x + y * y + z * z) - 1));
+  }
+  return worst;
+}
+
+double volume(const TriangleSoup& soup) {
+  double six = 0;
+  for (const auto& t : soup.triangles) {
+    const WorldPoint &a = soup.vertices[t[0]], &b = soup.vertices[t[1]], &c = soup.vertices[t[2]];
+    six += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  }
+  return six / 6;
+}
+
+std::string raw(const void* data, size_t size) { return {static_cast<const char*>(data), size}; }
+
+const std::string kPcd =
+    "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+    "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ";
+
+}  // namespace
+
+TEST_CASE("points: rows of text with titles, comments, colours and normals", "[points][unit]") {
+  CHECK(parse("1 2 3\n4 5 6\n", PointFormat::xyz).position[1].z == 6);
+  CHECK(parse("2\n# two\n1 2 3\n4 5 6", PointFormat::xyz).position.size() == 2);
+  CHECK(parse("x y z\n1 2 3\n", PointFormat::xyz).position[0].y == 2);
+  const PointCloud normals = parse("1 2 3 0 0 1\n4 5 6 0.6 0 -0.8\n", PointFormat::xyz);
+  REQUIRE(normals.normal.size() == 2);
+  CHECK(normals.normal[1].z == -0.8);
+  CHECK(parse("1 2 3 255 0 12\n4 5 6 1 2 3\n", PointFormat::xyz).normal.empty());
+  CHECK(parse("1 2 3 255 0 12 0 1 0\n", PointFormat::xyz).normal.size() == 1);
+  CHECK(refusal("1 2 3\n4 five 6\n", PointFormat::xyz) == ErrorCode::unreadable_input);
+  CHECK(refusal("1 2\n", PointFormat::xyz) == ErrorCode::unreadable_input);
+  CHECK(refusal("# nothing\n", PointFormat::xyz) == ErrorCode::nothing_to_mesh);
+}
+
+TEST_CASE("points: a PLY without faces, with its normals", "[points][unit]") {
+  const PointCloud cloud = parse(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty uchar red\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n1 7 2 3 0 1 0\n",
+      PointFormat::ply);
+  REQUIRE(cloud.normal.size() == 1);
+  CHECK(cloud.position[0].y == 2);
+  CHECK(cloud.normal[0].y == 1);
+}
+
+TEST_CASE("points: PCD as text, binary and packed", "[points][unit]") {
+  const float rows[2][4] = {{1, 2, 3, 0}, {4, 5, 6, 0}}, columns[4][2] = {{1, 4}, {2, 5}, {3, 6}, {0, 0}};
+  const std::string plain = raw(columns, sizeof columns);
+  std::string packed;  // 24 plain bytes, one more, then 7 that stand one byte before
+  packed += char(24);
+  packed += plain.substr(0, 25);
+  packed += char(5 << 5);
+  packed += char(0);
+  const uint32_t sizes[2] = {uint32_t(packed.size()), uint32_t(plain.size())};
+  const std::string text = kPcd + "ascii\n1 2 3 9\n4 5 6 9\n", binary = kPcd + "binary\n" + raw(rows, sizeof rows),
+                    lzf = kPcd + "binary_compressed\n" + raw(sizes, sizeof sizes) + packed;
+  for (const std::string& file : {text, binary, lzf}) {
+    const PointCloud cloud = parse(file, PointFormat::pcd);
+    REQUIRE(cloud.position.size() == 2);
+    CHECK(cloud.position[0].x == 1);
+    CHECK(cloud.position[1].y == 5);
+    CHECK(cloud.position[1].z == 6);
+    CHECK(refusal(file.substr(0, file.size() - 8), PointFormat::pcd) == ErrorCode::unreadable_input);
+  }
+  CHECK(refusal("VERSION 0.7\nFIELDS x y z\nPOINTS 4294967295\nDATA binary\n", PointFormat::pcd) ==
+        ErrorCode::unreadable_input);
+  CHECK(refusal("VERSION 0.7\nFIELDS x y\nPOINTS 1\nDATA ascii\n1 2\n", PointFormat::pcd) ==
+        ErrorCode::unreadable_input);
+}
+
+TEST_CASE("points: a packed piece never reads before its beginning nor writes beyond its end", "[points][unit]") {
+  char out[4];
+  const auto fits = [&](const std::string& packed) {
+    return unpack_lzf({packed.data(), int64_t(packed.size())}, {out, 4});
+  };
+  CHECK(fits(std::string("\3abcd")));
+  CHECK_FALSE(fits(std::string("\3abc")));
+  CHECK_FALSE(fits(std::string("\4abcde")));
+  CHECK_FALSE(fits(std::string("\0a\x20\5", 4)));  // before the beginning
+  CHECK_FALSE(fits(std::string("\0a\xe0", 3)));    // length missing
+  CHECK_FALSE(fits(std::string("\0a\xe0\xff\0", 5)));
+}
+
+TEST_CASE("points: a ball's points give the ball, with normals or without, in any order and with any threads",
+          "[points][unit]") {
+  for (const bool normals : {true, false}) {
+    PointSurfaceInfo info;
+    PointCloud cloud = ball(3000, -2, 0, normals);
+    const TriangleSoup soup = surface_of_points(cloud, 0, info);
+    const InputTopology t = topology_of(soup);
+    CHECK(t.closed);
+    CHECK(t.oriented);
+    CHECK(t.components == 1);
+    CHECK(t.genus == 0);
+    CHECK(worst_radius_error(soup, -2) < 0.01);
+    CHECK(volume(soup) > 0);
+    CHECK(info.open_part == 0);
+    std::reverse(cloud.position.begin(), cloud.position.end());
+    std::reverse(cloud.normal.begin(), cloud.normal.end());
+    cloud.position.push_back(cloud.position.front());
+    if (normals) cloud.normal.push_back(cloud.normal.front());
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const TriangleSoup again = surface_of_points(cloud, 0, info);
+    CHECK(again.triangles == soup.triangles);
+    CHECK(std::memcmp(again.vertices.data(), soup.vertices.data(), soup.vertices.size() * sizeof(WorldPoint)) == 0);
+  }
+}
+
+TEST_CASE("points: normals that point anywhere, or all inwards, are turned", "[points][unit]") {
+  for (const int every : {1, 3}) {
+    PointCloud cloud = ball(3000, -2, 0, true);
+    for (size_t i = 0; i < cloud.normal.size(); i += size_t(every))
+      cloud.normal[i] = {-2 * cloud.normal[i].x, -2 * cloud.normal[i].y, -2 * cloud.normal[i].z};
+    PointSurfaceInfo info;
+    const TriangleSoup soup = surface_of_points(cloud, 0, info);
+    CHECK(info.normals_turned == (every == 3));
+    CHECK(volume(soup) == Approx(4.0 / 3 * 3.14159265 * 27).epsilon(0.02));
+  }
+}
+
+TEST_CASE("points: a scan from one side becomes one closed surface, true where there are points", "[points][unit]") {
+  PointSurfaceInfo info;
+  const TriangleSoup soup = surface_of_points(ball(6000, 0.2, 0.004, false), 0, info);
+  const InputTopology t = topology_of(soup);
+  CHECK(t.closed);
+  CHECK(t.components == 1);
+  CHECK(t.genus == 0);
+  CHECK(volume(soup) > 0);
+  CHECK(worst_radius_error(soup, 0.3) < 0.02);
+  CHECK(info.open_part > 0.1);
+}
+
+TEST_CASE("points: what spans nothing is nothing to mesh, and memory is asked for before it is taken",
+          "[points][unit]") {
+  PointSurfaceInfo info;
+  const auto code = [&](const PointCloud& cloud, int64_t limit) {
+    try {
+      surface_of_points(cloud, limit, info);
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return ErrorCode::internal;
+  };
+  PointCloud same;
+  same.position.assign(100, {1, 2, 3});
+  CHECK(code(same, 0) == ErrorCode::nothing_to_mesh);
+  PointCloud huge;
+  huge.position = {{0, 0, 0}, {1e300, 0, 0}, {0, 1e300, 0}, {0, 0, 1e300}};
+  CHECK(code(huge, 0) == ErrorCode::nothing_to_mesh);
+  CHECK(code(ball(3000, -2, 0, true), 1 << 10) == ErrorCode::out_of_memory);
+  surface_of_points(ball(3000, -2, 0, true), 8 << 20, info);
+  CHECK(info.voxel_size_world > info.spacing_world);
+}
