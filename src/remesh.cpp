@@ -13,6 +13,7 @@
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
+#include "isoshell/mend.h"
 #include "sizing.h"
 #include "voxel/exact_int.h"
 
@@ -217,23 +218,11 @@ RelaxOptions relax_options(const RemeshOptions& options) {
   return relax;
 }
 
-}  // namespace
-
-Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
-                 Context& context) {
-  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
-  finish(p, options, report, context);
-  return p;
-}
-
-Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
-  const RemeshOptions options = with_even_length(asked, soup);
-  report.dirt = soup.dirt;
-  const InputTopology input =
-      timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
+/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
+Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+                              RemeshReport& report, Context& context) {
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
-  check_area(input);
   const bool compare = input.closed && input.oriented && input.genus >= 0;
   const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
@@ -268,6 +257,32 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
                               " and " + std::to_string(input.genus) +
                               "; a higher --resolution may tell near parts apart");
   return best;
+}
+
+}  // namespace
+
+Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
+                 Context& context) {
+  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+  finish(p, options, report, context);
+  return p;
+}
+
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+  const RemeshOptions options = with_even_length(asked, soup);
+  report.dirt = soup.dirt;
+  const InputTopology given =
+      timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
+  check_area(given);
+  if (given.closed && given.oriented) return prepare_on_best_grid(soup, given, options, report, context);
+  const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
+  const TriangleSoup mended = timed(report, "mend", context, [&] { return mend(soup, {closing_chosen}, report.mend); });
+  DirtCounts counted_already;
+  const InputTopology input =
+      timed(report, "topology", context, [&] { return measure_topology(mended, counted_already, context); });
+  Prepared prepared = prepare_on_best_grid(mended, input, options, report, context);
+  report.input = given;
+  return prepared;
 }
 
 SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {

@@ -10,6 +10,7 @@
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/memory_estimate.h"
+#include "isoshell/mend.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/remesh.h"

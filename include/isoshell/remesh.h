@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/mend.h"
 #include "isoshell/sizing.h"
 #include "isoshell/stages.h"
 
@@ -46,14 +47,15 @@ struct StageTime {
 
 /// Everything measured on the way.
 struct RemeshReport {
-  InputTopology input;
+  InputTopology input;  ///< as given; of a resumed run, as mended
   DirtCounts dirt;
+  MendReport mend;
   LatticeFrame frame;
   int32_t band_vox = 0, closing_vox = 0;
   int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
   int64_t sheet_vertices = 0, seeds = 0;
   SheetTopology sheet;
-  bool topology_compared = false;  ///< the input is closed and oriented
+  bool topology_compared = false;  ///< the input, as mended, is closed and oriented
   bool topology_agrees = false;    ///< components and genus of the sheet equal the input's
   RelaxReport relax;
   DualReport dual;
@@ -77,7 +79,8 @@ struct Prepared {
   int64_t vertices = 0;  ///< as many as the sizing field asks for; 0: as the options say
 };
 
-/// Chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the
+/// Mends the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for. Then
+/// chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the
 /// sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
 /// resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage, out_of_memory,
 /// interrupted.

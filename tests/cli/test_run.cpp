@@ -216,3 +216,27 @@ TEST_CASE("run: options that a stage file has fixed are refused", "[cli][vdb]") 
   CHECK(folder.run("fake.vdb out3.ply").status == 3);
 }
 #endif
+
+TEST_CASE("run: a damaged surface is mended, said so, and becomes one closed body", "[cli]") {
+  Folder folder;
+  TriangleSoup soup = shapes::sphere({1, 2, 3}, 5, 48);
+  const WorldPoint corner = soup.vertices[soup.triangles[900][0]];
+  soup.vertices.push_back({1.05 * (corner.x - 1) + 1, 1.05 * (corner.y - 2) + 2, 1.05 * (corner.z - 3) + 3});  // a fin
+  shapes::add_triangle(soup, soup.triangles[900][0], soup.triangles[900][1], uint32_t(soup.vertices.size() - 1));
+  for (size_t i = 0; i < soup.triangles.size(); i += 3) std::swap(soup.triangles[i][1], soup.triangles[i][2]);
+  soup.triangles.erase(soup.triangles.begin() + 500, soup.triangles.begin() + 540);
+  folder.write_off("broken.off", soup);
+  const auto r = folder.run("broken.off out.ply --stats - --require closed,manifold,genus=0,components=1" + kQuick);
+  REQUIRE(r.status == 0);
+  CHECK(contains(r.err, "holes closed by new faces"));
+  CHECK(contains(r.err, "faces turned"));
+  CHECK(contains(r.err, "fins dropped"));
+  const Json j = Json::parse(r.out);
+  CHECK(j["input"]["closed"] == false);
+  CHECK(j["input"]["mended"]["capped_loops"] > 0);
+  CHECK(j["input"]["mended"]["open_loops"] == 0);
+  CHECK(j["grid"]["closing"] == 0);
+  CHECK(j["topology"]["agrees_with_input"] == true);
+  CHECK(folder.run("broken.off out2.ply --close-gaps 0 --stats - -q" + kQuick).out.find("\"capped_loops\": 0") !=
+        std::string::npos);
+}

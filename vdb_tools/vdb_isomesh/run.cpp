@@ -273,9 +273,14 @@ class Run {
     note(d.unreferenced_vertices, "vertices that no face uses");
     note(d.nonmanifold_edges, "edges that more than two faces share");
     note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
-    const InputTopology& t = record_.report.input;
-    if (!t.closed && t.boundary_loops > 0)
-      note(t.boundary_loops, "open boundaries; the result closes them or follows both sides");
+    const MendReport& m = record_.report.mend;
+    note(m.fins, "fins dropped: small patches that hang on edges of more than two faces");
+    note(m.islands, "islands dropped: small open patches apart from the rest");
+    note(m.turned_faces, "faces turned to agree with their neighbours");
+    std::ostringstream caps;
+    caps << "holes closed by new faces, up to " << m.widest_cap_world << " wide";
+    note(m.capped_loops, caps.str().c_str());
+    note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
   }
 
   void print_estimate(const Source& source) {

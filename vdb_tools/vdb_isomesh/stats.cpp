@@ -26,6 +26,15 @@ Json dirt_json(const DirtCounts& d) {
           {"inconsistent_edges", d.inconsistent_edges}};
 }
 
+Json mend_json(const MendReport& m) {
+  return {{"repeated_faces", m.repeated_faces}, {"fins", m.fins},
+          {"fin_faces", m.fin_faces},           {"islands", m.islands},
+          {"island_faces", m.island_faces},     {"turned_faces", m.turned_faces},
+          {"capped_loops", m.capped_loops},     {"cap_faces", m.cap_faces},
+          {"cap_area", m.cap_area_world},       {"widest_cap", m.widest_cap_world},
+          {"open_loops", m.open_loops}};
+}
+
 Json input_json(const Arguments& a, const RunRecord& r) {
   const InputTopology& t = r.report.input;
   return {{"path", a.input},
@@ -33,6 +42,7 @@ Json input_json(const Arguments& a, const RunRecord& r) {
           {"vertices", known(r.input.vertices)},
           {"faces", known(r.input.faces)},
           {"dropped", dirt_json(r.report.dirt)},
+          {"mended", mend_json(r.report.mend)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},
           {"genus", known(t.genus)},

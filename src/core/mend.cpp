@@ -1,0 +1,101 @@
+#include "isoshell/mend.h"
+
+#include "core/mend_holes.h"
+#include "core/mend_patches.h"
+#include "voxel/union_find.h"
+
+namespace isoshell {
+namespace {
+
+using namespace mending;
+
+/// Patches that caps join, with the volume that they enclose.
+class Bodies {
+ public:
+  Bodies(const MendMesh& mesh, const Patches& patches, const std::vector<Cap>& caps)
+      : mesh_(mesh), patches_(patches), parent_(patches.count), body_(patches.count) {
+    for (uint32_t p = 0; p < patches.count; ++p) parent_[p] = p;
+    for (const Cap& cap : caps)
+      for (uint32_t h : cap.loop) join(parent_.view(), patches.of[cap.loop[0] / 3], patches.of[h / 3]);
+    for (uint32_t f = 0; f < mesh.face_count(); ++f)
+      if (mesh.is_live(f)) {
+        Body& b = of_face(f);
+        (mesh.is_turned(f) ? b.has_turned : b.has_others) = true;
+        add(b, mesh.face[f]);
+      }
+    for (const Cap& cap : caps)
+      for (const Corners& c : cap.face) add(of_face(cap.loop[0] / 3), c);
+  }
+
+  /// Faces of the body disagreed, and as they are now they look inward.
+  bool is_inward(uint32_t f) {
+    const Body& b = of_face(f);
+    return b.has_turned && b.has_others && b.six_volume < 0;
+  }
+
+ private:
+  struct Body {
+    bool has_turned = false, has_others = false, has_origin = false;
+    WorldPoint origin = {0, 0, 0};
+    double six_volume = 0;
+  };
+  Body& of_face(uint32_t f) { return body_[find_root(parent_.view(), patches_.of[f])]; }
+
+  void add(Body& b, const Corners& c) {
+    if (!b.has_origin) b.origin = mesh_.position[c[0]];
+    b.has_origin = true;
+    const auto from_origin = [&](uint32_t v) {
+      const WorldPoint& p = mesh_.position[v];
+      return WorldPoint{p.x - b.origin.x, p.y - b.origin.y, p.z - b.origin.z};
+    };
+    const WorldPoint p = from_origin(c[0]), q = from_origin(c[1]), r = from_origin(c[2]);
+    b.six_volume += p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
+  }
+
+  const MendMesh& mesh_;
+  const Patches& patches_;
+  Buffer<uint32_t> parent_;
+  std::vector<Body> body_;
+};
+
+void turn_outward(MendMesh& mesh, const Patches& patches, std::vector<Cap>& caps) {
+  Bodies bodies(mesh, patches, caps);
+  for (Cap& cap : caps)
+    if (bodies.is_inward(cap.loop[0] / 3))
+      for (Corners& c : cap.face) std::swap(c[1], c[2]);
+  for (uint32_t f = 0; f < mesh.face_count(); ++f)
+    if (mesh.is_live(f) && bodies.is_inward(f)) mesh.turn(f);
+}
+
+/// The soup's own triangles in their order, then the caps.
+TriangleSoup mended_soup(const TriangleSoup& soup, const MendMesh& mesh, const std::vector<Cap>& caps) {
+  std::vector<uint32_t> face_of(soup.triangles.size(), kNoFace);
+  for (uint32_t f = 0; f < mesh.face_count(); ++f)
+    if (mesh.is_live(f)) face_of[mesh.source[f]] = f;
+  TriangleSoup mended;
+  mended.vertices = mesh.position;
+  mended.faces_in_file = soup.faces_in_file;
+  mended.dirt = soup.dirt;
+  for (uint32_t f : face_of)
+    if (f != kNoFace) mended.triangles.push_back(mesh.face[f]);
+  for (const Cap& cap : caps) mended.triangles.insert(mended.triangles.end(), cap.face.begin(), cap.face.end());
+  return mended;
+}
+
+}  // namespace
+
+TriangleSoup mend(const TriangleSoup& soup, const MendOptions& options, MendReport& report) {
+  report = {};
+  MendMesh mesh(soup);
+  report.repeated_faces = mesh.repeats();
+  drop_fins(mesh, report);
+  drop_islands(mesh, report);
+  orient_patches(mesh);
+  const Patches patches = find_patches(mesh);
+  std::vector<Cap> caps = cap_holes(mesh, options, report);
+  turn_outward(mesh, patches, caps);
+  for (uint32_t f = 0; f < mesh.face_count(); ++f) report.turned_faces += mesh.is_live(f) && mesh.is_turned(f);
+  return report.changed_anything() ? mended_soup(soup, mesh, caps) : soup;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,148 @@
+#include "core/mend_mesh.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace isoshell::mending {
+namespace {
+
+bool before(const WorldPoint& p, const WorldPoint& q) {
+  if (p.x != q.x) return p.x < q.x;
+  if (p.y != q.y) return p.y < q.y;
+  return p.z < q.z;
+}
+
+uint64_t key_of(uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
+
+Corners smallest_first(Corners t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+}  // namespace
+
+MendMesh::MendMesh(const TriangleSoup& soup) {
+  weld(soup);
+  list_faces(soup);
+  list_edges();
+}
+
+void MendMesh::weld(const TriangleSoup& soup) {
+  std::vector<uint8_t> used(soup.vertices.size(), 0);
+  for (const Corners& t : soup.triangles)
+    for (uint32_t v : t) used[v] = 1;
+  std::vector<uint32_t> order;
+  for (uint32_t v = 0; v < used.size(); ++v)
+    if (used[v]) order.push_back(v);
+  tbb::parallel_sort(order.begin(), order.end(), [&](uint32_t u, uint32_t v) {
+    const WorldPoint &p = soup.vertices[u], &q = soup.vertices[v];
+    return before(p, q) || (!before(q, p) && u < v);
+  });
+  welded_.resize(used.size());
+  for (uint32_t v : order) {
+    if (position.empty() || before(position.back(), soup.vertices[v])) position.push_back(soup.vertices[v]);
+    welded_[v] = uint32_t(position.size() - 1);
+  }
+}
+
+void MendMesh::list_faces(const TriangleSoup& soup) {
+  struct Sourced {
+    Corners corner;
+    uint32_t source;
+    /// Of a face and its mirror image the same one.
+    Corners unsided() const { return corner[1] < corner[2] ? corner : Corners{corner[0], corner[2], corner[1]}; }
+    bool operator<(const Sourced& o) const {
+      const Corners a = unsided(), b = o.unsided();
+      if (a != b) return a < b;
+      return corner != o.corner ? corner < o.corner : source < o.source;
+    }
+  };
+  std::vector<Sourced> all;
+  all.reserve(soup.triangles.size());
+  for (uint32_t i = 0; i < soup.triangles.size(); ++i) {
+    const Corners& t = soup.triangles[i];
+    const Corners c = {welded_[t[0]], welded_[t[1]], welded_[t[2]]};
+    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) all.push_back({smallest_first(c), i});
+  }
+  welded_ = {};
+  tbb::parallel_sort(all.begin(), all.end());
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (i > 0 && all[i].unsided() == all[i - 1].unsided()) {
+      ++repeats_;
+      continue;
+    }
+    face.push_back(all[i].corner);
+    source.push_back(all[i].source);
+  }
+  live_.assign(face.size(), 1);
+  turned_.assign(face.size(), 0);
+}
+
+void MendMesh::list_edges() {
+  std::vector<std::pair<uint64_t, uint32_t>> keyed(3 * face.size());
+  for (uint32_t h = 0; h < keyed.size(); ++h) keyed[h] = {key_of(from(h), to(h)), h};
+  tbb::parallel_sort(keyed.begin(), keyed.end());
+  edge_of_.resize(keyed.size());
+  half_.resize(keyed.size());
+  for (uint32_t i = 0; i < keyed.size(); ++i) {
+    if (i == 0 || keyed[i].first != keyed[i - 1].first) {
+      edge_key_.push_back(keyed[i].first);
+      edge_first_.push_back(i);
+    }
+    half_[i] = keyed[i].second;
+    edge_of_[keyed[i].second] = uint32_t(edge_key_.size() - 1);
+  }
+  edge_first_.push_back(uint32_t(keyed.size()));
+  live_at_.resize(edge_key_.size());
+  for (size_t e = 0; e < live_at_.size(); ++e) live_at_[e] = edge_first_[e + 1] - edge_first_[e];
+}
+
+void MendMesh::drop(uint32_t f) {
+  live_[f] = 0;
+  for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) --live_at_[edge_of_[h]];
+}
+
+void MendMesh::turn(uint32_t f) {
+  turned_[f] ^= 1;
+  // Corners 1 and 2 change places: half-edges 0 and 2 change edges.
+  std::swap(face[f][1], face[f][2]);
+  const uint32_t h = 3 * f, g = 3 * f + 2, e = edge_of_[h], d = edge_of_[g];
+  for (uint32_t i = edge_first_[e]; i < edge_first_[e + 1]; ++i)
+    if (half_[i] == h) half_[i] = g;
+  for (uint32_t i = edge_first_[d]; i < edge_first_[d + 1]; ++i)
+    if (half_[i] == g) half_[i] = h;
+  std::swap(edge_of_[h], edge_of_[g]);
+}
+
+uint32_t MendMesh::twin(uint32_t half_edge) const {
+  const uint32_t e = edge_of_[half_edge];
+  for (uint32_t i = edge_first_[e]; i < edge_first_[e + 1]; ++i)
+    if (half_[i] != half_edge && live_[half_[i] / 3]) return half_[i];
+  return half_edge;
+}
+
+int64_t MendMesh::find_edge(uint32_t a, uint32_t b) const {
+  const auto at = std::lower_bound(edge_key_.begin(), edge_key_.end(), key_of(a, b));
+  return at != edge_key_.end() && *at == key_of(a, b) ? at - edge_key_.begin() : -1;
+}
+
+bool MendMesh::has_edge(uint32_t a, uint32_t b) const {
+  const int64_t e = find_edge(a, b);
+  return e >= 0 && live_at_[size_t(e)] > 0;
+}
+
+WorldPoint MendMesh::doubled_area(uint32_t f) const {
+  const WorldPoint &a = position[face[f][0]], &b = position[face[f][1]], &c = position[face[f][2]];
+  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+  return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+}
+
+double MendMesh::area(uint32_t f) const {
+  const WorldPoint n = doubled_area(f);
+  return std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / 2;
+}
+
+}  // namespace isoshell::mending
