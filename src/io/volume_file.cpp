@@ -99,7 +99,10 @@ void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_
 }
 
 TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info) {
-  const MeshSource source(path);
+  return read_volume(MeshSource(path), options, info);
+}
+
+TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
   if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
   const bool nano = source.size() >= 7 && std::memcmp(source.begin(), "NanoVDB", 7) == 0;
   const std::unique_ptr<ScalarField> field =

@@ -33,4 +33,7 @@ bool unpack_stream(View<const char> packed, bool zip, View<char> to);
 std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions& options);
 std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const VolumeReadOptions& options);
 
+/// read_volume() of bytes that are in memory.
+TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info);
+
 }  // namespace isoshell

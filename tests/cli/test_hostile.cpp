@@ -100,3 +100,33 @@ TEST_CASE("hostile: absurd sizes are refused with a size that would do", "[cli][
   CHECK(folder.run("ball.off out.ply --vertices 10000000 --resolution 16").status == 2);
   CHECK_FALSE(folder.has("out.ply"));
 }
+
+TEST_CASE("hostile: an interrupted run ends with 130 at any moment and leaves nothing behind", "[cli][hostile]") {
+  Folder folder;
+  folder.write_off("ball.off", shapes::sphere({0, 0, 0}, 1, 300));
+  folder.write("old.ply", "old");
+  for (const char* seconds : {"0.02", "0.1", "0.2", "0.35", "0.6", "1"}) {
+    const auto r = folder.shell("timeout --preserve-status -s INT " + std::string(seconds) + " '" + command_path() +
+                                "' ball.off old.ply --force --vertices 60000 --save-shell s.vdb --stats s.json");
+    INFO(seconds << ": " << r.err);
+    CHECK((r.status == 130 || r.status == 0));
+    if (r.status == 0) break;  // done before: a faster machine than the rest needs
+    CHECK(folder.content("old.ply") == "old");
+    fs::remove(folder / "s.vdb");  // kept whole, when the run came that far
+    CHECK(folder.file_count() == 2);
+  }
+}
+
+TEST_CASE("hostile: a folder that is full or vanishes leaves the old file as it was", "[cli][hostile]") {
+  Folder folder;
+  folder.write_off("ball.off", ball_at({0, 0, 0}, 1));
+  folder.write("old.ply", "old");
+  const auto full = folder.shell("ulimit -f 8; '" + command_path() + "' ball.off old.ply --vertices 4000 --force");
+  CHECK(full.status == 4);
+  CHECK(folder.content("old.ply") == "old");
+  CHECK(folder.file_count() == 2);
+  const auto gone =
+      folder.shell("mkdir gone; '" + command_path() +
+                   "' ball.off gone/out.ply --vertices 400 --resolution 60 & sleep 0.05; rmdir gone; wait $!");
+  CHECK(gone.status == 4);
+}

@@ -1,10 +1,10 @@
-// vdb_isomesh: the command. Turns exceptions into exit statuses and signals into a cancelled run.
-#include <csignal>
+// vdb_isomesh: the command. Turns exceptions into exit statuses.
 #include <cstdio>
 #include <exception>
 #include <new>
 
 #include "isoshell/error.h"
+#include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
 #include "vdb_isomesh/output.h"
 #include "vdb_isomesh/run.h"
@@ -12,13 +12,6 @@
 namespace {
 
 isoshell::Context context;
-
-/// The first signal asks the run to stop; the next one ends the process at once.
-extern "C" void cancel_run(int) {
-  context.cancel = true;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
 
 int run_command(int argc, char* argv[]) {
   using namespace isoshell;
@@ -46,9 +39,7 @@ int report(isoshell::ErrorCode code, const char* message) {
 
 int main(int argc, char* argv[]) {
   using isoshell::ErrorCode;
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write that fails, not a silent end
-  std::signal(SIGINT, cancel_run);
-  std::signal(SIGTERM, cancel_run);
+  isoshell::tool::answer_signals(context);
   try {
     return run_command(argc, argv);
   } catch (const isoshell::Error& e) {

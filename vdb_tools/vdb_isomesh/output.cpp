@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "isoshell/error.h"
+#include "vdb_isomesh/interrupt.h"
 
 namespace isoshell::tool {
 namespace {
@@ -50,6 +51,7 @@ void check_outputs(const Arguments& a) {
 
 void write_text(const std::string& path, const std::string& text) {
   if (path == "-") return put(stdout, "standard output", text);
+  const WhileWriting writing;
   const std::string temporary = path + ".tmp" + std::to_string(getpid());
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (!file) refuse(temporary + ": " + std::strerror(errno));

@@ -9,6 +9,7 @@
 #include "isoshell/error.h"
 #include "isoshell/isoshell.h"
 #include "vdb_isomesh/input.h"
+#include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
 #include "vdb_isomesh/output.h"
 #include "vdb_isomesh/stats.h"
@@ -57,7 +58,7 @@ class Run {
     const TriangleMesh mesh =
         step("triangulate", [&] { return triangulate(prepared, seeds, options_, record_.report, context_); });
     step("measure", [&] { measure(mesh); });
-    step("write", [&] { write_mesh(a_.output, mesh, {mesh_format(a_.output_format), a_.force}); });
+    write_step("write", a_.output, [&] { write_mesh(a_.output, mesh, {mesh_format(a_.output_format), a_.force}); });
     return finish();
   }
 
@@ -97,6 +98,16 @@ class Run {
       console_.progress(name, 1);
       return product;
     }
+  }
+
+  /// Standard output cannot be left in order: a run that is stuck there may be ended.
+  template <class Work>
+  void write_step(const char* name, const std::string& path, Work work) {
+    step(name, [&] {
+      std::optional<WhileWriting> writing;
+      if (path != "-") writing.emplace();
+      work();
+    });
   }
 
   Source read() {
@@ -225,7 +236,8 @@ class Run {
 
   void save_shell_if_asked(const Prepared& p) {
     for (const std::string& path : {a_.save_shell, a_.stop_after == StopAfter::shell ? a_.output : std::string()})
-      if (!path.empty()) step("save-shell", [&] { save_shell(path, p.surface, p.samples, p.shell, stage_options(p)); });
+      if (!path.empty())
+        write_step("save-shell", path, [&] { save_shell(path, p.surface, p.samples, p.shell, stage_options(p)); });
   }
 
   void save_voronoi_if_asked(const Prepared& p, const SeedSet& seeds) {
@@ -234,7 +246,7 @@ class Run {
     if (options_.want_digests) record_.report.digests["labels"] = digest_text(digest(labels));
     for (const std::string& path : {a_.save_voronoi, a_.stop_after == StopAfter::voronoi ? a_.output : std::string()})
       if (!path.empty())
-        step("save-voronoi", [&] {
+        write_step("save-voronoi", path, [&] {
           save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p));
           save_preview(preview_path(path), p.surface.frame, p.shell, labels, stage_options(p));
         });

@@ -1,0 +1,83 @@
+// What is fuzzed: every reader, by the name of its corpus folder.
+#include "fuzz/targets.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "io/mesh_readers.h"
+#include "io/point_readers.h"
+#include "io/volume_readers.h"
+#include "isoshell/error.h"
+#include "isoshell/io/vdb_file.h"
+
+namespace isoshell::fuzz {
+namespace {
+
+constexpr int64_t kMemory = 256 << 20;
+
+template <TriangleSoup (*read)(const MeshSource&)>
+void run_mesh(View<const char> bytes) {
+  const TriangleSoup soup = read(MeshSource("fuzz", bytes));
+  for (const auto& t : soup.triangles)
+    for (const uint32_t corner : t)
+      if (corner >= soup.vertices.size()) std::abort();
+}
+
+template <PointCloud (*read)(const MeshSource&)>
+void run_points(View<const char> bytes) {
+  const PointCloud cloud = read(MeshSource("fuzz", bytes));
+  if (!cloud.normal.empty() && cloud.normal.size() != cloud.position.size()) std::abort();
+}
+
+void run_volume(View<const char> bytes) {
+  VolumeInfo info;
+  const TriangleSoup soup = read_volume(MeshSource("fuzz", bytes), {"", 0.25, kMemory}, info);
+  for (const auto& t : soup.triangles)
+    for (const uint32_t corner : t)
+      if (corner >= soup.vertices.size()) std::abort();
+}
+
+/// Stage files are read by name: the bytes get one in memory.
+void run_stage(View<const char> bytes) {
+  const int file = memfd_create("fuzz", MFD_CLOEXEC);
+  struct Close {
+    int file;
+    ~Close() { close(file); }
+  } closing{file};
+  if (file < 0 || write(file, bytes.data, size_t(bytes.size)) != bytes.size) std::abort();
+  read_stage("/proc/self/fd/" + std::to_string(file));
+}
+
+}  // namespace
+
+const std::vector<Target>& targets() {
+  static const std::vector<Target> all = {{"obj", run_mesh<read_obj>},
+                                          {"off", run_mesh<read_off>},
+                                          {"ply", run_mesh<read_ply>},
+                                          {"stl", run_mesh<read_stl>},
+                                          {"ply_points", run_points<read_ply_points>},
+                                          {"xyz", run_points<read_xyz>},
+                                          {"pcd", run_points<read_pcd>},
+                                          {"volume", run_volume},
+                                          {"stage", run_stage}};
+  return all;
+}
+
+void run_or_abort(const Target& target, View<const char> bytes) {
+  try {
+    target.run(bytes);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::internal) return;
+    std::fprintf(stderr, "%s: internal error: %s\n", target.name, error.what());
+    std::abort();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: not refused but thrown: %s\n", target.name, error.what());
+    std::abort();
+  }
+}
+
+}  // namespace isoshell::fuzz

@@ -1,0 +1,54 @@
+// Answers to signals: the run is asked to stop, and stopped where it does not hear in time.
+#include "vdb_isomesh/interrupt.h"
+
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+
+#include "isoshell/error.h"
+
+namespace isoshell::tool {
+namespace {
+
+constexpr suseconds_t kPatienceUs = 250000, kAgainUs = 20000;
+
+std::atomic<Context*> cancelled_by_signal{nullptr};
+std::atomic<int> writing{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Context*>::is_always_lock_free,
+              "handlers of signals may use them");
+
+void wake_in(suseconds_t us) {
+  const itimerval timer{{0, 0}, {0, us}};
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+extern "C" void end_unless_writing(int) {
+  if (writing > 0) return wake_in(kAgainUs);
+  constexpr char kText[] = "vdb_isomesh: error: interrupted\n";
+  if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) {  // nobody to tell
+  }
+  _exit(int(ErrorCode::interrupted));
+}
+
+extern "C" void cancel_run(int) {
+  cancelled_by_signal.load()->cancel = true;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_DFL);
+  wake_in(kPatienceUs);
+}
+
+}  // namespace
+
+void answer_signals(Context& context) {
+  cancelled_by_signal = &context;
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write that fails, not a silent end
+  std::signal(SIGXFSZ, SIG_IGN);  // and so is one beyond a limit of file sizes
+  std::signal(SIGALRM, end_unless_writing);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, cancel_run);
+}
+
+WhileWriting::WhileWriting() { ++writing; }
+WhileWriting::~WhileWriting() { --writing; }
+
+}  // namespace isoshell::tool

@@ -1,0 +1,22 @@
+// Answers to signals: the run is asked to stop, and stopped where it does not hear in time.
+#pragma once
+
+#include "isoshell/backend.h"
+
+namespace isoshell::tool {
+
+/// From now on SIGINT, SIGTERM and SIGHUP cancel the context, which must live as long as the process. A run that has
+/// not ended a quarter of a second later is ended with status 130, unless a file is being written then. A second signal
+/// ends the process at once.
+void answer_signals(Context& context);
+
+/// While one of these lives, a file is being written: it is finished or removed before the process ends.
+class WhileWriting {
+ public:
+  WhileWriting();
+  ~WhileWriting();
+  WhileWriting(const WhileWriting&) = delete;
+  WhileWriting& operator=(const WhileWriting&) = delete;
+};
+
+}  // namespace isoshell::tool
