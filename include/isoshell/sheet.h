@@ -32,6 +32,8 @@ struct Sheet {
   Buffer<TriangleIndices> triangles;
   Buffer<int64_t> vertex_first;       ///< vertex_count + 1 offsets into vertex_triangles
   Buffer<uint32_t> vertex_triangles;  ///< ascending per vertex
+  Buffer<PointQ8> missed;             ///< points of a closed surface that are 1/2 to 4 voxels off the sheet
+  Buffer<uint32_t> missed_vertex;     ///< the vertex nearest to each
   SheetTopology topology;
   EdgeLengths lengths;  ///< empty as built; see set_edge_lengths
 

@@ -45,6 +45,8 @@ Sheet copy_product(const Sheet& s, Copy copy) {
           copy(s.triangles),
           copy(s.vertex_first),
           copy(s.vertex_triangles),
+          copy(s.missed),
+          copy(s.missed_vertex),
           s.topology,
           {copy(s.lengths.at), s.lengths.least, s.lengths.largest}};
 }

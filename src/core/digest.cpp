@@ -70,6 +70,8 @@ uint64_t digest(const Sheet& sheet) {
       .array(s->normal)
       .array(s->source_triangle)
       .array(s->triangles)
+      .array(s->missed)
+      .array(s->missed_vertex)
       .get();
 }
 uint64_t digest(const SeedSet& seeds) {

@@ -19,11 +19,12 @@ namespace post {
 constexpr int kStepsOffSheet = 8;
 constexpr int kUndoRounds = 3;
 constexpr int kSamplesPerTriangle = 9;  ///< fewer miss tips, more change little
-constexpr double kStiffness = 1.5;      ///< less is nearer to the surface, more has better triangles
+constexpr double kStiffness = 0.5;      ///< less is nearer to the surface, more has better triangles
+constexpr double kFitMomentum = 0.7;
 // No step may make a triangle below its bound worse; bounds rise to where the search begins.
 constexpr double kPoorMerit = 0.8, kFairMerit = 0.9, kFineMerit = 0.97, kGoodMerit = 1;
-// Weight of the mean size of triangles against their own. Shapes are best with little.
-constexpr double kEvenness = 0.1, kUniformEvenness = 4;
+// Weight of the size to aim at against a triangle's own. Shapes are best with none.
+constexpr double kEvenness = 0, kSizedEvenness = 0.1, kUniformEvenness = 4;
 
 /// Seeds go where the vertices are: position, home and normal.
 struct UpdateSeed {
@@ -85,7 +86,7 @@ class Improvement {
   Improvement(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh)
       : exec_(exec),
         sheet_(sheet),
-        evenness_(options.uniform_area ? kUniformEvenness : kEvenness),
+        evenness_(options.uniform_area ? kUniformEvenness : (sheet.lengths.at.empty() ? kEvenness : kSizedEvenness)),
         seeds_(seeds),
         mesh_(mesh),
         vertices_(mesh.position.size()),
@@ -130,45 +131,49 @@ class Improvement {
     }
   }
 
-  /// Attaches samples of the sheet to the triangles around the vertices that they are nearest to.
+  /// Attaches samples of the sheet, and what it misses, to the triangles around the vertices that they are nearest to.
   void attach_samples() {
     update_seeds();
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
     label_sheet(exec_, sheet_, seeds_, seed_spacing(exec_, sheet_, vertices_), label.view());
     const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
     const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * smallest));
-    const int64_t count = (sheet_.vertex_count() + stride - 1) / stride;
+    samples_of_sheet_ = (sheet_.vertex_count() + stride - 1) / stride;
+    const int64_t count = samples_of_sheet_ + sheet_.missed.size();
     sample_ = exec_.template make<FitSample>(count);
     rest_sq_ = exec_.template make<int64_t>(count);
     triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
     vertex_pull_ = exec_.template make<VertexPull>(vertices_);
-    exec_.for_each("attach samples", count,
-                   AttachSample{view(), mesh_.position.view(), sheet_.position.view(), sheet_.normal.view(),
-                                label.view(), stride, sample_.view()});
+    exec_.for_each(
+        "attach samples", count,
+        AttachSample{view(), mesh_.position.view(), sheet_.position.view(), sheet_.normal.view(), label.view(),
+                     sheet_.missed.view(), sheet_.missed_vertex.view(), stride, sample_.view()});
   }
 
-  /// Steps towards the samples. `grow`: the largest residuals count most.
-  void fit(int steps, double damping, bool grow, double least_merit) {
+  /// Steps towards the samples.
+  void fit(int steps, double damping, double least_merit) {
     FitOptions options;
     options.smooth = smooth_options(0.1);
-    options.stiffness = kStiffness * double(sample_.size()) / (smallest_fit_ * double(vertices_));
+    options.smooth.momentum = kFitMomentum;
+    options.stiffness = kStiffness * double(samples_of_sheet_) / (smallest_fit_ * double(vertices_));
     options.damping = damping;
+    exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
     for (int s = 0; s < steps; ++s) {
       exec_.fill(triangle_pull_.view(), TrianglePull{});
       exec_.fill(vertex_pull_.view(), VertexPull{});
       exec_.for_each("pull corners", sample_.size(),
                      PullCorners{view(),
                                  mesh_.position.view(),
-                                 {rms_q8_, 0.1 * size_.edge_q8, grow},
+                                 {rms_q8_, 0.1 * size_.edge_q8},
                                  sample_.view(),
                                  triangle_pull_.view(),
                                  vertex_pull_.view(),
                                  rest_sq_.view()});
       options.rms_q8 = rms_q8_ =
-          rounded_sqrt(double(exec_.sum(sample_.size(), RestSq{rest_sq_.view()})) / double(sample_.size()));
+          rounded_sqrt(double(exec_.sum(samples_of_sheet_, RestSq{rest_sq_.view()})) / double(samples_of_sheet_));
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
       exec_.for_each("fit", vertices_,
-                     FitVertex{view(), walk_, options, mesh_.position.view(), triangle_pull_.view(),
+                     FitVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
                                vertex_pull_.view(), moved_home_.view(), moved_.view()});
       take_step(least_merit, mesh_.position.view());
     }
@@ -276,6 +281,7 @@ class Improvement {
   Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, harmed_;
   Buffer<uint64_t> claim_;
   Buffer<PointQ8> moved_, previous_, on_sheet_, begin_;
+  int64_t samples_of_sheet_ = 0;  ///< missed points come after them
   Buffer<FitSample> sample_;
   Buffer<int64_t> rest_sq_;
   Buffer<TrianglePull> triangle_pull_;
@@ -297,10 +303,10 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     const bool balanced = options.fit == Fit::balanced;
     if (balanced) {
       work.attach_samples();
-      work.fit(6, 1, false, post::kPoorMerit);
-      work.fit(5, 0.6, true, post::kFairMerit);
+      work.fit(6, 1, post::kPoorMerit);
+      work.fit(5, 0.6, post::kFairMerit);
       work.search(options.search_rounds, false);
-      work.fit(3, 0.6, true, post::kFineMerit);
+      work.fit(3, 0.6, post::kFineMerit);
     }
     work.search(3 * options.search_rounds, !balanced);
     work.undo_intersections(report);

@@ -10,7 +10,7 @@
 namespace isoshell::post {
 
 struct FitOptions {
-  SmoothOptions smooth;
+  SmoothOptions smooth;  ///< its momentum too
   double stiffness = 0;  ///< weight of the shape, in samples where edges are shortest: an area has as many everywhere
   double damping = 1;    ///< part of the move that is made
   double rms_q8 = 0;     ///< of the samples' residuals
@@ -37,7 +37,7 @@ struct FitVertex {
   MeshView mesh;
   WalkOntoSheet walk;
   FitOptions options;
-  View<const PointQ8> from;
+  View<const PointQ8> from, previous;
   View<const TrianglePull> triangle_pull;
   View<const VertexPull> vertex_pull;
   View<uint32_t> home;
@@ -68,7 +68,8 @@ struct FitVertex {
     shape = shape - dot(shape, normal) * normal;
     const double stiffness = options.stiffness * (size * size) * kPullScale;
     a.xx += stiffness, a.yy += stiffness, a.zz += stiffness;
-    const Vector move = options.damping * a.solve(pull + stiffness * shape);
+    const Vector move =
+        options.damping * a.solve(pull + stiffness * shape) + options.smooth.momentum * from_to(previous[v], p);
     to[v] = moved_by(p, at_most(move, options.smooth.most_edges * edge_q8));
   }
 

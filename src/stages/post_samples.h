@@ -1,5 +1,5 @@
-// What the surface asks of the mesh: samples are sheet vertices, each attached to the closest triangle of the mesh;
-// their residuals, summed as integers, pull the corners.
+// What the surface asks of the mesh: samples are sheet vertices, and points that the sheet misses, each attached to
+// the closest triangle of the mesh; their residuals, summed as integers, pull the corners.
 #pragma once
 
 #include "stages/post_mesh.h"
@@ -11,6 +11,7 @@ namespace isoshell::post {
 struct FitSample {
   PointQ8 position;
   Normal8 normal;
+  bool is_missed;
   uint32_t triangle;
 };
 
@@ -45,18 +46,23 @@ ISOSHELL_HD inline Foot foot_on_triangle(PointQ8 q, PointQ8 a, PointQ8 b, PointQ
   return {{1 - v - w, v, w}, aq - (v * ab + w * ac)};
 }
 
-/// Every stride-th sheet vertex, on the triangle around its label's vertex that is closest and faces its way.
+/// Every stride-th sheet vertex, then the missed points, on the triangle around its label's vertex that is closest and
+/// faces its way. Missed points take label and normal of the sheet vertex nearest to them.
 struct AttachSample {
   MeshView mesh;
   View<const PointQ8> position;
   View<const PointQ8> sheet_position;
   View<const Normal8> sheet_normal;
   View<const uint32_t> label;
+  View<const PointQ8> missed;
+  View<const uint32_t> missed_vertex;
   int64_t stride;
   View<FitSample> sample;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const int64_t s = i * stride;
-    FitSample out{sheet_position[s], sheet_normal[s], kNone};
+    const int64_t missed_number = i - (sample.size - missed.size);
+    const bool is_missed = missed_number >= 0;
+    const int64_t s = is_missed ? missed_vertex[missed_number] : i * stride;
+    FitSample out{is_missed ? missed[missed_number] : sheet_position[s], sheet_normal[s], is_missed, kNone};
     double best = 0;
     const uint32_t start = mesh.outgoing[label[s]];
     uint32_t h = start;
@@ -86,11 +92,12 @@ struct VertexPull {
 };
 constexpr double kPullScale = 1024;
 constexpr double kLargestWeight = 64;
+constexpr double kFarOfRms = 4;      ///< residuals beyond this many root mean squares are tails
+constexpr double kMissedWeight = 4;  ///< of missed points where tails begin; other samples have 1 / kFarOfRms there
 
 struct PullOptions {
-  double rms_q8 = 0;  ///< of the residuals; 0: all samples weigh the same
+  double rms_q8 = 0;  ///< of the residuals; 0: all samples weigh the same, and missed points nothing
   double far_q8 = 0;  ///< samples farther than this look around
-  bool grow = false;  ///< weights grow with the residual, so that the largest shrink
 };
 
 /// Lets a sample slide to a closer triangle near its own, and adds what it asks for.
@@ -152,18 +159,22 @@ struct PullCorners {
     }
     return s.triangle != own;
   }
-  /// Samples far beyond the mean residual always weigh more.
-  ISOSHELL_HD double weight_of(double distance_sq) const {
-    if (!(options.rms_q8 > 0)) return 1;
+  /// Weights fall with the residual: the mean distance is to shrink, not the mean of its square. In the tails they rise
+  /// again, for the largest distance. Missed points count only there: they are not spread evenly.
+  ISOSHELL_HD double weight_of(const FitSample& s, double distance_sq) const {
+    if (!(options.rms_q8 > 0)) return s.is_missed ? 0 : 1;
     const double part = rounded_sqrt(distance_sq) / options.rms_q8;
-    double w = options.grow ? part : 1;
-    if (w < 0.25) w = 0.25;
-    if (part > 4) w *= part * part / 16;
+    if (part <= kFarOfRms) {
+      if (s.is_missed) return 0;
+      return part * kFarOfRms > 1 ? 1 / part : kFarOfRms;
+    }
+    const double beyond = part / kFarOfRms, w = (s.is_missed ? kMissedWeight : 1 / kFarOfRms) * (beyond * beyond);
     return w < kLargestWeight ? w : kLargestWeight;
   }
   ISOSHELL_HD static int64_t scaled(double x) { return int64_t(x * kPullScale); }
   ISOSHELL_HD void add(const FitSample& s, const Foot& foot, double distance_sq) const {
-    const double w = weight_of(distance_sq);
+    const double w = weight_of(s, distance_sq);
+    if (!(w > 0)) return;
     const TriangleIndices i = mesh.triangles[s.triangle];
     const Vector normal = unit(normal_of(position[i.a], position[i.b], position[i.c]));
     const double along = dot(foot.rest, normal);

@@ -5,6 +5,7 @@
 #include "isoshell/stages.h"
 #include "stages/sheet_closing_body.h"
 #include "stages/sheet_components_body.h"
+#include "stages/sheet_missed_body.h"
 #include "stages/sheet_project_body.h"
 #include "stages/sheet_quads_body.h"
 #include "stages/sheet_repair_body.h"
@@ -160,7 +161,9 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
   const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
                                          samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
-  return finish_sheet(exec, surface.frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+  Sheet sheet = finish_sheet(exec, surface.frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+  if (surface.topology.closed && surface.topology.oriented) find_missed(exec, surface, sheet);
+  return sheet;
 }
 
 template <class Exec>

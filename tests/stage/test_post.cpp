@@ -189,6 +189,39 @@ TEST_CASE("post: a balanced fit is nearer to the surface than vertices on it, wh
   }
 }
 
+TEST_CASE("post: points that the sheet misses draw the mesh towards them", "[post][stage]") {
+  TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 60);
+  WorldPoint& pit = soup.vertices[soup.vertices.size() / 2 + 3];
+  pit = {0.8 * pit.x, 0.8 * pit.y, 0.8 * pit.z};
+  TestContext context;
+  const LatticeFrame frame = LatticeFrame::around({-1, -1, -1}, {1, 1, 1}, 80);
+  LatticeSurface surface = snap_surface(soup, frame, context);
+  surface.topology.closed = surface.topology.oriented = true;
+  const SiteSet sites = voxelize(surface, context);
+  Sheet sheet = build_sheet(surface, sites, sample_sites(surface, sites, context), {}, context);
+  SeedSet seeds = place_seeds(sheet, {300, 3}, context);
+  relax_on_sheet(sheet, seeds, {20}, context);
+  DualReport report;
+  const DualMesh start = triangulate_dual(sheet, seeds, {}, report, context);
+  REQUIRE(report.failed_cells == 0);
+  REQUIRE(sheet.missed.size() > 0);
+  const auto distance_of_pit = [&] {
+    SeedSet s = copy_of(seeds);
+    DualMesh mesh = copy_of(start);
+    improve_mesh(sheet, {}, s, mesh, context);
+    const PointQ8 bottom = frame.snap(pit);
+    int64_t best = INT64_MAX;
+    for (const TriangleIndices& t : mesh.triangles)
+      best = std::min(best, distance_sq_q16(bottom, closest_point_on_triangle(bottom, mesh.position[t.a],
+                                                                              mesh.position[t.b], mesh.position[t.c])));
+    return std::sqrt(double(best));
+  };
+  const double seen = distance_of_pit();
+  sheet.missed = {};
+  sheet.missed_vertex = {};
+  CHECK(seen < 0.8 * distance_of_pit());
+}
+
 TEST_CASE("post: areas are more even when that is asked for", "[post][stage]") {
   TestContext context;
   for (Start& s : starts()) {

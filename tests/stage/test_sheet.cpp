@@ -286,6 +286,36 @@ TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet]
   CHECK(far == 0);
 }
 
+TEST_CASE("sheet: points of a closed surface that it misses are known", "[sheet][stage]") {
+  TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 60);
+  WorldPoint& pit = soup.vertices[soup.vertices.size() / 2 + 3];
+  pit = {0.8 * pit.x, 0.8 * pit.y, 0.8 * pit.z};
+  TestContext context;
+  Pipeline p = sites_of(soup, 60, context);
+  CHECK(build_sheet(p.surface, p.sites, p.samples, {}, context).missed.empty());  // not known to be closed
+  p.surface.topology.closed = p.surface.topology.oriented = true;
+  const Sheet sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
+  int64_t next = 0, wrong = 0;
+  bool has_pit = false;
+  for (const PointQ8& q : p.surface.points) {
+    uint32_t near = 0;
+    for (uint32_t v = 1; v < sheet.position.size(); ++v)
+      if (distance_sq_q16(sheet.position[v], q) < distance_sq_q16(sheet.position[near], q)) near = v;
+    int64_t off = INT64_MAX;
+    for (const TriangleIndices& t : sheet.triangles)
+      if (t.a == near || t.b == near || t.c == near)
+        off = std::min(off, distance_sq_q16(q, closest_point_on_triangle(q, sheet.position[t.a], sheet.position[t.b],
+                                                                         sheet.position[t.c])));
+    if (off <= kMissedQ8 * kMissedQ8 || off > kFarMissedQ8 * kFarMissedQ8) continue;
+    wrong += next >= sheet.missed.size() || sheet.missed[next] != q || sheet.missed_vertex[next] != near;
+    ++next;
+    has_pit |= q == p.surface.frame.snap(pit);
+  }
+  CHECK(next == sheet.missed.size());
+  CHECK(wrong == 0);
+  CHECK(has_pit);
+}
+
 TEST_CASE("sheet: neither threads nor the order of the input change a bit", "[sheet][stage]") {
   TriangleSoup soup = shapes::together(shapes::torus(2, .7, 60, 30), shapes::box({-.4, -.4, -.4}, {.4, .5, .3}));
   for (const int32_t r : {0, 3}) {
