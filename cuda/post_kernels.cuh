@@ -2,12 +2,16 @@
 // finds nothing to do changes nothing, so several are launched at once.
 #pragma once
 
+#include <cooperative_groups.h>
+
 #include "cuda/executor_cuda.cuh"
+#include "cuda/group_walk.cuh"
+#include "cuda/warp.cuh"
 #include "stages/post_body.h"
 
 namespace isoshell::post {
 
-constexpr int kRoundsPerLook = 3;  ///< most meshes are done after two
+constexpr int kRoundsPerLook = 3;  ///< of flips
 
 namespace device_steps {
 
@@ -27,17 +31,97 @@ struct FlipWinners {
   }
 };
 
-/// Restores what was harmed, remembers that some was, and clears the marks for the next round.
-struct RestoreAndTell {
-  RestoreHarmed restore;
-  View<uint32_t> some;
-  ISOSHELL_HD void operator()(int64_t v) const {
-    if (!restore.harmed[v]) return;
-    if (!atomic_load(some[0])) atomic_or(some[0], 1u);
-    restore(v);
-    restore.harmed[v] = 0;
+constexpr int kThreads = 256;
+constexpr int kBlocks = 2;  ///< a multiprocessor: all of a kernel's blocks run at once, and wait for one another
+
+/// Calls each(i) for what of 0 .. count - 1 is this thread's of the grid.
+template <class Each>
+__device__ inline void for_each_of_grid(int64_t count, Each each) {
+  for (int64_t i = int64_t(blockIdx.x) * kThreads + threadIdx.x; i < count; i += int64_t(gridDim.x) * kThreads) each(i);
+}
+
+/// The whole of undo_harm. Three words of `some`, one a round: was a vertex restored?
+__global__ void __launch_bounds__(kThreads, kBlocks)
+    undo_in_rounds(MarkHarmed mark, RestoreHarmed restore, uint32_t* some) {
+  const auto grid = cooperative_groups::this_grid();
+  const bool is_first = blockIdx.x == 0 && threadIdx.x == 0;
+  for_each_of_grid(restore.harmed.size, [&](int64_t v) { restore.harmed[v] = 0; });
+  if (is_first) some[0] = 0;
+  for (int round = 0;; round = (round + 1) % 3) {
+    grid.sync();
+    for_each_of_grid(mark.triangles.size, mark);
+    grid.sync();
+    bool restored = false;
+    for_each_of_grid(restore.harmed.size, [&](int64_t v) {
+      if (!restore.harmed[v]) return;
+      restore(v);
+      restore.harmed[v] = 0;
+      restored = true;
+    });
+    if (__syncthreads_or(restored) && threadIdx.x == 0) atomic_or(some[round], 1u);
+    if (is_first) some[(round + 1) % 3] = 0;
+    grid.sync();
+    if (!atomic_load(some[round])) return;
   }
-};
+}
+
+/// SearchVertex by a warp: a lane tries each place, and the first of the best ones counts.
+__device__ inline void search_together(const SearchVertex& search, uint32_t v) {
+  static_assert(SearchVertex::kPlaces == 32, "a lane a place");
+  const int lane = threadIdx.x & 31;
+  const PointQ8 p = search.position[v];
+  const double here = search.worst_merit(v, p, 0);
+  const PointQ8 place = search.place_at(p, search.compass_at(v), lane);
+  double best = search.worst_merit(v, place, here);
+  int number = lane;
+#pragma unroll
+  for (int d = 16; d > 0; d >>= 1) {
+    const double other = __shfl_xor_sync(kWholeWarp, best, d);
+    const int other_number = __shfl_xor_sync(kWholeWarp, number, d);
+    if (other > best || (other == best && other_number < number)) best = other, number = other_number;
+  }
+  if (!(best > here)) return;
+  const PointQ8 to = {__shfl_sync(kWholeWarp, place.x, number), __shfl_sync(kWholeWarp, place.y, number),
+                      __shfl_sync(kWholeWarp, place.z, number)};
+  if (to == p) return;
+  if (!search.onto_sheet) {
+    if (lane == 0) search.position[v] = to;
+    return;
+  }
+  const cuda_relax::Landing landing = cuda_relax::walk_together(search.walk, search.home[v], to, true);
+  if (lane == 0) search.move_onto_sheet(v, landing.vertex, landing.point, here);
+}
+
+/// The whole of search_places.
+__global__ void __launch_bounds__(kThreads, kBlocks)
+    search_in_rounds(SearchVertex search, View<uint32_t> poor, double least_merit, int rounds) {
+  const auto grid = cooperative_groups::this_grid();
+  const int lane = threadIdx.x & 31;
+  for (int round = 0; round < rounds; ++round) {
+    for_each_of_grid(poor.size, [&](int64_t v) { poor[v] = 0; });
+    grid.sync();
+    for_each_of_grid(search.mesh.triangles.size, MarkPoor{search.mesh.triangles, search.position, least_merit, poor});
+    grid.sync();
+    search.odd = round % 2 == 1;
+    const MayMove may_move{search.mesh, poor, uint64_t(round)};
+    const int64_t warps = (poor.size + 31) / 32;
+    for_each_of_grid(32 * warps, [&](int64_t v) {
+      unsigned left = __ballot_sync(kWholeWarp, v < poor.size && may_move(v));
+      for (; left; left &= left - 1) search_together(search, uint32_t(v - lane + __ffs(int(left)) - 1));
+    });
+    grid.sync();
+  }
+}
+
+/// Launches a kernel whose blocks wait for one another, for so many elements.
+template <class... Parameters>
+void launch_together(CudaExecutor& exec, void (*kernel)(Parameters...), int64_t elements, Parameters... parameters) {
+  const unsigned blocks = exec.device().resident_blocks((elements + kThreads - 1) / kThreads, kBlocks);
+  void* arguments[] = {&parameters...};
+  require_success(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks), dim3(kThreads),
+                                              arguments, 0, exec.stream()),
+                  "cudaLaunchCooperativeKernel");
+}
 
 }  // namespace device_steps
 
@@ -66,16 +150,18 @@ inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t>
 inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, double least_merit,
                       const RestoreHarmed& restore) {
   const MarkHarmed mark{triangles, restore.before, restore.after, least_merit, restore.harmed};
-  Buffer<uint32_t> some = exec.make<uint32_t>(kRoundsPerLook);
-  exec.fill(restore.harmed, 0u);
-  do {
-    exec.fill(some.view(), 0u);
-    for (int r = 0; r < kRoundsPerLook; ++r) {
-      exec.for_each("mark harmed", triangles.size, mark);
-      exec.for_each("restore harmed", restore.harmed.size,
-                    device_steps::RestoreAndTell{restore, some.view().part(r, 1)});
-    }
-  } while (exec.value(View<const uint32_t>(some.view()), kRoundsPerLook - 1) != 0);
+  Buffer<uint32_t> some = exec.make<uint32_t>(3);
+  device_steps::launch_together(exec, device_steps::undo_in_rounds, triangles.size, mark, restore, some.data());
+  exec.check("undo harm");
+}
+
+inline void search_places(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk,
+                          const SearchOptions& options, View<PointQ8> position, View<uint32_t> home,
+                          View<uint32_t> poor) {
+  const SearchVertex search{mesh, walk, {}, options.edge, false, options.onto_sheet, position, home};
+  device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
+                                options.least_merit, options.rounds);
+  exec.check("search places");
 }
 
 }  // namespace isoshell::post

@@ -181,16 +181,8 @@ class Improvement {
 
   /// Looks for better places for the corners of triangles below kGoodMerit.
   void search(int rounds, bool onto_sheet) {
-    for (int r = 0; r < rounds; ++r) {
-      exec_.fill(harmed_.view(), 0u);
-      exec_.for_each("mark poor", mesh_.triangles.size(),
-                     MarkPoor{mesh_.triangles.view(), mesh_.position.view(), kGoodMerit, harmed_.view()});
-      const Buffer<uint32_t> chosen = exec_.select(vertices_, MayMove{view(), harmed_.view(), uint64_t(r)});
-      if (chosen.empty()) return;
-      exec_.for_each("search", chosen.size(),
-                     SearchVertex{view(), walk_, chosen.view(), size_, r % 2 == 1, onto_sheet, mesh_.position.view(),
-                                  seeds_.home.view()});
-    }
+    search_places(exec_, view(), walk_, {rounds, kGoodMerit, size_, onto_sheet}, mesh_.position.view(),
+                  seeds_.home.view(), harmed_.view());
   }
 
   /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are

@@ -50,8 +50,36 @@ struct SearchVertex {
   View<PointQ8> position;
   View<uint32_t> home;
 
+  static constexpr int kPlaces = 32;  ///< that are tried: the compass points at four distances
+
   ISOSHELL_HD void operator()(int64_t i) const {
     const uint32_t v = chosen[i];
+    const PointQ8 p = position[v];
+    const Compass compass = compass_at(v);
+    const double here = worst_merit(v, p, 0);
+    double best = here;
+    PointQ8 best_place = p;
+    for (int number = 0; number < kPlaces; ++number) {
+      const PointQ8 place = place_at(p, compass, number);
+      const double merit = worst_merit(v, place, best);
+      if (merit > best) best = merit, best_place = place;
+    }
+    if (best_place == p) return;
+    if (!onto_sheet) {
+      position[v] = best_place;
+      return;
+    }
+    const uint32_t near = walk.nearest_vertex(home[v], best_place);
+    move_onto_sheet(v, near, walk.closest_around(near, best_place), here);
+  }
+
+  // The parts of a search.
+
+  struct Compass {
+    Vector east, north;
+    double farthest_q8;
+  };
+  ISOSHELL_HD Compass compass_at(uint32_t v) const {
     const PointQ8 p = position[v];
     Vector normal = {0, 0, 0};
     for_each_triangle_around(mesh, v,
@@ -59,25 +87,33 @@ struct SearchVertex {
     normal = unit(normal);
     const double ax = normal.x * normal.x, ay = normal.y * normal.y, az = normal.z * normal.z;
     const Vector axis = ax <= ay && ax <= az ? Vector{1, 0, 0} : (ay <= az ? Vector{0, 1, 0} : Vector{0, 0, 1});
-    const Vector east = unit(cross(axis, normal)), north = cross(normal, east);
-    const double here = worst_merit(v, p, p, 0);
-    double best = here;
-    PointQ8 best_place = p;
-    double step = 0.16 * edge.at(home[v]);
-    for (int size = 0; size < 4; ++size, step *= 0.5)
-      for (int point = 0; point < 8; ++point) {
-        const PointQ8 place = moved_by(p, step * direction(point, east, north));
-        const double merit = worst_merit(v, p, place, best);
-        if (merit > best) best = merit, best_place = place;
-      }
-    if (best_place == p) return;
-    if (onto_sheet) {
-      const uint32_t near = walk.nearest_vertex(home[v], best_place);
-      best_place = walk.closest_around(near, best_place);
-      if (!(worst_merit(v, p, best_place, here) > here)) return;
-      home[v] = near;
-    }
-    position[v] = best_place;
+    const Vector east = unit(cross(axis, normal));
+    return {east, cross(normal, east), 0.16 * edge.at(home[v])};
+  }
+  /// The nearer ones come later.
+  ISOSHELL_HD PointQ8 place_at(PointQ8 p, const Compass& compass, int number) const {
+    const double step = compass.farthest_q8 / double(1 << number / 8);
+    return moved_by(p, step * direction(number % 8, compass.east, compass.north));
+  }
+  /// Least merit of the triangles around v when it moves to q; 0 when one turns over, and anything not above `enough`
+  /// as soon as that is known.
+  ISOSHELL_HD double worst_merit(uint32_t v, PointQ8 q, double enough) const {
+    const PointQ8 p = position[v];
+    double worst = 2;
+    for_each_triangle_around(mesh, v, [&](uint32_t b, uint32_t c) {
+      if (worst <= enough) return;
+      const PointQ8 pb = position[b], pc = position[c];
+      const double merit = merit_of(q, pb, pc);
+      if (merit < worst) worst = merit;
+      if (!within_45_degrees(normal_of(p, pb, pc), normal_of(q, pb, pc))) worst = 0;
+    });
+    return worst;
+  }
+  /// If that still helps.
+  ISOSHELL_HD void move_onto_sheet(uint32_t v, uint32_t near, PointQ8 place, double here) const {
+    if (!(worst_merit(v, place, here) > here)) return;
+    home[v] = near;
+    position[v] = place;
   }
 
  private:
@@ -89,19 +125,29 @@ struct SearchVertex {
     const Vector d = (point & 3) == 0 ? first : ((point & 3) == 1 ? diagonal : ((point & 3) == 2 ? second : other));
     return point < 4 ? d : -1.0 * d;
   }
-  /// Least merit of the triangles around v when it moves from p to q; 0 when one turns over, and anything not above
-  /// `enough` as soon as that is known.
-  ISOSHELL_HD double worst_merit(uint32_t v, PointQ8 p, PointQ8 q, double enough) const {
-    double worst = 2;
-    for_each_triangle_around(mesh, v, [&](uint32_t b, uint32_t c) {
-      if (worst <= enough) return;
-      const PointQ8 pb = position[b], pc = position[c];
-      const double merit = merit_of(q, pb, pc);
-      if (merit < worst) worst = merit;
-      if (!within_45_degrees(normal_of(p, pb, pc), normal_of(q, pb, pc))) worst = 0;
-    });
-    return worst;
-  }
 };
+
+/// What a search of all poor vertices needs beside the mesh.
+struct SearchOptions {
+  int rounds;
+  double least_merit;  ///< vertices of triangles below it are poor
+  EdgeSize edge;
+  bool onto_sheet;
+};
+
+/// Looks for better places for poor vertices, in rounds of independent ones.
+template <class Exec>
+void search_places(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
+                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
+  for (int r = 0; r < options.rounds; ++r) {
+    exec.fill(poor, 0u);
+    exec.for_each("mark poor", mesh.triangles.size, MarkPoor{mesh.triangles, position, options.least_merit, poor});
+    const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
+    if (chosen.empty()) return;
+    exec.for_each(
+        "search", chosen.size(),
+        SearchVertex{mesh, walk, chosen.view(), options.edge, r % 2 == 1, options.onto_sheet, position, home});
+  }
+}
 
 }  // namespace isoshell::post
