@@ -3,12 +3,12 @@
 #pragma once
 
 #include "cuda/site_order.h"
+#include "cuda/warp.cuh"
 #include "voxel/leaf.h"
 
 namespace isoshell {
 namespace closest {
 
-constexpr unsigned kAllLanes = 0xffffffffu;
 constexpr uint32_t kBoth = 0x00010001u;
 
 /// min(a + b, c) by halves; no half may overflow.

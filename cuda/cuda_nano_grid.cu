@@ -5,6 +5,7 @@
 
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
+#include "cuda/warp.cuh"
 #include "grid/nano_nodes.h"
 #include "voxel/leaf.h"
 
@@ -12,7 +13,6 @@ namespace isoshell {
 namespace {
 
 constexpr int kThreads = 256;
-constexpr unsigned kAllLanes = 0xffffffffu;
 
 /// Root tiles of a lattice, x-major, which is their canonical order.
 struct RootTiles {
@@ -70,17 +70,11 @@ __global__ void __launch_bounds__(kThreads) write_leaves(VoxelSetView set, Nodes
   const int x = int(thread & 7);
   const bool some = l < nodes.at.leaves;
   const uint64_t word = some ? set.mask[l].word[x] : 0;
-  const uint32_t lanes = __ballot_sync(kAllLanes, word != 0) >> (threadIdx.x & 24) & 255;
-  uint64_t all = word;
-  for (int offset = 4; offset > 0; offset >>= 1) all |= __shfl_xor_sync(kAllLanes, all, offset);
-  uint32_t before = uint32_t(__popcll(word));
-  for (int offset = 1; offset < 8; offset <<= 1) {
-    const uint32_t other = __shfl_up_sync(kAllLanes, before, unsigned(offset), 8);
-    if (x >= offset) before += other;
-  }
+  const uint32_t lanes = __ballot_sync(kWholeWarp, word != 0) >> (threadIdx.x & 24) & 255;
+  const uint64_t all = warp_or<8>(word);
+  const uint32_t before = warp_sum_until<8>(uint32_t(__popcll(word)));
   // Voxels before words 1 to 7, nine bits each.
-  uint64_t packed = x < 7 ? uint64_t(before) << (9 * x) : 0;
-  for (int offset = 4; offset > 0; offset >>= 1) packed |= __shfl_xor_sync(kAllLanes, packed, offset);
+  const uint64_t packed = warp_or<8>(x < 7 ? uint64_t(before) << (9 * x) : uint64_t(0));
   if (!some) return;
   const uint32_t low = uint32_t(all) | uint32_t(all >> 32);
   uint32_t zs = low | low >> 16, ys = 0;
@@ -152,11 +146,10 @@ __global__ void __launch_bounds__(kThreads) write_lowers(VoxelSetView set, RootT
       box.hi[axis] = max(box.hi[axis], leaf.hi[axis]);
     }
   }
-  for (int axis = 0; axis < 3; ++axis)
-    for (int offset = 16; offset > 0; offset >>= 1) {
-      box.lo[axis] = min(box.lo[axis], __shfl_xor_sync(kAllLanes, box.lo[axis], offset));
-      box.hi[axis] = max(box.hi[axis], __shfl_xor_sync(kAllLanes, box.hi[axis], offset));
-    }
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = warp_min(box.lo[axis]);
+    box.hi[axis] = warp_max(box.hi[axis]);
+  }
   __syncthreads();
   if (threadIdx.x < 64) reinterpret_cast<uint64_t*>(lower + fields.child_mask)[threadIdx.x] = block.word[threadIdx.x];
   if ((threadIdx.x & 31) == 0)

@@ -92,11 +92,11 @@ __global__ void list_rows(VoxelSetView shell, int leaves, View<uint32_t> rows, u
       if (shell.blocks[b].word[bit >> 6] >> (bit & 63) & 1) first = false;
     }
   }
-  const uint32_t lanes = __ballot_sync(closest::kAllLanes, first);
+  const uint32_t lanes = __ballot_sync(kWholeWarp, first);
   uint32_t at = 0;
   if ((threadIdx.x & 31) == 0 && lanes) at = atomicAdd(count, uint32_t(__popc(lanes)));
-  at = __shfl_sync(closest::kAllLanes, at, 0);
-  if (first) rows[at + uint32_t(__popc(lanes & ((1u << (threadIdx.x & 31)) - 1)))] = uint32_t(l);
+  at = __shfl_sync(kWholeWarp, at, 0);
+  if (first) rows[at + uint32_t(lanes_before(lanes))] = uint32_t(l);
 }
 
 /// Eight lanes a leaf of sites.
@@ -105,12 +105,8 @@ __global__ void number_words(VoxelSetView sites, closest::SiteWord* words) {
   const bool some = leaf < sites.leaf_key.size;
   const uint64_t bits = some ? sites.mask[leaf].word[i & 7] : 0;
   const int voxels = __popcll(bits);
-  int before = voxels;
-  for (int offset = 1; offset < 8; offset <<= 1) {
-    const int other = __shfl_up_sync(closest::kAllLanes, before, unsigned(offset), 8);
-    if (int(i & 7) >= offset) before += other;
-  }
-  if (some) words[i] = {bits, uint32_t(sites.first[leaf]) + uint32_t(before - voxels)};
+  const int before = warp_sum_before<8>(voxels);
+  if (some) words[i] = {bits, uint32_t(sites.first[leaf]) + uint32_t(before)};
 }
 
 /// Longer rows compute less twice, shorter ones keep all processors busy.

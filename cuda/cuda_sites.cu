@@ -4,6 +4,7 @@
 #include "cuda/executor_cuda.cuh"
 #include "cuda/leaf_marks.cuh"
 #include "cuda/overlap_plan.h"
+#include "cuda/warp.cuh"
 #include "stages/sites_body.h"
 
 namespace isoshell {
@@ -11,8 +12,7 @@ namespace {
 
 using overlap_plan::Plan;
 
-constexpr int kWarps = 4;  ///< a thread block
-constexpr unsigned kAllLanes = 0xffffffffu;
+constexpr int kWarps = 4;             ///< a thread block
 constexpr int32_t kMostColumns = 64;  ///< of a triangle whose voxels are found column by column
 
 /// Windows of large triangles. Made in any order; more than fit are counted, but not kept.
@@ -116,14 +116,11 @@ struct PlanShare {
   /// Enters what this lane's plan offers to the warp; returns the sum.
   __device__ int32_t enter(int32_t count) {
     const int lane = int(threadIdx.x & 31);
-    for (int offset = 1; offset < 32; offset <<= 1) {
-      const int32_t before = __shfl_up_sync(kAllLanes, count, offset);
-      if (lane >= offset) count += before;
-    }
+    count = warp_sum_until(count);
     __syncwarp();
     end[lane] = count;
     __syncwarp();
-    return __shfl_sync(kAllLanes, count, 31);
+    return __shfl_sync(kWholeWarp, count, 31);
   }
   __device__ int32_t leaves_of(int lane) const {
     return leaves(plan[lane], 0) * leaves(plan[lane], 1) * leaves(plan[lane], 2);
@@ -220,7 +217,7 @@ __device__ uint64_t voxels_of(const Plan& plan, const int32_t at[3]) {
   const uint32_t zs = overlap_plan::range_bits(-at[2], plan.last[2] - at[2]);
   uint64_t yz = 0;
   if (ys >> lane & 1) yz = uint64_t(overlap_plan::shadow_row(plan.side[2], at[1] + lane, at[2]) & zs) << (8 * lane);
-  for (int offset = 4; offset > 0; offset >>= 1) yz |= __shfl_xor_sync(kAllLanes, yz, offset);
+  yz = warp_or<8>(yz);
   uint32_t rows = 0;
   if (x >= 0 && x <= plan.last[0]) rows = overlap_plan::shadow_row(plan.side[0], x, at[1]) & ys;
   uint64_t word = yz;
@@ -260,9 +257,9 @@ __global__ void __launch_bounds__(kWarps * 32) mark_voxels_of_leaves(Source sour
         c = share.candidate(start + lane);
         met = meets_leaf(share.plan[c.owner], c.voxel[0], c.voxel[1], c.voxel[2]);
       }
-      const uint32_t lanes = __ballot_sync(kAllLanes, met);
+      const uint32_t lanes = __ballot_sync(kWholeWarp, met);
       if (met)
-        queue[__popc(lanes & ((1u << lane) - 1))] = {
+        queue[lanes_before(lanes)] = {
             find_leaf(set, {c.leaf[0], c.leaf[1], c.leaf[2]}), c.owner, {c.voxel[0], c.voxel[1], c.voxel[2]}};
       __syncwarp();
       const int count = __popc(lanes);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "cuda/executor_cuda.cuh"
+#include "cuda/warp.cuh"
 #include "voxel/leaf.h"
 
 namespace isoshell {
@@ -82,12 +83,7 @@ static __global__ void list_leaves(BlockOrder order, const uint64_t* words, View
   const uint32_t number = uint32_t(start >> 32), first_leaf = uint32_t(start);
   const ulonglong2 pair = reinterpret_cast<const ulonglong2*>(words + place * kWords)[lane];
   const int low = __popcll(pair.x), both = low + __popcll(pair.y);
-  int rank = both;
-  for (int offset = 1; offset < 32; offset <<= 1) {
-    const int other = __shfl_up_sync(0xffffffffu, rank, offset);
-    if (lane >= offset) rank += other;
-  }
-  rank -= both;
+  const int rank = warp_sum_before(both);
   LeafBlock& block = blocks[number];
   block.word[2 * lane] = pair.x;
   block.word[2 * lane + 1] = pair.y;

@@ -77,7 +77,7 @@ class Worker {
       leaf = find_leaf(in_.shell, {row.x + lane_, row.y, row.z});
       s_.shell_leaf[lane_] = leaf;
     }
-    return __ballot_sync(closest::kAllLanes, leaf != kNone);
+    return __ballot_sync(kWholeWarp, leaf != kNone);
   }
 
   __device__ void find_site_leaves(Voxel row, int lo, int hi) {
@@ -108,7 +108,7 @@ class Worker {
         any |= uint32_t(word) | uint32_t(word >> 32);
       }
     const int slot = plane & (S::kRing - 1);
-    if (!__any_sync(closest::kAllLanes, any != 0)) {
+    if (!__any_sync(kWholeWarp, any != 0)) {
 #pragma unroll
       for (int x = 0; x <= kBand; ++x) s_.disc[x][slot] = 0;
       return;
@@ -185,7 +185,7 @@ __global__ void __launch_bounds__(kWarps<kBand> * 32)
   for (;;) {
     uint32_t row = 0;
     if ((threadIdx.x & 31) == 0) row = atomicAdd(rows.next, 1u);
-    row = __shfl_sync(closest::kAllLanes, row, 0);
+    row = __shfl_sync(kWholeWarp, row, 0);
     if (row >= count) return;
     worker.run(rows.first_leaf[row], rows.leaves);
   }

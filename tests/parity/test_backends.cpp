@@ -317,7 +317,7 @@ TEST_CASE("parity: the shell of every thickness around every set of voxels", "[p
   sets.push_back({"one voxel in the lattice's last corner", {{63, 63, 63}}, {64, 64, 64}});
   sets.push_back({"two voxels far apart", {{5, 5, 5}, {8000, 4300, 4200}}, {8192, 4352, 4224}});
   for (const voxel_shapes::Named& set : sets)
-    for (int32_t band = 1; band <= kMaxBandVox; band += band < 6 ? 1 : 3) {
+    for (int32_t band = 1; band <= kMaxBandVox; ++band) {
       CAPTURE(set.name, band);
       SideBySide both;
       both.cpu.sites = make_site_set(set.voxels, set.extent);
