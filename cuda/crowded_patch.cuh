@@ -2,31 +2,29 @@
 // with more candidates than their list holds.
 #pragma once
 
-#include "cuda/patch_sums.cuh"
+#include "cuda/patch_labels.cuh"
+#include "voxel/cell_sum.h"
 
 namespace isoshell::cuda_relax {
 
 /// The most that a vertex of a patch pays at the nearest of some winners.
 struct MostAtVertices {
-  const SheetPass* pass;
-  const Patch* patch;
-  WarpScratch* scratch;
+  Labelling at;
 
-  __device__ int64_t operator()(const Winners&, int count) const { return label_far(*pass, *patch, count, *scratch); }
+  __device__ int64_t operator()(const Winners&, int count) const { return label_far(at, count).most; }
 };
 
 /// The slow search, for patches that find_near does not do.
-__device__ __noinline__ inline SearchResult find_all(const SheetPass& pass, const Patch& patch, int32_t reach,
-                                                     WarpScratch& scratch) {
-  return find_winners(pass.search, box_of(patch), reach, scratch.search, scratch.winners,
-                      MostAtVertices{&pass, &patch, &scratch});
+__device__ __noinline__ inline SearchResult find_all(Labelling at, int32_t reach) {
+  return find_winners(at.pass.search, box_of(at.patch), reach, at.scratch.search, at.scratch.winners,
+                      MostAtVertices{at});
 }
 
 /// Patches with more candidates than winners: many of them, and no more cells than winners can be.
 class ManyCandidates {
  public:
-  __device__ ManyCandidates(const SheetPass& pass, const Patch& patch, WarpScratch& scratch)
-      : pass_(pass), patch_(patch), scratch_(scratch), lane_(threadIdx.x & 31) {}
+  __device__ explicit ManyCandidates(Labelling at)
+      : at_(at), pass_(at.pass), patch_(at.patch), scratch_(at.scratch), lane_(threadIdx.x & 31) {}
 
   /// Labels the vertices and gives the winners; false when there are too many of either.
   __device__ bool label_vertices(PatchSearch& search, SearchResult& found) {
@@ -85,25 +83,24 @@ class ManyCandidates {
     return true;
   }
 
+  const Labelling at_;
   const SheetPass& pass_;
   const Patch& patch_;
-  WarpScratch& scratch_;
+  LabelScratch& scratch_;
   const int lane_;
 };
 
 /// The result has more winners than there may be when the patch must be summed directly.
-__device__ __noinline__ inline SearchResult label_from_many(const SheetPass& pass, const Patch& patch,
-                                                            SearchResult found, WarpScratch& scratch) {
-  PatchSearch search(pass.search, box_of(patch), scratch.search);
-  ManyCandidates(pass, patch, scratch).label_vertices(search, found);
+__device__ __noinline__ inline SearchResult label_from_many(Labelling at, SearchResult found) {
+  PatchSearch search(at.pass.search, box_of(at.patch), at.scratch.search);
+  ManyCandidates(at).label_vertices(search, found);
   return found;
 }
 
 /// A patch with more cells than that: each lane labels the corners of its triangles by itself.
-__device__ __noinline__ inline Int128 sum_patch_directly(const SheetPass& pass, const Patch& patch, int64_t limit) {
+__device__ __noinline__ inline Int128 sum_patch_directly(const SheetPass& pass, const Patch& patch, int32_t reach) {
   Int128 energy = 0;
   const PatchBox box = box_of(patch);
-  const int32_t reach = reach_of(limit);
   for (int t = int(threadIdx.x & 31); t < patch.triangles; t += 32) {
     const PackedTriangle triangle = pass.patches.triangle[patch.triangle_first + t];
     uint32_t id[3];

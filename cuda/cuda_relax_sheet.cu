@@ -1,4 +1,4 @@
-// CUDA's relax_on_sheet: passes of two kernels over patches, the plain body where a sheet has no patches.
+// CUDA's relax_on_sheet: passes of three kernels over patches, the plain body where a sheet has no patches.
 #include "cuda/cuda_backend.h"
 #include "cuda/label_forms.cuh"
 #include "cuda/relax_sheet_pass.cuh"
@@ -13,10 +13,25 @@ constexpr int kThreads = 128;
 /// About four cells at most, so that lists of candidates stay short; few enough that patches take about the same time
 /// and that small sheets, too, give every multiprocessor some. Leaves have about 65 vertices.
 int own_vertices_for(int64_t h_sq_q16, int64_t vertices) {
-  constexpr int64_t kFewest = 40, kMost = 160, kPatches = 3000;
+  constexpr int64_t kFewest = 64, kMost = 160, kPatches = 3000;
   const int64_t of_cells = 4 * h_sq_q16 >> (2 * kFractionBits), of_sheet = vertices / kPatches;
   const int64_t least = of_cells < of_sheet ? of_cells : of_sheet;
   return int(least < kFewest ? kFewest : least > kMost ? kMost : least);
+}
+
+struct PassKernels {
+  void (*label)(SheetPass);
+  void (*sum)(SheetPass);
+  void (*move)(SheetMove);
+  int label_blocks, sum_blocks;  ///< a multiprocessor
+  bool closely;                  ///< a kernel's first blocks wait beside the last ones of the kernel before
+};
+
+/// A pass of few patches takes as long as one warp needs for some of them: warps get all registers they can use, and
+/// kernels start early. Of many patches more are worked on at once; blocks that wait would only take their room.
+PassKernels kernels_for(int64_t patches, int processors) {
+  if (patches > 256 * int64_t(processors)) return {label_patches<32>, sum_patches<24>, move_seeds<12>, 32, 24, false};
+  return {label_patches<24>, sum_patches<16>, move_seeds<8>, 24, 16, true};
 }
 
 RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const SheetPatches& patches,
@@ -26,31 +41,43 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
   Buffer<SeedRecord> records = exec.make<SeedRecord>(count);
   Buffer<PointQ8> last = exec.make<PointQ8>(count);
   Buffer<relax_sheet::CellSum> cells = exec.make<relax_sheet::CellSum>(count);
-  Buffer<int32_t> reach = exec.make<int32_t>(parts);
+  Buffer<uint8_t> label = exec.make<uint8_t>(patches.vertex.size());
+  Buffer<PatchWinners> winners = exec.make<PatchWinners>(parts);
   Buffer<PassState> state = exec.make<PassState>(1);
   Buffer<PassProgress> progress = exec.make<PassProgress>(1);
 
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};
   const relax_sheet::MovingSeeds moving = relax_sheet::moving_seeds(walk, seeds, last.view(), spacing, options);
-  SheetPass pass{patches.view(),       {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},
-                 reach.data(),         int32_t(spacing.h_q8 / 8),
-                 cells.data(),         state.data(),
-                 progress.data(),      relax_sheet::energy_shift(spacing),
+  SheetPass pass{patches.view(),
+                 {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},
+                 winners.data(),
+                 label.data(),
+                 int32_t(spacing.h_q8 / 8),
+                 cells.data(),
+                 state.data(),
+                 progress.data(),
+                 relax_sheet::energy_shift(spacing),
                  options.tolerance_ppb};
   SheetMove move{moving,           cells.data(), records.data(),  buckets.grid,       buckets.table(1),
                  buckets.table(0), state.data(), progress.data(), options.max_passes, count};
   start_seeds<<<blocks_for(count, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
-  exec.fill(reach.view(), int32_t(spacing.h_q8 * 5 / 4));
+  exec.fill(label.view(), uint8_t(0));
+  exec.fill(winners.view(), PatchWinners{{}, 0, int32_t(spacing.h_q8 * 5 / 4), {}});
   exec.check("start passes");
-  const unsigned sum_blocks = exec.device().resident_blocks(parts, kSumBlocks);
+  const PassKernels kernels = kernels_for(parts, exec.device().processors());
+  const unsigned label_blocks = exec.device().resident_blocks(parts, kernels.label_blocks),
+                 sum_blocks = exec.device().resident_blocks(parts, kernels.sum_blocks),
+                 move_blocks = blocks_for(count, kMoveThreads / kWalkLanes);
+  CloseLauncher launcher(exec, kernels.closely);
   int searched = 0;
   return run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
     pass.search.table = move.from = buckets.table(searched);
     searched = 1 - searched;
     move.to = buckets.table(searched);
-    sum_patches<<<sum_blocks, 32, 0, exec.stream()>>>(pass);
-    move_seeds<<<blocks_for(count, kMoveThreads / kWalkLanes), kMoveThreads, 0, exec.stream()>>>(move);
+    launcher.launch(kernels.label, label_blocks, 32, pass);
+    launcher.launch(kernels.sum, sum_blocks, 32, pass);
+    launcher.launch(kernels.move, move_blocks, kMoveThreads, move);
     exec.check("relaxation pass");
   });
 }

@@ -14,8 +14,8 @@ struct PassProgress {
   SplitSum energy[kEnergySlots];
   uint32_t blocks_done[kEnergySlots];  ///< of those that share a slot
   uint32_t slots_done;
-  uint32_t patches_taken;  ///< beyond each block's first, where blocks take more
-  uint32_t moving;         ///< this pass took place: its seeds move
+  uint32_t patches_labelled, patches_summed;  ///< that were taken beyond each block's first
+  uint32_t moving;                            ///< this pass took place: its seeds move
 };
 
 /// True when there is no pass to run any more. All threads of the grid ask.
@@ -68,7 +68,7 @@ __device__ inline void end_block(PassProgress* progress, Int128 energy, Finish f
   if (threadIdx.x != 0) return;
   finish(View<const int64_t>{total, 2});
   progress->slots_done = 0;
-  progress->patches_taken = 0;
+  progress->patches_labelled = progress->patches_summed = 0;
   progress->moving = 1;
 }
 

@@ -77,6 +77,12 @@ __device__ inline bool is_modest(const PieceSum& s, Local d) {
          modest(s.first_z) && uint64_t(s.second) < uint64_t(1) << 60;
 }
 
+/// atomic_add in device memory without an answer to wait for.
+__device__ inline void add_unread(int64_t& target, int64_t value) {
+  asm volatile("red.relaxed.gpu.global.add.u64 [%0], %1;" ::"l"(__cvta_generic_to_global(&target)), "l"(value)
+               : "memory");
+}
+
 __device__ __noinline__ inline Int128 add_far(relax_sheet::CellSum& cell, const PieceSum& s, Local d) {
   return relax_sheet::add_to_cell(cell, s, d);
 }
@@ -84,10 +90,10 @@ __device__ __noinline__ inline Int128 add_far(relax_sheet::CellSum& cell, const 
 __device__ inline Int128 add_to_cell(relax_sheet::CellSum& cell, const PieceSum& s, Local d) {
   if (!is_modest(s, d)) return add_far(cell, s, d);
   const int32_t mass = int32_t(s.mass);
-  atomic_add(cell.mass, s.mass);
-  atomic_add(cell.first_x, s.first_x - int64_t(mass) * (3 * d.x));
-  atomic_add(cell.first_y, s.first_y - int64_t(mass) * (3 * d.y));
-  atomic_add(cell.first_z, s.first_z - int64_t(mass) * (3 * d.z));
+  add_unread(cell.mass, s.mass);
+  add_unread(cell.first_x, s.first_x - int64_t(mass) * (3 * d.x));
+  add_unread(cell.first_y, s.first_y - int64_t(mass) * (3 * d.y));
+  add_unread(cell.first_z, s.first_z - int64_t(mass) * (3 * d.z));
   return s.second - 8 * (s.first_x * d.x + s.first_y * d.y + s.first_z * d.z) +
          12 * (int64_t(mass) * int32_t(square32(d)));
 }

@@ -313,11 +313,7 @@ class PatchSearch {
       has_spilt_ |= part[0].x > kBucketSeeds;
       count = int(min(part[0].x, uint32_t(kBucketSeeds)));
     }
-    int at = count;
-    for (int d = 1; d < 32; d <<= 1) {
-      const int before = __shfl_up_sync(~0u, at, d);
-      if (lane_ >= d) at += before;
-    }
+    const int at = warp_sum_until(count);
     const int added = __shfl_sync(~0u, at, 31);
     if (total_ + added > 32 * kBucketSeeds) return false;
     uint32_t* to = scratch_.id + total_ + at - count;

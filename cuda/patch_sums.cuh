@@ -2,122 +2,77 @@
 // label, and what triangles between labels move from one to another. Arithmetic is that of voxel/cell_sum.h.
 #pragma once
 
-#include "cuda/pass_end.cuh"
-#include "cuda/patch_pieces.cuh"
-#include "cuda/patch_winners.cuh"
+#include "cuda/patch_queue.cuh"
 
 namespace isoshell::cuda_relax {
-
-struct SheetPass {
-  PatchesView patches;
-  SeedSearch search;
-  int32_t* reach;  ///< per patch, from pass to pass
-  int32_t reach_slack;
-  relax_sheet::CellSum* cell;
-  PassState* state;
-  PassProgress* progress;
-  int shift;
-  int32_t tolerance_ppb;
-};
 
 struct TriangleQueue {
   PackedTriangle triangle[64];
 };
 
-constexpr int kMaxMany = 256;
+constexpr int kStagedTriangles = 256;
 
-struct WarpScratch {
+struct SumScratch {
+  WinnerPlace place[kMaxWinners];
   union {
-    Winners winners;
-    uint32_t many[kMaxMany];  ///< candidates where winners do not hold them
-  };
-  union {
-    SearchScratch search;
     PieceExchange exchange;
     LabelSums::Words words;
   };
-  alignas(4) uint8_t label[kMaxPatchVertices];
-  uint32_t used[kMaxMany / 32];
+  alignas(16) uint8_t label[kMaxPatchVertices];
+  alignas(16) PatchVertex vertex[kStagedVertices];
+  alignas(16) PackedTriangle triangle[kStagedTriangles];
   TriangleQueue split, junction;  ///< triangles in several cells, and of these those in three
+  Int128 energy[32];              ///< a lane each
 };
 
-/// Labels by any distance and penalty; see label_vertices.
-__device__ __noinline__ inline int64_t label_far(const SheetPass& pass, const Patch& patch, int count,
-                                                 WarpScratch& scratch) {
-  int64_t most = 0;
-  for (int i = int(threadIdx.x & 31); i < patch.vertices; i += 32) {
-    const int64_t v = patch.vertex_first + i;
-    const NearestWinner nearest =
-        nearest_winner(scratch.winners, count, pass.patches.vertex[v].local(),
-                       SeedRecord{0, 0, 0, pass.patches.normal[v]}.normal(), pass.search.penalty_q16);
-    scratch.label[i] = uint8_t(nearest.number);
-    most = max(most, nearest.cost);
-  }
-  __syncwarp();
-  return warp_max(most);
-}
-
-/// Labels the vertices of a patch with the numbers of its winners; returns the most that one of them pays.
-__device__ inline int64_t label_vertices(const SheetPass& pass, const Patch& patch, const SearchResult& found,
-                                         WarpScratch& scratch) {
-  if (!found.near || (!found.narrow && pass.search.penalty_q16 >= kMaxNearPenalty))
-    return label_far(pass, patch, found.count, scratch);
-  const PatchVertex* vertex = pass.patches.vertex + patch.vertex_first;
-  const uint32_t* normal = pass.patches.normal + patch.vertex_first;
-  constexpr int kAtOnce = 4;
-  uint32_t most = 0;
-  for (int base = int(threadIdx.x & 31); base - int(threadIdx.x & 31) < patch.vertices; base += 32 * kAtOnce) {
-    Local v[kAtOnce];
-    int best[kAtOnce];
-    int32_t least[kAtOnce];
-#pragma unroll
-    for (int r = 0; r < kAtOnce; ++r)
-      v[r] = base + 32 * r < patch.vertices ? vertex[base + 32 * r].local() : Local{0, 0, 0};
-    if (found.narrow) {
-      winners_at(scratch.winners, found.count, v, best, least);
-    } else {
-      uint32_t n[kAtOnce];
-#pragma unroll
-      for (int r = 0; r < kAtOnce; ++r) n[r] = base + 32 * r < patch.vertices ? normal[base + 32 * r] : 0;
-      winners_at(scratch.winners, found.count, v, n, int32_t(pass.search.penalty_q16), best, least);
-    }
-#pragma unroll
-    for (int r = 0; r < kAtOnce; ++r)
-      if (base + 32 * r < patch.vertices) {
-        scratch.label[base + 32 * r] = uint8_t(best[r]);
-        most = max(most, uint32_t(least[r]) + in_patch::square32(v[r]));
-      }
-  }
-  __syncwarp();
-  return warp_max(most);
-}
-
 /// Sums of a labelled patch's cells.
+template <bool kHold>
 class PatchSums {
  public:
-  __device__ PatchSums(const SheetPass& pass, const Patch& patch, int winners, WarpScratch& scratch)
+  __device__ PatchSums(const SheetPass& pass, const Patch& patch, const PatchWinners& winners, SumScratch& scratch)
       : pass_(pass), patch_(patch), winners_(winners), scratch_(scratch), lane_(threadIdx.x & 31) {}
 
-  /// Adds the sums to the cells; returns the lane's part of the energy.
-  __device__ Int128 add_to_cells() {
-    Int128 energy = 0;
-    for (int base = 0; base < winners_; base += kLabelsAtOnce) {
-      const int count = min(winners_ - base, kLabelsAtOnce);
+  /// Starts to copy what the sums read; to be waited for before they are made.
+  __device__ void start_copies() const {
+    const PatchesView& all = pass_.patches;
+    start_copy(scratch_.label, pass_.label + patch_.vertex_first, patch_.vertices);
+    start_copy(scratch_.vertex, all.vertex + patch_.vertex_first, min(int(patch_.vertices), kStagedVertices));
+    start_copy(scratch_.triangle, all.triangle + patch_.triangle_first, min(int(patch_.triangles), kStagedTriangles));
+  }
+  __device__ void load_owned() {
+    const PieceBytes* owned = pass_.patches.owned + patch_.owned_first + lane_;
+    if (kHold) {
+      first_[0] = owned[0];
+      first_[1] = owned[patch_.own > 32 ? 32 : 0];
+    } else {
+      for (int v = 4 * lane_; v < patch_.own; v += 128)
+        asm volatile("prefetch.global.L2 [%0];" ::"l"(owned - lane_ + v));
+    }
+  }
+
+  /// Adds the sums to the cells, and the lane's part of the energy.
+  __device__ void add_to_cells() {
+    const PieceBytes* owned = pass_.patches.owned + patch_.owned_first + lane_;
+    for (int base = 0; base < winners_.count; base += kLabelsAtOnce) {
+      const int count = min(winners_.count - base, kLabelsAtOnce);
       LabelSums sums(base, count);
-      const PieceBytes* owned = pass_.patches.owned + patch_.owned_first;
-      for (int v = 0; v < patch_.own; v += 32) sums.add(owned[v + lane_], scratch_.label + v);
+      if (kHold) {
+        sums.add(first_[0], scratch_.label);
+        if (patch_.own > 32) sums.add(first_[1], scratch_.label + 32);
+      }
+#pragma unroll 2
+      for (int v = kHold ? 64 : 0; v < patch_.own; v += 32) sums.add(owned[v], scratch_.label + v);
       move_between_labels(sums);
       sums.put(scratch_.words);
-      if (lane_ < count) energy += add_sum(LabelSums::sum_of(scratch_.words, lane_), base + lane_);
+      if (lane_ < count) add_sum(LabelSums::sum_of(scratch_.words, lane_), base + lane_);
       __syncwarp();
     }
-    return energy;
   }
 
  private:
-  __device__ Int128 add_sum(const PieceSum& s, int winner) const {
-    if (s.mass == 0 && s.first_x == 0 && s.first_y == 0 && s.first_z == 0 && s.second == 0) return 0;
-    return in_patch::add_to_cell(pass_.cell[scratch_.winners.id[winner]], s, scratch_.winners.place[winner]);
+  __device__ void add_sum(const PieceSum& s, int winner) const {
+    if (s.mass == 0 && s.first_x == 0 && s.first_y == 0 && s.first_z == 0 && s.second == 0) return;
+    scratch_.energy[lane_] += in_patch::add_to_cell(pass_.cell[winners_.id[winner]], s, scratch_.place[winner]);
   }
 
   /// A piece that goes from one label to another.
@@ -132,13 +87,13 @@ class PatchSums {
     const PackedTriangle* triangle = pass_.patches.triangle + patch_.triangle_first;
     const int count = patch_.triangles;
     int split = 0, junctions = 0;
-    PackedTriangle next = lane_ < count ? triangle[lane_] : PackedTriangle{0, 0};
     // One round more than there are triangles empties the queues.
     for (int base = 0;; base += 32) {
       const bool last = base >= count;
       if (!last) {
-        const PackedTriangle t = next;  // where there is none, all corners are one
-        next = base + 32 + lane_ < count ? triangle[base + 32 + lane_] : PackedTriangle{0, 0};
+        const int i = base + lane_;
+        PackedTriangle t{0, 0};  // where there is none, all corners are one
+        if (i < count) t = element_of(scratch_.triangle, kStagedTriangles, triangle, i);
         const int a = label(t, 0), b = label(t, 1), c = label(t, 2);
         push(scratch_.split, split, a != b || b != c, t);
       }
@@ -186,9 +141,10 @@ class PatchSums {
   }
 
   __device__ Local corner(const PackedTriangle& t, int i) const {
-    return pass_.patches.vertex[patch_.vertex_first + t.corner(i)].local();
+    return element_of(scratch_.vertex, kStagedVertices, pass_.patches.vertex + patch_.vertex_first, t.corner(i))
+        .local();
   }
-  __device__ Local seed(int label) const { return scratch_.winners.place[label]; }
+  __device__ Local seed(int label) const { return scratch_.place[label]; }
 
   /// Triangles in two cells, one a lane: one corner is alone in its cell.
   __device__ Moved cut(const PackedTriangle& t, bool in) const {
@@ -288,9 +244,10 @@ class PatchSums {
 
   const SheetPass& pass_;
   const Patch& patch_;
-  const int winners_;
-  WarpScratch& scratch_;
+  const PatchWinners& winners_;
+  SumScratch& scratch_;
   const int lane_;
+  PieceBytes first_[2];  ///< moments of the first vertices
 };
 
 }  // namespace isoshell::cuda_relax

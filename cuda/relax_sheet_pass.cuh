@@ -1,62 +1,112 @@
-// One pass of relax_on_sheet in two kernels: sum_patches (candidates, labels, clipped cells, their sums; the last block
-// ends the pass as FinishPass does) and move_seeds (to the centre, then ahead for the next pass, into the other table).
-// Definition and arithmetic are those of stages/relax_sheet_body.h; labels are never stored.
+// One pass of relax_on_sheet in three kernels: label_patches (candidates, labels), sum_patches (clipped cells and their
+// sums; the last block ends the pass as FinishPass does) and move_seeds (to the centre, then ahead for the next pass,
+// into the other table). Definition and arithmetic are those of stages/relax_sheet_body.h.
 #pragma once
 
 #include "cuda/crowded_patch.cuh"
+#include "cuda/dependent_launch.cuh"
 #include "cuda/group_walk.cuh"
+#include "cuda/patch_queue.cuh"
+#include "cuda/patch_sums.cuh"
 
 namespace isoshell::cuda_relax {
 
-/// Blocks of one warp that sum on a multiprocessor at once; with 24, a thread has at most 80 registers. Some chips hold
-/// no more than 16.
-#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || __CUDA_ARCH__ >= 890
-constexpr int kSumBlocks = 24;
+/// Blocks that a multiprocessor holds at most: kernels do not ask for more. Some chips hold fewer.
+#if defined(__CUDA_ARCH__) && (__CUDA_ARCH__ < 800 || __CUDA_ARCH__ == 860 || __CUDA_ARCH__ == 870)
+constexpr int kMostBlocks = 16;
+#elif defined(__CUDA_ARCH__) && (__CUDA_ARCH__ == 890 || __CUDA_ARCH__ >= 1200)
+constexpr int kMostBlocks = 24;
 #else
-constexpr int kSumBlocks = 16;
+constexpr int kMostBlocks = 32;
 #endif
+constexpr int at_once(int blocks) { return blocks < kMostBlocks ? blocks : kMostBlocks; }
 constexpr int kMoveThreads = 64;
 
-/// One warp's patch; returns the lane's part of the energy.
-__device__ inline Int128 sum_patch(const SheetPass& pass, int64_t number, WarpScratch& scratch) {
-  const Patch& patch = pass.patches.patch[number];
-  if (patch.triangles == 0) return 0;
-  const int lane = threadIdx.x & 31;
-  SearchResult found;
-  int32_t reach = pass.reach[number];
+/// Labels one patch; returns the number of its winners (see PatchWinners).
+__device__ inline int label_patch(const Labelling& at, int32_t& reach, PatchWinners& out) {
   for (;;) {
-    if (!PatchSearch(pass.search, box_of(patch), scratch.search).find_near(reach, scratch.winners, found))
-      found = find_all(pass, patch, reach, scratch);
+    SearchResult found;
+    if (!PatchSearch(at.pass.search, box_of(at.patch), at.scratch.search).find_near(reach, at.scratch.winners, found))
+      found = find_all(at, reach);
     const int64_t reach_sq = int64_t(found.reach) * found.reach;
-    if (found.count == 1 && found.limit <= reach_sq)
-      return lane == 0 ? in_patch::add_to_cell(pass.cell[scratch.winners.id[0]], patch.total, scratch.winners.place[0])
-                       : Int128(0);
-    if (found.count > kMaxWinners) {
-      found = label_from_many(pass, patch, found, scratch);
-      if (lane == 0) pass.reach[number] = found.reach + pass.reach_slack;
-      if (found.count > kMaxWinners) return sum_patch_directly(pass, patch, found.limit);
-      break;
+    if (found.count == 1 && found.limit <= reach_sq) {
+      reach = reach_of(found.limit);
+      if ((threadIdx.x & 31) == 0) out.id[0] = at.scratch.winners.id[0];
+      return 1;
     }
-    const int64_t most = label_vertices(pass, patch, found, scratch);
-    reach = reach_of(most);
-    if (lane == 0) pass.reach[number] = reach + pass.reach_slack;
-    if (most <= reach_sq) break;
+    if (found.count > kMaxWinners) {
+      found = label_from_many(at, found);
+      reach = reach_of(found.limit);
+      return found.count > kMaxWinners ? found.count : write_labels(at, ~0u >> (32 - found.count), out);
+    }
+    const Labelled labelled = label_vertices(at, found);
+    reach = reach_of(labelled.most);
+    if (labelled.most <= reach_sq) return write_labels(at, labelled.used, out);
   }
-  return PatchSums(pass, patch, found.count, scratch).add_to_cells();
 }
 
-/// Each warp takes patches until there are none: some take much longer than others.
-__global__ void __launch_bounds__(32, kSumBlocks) sum_patches(const __grid_constant__ SheetPass pass) {
-  __shared__ WarpScratch scratch;
-  __shared__ Int128 energy[32];
+/// kBlocks: how many work on a multiprocessor at once.
+template <int kBlocks>
+__global__ void __launch_bounds__(32, at_once(kBlocks)) label_patches(const __grid_constant__ SheetPass pass) {
+  __shared__ PatchQueue::Room room;
+  __shared__ LabelScratch scratch;
+  wait_for_earlier_kernels();
   if (pass_is_over(pass.state, pass.progress)) return;
-  energy[threadIdx.x] = 0;
-  for (uint32_t number = blockIdx.x, taken = 0; number < pass.patches.count;
-       number = gridDim.x + __shfl_sync(kWholeWarp, taken, 0)) {
-    if (threadIdx.x == 0) taken = atomicAdd(&pass.progress->patches_taken, 1u);
-    energy[threadIdx.x] += sum_patch(pass, number, scratch);
+  for (PatchQueue queue(pass, pass.progress->patches_labelled, room); queue.has_patch(); queue.go_on()) {
+    const int64_t number = queue.number();
+    const Patch& patch = queue.patch();
+    start_copy(scratch.vertex, pass.patches.vertex + patch.vertex_first, min(int(patch.vertices), kStagedVertices));
+    const uint32_t next = queue.take();
+    wait_for_copies();
+    queue.start(next);
+    int32_t reach = queue.winners().reach;
+    PatchWinners& out = pass.winners[number];
+    const int winners = patch.triangles == 0 ? 0 : label_patch({pass, patch, scratch}, reach, out);
+    if (threadIdx.x == 0) {
+      out.count = winners;
+      out.reach = reach + pass.reach_slack;
+    }
   }
-  end_block<1>(pass.progress, energy[threadIdx.x], [&](View<const int64_t> total) {
+}
+
+/// Adds the sums of one labelled patch to its cells, and to the lanes' energies.
+template <bool kHold>
+__device__ inline void sum_patch(const SheetPass& pass, PatchQueue& queue, SumScratch& scratch) {
+  const Patch& patch = queue.patch();
+  const PatchWinners& winners = queue.winners();
+  const int lane = threadIdx.x;
+  PatchSums<kHold> sums(pass, patch, winners, scratch);
+  const bool has_labels = winners.count > 1 && winners.count <= kMaxWinners;
+  // All that is read of the patch is on the way before any of it is waited for.
+  if (has_labels) sums.start_copies();
+  const uint32_t next = queue.take();
+  const bool is_winner = lane < winners.count && winners.count <= kMaxWinners;
+  const SeedRecord seed = is_winner ? pass.search.seed[winners.id[lane]] : SeedRecord{};
+  if (has_labels) sums.load_owned();
+  if (is_winner) {
+    const PointQ8 o = patch.bounds.origin;
+    scratch.place[lane] = {seed.x - o.x, seed.y - o.y, seed.z - o.z, seed.packed_normal};
+  }
+  wait_for_copies();
+  queue.start(next);
+  if (has_labels)
+    sums.add_to_cells();
+  else if (winners.count > kMaxWinners)
+    scratch.energy[lane] += sum_patch_directly(pass, patch, winners.reach);
+  else if (winners.count == 1 && lane == 0)
+    scratch.energy[0] += in_patch::add_to_cell(pass.cell[winners.id[0]], patch.total, scratch.place[0]);
+}
+
+template <int kBlocks>
+__global__ void __launch_bounds__(32, at_once(kBlocks)) sum_patches(const __grid_constant__ SheetPass pass) {
+  __shared__ PatchQueue::Room room;
+  __shared__ SumScratch scratch;
+  wait_for_earlier_kernels();
+  if (pass_is_over(pass.state, pass.progress)) return;
+  scratch.energy[threadIdx.x] = 0;
+  for (PatchQueue queue(pass, pass.progress->patches_summed, room); queue.has_patch(); queue.go_on())
+    sum_patch<kBlocks <= 16>(pass, queue, scratch);
+  end_block<1>(pass.progress, scratch.energy[threadIdx.x], [&](View<const int64_t> total) {
     relax_sheet::FinishPass{{pass.state, 1}, total, pass.shift, pass.tolerance_ppb}(0);
   });
 }
@@ -104,7 +154,9 @@ __device__ inline PointQ8 moved_by(const relax_sheet::MovingSeeds& seeds, uint32
 }
 
 /// Everything a seed does between two sums, by a group of lanes a seed: the way to the centre, and on ahead.
-__global__ void __launch_bounds__(kMoveThreads) move_seeds(const __grid_constant__ SheetMove move) {
+template <int kBlocks>
+__global__ void __launch_bounds__(kMoveThreads, at_once(kBlocks)) move_seeds(const __grid_constant__ SheetMove move) {
+  wait_for_earlier_kernels();
   if (!move.progress->moving) return;
   const int64_t thread = int64_t(blockIdx.x) * blockDim.x + threadIdx.x;
   const bool exists = thread / kWalkLanes < move.count;

@@ -100,6 +100,13 @@ struct PatchCounts {
   int64_t *vertices, *triangles, *owned;
 };
 
+/// Where a patch's vertices and triangles begin, so that they, and a byte for each vertex, can be copied in steps of 16
+/// bytes.
+constexpr int kPlacesAtOnce = 16;
+__device__ inline int64_t round_up(int64_t count) {
+  return (count + kPlacesAtOnce - 1) / kPlacesAtOnce * kPlacesAtOnce;
+}
+
 __global__ void count_patches(PatchSource source, PatchCounts counts, int* misfits) {
   __shared__ ForeignVertices all[kWarps];
   const int lane = threadIdx.x & 31;
@@ -113,8 +120,8 @@ __global__ void count_patches(PatchSource source, PatchCounts counts, int* misfi
   __syncwarp();
   if (lane) return;
   const int64_t count = part.end - part.begin + foreign.taken;
-  counts.vertices[number] = count;
-  counts.triangles[number] = foreign.triangles;
+  counts.vertices[number] = round_up(count);
+  counts.triangles[number] = round_up(foreign.triangles);
   counts.owned[number] = (part.end - part.begin + 31) / 32 * 32;
   if (count > kMaxPatchVertices || foreign.triangles > kMaxPatchTriangles) atomicAdd(misfits, 1);
 }
@@ -161,7 +168,7 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   for (int base = 0; base < kHashSlots; base += 32) {
     const uint32_t v = foreign.vertex[base + lane];
     const unsigned used = __ballot_sync(~0u, v != kNone);
-    const int place = places + __popc(used & ((1u << lane) - 1));
+    const int place = places + lanes_before(used);
     if (v != kNone) {
       foreign.place[base + lane] = uint16_t(place);
       put(place, v);
@@ -210,6 +217,8 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   patch.vertices = uint16_t(places);
   patch.triangles = uint16_t(foreign.triangles);
   patch.unused = 0;
+  if (lane < round_up(patch.vertices) - patch.vertices) to.vertex[first + patch.vertices + lane] = {0, 0, 0, 0};
+  if (lane < round_up(patch.triangles) - patch.triangles) to.triangle[triangle_first + patch.triangles + lane] = {0, 0};
   fits &= patch.total.mass < kMaxPatchMass;
   if (!fits) atomicAdd(to.misfits, 1);
   if (lane == 0) to.patch[number] = patch;
@@ -237,14 +246,14 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const Sheet& sheet, int max_
   count_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(source, counts, misfits.data());
   exec.check("count patches");
   const int64_t copies = exec.exclusive_scan(vertices.view());
-  exec.exclusive_scan(triangles.view());
+  const int64_t triangle_places = exec.exclusive_scan(triangles.view());
   const int64_t owned_slots = exec.exclusive_scan(owned.view());
   out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
   if (!out.fits) return out;
   out.patch = exec.make<Patch>(count);
   out.vertex = exec.make<PatchVertex>(copies);
   out.normal = exec.make<uint32_t>(copies);
-  out.triangle = exec.make<PackedTriangle>(sheet.triangles.size());
+  out.triangle = exec.make<PackedTriangle>(triangle_places);
   out.owned = exec.make<PieceBytes>(owned_slots);
   fill_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(
       source, {counts, out.patch.data(), out.vertex.data(), out.normal.data(), out.triangle.data(), out.owned.data(),
