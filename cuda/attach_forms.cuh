@@ -29,8 +29,7 @@ struct BlockForm<attach_seeds::AttachSeed> {
   static constexpr int kElements = 4;
   struct Shared {};
   static __device__ void run(const attach_seeds::AttachSeed& step, int64_t i, Shared&, int lane) {
-    const PointQ8 s = step.position[i];
-    const PointQ8 p = {s.x << step.halvings, s.y << step.halvings, s.z << step.halvings};
+    const PointQ8 p = step.where_from(i);
     const uint32_t vertex = attach_forms::nearest_point(step.vertices, p, lane).id;
     if (lane != 0) return;
     step.home[i] = vertex;

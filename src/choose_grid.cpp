@@ -10,7 +10,7 @@
 namespace isoshell {
 namespace {
 
-constexpr double kVoxelsPerSpacing = 6;  // default grid: a cell is about this many voxels wide
+constexpr double kVoxelsPerSpacing = 5.5;  // default grid: a cell is about this many voxels wide
 constexpr int32_t kMinDefaultResolution = 64;
 constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
 

@@ -14,10 +14,10 @@ double usual_edge_length(const RemeshOptions& options, double area_world);
 /// Area of a sheet in world units.
 double sheet_area_world(const Sheet& sheet);
 
-/// So many voxels along the longest side that cells of this width are about six voxels wide, within limits.
+/// So many voxels along the longest side that cells of this width are about 5.5 voxels wide, within limits.
 int32_t resolution_for_cell(double longest_world, double cell_world);
 
-/// Voxels along the longest side of the box: the user's, or so many that a cell is about six voxels wide.
+/// Voxels along the longest side of the box: the user's, or so many that a cell is about 5.5 voxels wide.
 /// Throws: usage when a voxel size does not give 8 to 8192.
 int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint box_min, WorldPoint box_max);
 

@@ -15,10 +15,10 @@ namespace {
 constexpr int kMaxLevels = 3;
 constexpr int64_t kFewestSeeds = 64;  // of a level
 constexpr int64_t kFewestPerComponent = 12;
-constexpr int64_t kMostRepairPerMille = 15;
-constexpr int64_t kFewestVerticesPerSeed = 45;  // of an outline: cells are five voxels wide or more
+constexpr int64_t kMostRepairPerMille = 60;
+constexpr int64_t kFewestVerticesPerSeed = 28;  // of an outline: cells are four voxels wide or more
 constexpr int32_t kCoarsePasses = 60;
-constexpr int32_t kFinestPasses = 40;  // after a coarser level; without one the caller's own number
+constexpr int32_t kFinestPasses = 10;  // after a coarser level; without one the caller's own number
 
 /// Counts from coarse to fine. A triangulation with V vertices and Euler number chi has 4 V - 3 chi after one split.
 std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
@@ -110,8 +110,10 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     relax_on_sheet(sheet, seeds, coarse, context);
     const DualMesh dual = coarse_dual(sheet, seeds, context);
-    // An outline may lack handles that the counts were made for: then its mesh has too few edges to split.
-    const bool enough = seeds.size() + dual.triangles.size() / 2 * 3 >= counts[level + 1];
+    // An outline may lack handles that the counts were made for: then its mesh has too few places for new seeds. A few
+    // seeds are put into triangles on every level.
+    const int64_t places = dual.triangles.size() / 2 * 3 + dual.triangles.size();
+    const bool enough = seeds.size() + places >= counts[level + 1];
     seeds =
         dual.triangles.empty() || !enough ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);

@@ -55,8 +55,8 @@ Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const Sit
 /// Sites of the lattice with voxels of twice the edge: those that hold a site. The same as voxelize on that lattice.
 SiteSet coarsen_sites(const SiteSet& sites, Context& context);
 
-/// The sheet of the sites alone, smoothed but not laid onto a surface: at most about two voxels outside of it. What
-/// coarse levels of seeds relax on.
+/// The sheet of the sites alone, smoothed and moved in to where the surface is on average, but not laid onto it: within
+/// about a voxel. What coarse levels of seeds relax on.
 Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
 
 /// Six times the volume inside a sheet, in whole voxels, rounded down once.
@@ -107,7 +107,8 @@ RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteS
                            const RelaxOptions& options, Context& context);
 
 /// Moves seeds onto a sheet: nearest point of the sheet, its home vertex and outward normal. `halvings`: how many times
-/// the voxels of the seeds' lattice must be halved to give the sheet's.
+/// the voxels of the seeds' lattice must be halved to give the sheet's; above 0 seeds come from an outline, from half a
+/// voxel of theirs outside of it.
 void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context, int halvings = 0);
 
 /// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in

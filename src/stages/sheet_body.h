@@ -9,6 +9,7 @@
 #include "stages/sheet_project_body.h"
 #include "stages/sheet_quads_body.h"
 #include "stages/sheet_repair_body.h"
+#include "voxel/outline_depth.h"
 
 namespace isoshell {
 namespace sheet_steps {
@@ -84,6 +85,15 @@ struct FindNormal {
     normal[v] = normal8(is_zero(sum) ? any : sum);
   }
   ISOSHELL_HD static bool is_zero(Vec64 n) { return n.x == 0 && n.y == 0 && n.z == 0; }
+};
+
+/// An outline's vertices go to about where the surface is.
+struct MoveIn {
+  View<const Normal8> normal;
+  View<PointQ8> position;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    position[v] = moved_by_outline_depth(position[v], normal[v], -kOneVoxelQ8);
+  }
 };
 
 template <class Exec>
@@ -171,7 +181,9 @@ Sheet build_outline_body(Exec& exec, const SiteSet& sites, const LatticeFrame& f
   using namespace sheet_steps;
   QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
   LaidMesh laid = lay_smooth(exec, mesh);
-  return finish_sheet(exec, frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+  Sheet sheet = finish_sheet(exec, frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+  exec.for_each("move in", sheet.vertex_count(), MoveIn{sheet.normal.view(), sheet.position.view()});
+  return sheet;
 }
 
 }  // namespace isoshell

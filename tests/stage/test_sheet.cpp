@@ -392,7 +392,7 @@ TEST_CASE("sheet: a coarse site holds at least one site, and every site lies in 
   }
 }
 
-TEST_CASE("sheet: an outline has the sheet's vertices and topology, and stays within two voxels of it",
+TEST_CASE("sheet: an outline has the sheet's vertices and topology, is within a voxel of it, and as large",
           "[sheet][stage]") {
   TestContext context;
   const Pipeline p = sites_of(shapes::torus(2, .7, 60, 30), 96, context);
@@ -402,5 +402,7 @@ TEST_CASE("sheet: an outline has the sheet's vertices and topology, and stays wi
   CHECK(outline.topology.genus == 1);
   REQUIRE(digest(outline.corners) == digest(sheet.corners));
   for (int64_t v = 0; v < sheet.vertex_count(); ++v)
-    REQUIRE(distance_sq_q16(outline.position[v], sheet.position[v]) <= 2 * 2 * 65536);
+    REQUIRE(distance_sq_q16(outline.position[v], sheet.position[v]) <= 65536);
+  const int64_t volume = six_volume_vox(sheet, context);
+  CHECK(std::abs(six_volume_vox(outline, context) - volume) < volume / 100);
 }
