@@ -1,4 +1,6 @@
 // CUDA's relax_on_sheet: passes of three kernels over patches, the plain body where a sheet has no patches.
+#include <algorithm>
+
 #include "cuda/cuda_backend.h"
 #include "cuda/label_forms.cuh"
 #include "cuda/relax_sheet_pass.cuh"
@@ -10,13 +12,12 @@ using namespace cuda_relax;
 
 constexpr int kThreads = 128;
 
-/// About four cells at most, so that lists of candidates stay short; few enough that patches take about the same time
-/// and that small sheets, too, give every multiprocessor some. Leaves have about 65 vertices.
+/// About four cells at most, so that lists of candidates stay short, but whole leaves, which have about 65 vertices;
+/// few enough that patches take about the same time and that small sheets, too, give every multiprocessor some.
 int own_vertices_for(int64_t h_sq_q16, int64_t vertices) {
-  constexpr int64_t kFewest = 64, kMost = 160, kPatches = 3000;
-  const int64_t of_cells = 4 * h_sq_q16 >> (2 * kFractionBits), of_sheet = vertices / kPatches;
-  const int64_t least = of_cells < of_sheet ? of_cells : of_sheet;
-  return int(least < kFewest ? kFewest : least > kMost ? kMost : least);
+  constexpr int64_t kFewest = 40, kLeaf = 64, kMost = 160, kPatches = 3000;
+  const int64_t of_cells = std::max(kLeaf, 4 * h_sq_q16 >> (2 * kFractionBits)), of_sheet = vertices / kPatches;
+  return int(std::clamp(std::min(of_cells, of_sheet), kFewest, kMost));
 }
 
 struct PassKernels {
