@@ -15,14 +15,16 @@ constexpr double kCellOfEdge =
 constexpr double kFewestCellVox = 3.5;  // narrower cells are no disks of sheet triangles
 constexpr double kMostRatio = 16;       // what the density of the energy has room for
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
-constexpr int64_t kMostSmoothing = 64;
+constexpr int64_t kMostSmoothing = 32;
+constexpr double kLeastDensity = 1.0 / 16;  // of vertices where nothing is curved, over the mean
 
 /// Whether the field says how many vertices there are.
 bool field_decides(const RemeshOptions& options) { return options.sizing && options.vertices <= 0; }
 
-/// Rounds of smoothing that spread a normal over about one edge: each spreads it by half a voxel squared.
+/// Rounds of smoothing that spread a normal over most of an edge: each spreads it by half a voxel squared. More blunt
+/// sharp bends, fewer take noise for curvature.
 int32_t smoothing_rounds(double edge_vox) {
-  return int32_t(std::clamp<int64_t>(std::llround(0.44 * edge_vox * edge_vox), 2, kMostSmoothing));
+  return int32_t(std::clamp<int64_t>(std::llround(0.165 * edge_vox * edge_vox), 2, kMostSmoothing));
 }
 
 /// A part of the vertices, `adaptivity`, goes by curvature instead of area: so chord errors even out.
@@ -36,7 +38,7 @@ void shorten_where_curved(const RemeshOptions& options, const Sheet& sheet, doub
   if (!(mean > 0)) return;
   for (size_t v = 0; v < length.size(); ++v) {
     const double density = 1 - options.adaptivity + options.adaptivity * double(turn[int64_t(v)]) / mean;
-    length[v] = length[v] / std::sqrt(std::max(density, 1e-6));
+    length[v] = length[v] / std::sqrt(std::max(density, kLeastDensity));
   }
 }
 

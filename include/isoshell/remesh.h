@@ -33,7 +33,7 @@ struct RemeshOptions {
   uint64_t seed = 0;
   std::shared_ptr<const SizingField> sizing;  ///< edge lengths to aim at; null: the same everywhere
   double adaptivity = 0;                      ///< part of the vertices that goes by curvature, 0 to 1
-  double gradation = 1.25;                    ///< most that an edge may be longer than its neighbours, above 1
+  double gradation = 1.2;                     ///< most that an edge may be longer than its neighbours, above 1
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it

@@ -73,7 +73,7 @@ int64_t seed_shares_q16(const Sheet& sheet, Context& context);
 /// the edge of its voxels was doubled.
 void copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context);
 /// Per vertex how much normals turn a voxel, in 1/65536: the root of the mean square over its edges, of normals that
-/// became the mean of their neighbours' in so many rounds, and smoothed in as many.
+/// became the mean of their neighbours' in so many rounds, and smoothed in two thirds as many.
 Buffer<uint32_t> measure_curvature(const Sheet& sheet, int32_t rounds, Context& context);
 
 struct SeedOptions {

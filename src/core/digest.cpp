@@ -64,15 +64,11 @@ uint64_t digest(const Shell& shell) {
 }
 uint64_t digest(const Sheet& sheet) {
   const OnHost<Sheet> s(sheet);
-  return Digest()
-      .value(digest(s->corners))
-      .array(s->position)
-      .array(s->normal)
-      .array(s->source_triangle)
-      .array(s->triangles)
-      .array(s->missed)
-      .array(s->missed_vertex)
-      .get();
+  Digest all;
+  all.value(digest(s->corners)).array(s->position).array(s->normal).array(s->source_triangle).array(s->triangles);
+  all.array(s->missed).array(s->missed_vertex);
+  if (!s->lengths.at.empty()) all.array(s->lengths.at);
+  return all.get();
 }
 uint64_t digest(const SeedSet& seeds) {
   const OnHost<SeedSet> s(seeds);

@@ -212,7 +212,7 @@ Buffer<uint32_t> measure_curvature_body(Exec& exec, const Sheet& sheet, int32_t 
   exec.for_each("unit normals", vertices, UnitNormal{normal.view()});
   Buffer<uint32_t> turn = exec.template make<uint32_t>(vertices), smooth = exec.template make<uint32_t>(vertices);
   exec.for_each("turn of normals", vertices, TurnOfNormal{graph, sheet.position.view(), normal.view(), turn.view()});
-  for (int32_t r = 0; r < rounds; ++r) {
+  for (int32_t r = 0; r < rounds * 2 / 3; ++r) {
     exec.for_each("mean turns", vertices, MeanTurn{graph, turn.view(), smooth.view()});
     std::swap(turn, smooth);
   }

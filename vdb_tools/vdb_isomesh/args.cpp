@@ -58,7 +58,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   option(size, "--adaptivity", raw.adaptivity, "A",
          "0 to 1: the part of the vertices that goes by curvature rather than by area", "0");
   option(size, "--gradation", raw.gradation, "G", "most that an edge may be longer than the next, above 1 to 10",
-         "1.25");
+         "1.2");
 
   const char* grid = "Grid";
   CLI::Option* resolution = option(grid, "--resolution", raw.resolution, "R",

@@ -307,6 +307,7 @@ class Run {
          << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices")
          << ", " << counted(e.vertices, "vertex", "vertices") << " in the result, about " << readable_bytes(e.bytes)
          << " of " << readable_bytes(limit) << " allowed";
+    if (options_.sizing || options_.adaptivity > 0) text << "; edges that vary may take a finer grid, and more";
     console_.result(text.str());
     if (limit > 0 && e.bytes > limit)
       throw Error(ErrorCode::out_of_memory, "memory",
