@@ -74,6 +74,9 @@ PointCloud read_ply_points(const MeshSource& source) {
   constexpr const char* kNormal[3] = {"nx", "ny", "nz"};
   PointCloud cloud;
   cloud.position = ply_vectors(source, header, kPosition);
+  const PlyElement* const vertices = header.find("vertex");
+  if (cloud.position.empty() && vertices && vertices->count > 0)
+    source.refuse_line_at(vertices->header_line, "element vertex has no numbers named x, y and z");
   cloud.normal = ply_vectors(source, header, kNormal);
   return cloud;
 }

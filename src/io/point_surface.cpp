@@ -20,6 +20,7 @@ constexpr int kPullSteps = 3;
 constexpr double kSupportVoxels = 3;     // a vertex farther than that from every point bridges
 constexpr double kPullWidth = 1.0;       // of the weights, in voxels or spacings, whichever is larger
 constexpr double kVoxelSpacings = 1.5;   // noise of a scan is about its spacing: finer voxels make handles of it
+constexpr double kLineSpacings = 0.01;   // points that keep so near to a line have no side
 constexpr double kMinSupported = 0.1;    // of a component's vertices, else it is a bubble
 constexpr double kSmallestPart = 0.002;  // of all vertices near points; a component with fewer is noise
 
@@ -51,6 +52,19 @@ void check_extent(const std::vector<WorldPoint>& position) {
   if (most < 1e-100 || most > 1e100)
     throw Error(ErrorCode::nothing_to_mesh, "points",
                 "the points span " + std::to_string(most) + ", which no grid can follow; scale them");
+}
+
+/// Whether no point is farther than `reach` from the line through the first point and the one farthest from it.
+bool on_a_line(const std::vector<WorldPoint>& position, double reach) {
+  const WorldPoint& o = position[0];
+  const WorldPoint far = *std::max_element(position.begin(), position.end(), [&](const auto& a, const auto& b) {
+    return distance_sq(a, o) < distance_sq(b, o);
+  });
+  const double x = far.x - o.x, y = far.y - o.y, z = far.z - o.z, length_sq = x * x + y * y + z * z;
+  return std::all_of(position.begin(), position.end(), [&](const WorldPoint& p) {
+    const double t = (x * (p.x - o.x) + y * (p.y - o.y) + z * (p.z - o.z)) / length_sq;
+    return distance_sq(p, {o.x + t * x, o.y + t * y, o.z + t * z}) <= reach * reach;
+  });
 }
 
 /// Moves vertices onto the points around them and tells which have any.
@@ -156,6 +170,8 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   check_extent(position);
   const PointTree tree(position);
   const OrientedPoints points = orient_points(position, std::move(normal), tree);
+  if (on_a_line(points.position, kLineSpacings * points.spacing))
+    throw Error(ErrorCode::nothing_to_mesh, "points", "all points lie on a line; a surface needs some beside it");
   info.spacing_world = points.spacing;
   info.normals_turned = points.turned;
   int64_t most = kMaxGrid;

@@ -138,10 +138,6 @@ class NanoField : public ScalarField {
 
   static GridBytes unpack(const MeshSource& source, const NanoGridSpan& span) {
     const VdbCursor in(source.name(), {source.begin(), source.size()}, span.begin);
-    const int64_t most = span.codec == Codec::none ? span.file_bytes : span.file_bytes * kBestZipRatio;
-    if (span.grid_bytes < kGridHeadBytes || span.grid_bytes > most)
-      in.fail("grid \"" + span.grid.name + "\" says that its " + std::to_string(span.file_bytes) + " bytes hold " +
-              std::to_string(span.grid_bytes));
     GridBytes grid(span.grid_bytes);
     const View<const char> packed{source.begin() + span.begin, span.file_bytes};
     if (span.codec == Codec::none)
@@ -162,6 +158,11 @@ std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const Vo
   std::vector<VolumeGrid> grids;
   for (const NanoGridSpan& span : spans) grids.push_back(span.grid);
   const NanoGridSpan& span = spans[choose_grid(source.name(), grids, options)];
+  const int64_t most = span.codec == Codec::none ? span.file_bytes : span.file_bytes * kBestZipRatio;
+  if (span.grid_bytes < kGridHeadBytes || span.grid_bytes > most)
+    throw_unreadable_vdb(source.name(), "grid \"" + span.grid.name + "\" says that its " +
+                                            std::to_string(span.file_bytes) + " bytes hold " +
+                                            std::to_string(span.grid_bytes) + ": the file is damaged");
   check_volume_memory(source.name(), span.grid, span.grid_bytes, options);
   return std::make_unique<NanoField>(source, span);
 }

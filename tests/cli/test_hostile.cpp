@@ -48,6 +48,46 @@ TEST_CASE("hostile: a file that lies is refused with 3, one without triangles wi
   }
 }
 
+TEST_CASE("hostile: files of every format that promise what they do not hold are refused by name", "[cli][hostile]") {
+  Folder folder;
+  struct Written {
+    const char *name, *text;
+    int status;
+  };
+  for (const Written& w :
+       {Written{"neg_count.ply", "ply\nformat ascii 1.0\nelement vertex -3\nend_header\n", 3},
+        {"huge_count.ply",
+         "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float "
+         "z\nend_header\n0 0 0\n",
+         3},
+        {"no_z.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+         3},
+        {"deep.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", 3},
+        {"words.obj", "v a b c\nf 1 1 1\n", 3},
+        {"inf.obj", "v inf 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 5},
+        {"four.off", "4OFF\n1 1 0\n", 3},
+        {"overflow.off", "OFF\n9223372036854775807 9223372036854775807 0\n", 3},
+        {"long_face.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n999999999 0 1 2\n", 3},
+        {"cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", 3},
+        {"nan.xyz", "nan nan nan\nnan nan nan\n", 5},
+        {"short.xyz", "1 2 3\n4 5\n", 3},
+        {"line.xyz", "0 0 0\n1 0 0\n2 0 0\n3 0 0\n5 0 0\n", 5},
+        {"words.xyz", "hello\nworld\n", 3},
+        {"no_data.pcd", "VERSION 0.7\nFIELDS x y z\nPOINTS 3\n", 3},
+        {"liar.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000000\nDATA binary\nabc", 3},
+        {"bomb.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000\nDATA binary_compressed\nabcd",
+         3},
+        {"empty.vdb", "", 5},
+        {"text.vdb", "not a volume at all, but longer than a header would be, and so it is looked at", 3},
+        {"text.nvdb", "NanoVDB0 and then nothing that makes sense, for long enough to be looked at", 3}}) {
+    folder.write(w.name, w.text);
+    const auto r = folder.run(w.name + std::string(" out.ply") + kSmall);
+    INFO(w.name << ": " << r.err);
+    CHECK(r.status == w.status);
+    CHECK_FALSE(folder.has("out.ply"));
+  }
+}
+
 TEST_CASE("hostile: one triangle, a flat quad and twins become closed meshes", "[cli][hostile]") {
   Folder folder;
   folder.write("triangle.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
