@@ -103,7 +103,7 @@ std::vector<TextChunk> split_at_lines(const char* begin, const char* end) {
 }
 
 TextRows::TextRows(const Text& text, const char* begin, char comment)
-    : comment_(comment), chunks_(split_at_lines(begin, text.end())), first_row_(chunks_.size() + 1, 0) {
+    : begin_(begin), comment_(comment), chunks_(split_at_lines(begin, text.end())), first_row_(chunks_.size() + 1, 0) {
   for_each_chunk(chunk_count(), [&](int64_t c) {
     const char* const end = chunks_[size_t(c)].end;
     int64_t rows = 0;
@@ -118,7 +118,7 @@ TextRows::TextRows(const Text& text, const char* begin, char comment)
 }
 
 const char* TextRows::find(int64_t row) const {
-  if (chunks_.empty()) return nullptr;
+  if (chunks_.empty()) return begin_;
   if (row >= count()) return chunks_.back().end;
   const auto above = std::upper_bound(first_row_.begin(), first_row_.end(), row);
   const TextChunk& chunk = chunks_[size_t(above - first_row_.begin()) - 1];

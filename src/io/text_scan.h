@@ -166,6 +166,7 @@ class TextRows {
   const char* find(int64_t row) const;
 
  private:
+  const char* begin_;
   char comment_;
   std::vector<TextChunk> chunks_;
   std::vector<int64_t> first_row_;  // one more than chunks
