@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,25 @@ inline RemeshOptions options(int64_t vertices, int32_t resolution, Method method
   return o;
 }
 
+/// Edge lengths that grow along x.
+class GrowingLengths final : public SizingField {
+ public:
+  std::vector<double> lengths_at(const std::vector<WorldPoint>& points) const override {
+    std::vector<double> lengths;
+    for (const WorldPoint& p : points) lengths.push_back(0.15 + 0.06 * (p.x + 3));
+    return lengths;
+  }
+};
+
+inline RemeshOptions adaptive(RemeshOptions o, double adaptivity) {
+  o.adaptivity = adaptivity;
+  return o;
+}
+inline RemeshOptions sized(RemeshOptions o) {
+  o.sizing = std::make_shared<GrowingLengths>();
+  return o;
+}
+
 inline std::vector<Case> cases() {
   using namespace shapes;
   const auto ball = [] { return sphere({0.25, -1, 3}, 1.5, 48); };
@@ -37,6 +57,8 @@ inline std::vector<Case> cases() {
   return {{"sphere", ball, options(500, 64)},
           {"torus", ring, options(1000, 96)},
           {"torus, coarse levels on outlines", ring, options(600, 160)},
+          {"torus by curvature", ring, adaptive(options(600, 160), 0.8)},
+          {"torus by a field, which decides the count", ring, sized(options(0, 130))},
           {"torus shell", ring, options(1000, 96, Method::shell)},
           {"box", block, options(300, 72)},
           {"torus and sphere", pair, options(900, 100)},
