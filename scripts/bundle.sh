@@ -47,9 +47,10 @@ if [ "$with_tests" -eq 1 ]; then
   done < "$from/tests/list.txt"
   [ ! -x "$from/tests/parity_meshes" ] || copy "$from/tests/parity_meshes" "$folder/tests"
   cp scripts/run_tests.sh scripts/sanitize_cuda.sh "$folder"
-  mkdir -p "$folder/tests/golden" "$folder/scripts" "$folder/examples"
+  mkdir -p "$folder/tests/golden" "$folder/tests/fuzz" "$folder/scripts" "$folder/examples"
   cp tests/golden/golden.txt "$folder/tests/golden"
   cp -r tests/data "$folder/tests"
+  cp -r tests/fuzz/corpus "$folder/tests/fuzz"
   cp README.md "$folder"  # three more files that tests of the command read
   cp examples/01_remesh.cpp "$folder/examples"
   cp scripts/option_table.sh "$folder/scripts"

@@ -32,9 +32,8 @@ extern "C" void end_unless_writing(int) {
   _exit(int(ErrorCode::interrupted));
 }
 
-extern "C" void cancel_run(int) {
-  cancelled_by_signal.load()->cancel = true;
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_DFL);
+extern "C" void cancel_run(int number) {
+  if (cancelled_by_signal.load()->cancel.exchange(true)) return end_unless_writing(number);
   wake_in(kPatienceUs);
 }
 

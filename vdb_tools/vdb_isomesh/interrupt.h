@@ -6,8 +6,8 @@
 namespace isoshell::tool {
 
 /// From now on SIGINT, SIGTERM and SIGHUP cancel the context, which must live as long as the process. A run that has
-/// not ended a quarter of a second later is ended with status 130, unless a file is being written then. A second signal
-/// ends the process at once.
+/// not ended a quarter of a second later, or by the next signal, is ended with status 130, unless a file is being
+/// written then.
 void answer_signals(Context& context);
 
 /// While one of these lives, a file is being written: it is finished or removed before the process ends.
