@@ -24,7 +24,7 @@ __device__ __noinline__ inline SearchResult find_all(Labelling at, int32_t reach
 class ManyCandidates {
  public:
   __device__ explicit ManyCandidates(Labelling at)
-      : at_(at), pass_(at.pass), patch_(at.patch), scratch_(at.scratch), lane_(threadIdx.x & 31) {}
+      : pass_(at.pass), patch_(at.patch), scratch_(at.scratch), lane_(threadIdx.x & 31) {}
 
   /// Labels the vertices and gives the winners; false when there are too many of either.
   __device__ bool label_vertices(PatchSearch& search, SearchResult& found) {
@@ -83,7 +83,6 @@ class ManyCandidates {
     return true;
   }
 
-  const Labelling at_;
   const SheetPass& pass_;
   const Patch& patch_;
   LabelScratch& scratch_;

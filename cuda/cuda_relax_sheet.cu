@@ -70,7 +70,7 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
   const unsigned label_blocks = exec.device().resident_blocks(parts, kernels.label_blocks),
                  sum_blocks = exec.device().resident_blocks(parts, kernels.sum_blocks),
                  move_blocks = blocks_for(count, kMoveThreads / kWalkLanes);
-  CloseLauncher launcher(exec, kernels.closely);
+  CloseLauncher launcher(exec, kernels.closely, kernels.label);
   int searched = 0;
   return run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
     pass.search.table = move.from = buckets.table(searched);

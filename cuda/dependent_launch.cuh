@@ -1,5 +1,5 @@
 // Kernels of one stream that follow closely on one another: the blocks of the next one take the room that the last
-// blocks of this one leave, and wait there until it has ended. Chips before sm_90 run them in turn.
+// blocks of this one leave, and wait there until it has ended. Code for chips before sm_90 runs them in turn.
 #pragma once
 
 #include "cuda/executor_cuda.cuh"
@@ -14,16 +14,17 @@ __device__ inline void wait_for_earlier_kernels() {
 #endif
 }
 
-/// Launches kernels of one parameter, in the executor's stream; closely if that is wanted and the device can.
+/// Launches kernels of one parameter, in the executor's stream; closely if that is wanted and their code waits, which
+/// code for an older chip does not, though the device may be new.
 class CloseLauncher {
  public:
-  CloseLauncher(CudaExecutor& exec, bool closely) : exec_(exec) {
-    int major = 0;
-    require_success(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, exec.device().device()),
-                    "cudaDeviceGetAttribute");
+  template <class Parameter>
+  CloseLauncher(CudaExecutor& exec, bool closely, void (*kernel)(Parameter)) : exec_(exec) {
+    cudaFuncAttributes code;
+    require_success(cudaFuncGetAttributes(&code, kernel), "cudaFuncGetAttributes");
     closely_.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     closely_.val.programmaticStreamSerializationAllowed = 1;
-    closely_count_ = closely && major >= 9 ? 1 : 0;
+    closely_count_ = closely && code.ptxVersion >= 90 ? 1 : 0;
   }
 
   template <class Parameter>

@@ -118,6 +118,7 @@ int64_t rounded(int64_t bytes) {
 
 void require_success(cudaError_t status, const char* call) {
   if (status == cudaSuccess) return;
+  cudaGetLastError();  // said here; the next check is about what comes next
   throw Error(status == cudaErrorMemoryAllocation ? ErrorCode::out_of_memory : ErrorCode::internal, "cuda",
               std::string(call) + " failed: " + cudaGetErrorString(status));
 }

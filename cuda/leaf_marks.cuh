@@ -63,7 +63,7 @@ static __global__ void count_leaves(BlockOrder order, const uint64_t* words, Vie
     const ulonglong2 pair = reinterpret_cast<const ulonglong2*>(words + place * kWords)[lane];
     leaves = __popcll(pair.x) + __popcll(pair.y);
   }
-  for (int offset = 16; offset > 0; offset >>= 1) leaves += __shfl_xor_sync(0xffffffffu, leaves, offset);
+  leaves = warp_sum(leaves);
   if (lane == 0) count[place] = leaves ? kOneBlock + leaves : 0;
 }
 

@@ -1,5 +1,6 @@
-// The rounds of improve_mesh (see stages/post_body.h) on the device without a look of the host at each: a round that
-// finds nothing to do changes nothing, so several are launched at once.
+// The rounds of improve_mesh (see stages/post_body.h) on the device without a look of the host at each: undoing and
+// searching run to their end in one cooperative launch; flips are launched several rounds at once, since a round that
+// finds nothing to do changes nothing.
 #pragma once
 
 #include <cooperative_groups.h>
