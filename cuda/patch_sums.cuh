@@ -1,5 +1,5 @@
-// Sums of the clipped cells of one patch, by one warp: the moments that each vertex owns to its label, and what triangles
-// between labels move from one to another. Arithmetic is that of voxel/cell_sum.h.
+// Sums of the clipped cells of one patch, by one warp: the moments that each vertex owns to its label, and what
+// triangles between labels move from one to another. Arithmetic is that of voxel/cell_sum.h.
 #pragma once
 
 #include "cuda/patch_queue.cuh"
