@@ -13,7 +13,7 @@ namespace {
 constexpr double kCellOfEdge =
     0.9306048591020996;                 // width of a cell, the root of its area, over the edges: root of sqrt(3) / 2
 constexpr double kFewestCellVox = 3.5;  // narrower cells are no disks of sheet triangles
-constexpr double kMostRatio = 16;       // what the density of the energy has room for
+constexpr double kMostRatio = 16;       // of lengths: what EdgeLengthsView::mass has room for
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
 constexpr int64_t kMostSmoothing = 32;
 constexpr double kLeastDensity = 1.0 / 16;  // of vertices where nothing is curved, over the mean

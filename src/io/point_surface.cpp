@@ -9,6 +9,7 @@
 #include "io/iso_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
+#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -121,19 +122,14 @@ class Pull {
 
 /// Leaves out components that hardly any point supports, and numbers the vertices that stay anew.
 void drop_bubbles(TriangleSoup& soup, std::vector<uint8_t>& supported) {
-  std::vector<uint32_t> root(soup.vertices.size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
+  const uint32_t count = uint32_t(soup.vertices.size());
+  Buffer<uint32_t> parent(count);
+  std::iota(parent.view().data, parent.view().data + count, 0u);
   for (const auto& t : soup.triangles)
-    for (const uint32_t v : {t[1], t[2]}) {
-      const uint32_t a = find(t[0]), b = find(v);
-      root[std::max(a, b)] = std::min(a, b);
-    }
-  std::vector<int64_t> all(root.size(), 0), held(root.size(), 0);
-  for (uint32_t v = 0; v < root.size(); ++v) {
+    for (const uint32_t v : {t[1], t[2]}) join(parent.view(), t[0], v);
+  const auto find = [&](uint32_t v) { return find_root(parent.view(), v); };
+  std::vector<int64_t> all(count, 0), held(count, 0);
+  for (uint32_t v = 0; v < count; ++v) {
     ++all[find(v)];
     held[find(v)] += supported[v];
   }
@@ -144,9 +140,9 @@ void drop_bubbles(TriangleSoup& soup, std::vector<uint8_t>& supported) {
   soup.triangles.erase(
       std::remove_if(soup.triangles.begin(), soup.triangles.end(), [&](const auto& t) { return gone(t[0]); }),
       soup.triangles.end());
-  std::vector<uint32_t> number(root.size());
+  std::vector<uint32_t> number(count);
   uint32_t kept = 0;
-  for (uint32_t v = 0; v < root.size(); ++v) {
+  for (uint32_t v = 0; v < count; ++v) {
     if (gone(v)) continue;
     soup.vertices[kept] = soup.vertices[v];
     supported[kept] = supported[v];

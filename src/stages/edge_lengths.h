@@ -26,9 +26,8 @@ struct EdgeLengthsView {
     return ((area2 * r >> 16) * r + (1 << 15)) >> 16;
   }
 
-  static constexpr int kDensityBits =
-      2;  ///< the density where lengths are least is 4: patches of a device take no more
-  static constexpr uint32_t kMostRatio = 16;  ///< of the lengths: what these bits and those of an area leave room for
+  /// The density where lengths are least is 4: patches of a device take no more.
+  static constexpr int kDensityBits = 2;
 
   /// A triangle's mass: its doubled area times the density.
   ISOSHELL_HD uint32_t mass(uint32_t area2, TriangleIndices t) const {

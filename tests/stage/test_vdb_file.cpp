@@ -15,6 +15,7 @@
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
+#include "support/temporary_file.h"
 #include "support/test_context.h"
 #include "voxel/leaf.h"
 #include "voxel/random.h"
@@ -22,18 +23,6 @@
 using namespace isoshell;
 
 namespace {
-
-/// A file name of its own in the folder for temporary files, removed at the end.
-struct TemporaryFile {
-  explicit TemporaryFile(const std::string& name)
-      : path((std::filesystem::temp_directory_path() / ("isoshell_test_" + std::to_string(::getpid()) + "_" + name))
-                 .string()) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-  const std::string path;
-};
 
 std::string bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

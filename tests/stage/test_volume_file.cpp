@@ -18,21 +18,11 @@
 #include "isoshell/io/volume_file.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
+#include "support/temporary_file.h"
 
 using namespace isoshell;
 
 namespace {
-
-struct TemporaryFile {
-  explicit TemporaryFile(const std::string& name)
-      : path((std::filesystem::temp_directory_path() / ("isoshell_test_" + std::to_string(::getpid()) + "_" + name))
-                 .string()) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-  const std::string path;
-};
 
 constexpr double kRadius = 9.2;
 const openvdb::Vec3f kCentre(3, -4, 5);
