@@ -9,6 +9,7 @@
 
 #include "choose_grid.h"
 #include "core/copy_product.h"
+#include "core/joined_components.h"
 #include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
@@ -79,16 +80,41 @@ class Preparation {
     p.surface = std::move(surface);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
+    join_components(p);
     if (closing_vox >= 0) {
       p.closing_vox = closing_vox;
       p.sheet = sheet(p, closing_vox);
     } else {
       close_leaks(p);
     }
+    keep_sides_apart(p);
     return p;
   }
 
  private:
+  /// Surfaces that pass through each other bound one solid, whose genus none of them tells.
+  void join_components(Prepared& p) {
+    InputTopology& input = p.surface.topology;
+    if (input.genus < 0 || input.components < 2) return;
+    const int64_t joined = timed(report_, "topology", context_,
+                                 [&] { return count_joined_components(*OnHost(p.surface), *OnHost(p.samples)); });
+    if (joined == input.components) return;
+    input.components = joined;
+    input.genus = -1;
+  }
+
+  /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. The boundary of
+  /// the sites keeps them apart.
+  void keep_sides_apart(Prepared& p) {
+    const double voxel = p.sheet.frame.voxel_size, area_vox = sheet_area_world(p.sheet) / (voxel * voxel);
+    p.follows_both_sides = !p.surface.topology.closed && double(six_volume_vox(p.sheet, context_)) / 3 < area_vox;
+    if (!p.follows_both_sides) return;
+    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    p.sheet = timed(report_, "sheet", context_, [&] {
+      return build_outline(p.sites, p.surface.frame, {p.closing_vox, smallest, -1, false}, context_);
+    });
+  }
+
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
     const InputTopology& input = p.surface.topology;
     const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
@@ -116,9 +142,12 @@ class Preparation {
   Context& context_;
 };
 
-/// How far the sheet's topology is from the input's; 0 when they agree.
+bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
+
+/// How far the sheet's topology is from the input's; 0 when they agree, or when the input's is not known.
 int64_t topology_gap(const Prepared& p) {
   const InputTopology& input = p.surface.topology;
+  if (!can_compare(input)) return 0;
   return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
 }
 
@@ -169,7 +198,7 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.sites = p.sites.voxels.voxel_count();
   report.sheet_vertices = p.sheet.vertex_count();
   report.sheet = p.sheet.topology;
-  report.topology_compared = report.input.closed && report.input.oriented && report.input.genus >= 0;
+  report.topology_compared = can_compare(report.input);
   report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
   timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
   note_digest(options, report, context, "surface", p.surface);
@@ -223,14 +252,13 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
                               RemeshReport& report, Context& context) {
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
-  const bool compare = input.closed && input.oriented && input.genus >= 0;
   const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
   const int32_t first = free_grid && wants_lengths(options)
                             ? resolution_for_lengths(soup, input, options, usual, report, context)
                             : usual;
   // Each component takes four vertices at least: where there are fewer, no grid brings the input's topology.
-  const bool reachable = compare && vertex_target(options, input.area_world) >= 4 * input.components;
+  const bool reachable = can_compare(input) && vertex_target(options, input.area_world) >= 4 * input.components;
   const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
 
   Prepared best;
@@ -243,7 +271,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
     surface.topology = input;
     Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
-    const int64_t gap = compare ? topology_gap(p) : 0;
+    const int64_t gap = topology_gap(p);
     fruitless = gap < best_gap ? 0 : fruitless + 1;
     if (gap < best_gap) {
       best_gap = gap;
@@ -251,6 +279,11 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     }
   }
   finish(best, options, report, context);
+  if (best.follows_both_sides)
+    report.warnings.push_back(
+        "the surface is open and its gaps are too wide to close: the result follows both of its sides, about two "
+        "voxels of " +
+        std::to_string(best.surface.frame.voxel_size) + " apart; --close-gaps may close it");
   if (report.topology_compared && !report.topology_agrees)
     report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +
                               std::to_string(report.sheet.genus) + ", the input " + std::to_string(input.components) +
@@ -274,7 +307,11 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const InputTopology given =
       timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
   check_area(given);
-  if (given.closed && given.oriented) return prepare_on_best_grid(soup, given, options, report, context);
+  if (given.closed && given.oriented) {
+    Prepared prepared = prepare_on_best_grid(soup, given, options, report, context);
+    report.input = given;
+    return prepared;
+  }
   const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
   const TriangleSoup mended = timed(report, "mend", context, [&] { return mend(soup, {closing_chosen}, report.mend); });
   DirtCounts counted_already;

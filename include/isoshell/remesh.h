@@ -76,7 +76,8 @@ struct Prepared {
   Shell shell;  ///< empty unless the method or want_shell asks for it
   Sheet sheet;  ///< with edge lengths where they vary
   int32_t closing_vox = 0;
-  int64_t vertices = 0;  ///< as many as the sizing field asks for; 0: as the options say
+  bool follows_both_sides = false;  ///< the outside reaches both sides of an open surface: the sheet lies outside of it
+  int64_t vertices = 0;             ///< as many as the sizing field asks for; 0: as the options say
 };
 
 /// Mends the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for. Then

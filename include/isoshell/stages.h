@@ -43,6 +43,7 @@ struct SheetOptions {
   int32_t closing_vox = 0;             ///< r: gaps up to 2 r voxels are bridged; 0 to kMaxClosingVox
   int64_t min_component_area_q16 = 0;  ///< smaller sheet components are dropped; voxel^2 / 65536
   int64_t genus = -1;                  ///< of a closed and oriented surface: more handles are cut; -1 cuts none
+  bool move_in = true;                 ///< an outline goes to where the surface is on average
 };
 /// Closes the sites by r, floods from outside, repairs the solid until it is well-composed, and lays its boundary onto
 /// the surface. Handles beyond `genus` are cut where their thinnest part lies farthest outside: the solid is grown anew
@@ -55,8 +56,9 @@ Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const Sit
 /// Sites of the lattice with voxels of twice the edge: those that hold a site. The same as voxelize on that lattice.
 SiteSet coarsen_sites(const SiteSet& sites, Context& context);
 
-/// The sheet of the sites alone, smoothed and moved in to where the surface is on average, but not laid onto it: within
-/// about a voxel. What coarse levels of seeds relax on.
+/// The sheet of the sites alone, smoothed and, unless told not to, moved in to where the surface is on average, but not
+/// laid onto it: within about a voxel. What coarse levels of seeds relax on, and what stands for an open surface whose
+/// two sides would lie on each other.
 Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
 
 /// Six times the volume inside a sheet, in whole voxels, rounded down once.

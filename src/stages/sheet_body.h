@@ -182,7 +182,8 @@ Sheet build_outline_body(Exec& exec, const SiteSet& sites, const LatticeFrame& f
   QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
   LaidMesh laid = lay_smooth(exec, mesh);
   Sheet sheet = finish_sheet(exec, frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
-  exec.for_each("move in", sheet.vertex_count(), MoveIn{sheet.normal.view(), sheet.position.view()});
+  if (options.move_in)
+    exec.for_each("move in", sheet.vertex_count(), MoveIn{sheet.normal.view(), sheet.position.view()});
   return sheet;
 }
 

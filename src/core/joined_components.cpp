@@ -1,0 +1,37 @@
+#include "core/joined_components.h"
+
+#include "voxel/intersect.h"
+#include "voxel/union_find.h"
+
+namespace isoshell {
+namespace {
+
+CornersOfTriangle corners_of(const LatticeSurface& surface, uint32_t triangle) {
+  const TriangleIndices t = surface.triangles[triangle];
+  return {{t.a, t.b, t.c}, {surface.points[t.a], surface.points[t.b], surface.points[t.c]}};
+}
+
+}  // namespace
+
+int64_t count_joined_components(const LatticeSurface& surface, const SiteSamples& samples) {
+  Buffer<uint32_t> parent(surface.points.size());
+  for (int64_t v = 0; v < parent.size(); ++v) parent[v] = uint32_t(v);
+  const View<uint32_t> sets = parent.view();
+  for (const TriangleIndices t : surface.triangles) {
+    join(sets, t.a, t.b);
+    join(sets, t.a, t.c);
+  }
+  const auto set_of = [&](uint32_t triangle) { return find_root(sets, surface.triangles[triangle].a); };
+  for (int64_t site = 0; site + 1 < samples.first.size(); ++site)
+    for (int64_t i = samples.first[site]; i < samples.first[site + 1]; ++i)
+      for (int64_t j = i + 1; j < samples.first[site + 1]; ++j) {
+        const uint32_t s = samples.triangles[i], t = samples.triangles[j];
+        if (set_of(s) != set_of(t) && triangles_intersect(corners_of(surface, s), corners_of(surface, t)))
+          join(sets, surface.triangles[s].a, surface.triangles[t].a);
+      }
+  int64_t count = 0;
+  for (int64_t v = 0; v < parent.size(); ++v) count += find_root(sets, uint32_t(v)) == uint32_t(v);
+  return count;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,116 @@
+// prepare on surfaces that are open, or several that pass through each other.
+#include <cmath>
+
+#include "isoshell/isoshell.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+struct Run {
+  RemeshReport report;
+  Prepared prepared;
+};
+
+Run prepare_with(const TriangleSoup& soup, const RemeshOptions& options) {
+  TestContext context;
+  Run run;
+  run.prepared = prepare(soup, options, run.report, context);
+  return run;
+}
+
+/// Volume inside the sheet in terms of a ball whose diameter is the grid's longest side.
+double volume_in_balls(const Run& run) {
+  TestContext context;
+  const double radius_vox = .5 * run.report.frame.resolution;
+  return double(six_volume_vox(run.prepared.sheet, context)) / (8 * 3.14159 * radius_vox * radius_vox * radius_vox);
+}
+
+/// A unit ball's surface with a slot of this width along a quarter of its equator.
+TriangleSoup slotted_ball(double width) {
+  constexpr uint32_t kAround = 96, kRows = 24;
+  TriangleSoup soup;
+  std::vector<double> height;
+  for (uint32_t j = 0; j < kRows; ++j)
+    if (const double z = std::cos(1.5707963 * j / kRows); z > width / 2) height.push_back(-z);
+  height.push_back(-width / 2);
+  const size_t below = height.size();
+  for (size_t j = below; j-- > 0;) height.push_back(-height[j]);
+  const double tau = 6.283185307179586;
+  for (const double z : height)
+    for (uint32_t i = 0; i < kAround; ++i) {
+      const double r = std::sqrt(1 - z * z);
+      soup.vertices.push_back({r * std::cos(tau * i / kAround), r * std::sin(tau * i / kAround), z});
+    }
+  for (uint32_t j = 0; j + 1 < height.size(); ++j)
+    for (uint32_t i = 0; i < kAround; ++i) {
+      if (j + 1 == below && i < kAround / 4) continue;
+      const uint32_t a = j * kAround + i, b = j * kAround + (i + 1) % kAround;
+      shapes::add_triangle(soup, a, b, b + kAround);
+      shapes::add_triangle(soup, a, b + kAround, a + kAround);
+    }
+  return soup;
+}
+
+}  // namespace
+
+TEST_CASE("prepare: balls through each other are one body, on the first grid; balls apart stay two", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 500;
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 32);
+  const Run joined = prepare_with(shapes::together(ball, shapes::sphere({1, .1, 0}, 1, 32)), options);
+  CHECK(joined.report.input.components == 2);
+  CHECK(joined.report.sheet.components == 1);
+  CHECK(joined.report.sheet.genus == 0);
+  CHECK_FALSE(joined.report.topology_compared);
+  CHECK(joined.report.warnings.empty());
+  const Run apart = prepare_with(shapes::together(ball, shapes::sphere({2.3, .1, 0}, 1, 32)), options);
+  CHECK(apart.report.sheet.components == 2);
+  CHECK(apart.report.topology_agrees);
+}
+
+TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 500;
+  TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
+  bowl.triangles.resize(bowl.triangles.size() / 2);
+  const Run run = prepare_with(bowl, options);
+  CHECK(run.prepared.follows_both_sides);
+  REQUIRE(run.report.warnings.size() == 1);
+  CHECK(run.report.warnings[0].find("both of its sides") != std::string::npos);
+  CHECK(run.report.sheet.components == 1);
+  TestContext context;
+  const RemeshResult result = remesh(bowl, options, context);
+  CHECK(result.report.post.self_intersections == 0);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  const Run ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
+  CHECK_FALSE(ball.prepared.follows_both_sides);
+}
+
+TEST_CASE("prepare: a slot closes when its width is asked for, and stays open from four voxels below on", "[prepare]") {
+  constexpr int32_t kResolution = 100;
+  const double voxel = 2. / (kResolution - 1);
+  for (const int width_vox : {1, 2, 3, 5, 8, 12, 16}) {
+    const TriangleSoup ball = slotted_ball(width_vox * voxel);
+    for (const int asked_vox : {width_vox, width_vox - 4, 0}) {
+      if (asked_vox < 0) continue;
+      RemeshOptions options;
+      options.resolution = kResolution;
+      options.closing_world = asked_vox * voxel;
+      const Run run = prepare_with(ball, options);
+      INFO("slot of " << width_vox << " voxels, closing " << asked_vox << ", volume " << volume_in_balls(run));
+      CHECK(run.report.mend.capped_loops == 0);
+      if (asked_vox == width_vox) CHECK(volume_in_balls(run) > .9);
+      if (asked_vox <= width_vox - 4) CHECK(volume_in_balls(run) < .5);
+    }
+    RemeshOptions automatic;
+    automatic.resolution = kResolution;
+    const Run run = prepare_with(ball, automatic);
+    CHECK(run.report.mend.capped_loops == 1);
+    CHECK(run.report.closing_vox == 0);
+    CHECK(volume_in_balls(run) > .9);
+  }
+}
