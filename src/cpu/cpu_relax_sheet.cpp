@@ -2,14 +2,17 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "cpu/label_lanes.h"
+#include "cpu/pass_work.h"
+#include "cpu/walk_ahead.h"
 #include "stages/relax_sheet_body.h"
 
 namespace isoshell {
 
 RelaxReport cpu_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
   TbbExecutor exec(context, "relax_sheet");
-  return run_with_threads(context, [&] { return relax_on_sheet_body(exec, *OnHost(sheet), on_host(seeds), options); });
+  return run_with_threads(context, [&] {
+    return relax_on_sheet_body<TbbExecutor, CpuPassWork>(exec, *OnHost(sheet), on_host(seeds), options);
+  });
 }
 
 }  // namespace isoshell

@@ -2,14 +2,8 @@
 
 #include <utility>
 
+#include "cpu/vector_versions.h"
 #include "voxel/cell_sum.h"
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define ISOSHELL_VECTOR_VERSIONS __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define ISOSHELL_VECTOR_VERSIONS
-#endif
 
 namespace isoshell {
 namespace {
@@ -107,17 +101,32 @@ class LeafSeeds {
   const int64_t penalty_q16_;
 };
 
+struct FindBounds {
+  VoxelSetView corners;
+  View<const PointQ8> position;
+  View<const Normal8> normal;
+  View<label::Bounds> out;
+  void operator()(int64_t leaf) const {
+    label::Bounds bounds = label::empty_bounds();
+    for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v)
+      label::include(bounds, position[v], normal[v]);
+    out[leaf] = bounds;
+  }
+};
+
 struct LabelLeafInLanes {
   label::LabelLeaf<> plain;
+  View<const label::Bounds> leaf_bounds;
+  View<const PointQ8> seed_position;
 
   void operator()(int64_t leaf) const {
     using namespace label;
     const int64_t begin = plain.corners.first[leaf], end = plain.corners.first[leaf + 1];
-    Bounds bounds = empty_bounds();
-    for (int64_t v = begin; v < end; ++v) include(bounds, plain.position[v], plain.normal[v]);
+    const Bounds& bounds = leaf_bounds[leaf];
     LabelSeed seeds[kMaxCandidates];
-    int64_t limit;
-    int count = plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
+    int64_t limit = limit_from_labels(bounds, begin, end);
+    int count = limit < INT64_MAX ? gather_within(bounds, limit, seeds)
+                                  : plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
     if (count > kMaxCandidates) return plain.label_directly(bounds, limit, begin, end);
     const LeafSeeds leaf_seeds(bounds, plain.spacing.penalty_q16);
     if (!leaf_seeds.fit(seeds, count)) return plain.label_from(leaf, seeds, count);
@@ -127,17 +136,61 @@ struct LabelLeafInLanes {
   }
 
  private:
+  /// The least of what seeds that labelled the leaf before cost at most: no label costs more. INT64_MAX without such.
+  int64_t limit_from_labels(const label::Bounds& bounds, int64_t begin, int64_t end) const {
+    int64_t limit = INT64_MAX;
+    for (const int64_t v : {begin, (begin + end) / 2, end - 1}) {
+      const uint32_t s = plain.out[v];
+      if (s == kNone) break;
+      limit = std::min(limit,
+                       label::cost_range(bounds, seed_position[s], plain.seed_normal[s], plain.spacing.penalty_q16).hi);
+    }
+    return limit;
+  }
+
+  static int64_t distance_sq_to(const label::Bounds& b, PointQ8 p) {
+    const int64_t x = std::max({b.lo.x - p.x, p.x - b.hi.x, 0}), y = std::max({b.lo.y - p.y, p.y - b.hi.y, 0}),
+                  z = std::max({b.lo.z - p.z, p.z - b.hi.z, 0});
+    return x * x + y * y + z * z;
+  }
+
+  /// The seeds that can win in the box when no label costs more than `limit`, which is lowered to what they cost.
+  int gather_within(const label::Bounds& bounds, int64_t& limit, label::LabelSeed* seeds) const {
+    int64_t least[label::kMaxCandidates];
+    int count = 0;
+    plain.for_each_within(bounds, limit, [&](const label::LabelSeed& s) {
+      if (distance_sq_to(bounds, s.position) > limit) return;
+      const label::CostRange range = label::cost_range(bounds, s.position, s.normal, plain.spacing.penalty_q16);
+      if (range.lo > limit) return;
+      limit = std::min(limit, range.hi);
+      if (count < label::kMaxCandidates) seeds[count] = s, least[count] = range.lo;
+      ++count;
+    });
+    if (count > label::kMaxCandidates) return count;
+    int kept = 0;
+    for (int s = 0; s < count; ++s)
+      if (least[s] <= limit) seeds[kept++] = seeds[s];
+    return kept;
+  }
+
   void label_by(const LeafSeeds& leaf_seeds, const label::LabelSeed* seeds, int seed_count, PointQ8 origin,
                 int64_t begin, int count) const {
     SeedForm forms[label::kMaxCandidates];
-    for (int s = 0; s < seed_count; ++s) forms[s] = leaf_seeds.form(seeds[s]);
+    bool normals_matter = false;
+    for (int s = 0; s < seed_count; ++s) {
+      forms[s] = leaf_seeds.form(seeds[s]);
+      normals_matter |= forms[s].penalty != 0;
+    }
     VertexLanes lanes;
     for (int i = 0; i < count; ++i) {
       const Local p = local(plain.position[begin + i], origin);
-      const Normal8 n = plain.normal[begin + i];
       lanes.x[i] = p.x, lanes.y[i] = p.y, lanes.z[i] = p.z;
-      lanes.normal_x[i] = n.x, lanes.normal_y[i] = n.y, lanes.normal_z[i] = n.z;
     }
+    if (normals_matter)
+      for (int i = 0; i < count; ++i) {
+        const Normal8 n = plain.normal[begin + i];
+        lanes.normal_x[i] = n.x, lanes.normal_y[i] = n.y, lanes.normal_z[i] = n.z;
+      }
     compare(lanes, count, forms, seed_count);
     for (int i = 0; i < count; ++i) plain.out[begin + i] = seeds[lanes.best[i]].id;
   }
@@ -145,12 +198,25 @@ struct LabelLeafInLanes {
 
 }  // namespace
 
+LabelLanes::LabelLanes(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
+    : sheet_(sheet), spacing_(spacing), bounds_(sheet.corners.leaf_count()) {
+  exec.for_each("bounds of leaves", bounds_.size(),
+                FindBounds{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), bounds_.view()});
+}
+
+void LabelLanes::label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) const {
+  const PointGrid grid = grid_of_seeds(exec, sheet_, seeds, spacing_);
+  exec.for_each("label sheet vertices", sheet_.corners.leaf_count(),
+                LabelLeafInLanes{{sheet_.corners.view(), sheet_.position.view(), sheet_.normal.view(), grid.view(),
+                                  seeds.normal.view(), spacing_, labels},
+                                 bounds_.view(),
+                                 seeds.position.view()});
+}
+
 void label_sheet(TbbExecutor& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
                  View<uint32_t> labels) {
-  const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
-  exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
-                LabelLeafInLanes{{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
-                                  seeds.normal.view(), spacing, labels}});
+  exec.fill(labels, kNone);
+  LabelLanes(exec, sheet, spacing).label(exec, seeds, labels);
 }
 
 }  // namespace isoshell

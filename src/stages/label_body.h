@@ -184,6 +184,14 @@ struct LabelLeaf {
     }
   }
 
+  /// Calls visit(LabelSeed) for every seed whose squared distance to the box is at most the limit, and for some more.
+  template <class Visit>
+  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
+    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
+    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
+    visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
+  }
+
  private:
   ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, LabelSeed* candidates, int count) const {
     int kept = 0;
@@ -191,13 +199,6 @@ struct LabelLeaf {
       if (cost_range(bounds, candidates[c].position, candidates[c].normal, spacing.penalty_q16).lo <= limit)
         candidates[kept++] = candidates[c];
     return kept;
-  }
-
-  template <class Visit>
-  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
-    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
-    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
-    visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
   }
 
   /// The eight 4^3 quarters of the leaf in turn.

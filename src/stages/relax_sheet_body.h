@@ -341,15 +341,41 @@ struct FinishPass {
   }
 };
 
+/// What passes spend their time on, for a backend to do in its own way.
+template <class Exec>
+class PassWork {
+ public:
+  PassWork(Exec& exec, const Sheet& sheet, const SeedSpacing& spacing)
+      : sheet_(sheet),
+        spacing_(spacing),
+        patches_(make_patches(exec, sheet)),
+        labels_(exec.template make<uint32_t>(sheet.vertex_count())) {}
+
+  /// Labels the sheet, adds to the cells, and writes each leaf's part of the energy. Nothing counts once the passes
+  /// have converged.
+  void measure(Exec& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
+               View<const PassState> state) {
+    label_sheet(exec, sheet_, seeds, spacing_, labels_.view());
+    exec.for_each("sum cells", sheet_.corners.leaf_count(),
+                  SumLeaf<>{sheet_.corners.leaf_key.view(), patches_.first.view(), patches_.triangles.view(),
+                            sheet_.position.view(), labels_.view(), seeds.position.view(), cells, leaf_energy, state});
+  }
+
+ private:
+  const Sheet& sheet_;
+  const SeedSpacing spacing_;
+  const Patches patches_;
+  Buffer<uint32_t> labels_;
+};
+
 }  // namespace relax_sheet
 
-template <class Exec>
+template <class Exec, class Work = relax_sheet::PassWork<Exec>>
 RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options) {
   using namespace relax_sheet;
   const int64_t count = seeds.size();
-  const Patches patches = make_patches(exec, sheet);
   const SeedSpacing spacing = seed_spacing(exec, sheet, count);
-  Buffer<uint32_t> labels = exec.template make<uint32_t>(sheet.vertex_count());
+  Work pass(exec, sheet, spacing);
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
   Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(sheet.corners.leaf_count());
@@ -364,14 +390,10 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
 
   return run_passes(exec, state.view(), options.max_passes, [&] {
-    exec.for_each("look ahead", count, LookAhead{moving, state.view()});
-    label_sheet(exec, sheet, seeds, spacing, labels.view());
+    for_each_walk(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
     exec.fill(cells.view(), CellSum{0, 0, 0, 0});
-    exec.for_each(
-        "sum cells", sheet.corners.leaf_count(),
-        SumLeaf<>{sheet.corners.leaf_key.view(), patches.first.view(), patches.triangles.view(), sheet.position.view(),
-                  labels.view(), seeds.position.view(), cells.view(), leaf_energy.view(), state.view()});
-    exec.for_each("move to centre", count, MoveToCentre{moving, cells.view(), state.view()});
+    pass.measure(exec, seeds, cells.view(), leaf_energy.view(), state.view());
+    for_each_walk(exec, "move to centre", walk, seeds.home.view(), MoveToCentre{moving, cells.view(), state.view()});
     sum_split_into(exec, energy.view(), leaf_energy.view());
     exec.for_each("finish pass", 1, finish);
   });

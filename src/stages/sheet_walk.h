@@ -27,9 +27,7 @@ struct WalkOntoSheet {
       };
       for (int64_t n = vertex_first[from]; n < vertex_first[from + 1]; ++n) {
         const TriangleIndices t = triangles[vertex_triangles[n]];
-        consider(t.a);
-        consider(t.b);
-        consider(t.c);
+        consider(t.a == from ? t.b : (t.b == from ? t.c : t.a));  // each neighbour follows in one triangle
       }
       if (next == from) return from;
       from = next;
@@ -47,5 +45,11 @@ struct WalkOntoSheet {
     return closest;
   }
 };
+
+/// Runs a step whose element i walks from vertex home[i].
+template <class Exec, class Step>
+void for_each_walk(Exec& exec, const char* name, const WalkOntoSheet&, View<const uint32_t> home, Step step) {
+  exec.for_each(name, home.size, step);
+}
 
 }  // namespace isoshell

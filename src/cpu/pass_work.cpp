@@ -1,0 +1,200 @@
+// A cell gets the moments of the vertices that it labels, each with the triangles that are its own; then triangles
+// between cells move pieces from one to another.
+#include "cpu/pass_work.h"
+
+#include "cpu/cut_lanes.h"
+
+namespace isoshell {
+namespace {
+
+using namespace relax_sheet;
+
+struct FillLeafPatch {
+  VisitPatch patch;
+  View<const PointQ8> position;
+  EdgeLengthsView lengths;
+  View<const int64_t> first;
+  View<LeafPatches::Triangle> triangles;
+  View<PieceSum> of_vertex;
+  void operator()(int64_t leaf) const {
+    int64_t at = first[leaf];
+    const PointQ8 origin = leaf_origin(patch.corners.leaf_key[leaf]);
+    for (int64_t v = patch.corners.first[leaf]; v < patch.corners.first[leaf + 1]; ++v) of_vertex[v] = {};
+    patch.visit(leaf, [&](TriangleIndices t) {
+      const PointQ8 a = position[t.a], b = position[t.b], c = position[t.c];
+      const Vec64 n = cross(difference(b, a), difference(c, a));
+      const uint32_t area2 = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
+      triangles[at++] = {t.a, t.b, t.c, area2};
+      PieceSum& sum = of_vertex[std::min({t.a, t.b, t.c})];
+      sum = sum + piece_sum(area2, local(a, origin), local(b, origin), local(c, origin));
+    });
+  }
+};
+
+/// Sums of one leaf by cells.
+class LeafSums {
+ public:
+  LeafSums(PointQ8 origin, View<const PointQ8> seed, View<CellSum> cell) : origin_(origin), seed_(seed), cell_(cell) {}
+
+  void add(uint32_t id, const PieceSum& piece) {
+    if (PieceSum* sum = sums_.of(id))
+      *sum = *sum + piece;
+    else
+      flush(id, piece);
+  }
+  void take(uint32_t id, const PieceSum& piece) {
+    if (PieceSum* sum = sums_.of(id))
+      *sum = *sum - piece;
+    else
+      flush(id, PieceSum{} - piece);
+  }
+  /// Adds all to the cells; returns their energy.
+  Int128 finish() {
+    sums_.for_each([&](uint32_t id, const PieceSum& sum) { flush(id, sum); });
+    return energy_;
+  }
+
+ private:
+  void flush(uint32_t id, const PieceSum& sum) { energy_ += add_to_cell(cell_[id], sum, local(seed_[id], origin_)); }
+
+  const PointQ8 origin_;
+  const View<const PointQ8> seed_;
+  const View<CellSum> cell_;
+  LocalSums<64> sums_;
+  Int128 energy_ = 0;
+};
+
+struct SumLeafInLanes {
+  VoxelSetView corners;
+  View<const int64_t> first;
+  View<const LeafPatches::Triangle> triangles;
+  View<const PieceSum> of_vertex;
+  View<const PointQ8> position;
+  View<const uint32_t> label;
+  View<const PointQ8> seed;
+  View<CellSum> cell;
+  View<SplitSum> energy;
+  View<const PassState> state;
+
+  void operator()(int64_t leaf) const {
+    if (state[0].converged) return;
+    const PointQ8 origin = leaf_origin(corners.leaf_key[leaf]);
+    LeafSums sums(origin, seed, cell);
+    add_vertices(leaf, sums);
+    CutLanes lanes;
+    constexpr int64_t kChunk = 256;
+    uint32_t cut[kChunk];
+    for (int64_t begin = first[leaf]; begin < first[leaf + 1]; begin += kChunk) {
+      const int count = list_cut(begin, std::min(begin + kChunk, first[leaf + 1]), cut);
+      for (int i = 0; i < count; ++i) {
+        split(triangles[begin + cut[i]], origin, sums, lanes);
+        if (lanes.count == CutLanes::kLanes) empty(lanes, sums);
+      }
+    }
+    empty(lanes, sums);
+    energy[leaf] = SplitSum::of(sums.finish());
+  }
+
+ private:
+  void add_vertices(int64_t leaf, LeafSums& sums) const {
+    int64_t v = corners.first[leaf];
+    const int64_t end = corners.first[leaf + 1];
+    while (v < end) {
+      const uint32_t id = label[v];
+      PieceSum run = of_vertex[v++];
+      for (; v < end && label[v] == id; ++v) run = run + of_vertex[v];
+      sums.add(id, run);
+    }
+  }
+
+  /// Lists the triangles between cells, counted from `begin`, without a branch that would be guessed wrong.
+  int list_cut(int64_t begin, int64_t end, uint32_t* cut) const {
+    int count = 0;
+    for (int64_t t = begin; t < end; ++t) {
+      const uint32_t a = label[triangles[t].a], b = label[triangles[t].b], c = label[triangles[t].c];
+      cut[count] = uint32_t(t - begin);
+      count += ((a ^ b) | (a ^ c)) != 0 ? 1 : 0;
+    }
+    return count;
+  }
+
+  void split(const LeafPatches::Triangle& t, PointQ8 origin, LeafSums& sums, CutLanes& lanes) const {
+    const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
+    if (a != b && b != c && c != a)
+      split_three(t, {a, b, c}, origin, sums);
+    else
+      add_lane(t, a, b, c, origin, lanes);
+  }
+
+  Local here(uint32_t vertex, PointQ8 origin) const { return local(position[vertex], origin); }
+
+  void split_three(const LeafPatches::Triangle& t, TriangleIndices id, PointQ8 origin, LeafSums& sums) const {
+    const SplitTriangle split{{here(t.a, origin), here(t.b, origin), here(t.c, origin)},
+                              {local(seed[id.a], origin), local(seed[id.b], origin), local(seed[id.c], origin)},
+                              t.area2};
+    const uint32_t ids[3] = {id.a, id.b, id.c};
+    sums.take(owner(t, id.a, id.b, id.c), split.total());
+    split.three_cells([&](int corner, const PieceSum& piece) { sums.add(ids[corner], piece); });
+  }
+
+  /// Which of the corners' values is that of the smallest vertex.
+  static uint32_t owner(const LeafPatches::Triangle& t, uint32_t at_a, uint32_t at_b, uint32_t at_c) {
+    return t.a < t.b ? (t.a < t.c ? at_a : at_c) : (t.b < t.c ? at_b : at_c);
+  }
+
+  void add_lane(const LeafPatches::Triangle& t, uint32_t a, uint32_t b, uint32_t c, PointQ8 origin,
+                CutLanes& lanes) const {
+    const int i = lanes.count++;
+    const uint32_t p = b == c ? t.a : (c == a ? t.b : t.c), q = b == c ? t.b : (c == a ? t.c : t.a),
+                   r = b == c ? t.c : (c == a ? t.a : t.b);
+    const uint32_t alone = b == c ? a : (c == a ? b : c), other = b == c ? b : a;
+    lanes.p.set(i, here(p, origin));
+    lanes.q.set(i, here(q, origin));
+    lanes.r.set(i, here(r, origin));
+    lanes.seed.set(i, local(seed[alone], origin));
+    lanes.other_seed.set(i, local(seed[other], origin));
+    lanes.area2[i] = t.area2;
+    const bool all_is_at_p = p < q && p < r;
+    lanes.all_is_at_p[i] = all_is_at_p ? 1 : 0;
+    lanes.from[i] = all_is_at_p ? alone : other;
+    lanes.to[i] = all_is_at_p ? other : alone;
+  }
+
+  static void empty(CutLanes& lanes, LeafSums& sums) {
+    lanes.cut();
+    for (int i = 0; i < lanes.count; ++i) {
+      sums.take(lanes.from[i], lanes.moved(i));
+      sums.add(lanes.to[i], lanes.moved(i));
+    }
+    lanes.count = 0;
+  }
+};
+
+}  // namespace
+
+CpuPassWork::CpuPassWork(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
+    : sheet_(sheet), labels_(exec, sheet, spacing), label_(sheet.vertex_count()) {
+  exec.fill(label_.view(), kNone);
+  const int64_t leaves = sheet.corners.leaf_count();
+  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
+                         sheet.vertex_triangles.view()};
+  patches_ = {Buffer<int64_t>(leaves + 1), Buffer<LeafPatches::Triangle>(sheet.triangles.size()),
+              Buffer<PieceSum>(sheet.vertex_count())};
+  exec.fill(patches_.first.view().part(leaves, 1), int64_t(0));
+  exec.for_each("count patch triangles", leaves, CountPatch{visit, patches_.first.view()});
+  exec.exclusive_scan(patches_.first.view());
+  exec.for_each("fill patches", leaves,
+                FillLeafPatch{visit, sheet.position.view(), lengths_of(sheet), patches_.first.view(),
+                              patches_.triangles.view(), patches_.of_vertex.view()});
+}
+
+void CpuPassWork::measure(TbbExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
+                          View<const PassState> state) {
+  labels_.label(exec, seeds, label_.view());
+  exec.for_each(
+      "sum cells", sheet_.corners.leaf_count(),
+      SumLeafInLanes{sheet_.corners.view(), patches_.first.view(), patches_.triangles.view(), patches_.of_vertex.view(),
+                     sheet_.position.view(), label_.view(), seeds.position.view(), cells, leaf_energy, state});
+}
+
+}  // namespace isoshell

@@ -1,0 +1,91 @@
+// The CPU's own ways of labelling a sheet and of summing its cells, against brute force and against the definition.
+#include "cpu/pass_work.h"
+#include "isoshell/stages.h"
+#include "support/catch.h"
+#include "support/relax_sheets.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+SeedSet seeds_on(const Sheet& sheet, int64_t count) {
+  TestContext context;
+  return place_seeds(sheet, {count, 3}, context);
+}
+
+/// A seed at every second vertex: more than lists of candidates and tables of local sums have places for.
+SeedSet crowded_seeds(const Sheet& sheet) {
+  const int64_t count = sheet.vertex_count() / 2;
+  SeedSet seeds{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count)};
+  for (int64_t s = 0; s < count; ++s) {
+    seeds.home[s] = uint32_t(2 * s);
+    seeds.position[s] = sheet.position[2 * s];
+    seeds.normal[s] = sheet.normal[2 * s];
+  }
+  return seeds;
+}
+
+/// Labels of seeds that make a few passes, each found with those of the pass before at hand.
+void check_labels(const Sheet& sheet, SeedSet seeds) {
+  CAPTURE(seeds.size());
+  TestContext context;
+  TbbExecutor exec(context, "test");
+  const SeedSpacing spacing = seed_spacing(exec, sheet, seeds.size());
+  const LabelLanes lanes(exec, sheet, spacing);
+  Buffer<uint32_t> labels(sheet.vertex_count());
+  exec.fill(labels.view(), kNone);
+  for (int pass = 0; pass < 3; ++pass) {
+    lanes.label(exec, seeds, labels.view());
+    CHECK(std::vector<uint32_t>(labels.begin(), labels.end()) == brute_force_labels(sheet, seeds, spacing));
+    relax_on_sheet(sheet, seeds, {2, 0, 0}, context);
+  }
+}
+
+/// What a pass measures: the cells, and the energy of every leaf.
+template <class Work>
+std::vector<int64_t> measured(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
+  TbbExecutor exec(context, "test");
+  Work work(exec, sheet, seed_spacing(exec, sheet, seeds.size()));
+  Buffer<relax_sheet::CellSum> cells(seeds.size());
+  Buffer<SplitSum> energy(sheet.corners.leaf_count());
+  Buffer<PassState> state(1);
+  exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0});
+  exec.for_each("start", 1, relax_sheet::StartPasses{state.view()});
+  work.measure(exec, seeds, cells.view(), energy.view(), state.view());
+  std::vector<int64_t> out;
+  for (const auto& c : cells) out.insert(out.end(), {c.mass, c.first_x, c.first_y, c.first_z});
+  for (const auto& e : energy) out.insert(out.end(), {e.high, e.low});
+  return out;
+}
+
+void check_cells(const Sheet& sheet, const SeedSet& seeds) {
+  CAPTURE(seeds.size());
+  TestContext context;
+  CHECK(measured<CpuPassWork>(sheet, seeds, context) ==
+        measured<relax_sheet::PassWork<TbbExecutor>>(sheet, seeds, context));
+}
+
+}  // namespace
+
+TEST_CASE("labels: lanes find what brute force finds, pass after pass", "[labels][stage]") {
+  const Sheet even = torus_sheet(), varied = with_lengths(torus_sheet(), 4), plate = plate_sheet();
+  for (const Sheet* sheet : {&even, &varied, &plate}) check_labels(*sheet, seeds_on(*sheet, 300));
+}
+
+TEST_CASE("labels: lanes find what brute force finds where seeds are far or crowded", "[labels][stage]") {
+  const Sheet torus = torus_sheet(), plate = plate_sheet();
+  check_labels(torus, seeds_on(torus, 4));
+  check_labels(plate, crowded_seeds(plate));
+}
+
+TEST_CASE("cells: lanes measure what the definition says", "[cells][stage]") {
+  const Sheet even = torus_sheet(), varied = with_lengths(torus_sheet(), 4), plate = plate_sheet();
+  for (const Sheet* sheet : {&even, &varied, &plate}) check_cells(*sheet, seeds_on(*sheet, 300));
+}
+
+TEST_CASE("cells: lanes measure what the definition says where seeds are far or crowded", "[cells][stage]") {
+  const Sheet torus = torus_sheet();
+  check_cells(torus, seeds_on(torus, 4));
+  check_cells(torus, crowded_seeds(torus));
+}
