@@ -202,7 +202,7 @@ __global__ void turn_queues(Start start, int64_t* listed) {
 
 }  // namespace flood_kernels
 
-inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
+inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked, View<const Voxel> hollows) {
   using namespace flood_kernels;
   Outside outside;
   outside.blocked = blocked;
@@ -220,6 +220,7 @@ inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked) {
   exec.check("start flood");
   enter_from_border<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
   exec.check("enter from the border");
+  exec.for_each("enter hollows", hollows.size, sheet_steps::EnterHollow{state, hollows});
   int64_t* const listed = static_cast<int64_t*>(exec.device().pinned());
   do {
     for (int round = 0; round < kRoundsPerLook; ++round) {

@@ -9,12 +9,14 @@
 
 #include "choose_grid.h"
 #include "core/copy_product.h"
+#include "core/hollows.h"
 #include "core/joined_components.h"
 #include "hierarchy.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/mend.h"
+#include "isoshell/to_host.h"
 #include "sizing.h"
 #include "voxel/exact_int.h"
 
@@ -81,6 +83,7 @@ class Preparation {
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
     join_components(p);
+    mark_hollows(p);
     if (closing_vox >= 0) {
       p.closing_vox = closing_vox;
       p.sheet = sheet(p, closing_vox);
@@ -103,6 +106,19 @@ class Preparation {
     input.genus = -1;
   }
 
+  /// What inner surfaces bound is open to the outside, as it were.
+  void mark_hollows(Prepared& p) {
+    const InputTopology& input = p.surface.topology;
+    if (!input.closed || !input.oriented || input.components < 2) return;
+    const std::vector<Voxel> hollows = timed(report_, "hollows", context_, [&] {
+      return find_hollows(*OnHost(p.surface), *OnHost(p.sites), *OnHost(p.samples));
+    });
+    if (hollows.empty()) return;
+    p.sites = to_host(p.sites);
+    p.sites.hollows = Buffer<Voxel>(int64_t(hollows.size()));
+    std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
+  }
+
   /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. The boundary of
   /// the sites keeps them apart.
   void keep_sides_apart(Prepared& p) {
@@ -111,14 +127,14 @@ class Preparation {
     if (!p.follows_both_sides) return;
     const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
     p.sheet = timed(report_, "sheet", context_, [&] {
-      return build_outline(p.sites, p.surface.frame, {p.closing_vox, smallest, -1, false}, context_);
+      return build_outline(p.sites, p.surface.frame, {p.closing_vox, smallest, kNoGenus, false}, context_);
     });
   }
 
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
     const InputTopology& input = p.surface.topology;
     const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
-    const int64_t genus = input.closed && input.oriented ? input.genus : -1;
+    const int64_t genus = !input.closed || !input.oriented ? kNoGenus : input.genus < 0 ? kUnknownGenus : input.genus;
     return timed(report_, "sheet", context_, [&] {
       return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest, genus}, context_);
     });
@@ -169,6 +185,21 @@ void check_area(const InputTopology& input) {
   if (!(input.area_world > 0))
     throw Error(ErrorCode::nothing_to_mesh, "topology",
                 "no face has an area: the surface is a line or a point; give one with faces that span an area");
+}
+
+/// Edge of a voxel of the first grid.
+double voxel_edge(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options) {
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  return LatticeFrame::around(lo, hi, first_resolution(options, input.area_world, lo, hi)).voxel_size;
+}
+
+/// Of faces that were cut: closed, whatever their edges say, and of a genus that nobody knows.
+InputTopology topology_of_union(InputTopology input, const UniteReport& unite) {
+  input.closed = input.oriented = true;
+  input.components = unite.joined_components;
+  input.genus = -1;
+  return input;
 }
 
 /// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
@@ -307,17 +338,30 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const InputTopology given =
       timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
   check_area(given);
-  if (given.closed && given.oriented) {
-    Prepared prepared = prepare_on_best_grid(soup, given, options, report, context);
-    report.input = given;
-    return prepared;
+  TriangleSoup changed;
+  const TriangleSoup* current = &soup;
+  InputTopology input = given;
+  const auto measure = [&] {
+    DirtCounts counted_already;
+    return measure_topology(*current, counted_already, context);
+  };
+  if (!given.closed || !given.oriented) {
+    const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
+    changed = timed(report, "mend", context, [&] { return mend(soup, {closing_chosen}, report.mend); });
+    current = &changed;
+    input = timed(report, "topology", context, measure);
   }
-  const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
-  const TriangleSoup mended = timed(report, "mend", context, [&] { return mend(soup, {closing_chosen}, report.mend); });
-  DirtCounts counted_already;
-  const InputTopology input =
-      timed(report, "topology", context, [&] { return measure_topology(mended, counted_already, context); });
-  Prepared prepared = prepare_on_best_grid(mended, input, options, report, context);
+  if (input.closed && input.oriented && input.components > 1) {
+    const UniteOptions unite_options{options.outer_only, voxel_edge(*current, input, options) / 2};
+    TriangleSoup united = timed(report, "unite", context, [&] { return unite(*current, unite_options, report.unite); });
+    if (report.unite.changed_anything()) {
+      changed = std::move(united);
+      current = &changed;
+      input = timed(report, "topology", context, measure);
+      if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
+    }
+  }
+  Prepared prepared = prepare_on_best_grid(*current, input, options, report, context);
   report.input = given;
   return prepared;
 }

@@ -16,3 +16,4 @@
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"
 #include "isoshell/to_host.h"
+#include "isoshell/unite.h"

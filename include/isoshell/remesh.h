@@ -10,6 +10,7 @@
 #include "isoshell/mend.h"
 #include "isoshell/sizing.h"
 #include "isoshell/stages.h"
+#include "isoshell/unite.h"
 
 namespace isoshell {
 
@@ -36,6 +37,7 @@ struct RemeshOptions {
   double gradation = 1.2;                     ///< most that an edge may be longer than its neighbours, above 1
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
+  bool outer_only = false;    ///< drop what lies inside of a closed surface
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
   bool want_digests = false;  ///< fill RemeshReport::digests
 };
@@ -50,6 +52,7 @@ struct RemeshReport {
   InputTopology input;  ///< as given; of a resumed run, as mended
   DirtCounts dirt;
   MendReport mend;
+  UniteReport unite;
   LatticeFrame frame;
   int32_t band_vox = 0, closing_vox = 0;
   int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
@@ -80,9 +83,10 @@ struct Prepared {
   int64_t vertices = 0;             ///< as many as the sizing field asks for; 0: as the options say
 };
 
-/// Mends the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for. Then
-/// chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until the
-/// sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
+/// Mends the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for. Unites
+/// the components of one that is: what lies in solid goes, surfaces of hollows stay unless only outer ones are wanted.
+/// Then chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until
+/// the sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
 /// resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage, out_of_memory,
 /// interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context);

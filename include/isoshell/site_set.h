@@ -9,6 +9,7 @@ namespace isoshell {
 /// The index of a voxel in canonical order is its site id.
 struct SiteSet {
   VoxelSet voxels;
+  Buffer<Voxel> hollows = {};  ///< a voxel in each hollow that an inner surface bounds: the outside is there, too
 };
 
 /// The surface point a site stands for.

@@ -39,10 +39,12 @@ struct ShellOptions {
 /// ShellSpaceConstruction(M, res, d) of the paper, section 3.1. Cost: O(leaves * d); 6 bytes an active voxel.
 Shell build_shell(const SiteSet& sites, const ShellOptions& options, Context& context);
 
+constexpr int64_t kNoGenus = -1;       ///< of an open surface: no handle is cut
+constexpr int64_t kUnknownGenus = -2;  ///< of closed surfaces through each other: handles are cut but through material
 struct SheetOptions {
   int32_t closing_vox = 0;             ///< r: gaps up to 2 r voxels are bridged; 0 to kMaxClosingVox
   int64_t min_component_area_q16 = 0;  ///< smaller sheet components are dropped; voxel^2 / 65536
-  int64_t genus = -1;                  ///< of a closed and oriented surface: more handles are cut; -1 cuts none
+  int64_t genus = kNoGenus;            ///< of a closed and oriented surface: more handles are cut
   bool move_in = true;                 ///< an outline goes to where the surface is on average
 };
 /// Closes the sites by r, floods from outside, repairs the solid until it is well-composed, and lays its boundary onto

@@ -25,7 +25,7 @@ LatticeSurface copy_product(const LatticeSurface& s, Copy copy) {
 }
 template <class Copy>
 SiteSet copy_product(const SiteSet& s, Copy copy) {
-  return {copy_product(s.voxels, copy)};
+  return {copy_product(s.voxels, copy), copy(s.hollows)};
 }
 template <class Copy>
 SiteSamples copy_product(const SiteSamples& s, Copy copy) {

@@ -120,7 +120,8 @@ class SolidEntry {
 };
 
 /// The sites less the cuts, with the solid that surrounds those: a wall again.
-SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& box, const VoxelSetView& sites) {
+SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& box, const SiteSet& of) {
+  const VoxelSetView sites = of.voxels.view();
   std::map<uint64_t, LeafMask> leaves;
   for (int64_t l = 0; l < sites.leaf_key.size; ++l) leaves.emplace_hint(leaves.end(), sites.leaf_key[l], sites.mask[l]);
   const auto word_of = [&](Voxel v) -> uint64_t& {
@@ -143,7 +144,8 @@ SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& b
     mask[at++] = leaf.second;
   }
   return {
-      voxel_set_of(exec, View<const uint64_t>(key.view()), View<const LeafMask>(mask.view()), BlockExtent(sites).vox)};
+      voxel_set_of(exec, View<const uint64_t>(key.view()), View<const LeafMask>(mask.view()), BlockExtent(sites).vox),
+      of.hollows.to_host()};
 }
 
 }  // namespace
@@ -160,11 +162,12 @@ SiteSet cpu_cut_false_handles(const SiteSet& sites, const SiteSamples& samples, 
     require_memory(voxels * kBytesPerVoxel, context);
     HandleCutter cutter(extent.vox);
     {
-      Solid solid = sheet_steps::complement_of_outside(exec, site_view);
+      Solid solid = sheet_steps::complement_of_outside(exec, site_view, here->hollows.view());
       SolidEntry(cutter, box, solid.view()).add(site_view, *OnHost<SiteSamples>(samples));
     }
-    cutter.grow(genus, [&] { check_cancel(context, "cut handles"); });
-    return walls_around(exec, cutter, box, site_view);
+    cutter.grow(std::max<int64_t>(0, genus), [&] { check_cancel(context, "cut handles"); });
+    if (genus == kUnknownGenus) cutter.close_cuts_below(kInsideRanks);
+    return walls_around(exec, cutter, box, *here);
   });
 }
 

@@ -133,14 +133,12 @@ std::vector<int64_t> HandleCutter::cuts() const {
   return out;
 }
 
-void HandleCutter::close_cuts(int64_t handles) {
-  if (handles <= 0) return;
-  struct Cut {
-    int rank;
-    std::vector<int64_t> voxels;
-  };
+/// Voxels that were left out and touch one another.
+std::vector<HandleCutter::Cut> HandleCutter::list_cuts() {
   std::vector<Cut> found;
-  for (const int64_t start : cuts()) {
+  const std::vector<int64_t> left_out = cuts();
+  for (const int64_t v : left_out) flags_[size_t(v)] |= kVisited;
+  for (const int64_t start : left_out) {
     if (!is(start, kVisited, kVisited)) continue;
     Cut cut{kRanks, {start}};
     flags_[size_t(start)] &= uint8_t(~kVisited);
@@ -154,15 +152,25 @@ void HandleCutter::close_cuts(int64_t handles) {
     }
     found.push_back(std::move(cut));
   }
-  std::stable_sort(found.begin(), found.end(), [](const Cut& a, const Cut& b) { return a.rank < b.rank; });
-  for (size_t i = 0; i < found.size() && int64_t(i) < handles; ++i)
-    for (const int64_t v : found[i].voxels) flags_[size_t(v)] |= kGrown;
+  return found;
+}
+
+void HandleCutter::close(const Cut& cut) {
+  for (const int64_t v : cut.voxels) flags_[size_t(v)] |= kGrown;
+}
+
+void HandleCutter::close_cuts_below(int rank) {
+  for (const Cut& cut : list_cuts())
+    if (cut.rank < rank) close(cut);
 }
 
 void HandleCutter::grow(int64_t handles, const std::function<void()>& check) {
   for (int64_t v = 0; v < int64_t(flags_.size()); ++v)
     if (is(v, kSolid, kSolid | kVisited)) grow_from(visit_component(v), check);
-  close_cuts(handles);
+  if (handles <= 0) return;
+  std::vector<Cut> found = list_cuts();
+  std::stable_sort(found.begin(), found.end(), [](const Cut& a, const Cut& b) { return a.rank < b.rank; });
+  for (size_t i = 0; i < found.size() && int64_t(i) < handles; ++i) close(found[i]);
 }
 
 }  // namespace isoshell

@@ -47,6 +47,9 @@ class HandleCutter {
   /// Result: what a queue a rank gives, first in, first out. `check` is called now and then and may throw.
   void grow(int64_t handles, const std::function<void()>& check);
 
+  /// Closes all cuts that reach a rank below this.
+  void close_cuts_below(int rank);
+
   bool is_grown(int64_t voxel) const { return flags_[size_t(voxel)] & kGrown; }
   /// Solid voxels that were left out, ascending.
   std::vector<int64_t> cuts() const;
@@ -71,7 +74,12 @@ class HandleCutter {
   int64_t visit_component(int64_t start);
   void grow_from(int64_t start, const std::function<void()>& check);
   void add_grown(int64_t voxel);
-  void close_cuts(int64_t handles);
+  struct Cut {
+    int rank;  ///< the lowest in it
+    std::vector<int64_t> voxels;
+  };
+  std::vector<Cut> list_cuts();
+  void close(const Cut& cut);
 
   int64_t extent_[3];
   std::vector<uint8_t> flags_, rank_;

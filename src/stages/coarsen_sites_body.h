@@ -64,6 +64,12 @@ struct GatherLeaf {
   }
 };
 
+struct HalveVoxel {
+  View<const Voxel> fine;
+  View<Voxel> coarse;
+  ISOSHELL_HD void operator()(int64_t i) const { coarse[i] = {fine[i].x >> 1, fine[i].y >> 1, fine[i].z >> 1}; }
+};
+
 }  // namespace coarsening
 
 template <class Exec>
@@ -83,6 +89,8 @@ SiteSet coarsen_sites_body(Exec& exec, const SiteSet& sites) {
   int32_t extent_vox[3];
   for (int axis = 0; axis < 3; ++axis) extent_vox[axis] = (sites.voxels.block_dims[axis] + 1) / 2 * 128;
   index_leaves(exec, set, extent_vox);
+  coarse.hollows = exec.template make<Voxel>(sites.hollows.size());
+  exec.for_each("halve hollows", coarse.hollows.size(), HalveVoxel{sites.hollows.view(), coarse.hollows.view()});
   return coarse;
 }
 

@@ -1,4 +1,6 @@
 // build_sheet: checks its arguments, then runs on the backend that the context asks for.
+#include <algorithm>
+
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
 
@@ -22,12 +24,14 @@ Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const Sit
   require_sheet_options(sites, options);
   const BackendTable& backend = backend_for(context);
   Sheet sheet = backend.build_sheet(surface, sites, sites, samples, options, context);
-  const int64_t handles = sheet.topology.genus - options.genus;
-  if (options.genus < 0 || handles <= 0 || options.closing_vox > 0) return sheet;
+  const int64_t fewest = std::max<int64_t>(0, options.genus);
+  if (options.genus == kNoGenus || sheet.topology.genus <= fewest || options.closing_vox > 0) return sheet;
   const SiteSet walls = backend.cut_false_handles(sites, samples, options.genus, context);
   if (walls.voxels.voxel_count() == 0) return sheet;
   Sheet cut = backend.build_sheet(surface, walls, sites, samples, options, context);
-  if (cut.topology.components != sheet.topology.components || cut.topology.genus != options.genus) return sheet;
+  const int64_t handles = sheet.topology.genus - cut.topology.genus;
+  const bool is_right = options.genus == kUnknownGenus ? handles > 0 : cut.topology.genus == options.genus;
+  if (cut.topology.components != sheet.topology.components || !is_right) return sheet;
   cut.topology.cut_handles = handles;
   return cut;
 }

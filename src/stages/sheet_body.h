@@ -119,7 +119,8 @@ void list_triangles_around(Exec& exec, Sheet& sheet) {
 template <class Exec>
 QuadMesh boundary_of_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   Solid solid = close_sites(exec, sites, closing_vox);
-  if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);  // an addition may wall up a pocket
+  if (make_well_composed(exec, solid) > 0)
+    fill_cavities(exec, solid, sites.hollows.view());  // an addition may wall up a pocket
   return list_boundary(exec, solid);
 }
 

@@ -115,9 +115,9 @@ struct WantInsideNeighbours {
 
 /// The solid of every voxel that is not outside of `walls`, which must stay where it is as long as the solid lives.
 template <class Exec>
-Solid complement_of_outside(Exec& exec, const VoxelSetView& walls) {
+Solid complement_of_outside(Exec& exec, const VoxelSetView& walls, View<const Voxel> hollows) {
   Solid solid;
-  solid.outside = find_outside(exec, walls);
+  solid.outside = find_outside(exec, walls, hollows);
   solid.set.leaf_key = exec.template make<uint64_t>(walls.leaf_key.size);
   solid.set.mask = exec.template make<LeafMask>(walls.leaf_key.size);
   exec.for_each("solid", walls.leaf_key.size,
@@ -129,18 +129,19 @@ Solid complement_of_outside(Exec& exec, const VoxelSetView& walls) {
 }  // namespace sheet_steps
 
 /// Result: with outside(r) the voxels that a path of face neighbours, all farther than r from every site (centre to
-/// centre), joins to the border, the solid is every voxel farther than r from outside(r). r = 0: every voxel that is
-/// not outside. The solid holds all sites; holes up to 2 r voxels wide close. Sites keep 2 r + 1 voxels off the border.
-/// Cost: r > 0 builds two shells of thickness r by the executor's build_shell_by, so peak memory grows with r.
+/// centre), joins to the border or a hollow, the solid is every voxel farther than r from outside(r). r = 0: every
+/// voxel that is not outside. The solid holds all sites; holes up to 2 r voxels wide close. Sites keep 2 r + 1 voxels
+/// off the border. Cost: r > 0 builds two shells of thickness r by the executor's build_shell_by, so peak memory grows
+/// with r.
 template <class Exec>
 Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   using namespace sheet_steps;
   const VoxelSetView site_view = sites.voxels.view();
-  if (closing_vox == 0) return complement_of_outside(exec, site_view);
+  if (closing_vox == 0) return complement_of_outside(exec, site_view, sites.hollows.view());
   Solid solid;
   const ShellOptions band{closing_vox};
   solid.blocked = build_shell_by(exec, sites, band).voxels;
-  solid.outside = find_outside(exec, solid.blocked.view());
+  solid.outside = find_outside(exec, solid.blocked.view(), sites.hollows.view());
   // The voxel of the outside nearest to any other voxel is one of its rim: a step towards that voxel leaves the
   // outside.
   solid.set = build_shell_by(exec, rim_of_outside(exec, solid.outside.view()), band).voxels;
@@ -154,11 +155,12 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   return solid;
 }
 
-/// Adds every voxel that the solid encloses. A well-composed solid stays so: only whole components of its boundary go.
+/// Adds every voxel that the solid encloses outside of hollows. A well-composed solid stays so: only whole components
+/// of its boundary go.
 template <class Exec>
-void fill_cavities(Exec& exec, Solid& solid) {
+void fill_cavities(Exec& exec, Solid& solid, View<const Voxel> hollows = {}) {
   VoxelSet walls = std::move(solid.set);
-  solid = sheet_steps::complement_of_outside(exec, walls.view());
+  solid = sheet_steps::complement_of_outside(exec, walls.view(), hollows);
   solid.blocked = std::move(walls);
 }
 

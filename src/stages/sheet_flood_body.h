@@ -139,6 +139,17 @@ struct EnterFromBorder {
   }
 };
 
+struct EnterHollow {
+  FloodState state;
+  View<const Voxel> hollows;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const Voxel v = hollows[i];
+    LeafMask voxel = {};
+    voxel.word[v.x & 7] = uint64_t(1) << (offset_in_leaf(v) & 63);
+    state.enter(leaf_of_voxel(v), voxel);
+  }
+};
+
 struct FloodBlock {
   FloodState state;
   View<const uint32_t> list;
@@ -221,9 +232,10 @@ struct FloodQueue {
 }  // namespace sheet_steps
 
 /// Result: outside are the voxels that are not in `blocked` and that a path of face neighbours which are not in
-/// `blocked` either joins to the border of the lattice. Cost: each leaf is visited once per wave of new outside voxels.
+/// `blocked` either joins to the border of the lattice or to one of `hollows`. Cost: each leaf is visited once per wave
+/// of new outside voxels.
 template <class Exec>
-Outside find_outside(Exec& exec, const VoxelSetView& blocked) {
+Outside find_outside(Exec& exec, const VoxelSetView& blocked, View<const Voxel> hollows) {
   using namespace sheet_steps;
   Outside outside;
   outside.blocked = blocked;
@@ -239,6 +251,7 @@ Outside find_outside(Exec& exec, const VoxelSetView& blocked) {
   FloodQueue<Exec> leaves(exec, blocked.leaf_key.size), blocks(exec, blocked.block_table.size);
   FloodState state = {outside.view(), passed_on.view(), leaves.next(), blocks.next(), 1};
   exec.for_each("enter from the border", blocked.block_table.size, EnterFromBorder{state});
+  exec.for_each("enter hollows", hollows.size, EnterHollow{state, hollows});
   for (;;) {
     const View<const uint32_t> leaf_list = leaves.advance(exec), block_list = blocks.advance(exec);
     if (leaf_list.empty() && block_list.empty()) return outside;

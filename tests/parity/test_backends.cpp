@@ -301,6 +301,25 @@ TEST_CASE("parity: every stage on every shape, whatever memory its inputs lie in
     }
 }
 
+TEST_CASE("parity: solids with hollows, on coarse lattices too", "[parity][cuda]") {
+  const TriangleSoup shell = shapes::together(shapes::sphere({0, 0, 0}, 1, 32), shapes::sphere({0, 0, 0}, .6, 32));
+  for (const int32_t resolution : {40, 300}) {
+    SideBySide both;
+    if (!snapped(both, shell, resolution) || !up_to_samples(both)) continue;
+    for (Products* p : {&both.cpu, &both.cuda}) {
+      p->sites = to_host(p->sites);
+      p->sites.hollows = Buffer<Voxel>(1);
+      const int32_t* extent = p->surface.frame.extent_vox;
+      p->sites.hollows[0] = {extent[0] / 2, extent[1] / 2, extent[2] / 2};
+    }
+    CHECK(sheet_with_closing(both, 0));
+    CHECK(both.cpu.sheet.topology.components == 2);
+    outline_of_coarse_sites(both);
+    CHECK(both.cpu.outline.topology.components == 2);
+    sheet_with_closing(both, 2);
+  }
+}
+
 TEST_CASE("parity: corners on voxel boundaries", "[parity][cuda]") {
   TestContext context;
   SideBySide both;

@@ -72,6 +72,61 @@ TEST_CASE("prepare: balls through each other are one body, on the first grid; ba
   CHECK(apart.report.topology_agrees);
 }
 
+TEST_CASE("prepare: a hollow ball stays hollow, unless only outer surfaces are wanted", "[prepare]") {
+  RemeshOptions options;
+  options.resolution = 150;
+  const TriangleSoup hollow =
+      shapes::together(shapes::sphere({0, 0, 0}, 1, 48), shapes::inside_out(shapes::sphere({.1, 0, 0}, .6, 48)));
+  RemeshOptions outer_only = options;
+  outer_only.outer_only = true;
+  const Run outer = prepare_with(hollow, outer_only);
+  CHECK(outer.report.sheet.components == 1);
+  CHECK(outer.report.topology_agrees);
+  const double ball = volume_in_balls(outer);
+  for (const TriangleSoup& soup : {hollow, shapes::inside_out(hollow)}) {
+    const Run kept = prepare_with(soup, options);
+    CHECK(kept.report.unite.inner_surfaces == 1);
+    CHECK(kept.report.sheet.components == 2);
+    CHECK(kept.report.topology_agrees);
+    CHECK(volume_in_balls(kept) / ball == Approx(1 - .216).margin(.01));
+  }
+  const Run nested = prepare_with(shapes::together(hollow, shapes::sphere({.1, 0, 0}, .3, 32)), options);
+  CHECK(nested.report.sheet.components == 3);
+  CHECK(nested.report.topology_agrees);
+  CHECK(volume_in_balls(nested) / ball == Approx(1 - .216 + .027).margin(.01));
+}
+
+TEST_CASE("prepare: a hollow survives coarse levels, and a run from the lattice", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 1000;
+  const TriangleSoup hollow =
+      shapes::together(shapes::sphere({0, 0, 0}, 1, 48), shapes::inside_out(shapes::sphere({.1, 0, 0}, .6, 48)));
+  TestContext context;
+  const RemeshResult result = remesh(hollow, options, context);
+  const MeshTopology topology = check_mesh(result.mesh);
+  CHECK(topology.is_closed_manifold());
+  CHECK(topology.components == 2);
+  CHECK(result.mesh.vertices.size() == 1000);
+  CHECK(result.report.post.self_intersections == 0);
+  const Run first = prepare_with(hollow, options);
+  RemeshReport again;
+  const Prepared resumed = prepare(to_host(first.prepared.surface), 0, options, again, context);
+  CHECK(digest(resumed.sheet) == digest(first.prepared.sheet));
+}
+
+TEST_CASE("prepare: bars through each other that make a frame have its handle", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 800;
+  TriangleSoup frame = shapes::box({-.4, 0, 0}, {4.4, 1, 1});
+  frame = shapes::together(frame, shapes::box({-.5, 3, .1}, {4.3, 4, .9}));
+  frame = shapes::together(frame, shapes::box({.1, -.3, .2}, {1.1, 4.2, .8}));
+  frame = shapes::together(frame, shapes::box({3, -.2, -.1}, {4, 4.3, 1.1}));
+  const Run run = prepare_with(frame, options);
+  CHECK(run.report.unite.joined_components == 1);
+  CHECK(run.report.sheet.components == 1);
+  CHECK(run.report.sheet.genus == 1);
+}
+
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
   RemeshOptions options;
   options.vertices = 500;

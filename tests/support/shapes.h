@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "isoshell/surface_source.h"
@@ -72,6 +73,12 @@ inline TriangleSoup sphere(WorldPoint centre, double radius, uint32_t n) {
   }
   s.faces_in_file = int64_t(s.triangles.size());
   return s;
+}
+
+/// The same faces seen from the other side.
+inline TriangleSoup inside_out(TriangleSoup soup) {
+  for (auto& t : soup.triangles) std::swap(t[1], t[2]);
+  return soup;
 }
 
 /// Both soups in one.

@@ -96,6 +96,10 @@ TEST_CASE("handle cutter: a ring is cut where its ranks are highest, or not when
   HandleCutter whole = cutter_of(ring);
   whole.grow(1, [] {});
   CHECK(whole.cuts().empty());
+  cut.close_cuts_below(14);  // the cut lies beyond
+  CHECK_FALSE(cut.cuts().empty());
+  cut.close_cuts_below(24);
+  CHECK(cut.cuts().empty());
 }
 
 TEST_CASE("handle cutter: a solid without handles is grown whole, each component of it", "[sheet][unit]") {

@@ -68,6 +68,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   option(grid, "--band", raw.band, "D", "thickness of the shell in voxels, 1 to 20", "2");
   option(grid, "--close-gaps", raw.close_gaps, "W", "bridge gaps up to W world units wide; auto, 0, or voxels as 4vox",
          "auto");
+  flag(grid, "--outer-only", a.remesh.outer_only, "drop what lies inside of closed surfaces; else hollows are kept");
 
   const char* relaxation = "Relaxation";
   option(relaxation, "--method", raw.method, "sheet|shell",

@@ -292,6 +292,12 @@ class Run {
     std::ostringstream caps;
     caps << "holes closed by new faces, up to " << m.widest_cap_world << " wide";
     note(m.capped_loops, caps.str().c_str());
+    const UniteReport& u = record_.report.unite;
+    note(u.turned_components, "closed components turned outward");
+    note(u.swallowed_components, "closed components dropped, they lie inside of others");
+    note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
+    note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
+    note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
     note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
   }
 

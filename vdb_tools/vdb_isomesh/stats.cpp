@@ -35,6 +35,14 @@ Json mend_json(const MendReport& m) {
           {"open_loops", m.open_loops}};
 }
 
+Json unite_json(const UniteReport& u) {
+  return {{"turned_components", u.turned_components},
+          {"swallowed_components", u.swallowed_components},
+          {"inner_surfaces", u.inner_surfaces},
+          {"dropped_inner_components", u.dropped_inner},
+          {"cut_faces", u.cut_faces}};
+}
+
 Json input_json(const Arguments& a, const RunRecord& r) {
   const InputTopology& t = r.report.input;
   return {{"path", a.input},
@@ -43,6 +51,7 @@ Json input_json(const Arguments& a, const RunRecord& r) {
           {"faces", known(r.input.faces)},
           {"dropped", dirt_json(r.report.dirt)},
           {"mended", mend_json(r.report.mend)},
+          {"united", unite_json(r.report.unite)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},
           {"genus", known(t.genus)},

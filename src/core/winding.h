@@ -1,0 +1,52 @@
+// Which faces a ray along x crosses beyond a point: sums over them are winding numbers.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "isoshell/surface_source.h"
+
+namespace isoshell {
+
+/// Faces in columns along x. Ties are broken the same way for every face, as if points were moved a little, so the
+/// crossings of a closed surface always sum up to an integer that is right next to the point asked for.
+class RayColumns {
+ public:
+  RayColumns(const std::vector<WorldPoint>& points, const std::vector<std::array<uint32_t, 3>>& faces);
+
+  /// Calls visit(face, sign) for each face but `own` that the ray from p towards larger x crosses: 1 where it leaves
+  /// through the outer side, -1 where it enters. A face through p itself counts when its index is larger than own's.
+  template <class Visit>
+  void for_each_crossing(const WorldPoint& p, uint32_t own, Visit visit) const {
+    const int64_t column = column_of(p.y, 0) * cells_[1] + column_of(p.z, 1);
+    for (int64_t i = first_[size_t(column)]; i < first_[size_t(column) + 1]; ++i) {
+      const uint32_t face = listed_[size_t(i)];
+      if (face == own) continue;
+      if (const int sign = crossing(p, own, face)) visit(face, sign);
+    }
+  }
+
+  /// Calls visit(face) for the faces, some of them more than once, whose boxes may meet the one from lo to hi.
+  template <class Visit>
+  void for_each_near(const WorldPoint& lo, const WorldPoint& hi, Visit visit) const {
+    for (int64_t y = column_of(lo.y, 0); y <= column_of(hi.y, 0); ++y)
+      for (int64_t z = column_of(lo.z, 1); z <= column_of(hi.z, 1); ++z)
+        for (int64_t i = first_[size_t(y * cells_[1] + z)]; i < first_[size_t(y * cells_[1] + z) + 1]; ++i)
+          visit(listed_[size_t(i)]);
+  }
+
+ private:
+  int64_t column_of(double at, int axis) const;
+  int crossing(const WorldPoint& p, uint32_t own, uint32_t face) const;
+  template <class Each>
+  void for_each_column(const std::array<uint32_t, 3>& face, Each each) const;
+
+  const std::vector<WorldPoint>& points_;
+  const std::vector<std::array<uint32_t, 3>>& faces_;
+  double least_[2], cell_[2];
+  int64_t cells_[2];
+  std::vector<int64_t> first_;
+  std::vector<uint32_t> listed_;
+};
+
+}  // namespace isoshell
