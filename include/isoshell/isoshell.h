@@ -3,6 +3,7 @@
 
 #include "isoshell/device_info.h"
 #include "isoshell/digest.h"
+#include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/point_file.h"

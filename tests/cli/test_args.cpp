@@ -73,16 +73,19 @@ TEST_CASE("args: options reach the library with their units", "[cli][args]") {
 
 TEST_CASE("args: gates are a list", "[cli][args]") {
   const Gates g =
-      arguments({"--require", "closed,manifold,no-self-intersections,genus=3,components=2,min-angle=20.5"}).gates;
+      arguments(
+          {"--require", "closed,manifold,no-self-intersections,genus=3,components=2,min-angle=20.5,max-deviation=0.1"})
+          .gates;
   CHECK(g.closed);
   CHECK(g.manifold);
   CHECK(g.no_self_intersections);
   CHECK(g.genus == 3);
   CHECK(g.components == 2);
   CHECK(g.min_angle_deg == 20.5);
+  CHECK(g.max_deviation_world == 0.1);
   CHECK(contains(refusal({"a.obj", "b.ply", "--require", "genus"}), "genus=G"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--require", "watertight"}), "closed"));
-  CHECK(contains(refusal({"a.obj", "b.ply", "--require", "max-deviation=1"}), "not available yet"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--require", "max-deviation=-1"}), "--require max-deviation"));
   CHECK(contains(refusal({"a.obj", "b.vdb", "--stop-after", "shell", "--require", "closed"}), "needs a mesh"));
 }
 

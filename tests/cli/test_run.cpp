@@ -60,7 +60,12 @@ TEST_CASE("run: statistics have every key of schema 1, and null for what is not 
   CHECK(j["topology"]["genus"] == 0);
   CHECK(j["topology"]["manifold"] == true);
   CHECK(j["topology"]["self_intersections"] == 0);
-  CHECK(j["distance"]["to_input_max"].is_null());
+  CHECK(j["distance"]["unit"] == "world");
+  CHECK(j["distance"]["to_input_mean"] > 0);
+  CHECK(j["distance"]["to_input_rms"] >= j["distance"]["to_input_mean"]);
+  CHECK(j["distance"]["hausdorff"] >= j["distance"]["to_input_max"]);
+  CHECK(j["distance"]["hausdorff"] >= j["distance"]["from_input_max"]);
+  CHECK(j["distance"]["pct_of_diagonal"]["hausdorff"] < 2);
   CHECK(j["device"] == "cpu");
   CHECK(j["device_details"].is_null());
   CHECK(j["memory_bytes"]["device_peak"].is_null());
@@ -93,12 +98,15 @@ TEST_CASE("run: a run on a device names it and gives the bytes of the CPU", "[cl
 TEST_CASE("run: a gate that fails exits with 6 and still writes the mesh", "[cli]") {
   Folder folder;
   write_ball(folder);
-  const auto r = folder.run("ball.off out.ply --require genus=1,min-angle=59.9 --stats out.json" + kQuick);
+  const auto r =
+      folder.run("ball.off out.ply --require genus=1,min-angle=59.9,max-deviation=1e-6 --stats out.json" + kQuick);
   CHECK(r.status == 6);
   CHECK(contains(r.err, "gate failed: genus=1: the mesh has 0"));
   CHECK(contains(r.err, "gate failed: min-angle=59.9"));
+  CHECK(contains(r.err, "gate failed: max-deviation=1e-06: the result is up to"));
   CHECK(folder.has("out.ply"));
   CHECK(folder.has("out.json"));
+  CHECK(folder.run("ball.off near.ply --require max-deviation=0.1" + kQuick).status == 0);
 }
 
 TEST_CASE("run: standard input and output carry meshes, and the same bytes as files", "[cli]") {

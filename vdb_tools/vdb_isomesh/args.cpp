@@ -98,7 +98,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* run = "Run";
   option(run, "--require", raw.require, "LIST",
          "gates on the result, exit 6 when one fails: closed, manifold, no-self-intersections, genus=G, components=N, "
-         "min-angle=DEG",
+         "min-angle=DEG, max-deviation=W (between result and input, world units)",
          "");
   option(run, "--device", raw.device, "auto|cpu|cuda[:N]", "where to run", "auto");
   option(run, "--threads", raw.threads, "N", "CPU threads", "all");
@@ -203,11 +203,13 @@ void set_gate(const std::string& gate, Gates& gates) {
   else if (name == "min-angle" && has_value) {
     gates.min_angle_deg = parse_number("--require min-angle", value);
     check_range("--require min-angle", *gates.min_angle_deg, 0, 60);
-  } else if (name == "max-deviation") {
-    refuse("--require " + name + " is not available yet; leave it out");
+  } else if (name == "max-deviation" && has_value) {
+    gates.max_deviation_world = parse_number("--require max-deviation", value);
+    check_range("--require max-deviation", *gates.max_deviation_world, 0, std::numeric_limits<double>::max());
   } else {
     refuse("--require has '" + gate +
-           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, min-angle=DEG");
+           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, min-angle=DEG, "
+           "max-deviation=W");
   }
 }
 

@@ -18,9 +18,11 @@ enum class StopAfter { mesh, shell, voronoi };
 struct Gates {
   bool closed = false, manifold = false, no_self_intersections = false;
   std::optional<int64_t> genus, components;
-  std::optional<double> min_angle_deg;
+  std::optional<double> min_angle_deg, max_deviation_world;
 
-  bool any() const { return closed || manifold || no_self_intersections || genus || components || min_angle_deg; }
+  bool any() const {
+    return closed || manifold || no_self_intersections || genus || components || min_angle_deg || max_deviation_world;
+  }
 };
 
 struct Arguments {

@@ -58,6 +58,8 @@ class Run {
     const TriangleMesh mesh =
         step("triangulate", [&] { return triangulate(prepared, seeds, options_, record_.report, context_); });
     step("measure", [&] { measure(mesh); });
+    if (!a_.stats.empty() || a_.gates.max_deviation_world)
+      step("distance", [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface))); });
     write_step("write", a_.output, [&] { write_mesh(a_.output, mesh, {mesh_format(a_.output_format), a_.force}); });
     return finish();
   }
@@ -348,6 +350,13 @@ class Run {
       std::ostringstream text;
       text << "min-angle=" << *g.min_angle_deg << ": the smallest angle is " << record_.quality->theta_min_deg;
       gate(record_.quality->theta_min_deg >= *g.min_angle_deg, text.str());
+    }
+    if (g.max_deviation_world) {
+      std::ostringstream text;
+      text << "max-deviation=" << *g.max_deviation_world << ": the result is up to "
+           << record_.distance->to_reference.max << " from the input, the input up to "
+           << record_.distance->from_reference.max << " from the result";
+      gate(record_.distance->largest() <= *g.max_deviation_world, text.str());
     }
     return failed;
   }

@@ -119,6 +119,24 @@ Json quality_json(const RunRecord& r) {
           {"area_cv", q.area_cv}};
 }
 
+Json distance_json(const std::optional<MeshDistance>& d) {
+  if (!d) return nullptr;
+  const auto both = [&](double unit) -> Json {
+    return {{"to_input_mean", d->to_reference.mean / unit},
+            {"to_input_rms", d->to_reference.rms / unit},
+            {"to_input_max", d->to_reference.max / unit},
+            {"from_input_mean", d->from_reference.mean / unit},
+            {"from_input_rms", d->from_reference.rms / unit},
+            {"from_input_max", d->from_reference.max / unit},
+            {"hausdorff", d->largest() / unit}};
+  };
+  Json j = both(1);
+  j["unit"] = "world";
+  j["diagonal"] = d->diagonal;
+  j["pct_of_diagonal"] = d->diagonal > 0 ? both(d->diagonal / 100) : Json();
+  return j;
+}
+
 Json sizing_json(const SizingReport& s) {
   if (!s.varies) return nullptr;
   return {{"min", s.least_world}, {"max", s.largest_world}, {"edge_error_mean", s.edge_error_mean}};
@@ -158,8 +176,7 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
   j["sizing"] = sizing_json(r.report.sizing);
-  j["distance"] = {
-      {"to_input_mean", nullptr}, {"to_input_max", nullptr}, {"from_input_max", nullptr}, {"unit", "world"}};
+  j["distance"] = distance_json(r.distance);
   j["energy"] = r.report.relax.energy;
   j["timings_ms"] = timings_json(r);
   j["memory_bytes"] = {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isoshell/device_info.h"
+#include "isoshell/distance.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/remesh.h"
@@ -26,6 +27,7 @@ struct RunRecord {
   RemeshReport report;
   std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
   std::optional<MeshQuality> quality;
+  std::optional<MeshDistance> distance;  ///< of the result and the input, as mended
   int64_t vertices = -1, triangles = -1;
   std::vector<StageTime> times;  ///< of the command; the library's are in the report
   double total_ms = 0;

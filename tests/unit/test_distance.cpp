@@ -1,0 +1,91 @@
+// Distances between meshes whose distances are known by hand, or found by looking at every triangle.
+#include <algorithm>
+#include <cmath>
+
+#include "core/triangle_grid.h"
+#include "isoshell/distance.h"
+#include "isoshell/error.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "voxel/random.h"
+
+using namespace isoshell;
+
+namespace {
+
+TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
+
+/// Two triangles at the height z.
+TriangleMesh square(double size, double z) {
+  return {{{0, 0, z}, {size, 0, z}, {size, size, z}, {0, size, z}}, {{{0, 1, 2}}, {{0, 2, 3}}}};
+}
+
+}  // namespace
+
+TEST_CASE("distance: a mesh is at distance zero of itself", "[distance][unit]") {
+  const TriangleMesh torus = mesh_of(shapes::torus(2, 0.7, 60, 30));
+  const MeshDistance d = measure_distance(torus, torus);
+  CHECK(d.to_reference.mean == Approx(0).margin(1e-7));
+  CHECK(d.largest() == Approx(0).margin(1e-7));
+}
+
+TEST_CASE("distance: spheres of two radii are apart by their difference", "[distance][unit]") {
+  const MeshDistance d =
+      measure_distance(mesh_of(shapes::sphere({0, 0, 0}, 1.1, 60)), mesh_of(shapes::sphere({0, 0, 0}, 1, 60)));
+  CHECK(d.to_reference.mean == Approx(0.1).epsilon(0.03));
+  CHECK(d.to_reference.rms >= d.to_reference.mean);
+  CHECK(d.to_reference.max >= d.to_reference.rms);
+  CHECK(d.from_reference.max == Approx(0.1).epsilon(0.03));
+  CHECK(d.diagonal == Approx(2 * std::sqrt(3.0)).epsilon(0.01));
+}
+
+TEST_CASE("distance: what only one of two meshes has shows in one direction", "[distance][unit]") {
+  const MeshDistance d = measure_distance(square(1, 0), square(3, 0));
+  CHECK(d.to_reference.max == Approx(0).margin(1e-12));
+  CHECK(d.from_reference.max == Approx(2 * std::sqrt(2.0)));
+  CHECK(d.largest() == d.from_reference.max);
+}
+
+TEST_CASE("distance: samples weigh areas, not triangles", "[distance][unit]") {
+  TriangleMesh mesh = square(1, 0);  // and a thousand small triangles far up, a millionth of its area
+  for (uint32_t i = 0; i < 1000; ++i) {
+    const double x = i * 1e-3, size = 4e-5;
+    const auto first = uint32_t(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{x, 0, 1}, {x + size, 0, 1}, {x, size, 1}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const MeshDistance d = measure_distance(mesh, square(1, 0));
+  CHECK(d.to_reference.mean < 1e-4);
+  CHECK(d.to_reference.max == Approx(1));
+}
+
+TEST_CASE("distance: the grid of triangles finds what looking at each one finds", "[distance][unit]") {
+  TriangleMesh target;  // small ones, long needles, one without area and one far away
+  const auto at = [](uint64_t i) { return double(random_bits(5, i) >> 40) / double(1 << 24); };
+  for (uint32_t i = 0; i < 300; ++i) {
+    const double x = at(9 * i), y = at(9 * i + 1), z = at(9 * i + 2), size = i % 50 == 0 ? 3 : 0.05;
+    target.vertices.push_back({x, y, z});
+    target.vertices.push_back({x + size * at(9 * i + 3), y + size * at(9 * i + 4), z});
+    target.vertices.push_back(i % 70 == 1 ? target.vertices.back()
+                                          : WorldPoint{x + size * at(9 * i + 5), y, z + 0.05 * at(9 * i + 6)});
+    target.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  target.vertices.insert(target.vertices.end(), {{20, 0, 0}, {21, 0, 0}, {20, 1, 0}});
+  target.triangles.push_back({900, 901, 902});
+
+  const TriangleGrid grid(target);
+  for (uint64_t i = 0; i < 300; ++i) {  // near, between and beyond
+    const WorldPoint p{30 * at(5000 + i) * at(6000 + i) - 2, 4 * at(7000 + i) - 2, 4 * at(8000 + i) - 2};
+    double best = 1e30;
+    for (const auto& t : target.triangles) {
+      const TriangleMesh one{{target.vertices[t[0]], target.vertices[t[1]], target.vertices[t[2]]}, {{{0, 1, 2}}}};
+      best = std::min(best, TriangleGrid(one).distance_sq(p));
+    }
+    CHECK(grid.distance_sq(p) == best);
+  }
+}
+
+TEST_CASE("distance: a mesh without triangles, or of vertices that are not there, is refused", "[distance][unit]") {
+  CHECK_THROWS_AS(measure_distance({}, square(1, 0)), Error);
+  CHECK_THROWS_AS(measure_distance(square(1, 0), {{{0, 0, 0}}, {{{0, 0, 1}}}}), Error);
+}
