@@ -3,6 +3,7 @@
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "cpu/label_lanes.h"
+#include "cpu/walk_ahead.h"
 #include "stages/post_body.h"
 
 namespace isoshell {

@@ -10,12 +10,11 @@ namespace {
 // What is in 32 bits here fits them while the coordinates of corners and of seeds are below these.
 constexpr int32_t kCornerReach = 1 << 12, kSeedReach = 1 << 13;
 
-/// crossing_q15, for values in 32 bits and without branches: the nearer end where both are on one side.
+/// crossing_q15, for values in 32 bits. Signs are masks: the compiler takes no loop with branches.
 ISOSHELL_INLINE int32_t crossing(int32_t here, int32_t there) {
-  const int32_t before = here < 0 ? -here : 0;
-  int32_t after = there > 0 ? there : 0;
-  after = (before | after) == 0 ? 1 : after;
-  return int32_t(float(kOneQ15) * (float(before) / (float(before) + float(after))));
+  const int32_t before = -here & here >> 31, after = there & -there >> 31;
+  const uint32_t neither = (uint32_t(before | after) - 1) >> 31;
+  return int32_t(float(kOneQ15) * (float(before) / (float(before) + float(after + int32_t(neither)))));
 }
 
 ISOSHELL_INLINE int32_t part_way(int32_t a, int32_t b, int32_t t_q15) {

@@ -59,7 +59,8 @@ class LeafSeeds {
     return true;
   }
 
-  /// Moves the seeds that cost more than the middle one everywhere in the box to the end; returns how many are left.
+  /// Moves the seed nearest to the middle to the front, and those that cost more everywhere in the box to the end;
+  /// returns how many are left.
   int drop_beaten(label::LabelSeed* seeds, int count) const {
     int middle = 0;
     int64_t nearest = INT64_MAX;
@@ -118,44 +119,35 @@ struct LabelLeafInLanes {
   label::LabelLeaf<> plain;
   View<const label::Bounds> leaf_bounds;
   View<const PointQ8> seed_position;
+  View<uint32_t> middle;
 
   void operator()(int64_t leaf) const {
     using namespace label;
     const int64_t begin = plain.corners.first[leaf], end = plain.corners.first[leaf + 1];
     const Bounds& bounds = leaf_bounds[leaf];
     LabelSeed seeds[kMaxCandidates];
-    int64_t limit = limit_from_labels(bounds, begin, end);
-    int count = limit < INT64_MAX ? gather_within(bounds, limit, seeds)
-                                  : plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
+    int64_t limit;
+    int count = middle[leaf] != kNone ? gather_as_far_as(middle[leaf], bounds, limit, seeds)
+                                      : plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
     if (count > kMaxCandidates) return plain.label_directly(bounds, limit, begin, end);
     const LeafSeeds leaf_seeds(bounds, plain.spacing.penalty_q16);
     if (!leaf_seeds.fit(seeds, count)) return plain.label_from(leaf, seeds, count);
     count = leaf_seeds.drop_beaten(seeds, count);
+    middle[leaf] = seeds[0].id;
     LabelLeaf<>::sort_by_id(seeds, count);
     label_by(leaf_seeds, seeds, count, bounds.lo, begin, int(end - begin));
   }
 
  private:
-  /// The least of what seeds that labelled the leaf before cost at most: no label costs more. INT64_MAX without such.
-  int64_t limit_from_labels(const label::Bounds& bounds, int64_t begin, int64_t end) const {
-    int64_t limit = INT64_MAX;
-    for (const int64_t v : {begin, (begin + end) / 2, end - 1}) {
-      const uint32_t s = plain.out[v];
-      if (s == kNone) break;
-      limit = std::min(limit,
-                       label::cost_range(bounds, seed_position[s], plain.seed_normal[s], plain.spacing.penalty_q16).hi);
-    }
-    return limit;
-  }
-
   static int64_t distance_sq_to(const label::Bounds& b, PointQ8 p) {
     const int64_t x = std::max({b.lo.x - p.x, p.x - b.hi.x, 0}), y = std::max({b.lo.y - p.y, p.y - b.hi.y, 0}),
                   z = std::max({b.lo.z - p.z, p.z - b.hi.z, 0});
     return x * x + y * y + z * z;
   }
 
-  /// The seeds that can win in the box when no label costs more than `limit`, which is lowered to what they cost.
-  int gather_within(const label::Bounds& bounds, int64_t& limit, label::LabelSeed* seeds) const {
+  /// Like gather of the plain way; no label costs more than a seed does at most, wherever it is by now.
+  int gather_as_far_as(uint32_t seed, const label::Bounds& bounds, int64_t& limit, label::LabelSeed* seeds) const {
+    limit = label::cost_range(bounds, seed_position[seed], plain.seed_normal[seed], plain.spacing.penalty_q16).hi;
     int64_t least[label::kMaxCandidates];
     int count = 0;
     plain.for_each_within(bounds, limit, [&](const label::LabelSeed& s) {
@@ -199,23 +191,24 @@ struct LabelLeafInLanes {
 }  // namespace
 
 LabelLanes::LabelLanes(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
-    : sheet_(sheet), spacing_(spacing), bounds_(sheet.corners.leaf_count()) {
+    : sheet_(sheet), spacing_(spacing), bounds_(sheet.corners.leaf_count()), middle_(sheet.corners.leaf_count()) {
+  exec.fill(middle_.view(), kNone);
   exec.for_each("bounds of leaves", bounds_.size(),
                 FindBounds{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), bounds_.view()});
 }
 
-void LabelLanes::label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) const {
+void LabelLanes::label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) {
   const PointGrid grid = grid_of_seeds(exec, sheet_, seeds, spacing_);
   exec.for_each("label sheet vertices", sheet_.corners.leaf_count(),
                 LabelLeafInLanes{{sheet_.corners.view(), sheet_.position.view(), sheet_.normal.view(), grid.view(),
                                   seeds.normal.view(), spacing_, labels},
                                  bounds_.view(),
-                                 seeds.position.view()});
+                                 seeds.position.view(),
+                                 middle_.view()});
 }
 
 void label_sheet(TbbExecutor& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
                  View<uint32_t> labels) {
-  exec.fill(labels, kNone);
   LabelLanes(exec, sheet, spacing).label(exec, seeds, labels);
 }
 

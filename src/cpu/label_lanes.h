@@ -6,19 +6,19 @@
 
 namespace isoshell {
 
-/// Labels one sheet for seeds that move: what does not change is found once, and the labels of the time before say how
-/// far to look.
+/// Labels one sheet for seeds that move: what does not change is found once, and the seeds in the middle of leaves say
+/// how far to look the next time.
 class LabelLanes {
  public:
   LabelLanes(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
 
-  /// Writes the labels for `seeds`. `labels` holds those of the time before, or kNone everywhere.
-  void label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) const;
+  void label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels);
 
  private:
   const Sheet& sheet_;
   const SeedSpacing spacing_;
   Buffer<label::Bounds> bounds_;  ///< of every leaf's vertices
+  Buffer<uint32_t> middle_;       ///< the seed that was nearest to the middle of the bounds, kNone at first
 };
 
 /// Taken instead of the template of stages/label_body.h.

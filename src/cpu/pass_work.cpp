@@ -174,7 +174,6 @@ struct SumLeafInLanes {
 
 CpuPassWork::CpuPassWork(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
     : sheet_(sheet), labels_(exec, sheet, spacing), label_(sheet.vertex_count()) {
-  exec.fill(label_.view(), kNone);
   const int64_t leaves = sheet.corners.leaf_count();
   const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
                          sheet.vertex_triangles.view()};

@@ -28,7 +28,7 @@ class CpuPassWork {
 
  private:
   const Sheet& sheet_;
-  const LabelLanes labels_;
+  LabelLanes labels_;
   LeafPatches patches_;
   Buffer<uint32_t> label_;
 };

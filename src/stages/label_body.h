@@ -130,7 +130,7 @@ struct LabelLeaf {
   /// not fit.
   ISOSHELL_HD int gather(const Bounds& bounds, int64_t h_q8, LabelSeed* candidates, int64_t& limit) const {
     const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds.lo, bounds.hi))));
-    for (int64_t reach = diagonal + h_q8 * 3 / 4;; reach *= 2) {
+    for (int64_t reach = diagonal / 2 + h_q8;; reach *= 2) {
       limit = INT64_MAX;
       int count = 0;
       for_each_within(bounds, reach * reach, [&](const LabelSeed& s) {

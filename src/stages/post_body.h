@@ -91,6 +91,7 @@ class Improvement {
         mesh_(mesh),
         vertices_(mesh.position.size()),
         half_edges_(3 * mesh.triangles.size()),
+        spacing_(seed_spacing(exec, sheet, vertices_)),
         walk_{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
               sheet.vertex_triangles.view()} {
     twin_ = exec.template make<uint32_t>(half_edges_);
@@ -123,9 +124,12 @@ class Improvement {
     for (int left = steps - 1; left >= 0; --left) {
       options.onto_sheet = left % kStepsOffSheet == 0;
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      exec_.for_each("smooth", vertices_,
-                     SmoothVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(),
-                                  moved_.view()});
+      const SmoothVertex step{view(),       walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(),
+                              moved_.view()};
+      if (options.onto_sheet)
+        for_each_walk(exec_, "smooth", walk_, seeds_.home.view(), step);
+      else
+        exec_.for_each("smooth", vertices_, step);
       take_step(least_merit, options.onto_sheet ? on_sheet_.view() : mesh_.position.view());
       if (options.onto_sheet) exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     }
@@ -135,7 +139,7 @@ class Improvement {
   void attach_samples() {
     update_seeds();
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
-    label_sheet(exec_, sheet_, seeds_, seed_spacing(exec_, sheet_, vertices_), label.view());
+    label_sheet(exec_, sheet_, seeds_, spacing_, label.view());
     const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
     const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * smallest));
     samples_of_sheet_ = (sheet_.vertex_count() + stride - 1) / stride;
@@ -172,9 +176,9 @@ class Improvement {
       options.rms_q8 = rms_q8_ =
           rounded_sqrt(double(exec_.sum(samples_of_sheet_, RestSq{rest_sq_.view()})) / double(samples_of_sheet_));
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      exec_.for_each("fit", vertices_,
-                     FitVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
-                               vertex_pull_.view(), moved_home_.view(), moved_.view()});
+      for_each_walk(exec_, "fit", walk_, seeds_.home.view(),
+                    FitVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
+                              vertex_pull_.view(), moved_home_.view(), moved_.view()});
       take_step(least_merit, mesh_.position.view());
     }
   }
@@ -225,19 +229,18 @@ class Improvement {
   /// Where lengths vary, edges are those of equilateral triangles around the vertices' cells.
   void measure_size() {
     constexpr double kEdgeSqOfCell = 1.1547005383792515;
-    const SeedSpacing spacing = seed_spacing(exec_, sheet_, vertices_);
-    size_.lengths = spacing.lengths;
-    if (spacing.lengths.vary()) {
-      size_.edge_q8 = rounded_sqrt(kEdgeSqOfCell * double(spacing.h_sq_q16));
-      smallest_fit_ = double(spacing.area2_q16 / 2) / (double(spacing.h_sq_q16) * double(vertices_));
+    size_.lengths = spacing_.lengths;
+    if (spacing_.lengths.vary()) {
+      size_.edge_q8 = rounded_sqrt(kEdgeSqOfCell * double(spacing_.h_sq_q16));
+      smallest_fit_ = double(spacing_.area2_q16 / 2) / (double(spacing_.h_sq_q16) * double(vertices_));
     } else {
       size_.edge_q8 = double(exec_.sum(half_edges_, EdgeLength{view(), mesh_.position.view()})) / double(half_edges_);
     }
   }
 
   void update_seeds() {
-    exec_.for_each(
-        "update seeds", vertices_,
+    for_each_walk(
+        exec_, "update seeds", walk_, seeds_.home.view(),
         UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(), seeds_.home.view()});
   }
 
@@ -266,6 +269,7 @@ class Improvement {
   SeedSet& seeds_;
   DualMesh& mesh_;
   int64_t vertices_, half_edges_;
+  SeedSpacing spacing_;
   WalkOntoSheet walk_;
   EdgeSize size_;
   double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest

@@ -29,7 +29,7 @@ ISOSHELL_HD inline Vector to_equilateral_corner(PointQ8 p, PointQ8 b, PointQ8 c,
   const Vector arm = (1.0 / 3) * (0.8660254037844386 * across - middle);
   const double length_sq = dot(arm, arm);
   if (!(length_sq > 0)) return (2.0 / 3) * middle;
-  const double scale = (1 - evenness) + evenness * radius_q8 / rounded_sqrt(length_sq);
+  const double scale = evenness > 0 ? (1 - evenness) + evenness * radius_q8 / rounded_sqrt(length_sq) : 1;
   return (2.0 / 3) * middle + scale * arm;
 }
 

@@ -33,20 +33,25 @@ class NearestTriangleSearch {
   ISOSHELL_HD const NearestTriangle& best() const { return best_; }
 
   /// Searches the cube of (2 reach + 1)^3 voxels around the position's. Returns whether best() is now the nearest
-  /// triangle of the whole surface: what lies beyond the cube is farther.
+  /// triangle of the whole surface: what lies beyond the cube is farther. Reaches must grow.
   ISOSHELL_HD bool search(int32_t reach) {
     const Voxel at = {p_.x >> kFractionBits, p_.y >> kFractionBits, p_.z >> kFractionBits};
-    for (int32_t ring = 0; ring <= 3 * reach; ++ring)
-      for (int32_t x = -reach; x <= reach; ++x) {
-        const int32_t left = ring - (x < 0 ? -x : x);
+    const Range x = within_best(p_.x, at.x, reach), y = within_best(p_.y, at.y, reach),
+                z = within_best(p_.z, at.z, reach);
+    const int32_t farthest = x.farthest() + y.farthest() + z.farthest();
+    const bool anew = x.farthest() > searched_ || y.farthest() > searched_ || z.farthest() > searched_;
+    for (int32_t ring = searched_ + 1; anew && ring <= farthest; ++ring)
+      for (int32_t i = x.lo; i <= x.hi; ++i) {
+        const int32_t left = ring - (i < 0 ? -i : i);
         if (left < 0) continue;
-        for (int32_t y = -reach; y <= reach; ++y) {
-          const int32_t z = left - (y < 0 ? -y : y);
-          if (z < 0 || z > reach) continue;
-          look_at({at.x + x, at.y + y, at.z - z});
-          if (z) look_at({at.x + x, at.y + y, at.z + z});
+        for (int32_t j = y.lo; j <= y.hi; ++j) {
+          const int32_t k = left - (j < 0 ? -j : j);
+          if (k < 0 || k > z.farthest() || is_searched(i, j, k)) continue;
+          if (-k >= z.lo) look_at({at.x + i, at.y + j, at.z - k});
+          if (k > 0 && k <= z.hi) look_at({at.x + i, at.y + j, at.z + k});
         }
       }
+    searched_ = reach;
     const int64_t sure = margin_q8(reach);
     return best_.distance_sq_q16 <= sure * sure;
   }
@@ -62,13 +67,29 @@ class NearestTriangleSearch {
     }
     return margin + int64_t(reach) * kOneVoxelQ8 - 1;
   }
-  /// Squared distance to a voxel of a cube, which is widened by the rounding of closest points. Cubes reach 16 voxels,
-  /// so 32 bits hold it.
+  /// Distance along an axis to a voxel, which is widened by the rounding of closest points.
+  ISOSHELL_HD static int32_t gap(int32_t p, int32_t voxel) {
+    const int32_t lo = voxel * kOneVoxelQ8 - 1, hi = (voxel + 1) * kOneVoxelQ8 + 1;
+    return p < lo ? lo - p : p > hi ? p - hi : 0;
+  }
+  /// Steps along an axis from the position's voxel to those that the cube has and that are not farther than best().
+  struct Range {
+    int32_t lo, hi;
+    ISOSHELL_HD int32_t farthest() const { return -lo > hi ? -lo : hi; }
+  };
+  ISOSHELL_HD Range within_best(int32_t p, int32_t voxel, int32_t reach) const {
+    Range range = {-reach, reach};
+    while (range.lo < 0 && is_beyond_best(gap(p, voxel + range.lo))) ++range.lo;
+    while (range.hi > 0 && is_beyond_best(gap(p, voxel + range.hi))) --range.hi;
+    return range;
+  }
+  ISOSHELL_HD bool is_beyond_best(int32_t distance) const { return distance * distance > best_.distance_sq_q16; }
+  /// Whether a search before had the voxel in its cube.
+  ISOSHELL_HD bool is_searched(int32_t i, int32_t j, int32_t k) const {
+    return i >= -searched_ && i <= searched_ && j >= -searched_ && j <= searched_ && k <= searched_;
+  }
+  /// Squared distance to a voxel of a cube. Cubes reach 16 voxels, so 32 bits hold it.
   ISOSHELL_HD int64_t distance_sq_to(Voxel v) const {
-    const auto gap = [](int32_t p, int32_t voxel) {
-      const int32_t lo = voxel * kOneVoxelQ8 - 1, hi = (voxel + 1) * kOneVoxelQ8 + 1;
-      return p < lo ? lo - p : p > hi ? p - hi : 0;
-    };
     const int32_t x = gap(p_.x, v.x), y = gap(p_.y, v.y), z = gap(p_.z, v.z);
     return x * x + y * y + z * z;
   }
@@ -94,7 +115,8 @@ class NearestTriangleSearch {
   SitedSurfaceView surface_;
   PointQ8 p_;
   NearestTriangle best_;
-  uint32_t seen_[kSeen];  ///< triangles share voxels: most would be met again at once
+  int32_t searched_ = -1;  ///< reach of the largest cube that was searched
+  uint32_t seen_[kSeen];   ///< triangles share voxels: most would be met again at once
 };
 
 }  // namespace isoshell

@@ -26,15 +26,14 @@ SeedSet crowded_seeds(const Sheet& sheet) {
   return seeds;
 }
 
-/// Labels of seeds that make a few passes, each found with those of the pass before at hand.
+/// Labels of seeds that make a few passes, each found with what the pass before left.
 void check_labels(const Sheet& sheet, SeedSet seeds) {
   CAPTURE(seeds.size());
   TestContext context;
   TbbExecutor exec(context, "test");
   const SeedSpacing spacing = seed_spacing(exec, sheet, seeds.size());
-  const LabelLanes lanes(exec, sheet, spacing);
+  LabelLanes lanes(exec, sheet, spacing);
   Buffer<uint32_t> labels(sheet.vertex_count());
-  exec.fill(labels.view(), kNone);
   for (int pass = 0; pass < 3; ++pass) {
     lanes.label(exec, seeds, labels.view());
     CHECK(std::vector<uint32_t>(labels.begin(), labels.end()) == brute_force_labels(sheet, seeds, spacing));
