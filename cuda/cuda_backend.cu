@@ -31,7 +31,7 @@ const BackendTable* cuda_backend() {
       cuda_subdivide_seeds,
       cuda_improve_mesh,
       cuda_six_volume_vox,
-      cuda_drop_crowded_seeds,
+      cuda_collapse_edges,
       [](Context& context) { DeviceStream::of(context).synchronize(); },
   };
   return &table;

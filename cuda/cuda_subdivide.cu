@@ -1,7 +1,7 @@
-// CUDA's subdivide_seeds and drop_crowded_seeds.
+// CUDA's subdivide_seeds and collapse_edges.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
-#include "stages/crowding_body.h"
+#include "stages/collapse_body.h"
 #include "stages/subdivide_body.h"
 
 namespace isoshell {
@@ -13,10 +13,9 @@ SeedSet cuda_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const See
                               *OnDevice<SeedSet>(exec, seeds), target);
 }
 
-void cuda_drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds,
-                             Context& context) {
-  CudaExecutor exec(context, "crowding");
-  drop_crowded_seeds_body(exec, *OnDevice<DualMesh>(exec, mesh), excess, protected_count, on_device(exec, seeds));
+void cuda_collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context) {
+  CudaExecutor exec(context, "collapse");
+  collapse_edges_body(exec, *OnDevice<Sheet>(exec, sheet), target, on_device(exec, seeds), on_device(exec, mesh));
 }
 
 }  // namespace isoshell

@@ -16,17 +16,25 @@ constexpr int kMaxLevels = 3;
 constexpr int64_t kFewestSeeds = 64;  // of a level
 constexpr int64_t kFewestPerComponent = 12;
 constexpr int64_t kMostRepairPerMille = 60;
+constexpr int64_t kFewestSeedsPerHandle = 50;   // that an outline has too many or too few
 constexpr int64_t kFewestVerticesPerSeed = 28;  // of an outline: cells are four voxels wide or more
 constexpr int32_t kCoarsePasses = 60;
-constexpr int32_t kFinestPasses = 10;  // after a coarser level; without one the caller's own number
+// Of the finest level after a coarser one. It ends early: post-processing does the rest better than more passes.
+constexpr int32_t kFinestPasses = 40;
+constexpr int32_t kFinestTolerancePpb = 500000;
 
-/// Counts from coarse to fine. A triangulation with V vertices and Euler number chi has 4 V - 3 chi after one split.
+/// A triangulation with V vertices and Euler number chi has 4 V - 3 chi after one split.
+int64_t coarser_count(int64_t count, const SheetTopology& topology) {
+  const int64_t chi = 2 * (topology.components - topology.genus);
+  return (count + 3 * chi) / 4;
+}
+
+/// Counts from coarse to fine, as long as a level has seeds enough.
 std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
-  const int64_t chi = 2 * (sheet.components - sheet.genus);
   const int64_t fewest = std::max(kFewestSeeds, kFewestPerComponent * sheet.components);
   std::vector<int64_t> counts{finest};
   while (int(counts.size()) < kMaxLevels) {
-    const int64_t coarser = (counts.back() + 3 * chi) / 4;
+    const int64_t coarser = coarser_count(counts.back(), sheet);
     if (coarser < fewest || coarser >= counts.back()) break;
     counts.push_back(coarser);
   }
@@ -34,12 +42,14 @@ std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
   return counts;
 }
 
-/// Dual of a coarse level with its flips done; null triangles when the level is too coarse for the shape.
+/// Dual of a coarse level with as many vertices as it had seeds and its flips done; null triangles when the level is
+/// too coarse for the shape.
 DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
   const int64_t asked = seeds.size();
   DualReport report;
   DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
   if (report.failed_cells > 0 || seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
+  collapse_edges(sheet, asked, seeds, mesh, context);
   improve_mesh(sheet, {6, 0, 0}, seeds, mesh, context);
   return mesh;
 }
@@ -71,7 +81,7 @@ class Outlines {
         for (int32_t& extent : frame.extent_vox) extent = (extent / 2 + 7) / 8 * 8;
         closing_vox = (closing_vox + 1) / 2;
         Sheet outline = build_outline(coarser, frame, {closing_vox, 0}, context);
-        if (outline.topology.components != finest_.topology.components) {  // near parts have merged
+        if (have_merged(outline.topology, cells)) {
           std::fill(halvings_.begin(), halvings_.begin() + level + 1, int(outlines_.size()));
           return;
         }
@@ -90,6 +100,12 @@ class Outlines {
   }
 
  private:
+  /// Whether near parts of the surface are one in the outline, or join in places by many handles.
+  bool have_merged(const SheetTopology& outline, double cells) const {
+    const auto handles = double(std::abs(outline.genus - finest_.topology.genus));
+    return outline.components != finest_.topology.components || handles * kFewestSeedsPerHandle > cells;
+  }
+
   const Sheet& finest_;
   SiteSet sites_;  ///< of the coarsest outline
   std::vector<Sheet> outlines_;
@@ -101,29 +117,28 @@ class Outlines {
 SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
                         RelaxReport& report, Context& context) {
   require_seed_count(prepared.sheet, options.count);
-  const std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
+  std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
   const RelaxOptions coarse{kCoarsePasses, relax.tolerance_ppb, relax.max_step_q8};
-  Outlines outlines(prepared, counts, context);
+  const Outlines outlines(prepared, counts, context);
+  for (size_t level = counts.size() - 1; level-- > 0;)  // outlines may lack handles, or have more
+    counts[level] = coarser_count(counts[level + 1], outlines.sheet(level).topology);
   SeedSet seeds;
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
     const Sheet& sheet = outlines.sheet(level);
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     relax_on_sheet(sheet, seeds, coarse, context);
     const DualMesh dual = coarse_dual(sheet, seeds, context);
-    // An outline may lack handles that the counts were made for: then its mesh has too few places for new seeds. A few
-    // seeds are put into triangles on every level.
-    const int64_t places = dual.triangles.size() / 2 * 3 + dual.triangles.size();
-    const bool enough = seeds.size() + places >= counts[level + 1];
-    seeds =
-        dual.triangles.empty() || !enough ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
+    seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
     if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);
   }
   RelaxOptions finest = relax;
-  if (seeds.size() == 0)
+  if (seeds.size() == 0) {
     seeds = place_seeds(prepared.sheet, options, context);
-  else
+  } else {
     finest.max_passes = std::min(finest.max_passes, kFinestPasses);
+    finest.tolerance_ppb = std::max(finest.tolerance_ppb, kFinestTolerancePpb);
+  }
   report = relax_on_sheet(prepared.sheet, seeds, finest, context);
   return seeds;
 }

@@ -26,6 +26,7 @@ namespace {
 constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kReoptimisePasses = 20;
 constexpr int kMaxReoptimisations = 4;
+constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
 
 void book_time(RemeshReport& report, const char* stage, double ms) {
   for (StageTime& t : report.times)
@@ -397,11 +398,10 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     report.dual.relabelled_vertices += found.relabelled_vertices;
     report.dual.repair_rounds += found.repair_rounds;
     report.dual.failed_cells = found.failed_cells;
-    if (found.inserted_seeds == 0 || round == kMaxReoptimisations) break;
-    timed(report, "relax", context, [&] {
-      drop_crowded_seeds(dual, std::max<int64_t>(0, seeds.size() - asked), found.inserted_seeds, seeds, context);
-      relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context);
-    });
+    if (found.failed_cells == 0)
+      timed(report, "dual", context, [&] { collapse_edges(p.sheet, asked, seeds, dual, context); });
+    if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMaxReoptimisations) break;
+    timed(report, "relax", context, [&] { relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context); });
   }
   if (report.dual.failed_cells > 0)
     report.warnings.push_back(

@@ -153,11 +153,11 @@ DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions&
 SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                         Context& context);
 
-/// Takes `excess` seeds out again where they are closest together: of the shortest edges of the dual that touch neither
-/// one of the last `protected_count` seeds (those that repair needed) nor each other, the end with the larger id.
-/// May take fewer when no such edge is left. Ids close up. Cost: a sort of the edges, then one step for each looked at.
-void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds,
-                        Context& context);
+/// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
+/// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The
+/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. Cost: a sort of the
+/// edges a round, then one step for each looked at.
+void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context);
 
 /// Where vertices of the result lie.
 enum class Fit {

@@ -30,7 +30,7 @@ const BackendTable& cpu_backend() {
       cpu_subdivide_seeds,
       cpu_improve_mesh,
       cpu_six_volume_vox,
-      cpu_drop_crowded_seeds,
+      cpu_collapse_edges,
       [](Context&) {},
   };
   return table;

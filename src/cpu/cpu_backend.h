@@ -29,7 +29,7 @@ DualMesh cpu_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualRe
 SeedSet cpu_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
 PostReport cpu_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 int64_t cpu_six_volume_vox(const Sheet&, Context&);
-void cpu_drop_crowded_seeds(const DualMesh&, int64_t, int64_t, SeedSet&, Context&);
+void cpu_collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&);
 SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 

@@ -1,8 +1,8 @@
-// The CPU's subdivide_seeds and drop_crowded_seeds.
+// The CPU's subdivide_seeds and collapse_edges.
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "stages/crowding_body.h"
+#include "stages/collapse_body.h"
 #include "stages/subdivide_body.h"
 
 namespace isoshell {
@@ -14,11 +14,9 @@ SeedSet cpu_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const Seed
       context, [&] { return subdivide_seeds_body(exec, *OnHost(sheet), *OnHost(mesh), *OnHost(seeds), target); });
 }
 
-void cpu_drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds,
-                            Context& context) {
-  TbbExecutor exec(context, "crowding");
-  run_with_threads(context,
-                   [&] { drop_crowded_seeds_body(exec, *OnHost(mesh), excess, protected_count, on_host(seeds)); });
+void cpu_collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context) {
+  TbbExecutor exec(context, "collapse");
+  run_with_threads(context, [&] { collapse_edges_body(exec, *OnHost(sheet), target, on_host(seeds), on_host(mesh)); });
 }
 
 }  // namespace isoshell

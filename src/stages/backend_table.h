@@ -37,7 +37,7 @@ struct BackendTable {
   SeedSet (*subdivide_seeds)(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
   PostReport (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
   int64_t (*six_volume_vox)(const Sheet&, Context&);
-  void (*drop_crowded_seeds)(const DualMesh&, int64_t excess, int64_t protected_count, SeedSet&, Context&);
+  void (*collapse_edges)(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&);
   void (*finish_stages)(Context&);
 };
 

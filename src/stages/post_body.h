@@ -66,17 +66,7 @@ struct IsMarked {
 
 struct RotateTriangle {
   View<TriangleIndices> triangles;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    const TriangleIndices t = triangles[i];
-    triangles[i] = t.a < t.b && t.a < t.c
-                       ? t
-                       : (t.b < t.c && t.b < t.a ? TriangleIndices{t.b, t.c, t.a} : TriangleIndices{t.c, t.a, t.b});
-  }
-};
-struct ByIndices {
-  ISOSHELL_HD bool operator()(const TriangleIndices& s, const TriangleIndices& t) const {
-    return s.a != t.a ? s.a < t.a : (s.b != t.b ? s.b < t.b : s.c < t.c);
-  }
+  ISOSHELL_HD void operator()(int64_t i) const { triangles[i] = smallest_first(triangles[i]); }
 };
 
 /// The mesh and its scratch while it is improved.
@@ -93,10 +83,8 @@ class Improvement {
         half_edges_(3 * mesh.triangles.size()),
         spacing_(seed_spacing(exec, sheet, vertices_)),
         walk_{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-              sheet.vertex_triangles.view()} {
-    twin_ = exec.template make<uint32_t>(half_edges_);
-    valence_ = exec.template make<uint32_t>(vertices_);
-    outgoing_ = exec.template make<uint32_t>(vertices_);
+              sheet.vertex_triangles.view()},
+        connections_(exec, mesh) {
     claim_ = exec.template make<uint64_t>(vertices_);
     moved_ = exec.template make<PointQ8>(vertices_);
     previous_ = exec.template make<PointQ8>(vertices_);
@@ -105,7 +93,6 @@ class Improvement {
     exec.copy(View<const PointQ8>(mesh.position.view()), begin_.view());
     moved_home_ = exec.template make<uint32_t>(vertices_);
     harmed_ = exec.template make<uint32_t>(vertices_);
-    connect();
     measure_size();
   }
 
@@ -216,7 +203,7 @@ class Improvement {
   }
 
  private:
-  MeshView view() { return {mesh_.triangles.view(), twin_.view(), valence_.view(), outgoing_.view()}; }
+  MeshView view() { return connections_.view(mesh_); }
 
   SmoothOptions smooth_options(double most_edges) const {
     SmoothOptions options;
@@ -253,16 +240,6 @@ class Improvement {
     std::swap(seeds_.home, moved_home_);
   }
 
-  void connect() {
-    Buffer<DirectedEdge> edges = exec_.template make<DirectedEdge>(half_edges_);
-    exec_.for_each("list edges", half_edges_, ListEdge{mesh_.triangles.view(), edges.view()});
-    exec_.sort(edges.view(), ByEnds{});
-    exec_.for_each("pair twins", half_edges_ / 2, PairTwins{edges.view(), view()});
-    exec_.fill(valence_.view(), 0u);
-    exec_.fill(outgoing_.view(), kNone);
-    exec_.for_each("count valences", half_edges_, CountValence{view()});
-  }
-
   Exec& exec_;
   const Sheet& sheet_;
   double evenness_;
@@ -271,10 +248,11 @@ class Improvement {
   int64_t vertices_, half_edges_;
   SeedSpacing spacing_;
   WalkOntoSheet walk_;
+  Connections connections_;
   EdgeSize size_;
   double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest
   double rms_q8_ = 0;        ///< of the samples' residuals, 0 before they were first looked at
-  Buffer<uint32_t> twin_, valence_, outgoing_, moved_home_, harmed_;
+  Buffer<uint32_t> moved_home_, harmed_;
   Buffer<uint64_t> claim_;
   Buffer<PointQ8> moved_, previous_, on_sheet_, begin_;
   int64_t samples_of_sheet_ = 0;  ///< missed points come after them

@@ -78,4 +78,34 @@ ISOSHELL_HD inline void for_each_triangle_around(const MeshView& mesh, uint32_t 
   } while (h != start);
 }
 
+/// The half-edge structure of a mesh.
+struct Connections {
+  Buffer<uint32_t> twin, valence, outgoing;
+
+  template <class Exec>
+  Connections(Exec& exec, DualMesh& mesh)
+      : twin(exec.template make<uint32_t>(3 * mesh.triangles.size())),
+        valence(exec.template make<uint32_t>(mesh.position.size())),
+        outgoing(exec.template make<uint32_t>(mesh.position.size())) {
+    Buffer<DirectedEdge> edges = exec.template make<DirectedEdge>(twin.size());
+    exec.for_each("list edges", twin.size(), ListEdge{mesh.triangles.view(), edges.view()});
+    exec.sort(edges.view(), ByEnds{});
+    exec.for_each("pair twins", twin.size() / 2, PairTwins{edges.view(), view(mesh)});
+    exec.fill(valence.view(), 0u);
+    exec.fill(outgoing.view(), kNone);
+    exec.for_each("count valences", twin.size(), CountValence{view(mesh)});
+  }
+  MeshView view(DualMesh& mesh) { return {mesh.triangles.view(), twin.view(), valence.view(), outgoing.view()}; }
+};
+
+ISOSHELL_HD inline TriangleIndices smallest_first(TriangleIndices t) {
+  if (t.a < t.b && t.a < t.c) return t;
+  return t.b < t.c && t.b < t.a ? TriangleIndices{t.b, t.c, t.a} : TriangleIndices{t.c, t.a, t.b};
+}
+struct ByIndices {
+  ISOSHELL_HD bool operator()(const TriangleIndices& s, const TriangleIndices& t) const {
+    return s.a != t.a ? s.a < t.a : (s.b != t.b ? s.b < t.b : s.c < t.c);
+  }
+};
+
 }  // namespace isoshell::post

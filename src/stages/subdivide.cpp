@@ -14,9 +14,8 @@ SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet&
   return backend_for(context).subdivide_seeds(sheet, mesh, seeds, target, context);
 }
 
-void drop_crowded_seeds(const DualMesh& mesh, int64_t excess, int64_t protected_count, SeedSet& seeds,
-                        Context& context) {
-  backend_for(context).drop_crowded_seeds(mesh, excess, protected_count, seeds, context);
+void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context) {
+  backend_for(context).collapse_edges(sheet, target, seeds, mesh, context);
 }
 
 }  // namespace isoshell

@@ -209,12 +209,6 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
   both.stage("subdivided seeds", &Products::site_seeds, [](const Products& p, Context& c) {
     return made(subdivide_seeds(p.sheet, p.dual, p.seeds, p.seeds.size() * 2, c));
   });
-  both.stage("seeds with the crowded dropped", &Products::site_seeds, [](const Products& p, Context& c) {
-    return changed(p.seeds, [&](SeedSet& seeds) {
-      drop_crowded_seeds(p.dual, seeds.size() / 5, seeds.size() / 7, seeds, c);
-      return std::string();
-    });
-  });
   if (failed_cells > 0) return;
   both.stage("improved mesh", &Products::dual, [](const Products& p, Context& c) {
     SeedSet seeds = to_host(p.seeds);
@@ -222,6 +216,12 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
     const PostReport report = improve_mesh(p.sheet, {}, seeds, mesh, c);
     return made(std::move(mesh), std::to_string(report.flips) + " flips, " + std::to_string(report.self_intersections) +
                                      " intersections, seeds " + digest_text(hash_arrays(seeds)));
+  });
+  both.stage("mesh with edges collapsed", &Products::dual, [](const Products& p, Context& c) {
+    SeedSet seeds = to_host(p.seeds);
+    DualMesh mesh = to_host(p.dual);
+    collapse_edges(p.sheet, seeds.size() * 4 / 5, seeds, mesh, c);
+    return made(std::move(mesh), "seeds " + digest_text(hash_arrays(seeds)));
   });
 }
 

@@ -105,8 +105,8 @@ TEST_CASE("limits: what the recipe asks of whole products", "[parity][cuda]") {
   const auto fewer = [&](Context& context) {
     SeedSet seeds = place_seeds(sheet, {400, 1}, context);
     DualReport report;
-    const DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
-    drop_crowded_seeds(mesh, 25, 3, seeds, context);
+    DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
+    collapse_edges(sheet, 375, seeds, mesh, context);
     return std::vector<uint64_t>{uint64_t(seeds.size()), hash_arrays(seeds)};
   };
   CHECK(fewer(on.cuda) == fewer(on.cpu));

@@ -79,6 +79,11 @@ inline SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const S
                                TestContext& context) {
   return to_host(subdivide_seeds(sheet, mesh, seeds, target, context.plain()));
 }
+inline void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, TestContext& context) {
+  collapse_edges(sheet, target, seeds, mesh, context.plain());
+  seeds = to_host(seeds);
+  mesh = to_host(mesh);
+}
 inline PostReport improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
                                TestContext& context) {
   const PostReport report = improve_mesh(sheet, options, seeds, mesh, context.plain());

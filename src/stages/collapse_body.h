@@ -1,0 +1,234 @@
+// collapse_edges (see stages.h), written once over an executor.
+#pragma once
+
+#include "isoshell/stages.h"
+#include "stages/edge_lengths.h"
+#include "stages/post_mesh.h"
+#include "stages/post_shape.h"
+#include "stages/sheet_walk.h"
+
+namespace isoshell {
+namespace collapse {
+
+struct Candidate {
+  int64_t cost;
+  uint32_t half_edge, zero = 0;
+};
+struct CheapestFirst {
+  ISOSHELL_HD bool operator()(const Candidate& p, const Candidate& q) const {
+    return p.cost != q.cost ? p.cost < q.cost : p.half_edge < q.half_edge;
+  }
+};
+
+/// What it costs to make one vertex, in the middle, of the two ends of an edge.
+struct CollapseCost {
+  static constexpr int64_t kNever = INT64_MAX;
+  post::MeshView mesh;
+  View<const PointQ8> position;
+  View<const uint32_t> home;
+  EdgeLengthsView lengths;
+
+  /// The square of the edge, beside the lengths there, more where valences get less even. kNever when the mesh would be
+  /// no manifold any more or turn over.
+  ISOSHELL_HD int64_t operator()(uint32_t h) const {
+    const uint32_t a = mesh.from(h), b = mesh.to(h);
+    if (a > b) return kNever;
+    const uint32_t c = mesh.opposite(h), d = mesh.opposite(mesh.twin[h]);
+    const uint32_t va = mesh.valence[a], vb = mesh.valence[b], vc = mesh.valence[c], vd = mesh.valence[d];
+    if (va + vb < 7 || vc < 4 || vd < 4 || !share_two_neighbours(a, b)) return kNever;
+    const PointQ8 middle = middle_of(position[a], position[b]);
+    if (turns_over(a, b, middle) || turns_over(b, a, middle)) return kNever;
+    const int32_t unevenness = excess_sq(va + vb - 4) + excess_sq(vc - 1) + excess_sq(vd - 1) - excess_sq(va) -
+                               excess_sq(vb) - excess_sq(vc) - excess_sq(vd);
+    const int64_t length_sq = distance_sq_q16(position[a], position[b]);
+    return lengths.share_of_seeds(length_sq, {home[a], home[a], home[b]}) * (unevenness > -8 ? 8 + unevenness : 1);
+  }
+
+  ISOSHELL_HD static PointQ8 middle_of(PointQ8 p, PointQ8 q) {
+    return {(p.x + q.x) >> 1, (p.y + q.y) >> 1, (p.z + q.z) >> 1};
+  }
+
+ private:
+  ISOSHELL_HD static int32_t excess_sq(uint32_t valence) { return (int32_t(valence) - 6) * (int32_t(valence) - 6); }
+
+  /// A third one would be joined to the merged vertex by two edges.
+  ISOSHELL_HD bool share_two_neighbours(uint32_t a, uint32_t b) const {
+    int shared = 0;
+    post::for_each_triangle_around(mesh, a, [&](uint32_t v, uint32_t) { shared += mesh.are_neighbours(v, b); });
+    return shared == 2;
+  }
+
+  /// Whether a triangle around `v` that stays turns by more than 60 degrees when `v` moves.
+  ISOSHELL_HD bool turns_over(uint32_t v, uint32_t other, PointQ8 to) const {
+    bool any = false;
+    post::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t q) {
+      if (p == other || q == other) return;
+      const post::Vector before = post::normal_of(position[v], position[p], position[q]),
+                         after = post::normal_of(to, position[p], position[q]);
+      const double d = dot(before, after);
+      any = any || !(d > 0 && 4 * d * d > dot(before, before) * dot(after, after));
+    });
+    return any;
+  }
+};
+struct MayCollapse {
+  CollapseCost cost;
+  ISOSHELL_HD bool operator()(int64_t h) const { return cost(uint32_t(h)) != CollapseCost::kNever; }
+};
+struct MakeCandidate {
+  CollapseCost cost;
+  View<const uint32_t> half_edge;
+  View<Candidate> out;
+  ISOSHELL_HD void operator()(int64_t i) const { out[i] = {cost(half_edge[i]), half_edge[i]}; }
+};
+
+/// One step for all candidates: each choice depends on those before it, and few are made. Chosen edges have no
+/// neighbours in common, so that none changes what another one costs.
+struct ChooseEdges {
+  post::MeshView mesh;
+  View<const Candidate> candidates;
+  int64_t excess;
+  View<uint8_t> taken;
+  View<uint32_t> merged_into;
+  ISOSHELL_HD void operator()(int64_t) const {
+    int64_t left = excess;
+    for (int64_t i = 0; i < candidates.size && left > 0; ++i) {
+      const uint32_t a = mesh.from(candidates[i].half_edge), b = mesh.to(candidates[i].half_edge);
+      if (any_taken_around(a) || any_taken_around(b)) continue;
+      take_around(a);
+      take_around(b);
+      merged_into[b] = a;
+      --left;
+    }
+  }
+
+ private:
+  ISOSHELL_HD bool any_taken_around(uint32_t v) const {
+    bool any = false;
+    post::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { any = any || taken[p]; });
+    return any;
+  }
+  ISOSHELL_HD void take_around(uint32_t v) const {
+    post::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { taken[p] = 1; });
+  }
+};
+
+struct StartApart {
+  View<uint32_t> merged_into;
+  ISOSHELL_HD void operator()(int64_t v) const { merged_into[v] = uint32_t(v); }
+};
+struct StaysVertex {
+  View<const uint32_t> merged_into;
+  ISOSHELL_HD bool operator()(int64_t v) const { return merged_into[v] == v; }
+};
+struct StaysTriangle {
+  View<const TriangleIndices> triangles;
+  View<const uint32_t> merged_into;
+  ISOSHELL_HD bool operator()(int64_t i) const {
+    const TriangleIndices t = triangles[i];
+    const uint32_t a = merged_into[t.a], b = merged_into[t.b], c = merged_into[t.c];
+    return a != b && b != c && c != a;
+  }
+};
+
+/// Merged vertices go to the middle of their edge, then back onto the sheet.
+struct MoveToMiddle {
+  WalkOntoSheet walk;
+  View<const uint32_t> merged_into;
+  View<PointQ8> position;
+  View<Normal8> normal;
+  View<uint32_t> home;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const uint32_t into = merged_into[v];
+    if (into == v) return;
+    const PointQ8 middle = CollapseCost::middle_of(position[into], position[v]);
+    home[into] = walk.nearest_vertex(home[into], middle);
+    normal[into] = walk.normal[home[into]];
+    position[into] = walk.closest_around(home[into], middle);
+  }
+};
+
+struct NumberKept {
+  View<const uint32_t> kept;
+  View<uint32_t> new_id;
+  ISOSHELL_HD void operator()(int64_t i) const { new_id[kept[i]] = uint32_t(i); }
+};
+struct CopyKeptSeed {
+  View<const uint32_t> kept;
+  View<const PointQ8> from_position;
+  View<const Normal8> from_normal;
+  View<const uint32_t> from_home;
+  View<PointQ8> position, vertex;
+  View<Normal8> normal;
+  View<uint32_t> home;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    vertex[i] = position[i] = from_position[kept[i]];
+    normal[i] = from_normal[kept[i]];
+    home[i] = from_home[kept[i]];
+  }
+};
+struct CopyKeptTriangle {
+  View<const uint32_t> kept, merged_into, new_id;
+  View<const TriangleIndices> from;
+  View<TriangleIndices> to;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const TriangleIndices t = from[kept[i]];
+    to[i] = post::smallest_first({new_id[merged_into[t.a]], new_id[merged_into[t.b]], new_id[merged_into[t.c]]});
+  }
+};
+
+/// Numbers what stays anew.
+template <class Exec>
+void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh) {
+  const Buffer<uint32_t> vertices = exec.select(merged_into.size, StaysVertex{merged_into});
+  const Buffer<uint32_t> triangles =
+      exec.select(mesh.triangles.size(), StaysTriangle{mesh.triangles.view(), merged_into});
+  Buffer<uint32_t> new_id = exec.template make<uint32_t>(merged_into.size);
+  exec.for_each("number vertices", vertices.size(), NumberKept{vertices.view(), new_id.view()});
+  SeedSet left;
+  left.position = exec.template make<PointQ8>(vertices.size());
+  left.normal = exec.template make<Normal8>(vertices.size());
+  left.home = exec.template make<uint32_t>(vertices.size());
+  DualMesh out;
+  out.position = exec.template make<PointQ8>(vertices.size());
+  out.triangles = exec.template make<TriangleIndices>(triangles.size());
+  exec.for_each("copy kept seeds", vertices.size(),
+                CopyKeptSeed{vertices.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view(),
+                             left.position.view(), out.position.view(), left.normal.view(), left.home.view()});
+  exec.for_each(
+      "copy kept triangles", triangles.size(),
+      CopyKeptTriangle{triangles.view(), merged_into, new_id.view(), mesh.triangles.view(), out.triangles.view()});
+  exec.sort(out.triangles.view(), post::ByIndices{});
+  seeds = std::move(left);
+  mesh = std::move(out);
+}
+
+}  // namespace collapse
+
+template <class Exec>
+void collapse_edges_body(Exec& exec, const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh) {
+  using namespace collapse;
+  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
+                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  for (int64_t before = INT64_MAX; seeds.size() > target && seeds.size() < before;) {
+    before = seeds.size();
+    post::Connections connections(exec, mesh);
+    const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(sheet)};
+    const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
+    Buffer<Candidate> candidates = exec.template make<Candidate>(half_edges.size());
+    exec.for_each("make candidates", candidates.size(), MakeCandidate{cost, half_edges.view(), candidates.view()});
+    exec.sort(candidates.view(), CheapestFirst{});
+    Buffer<uint8_t> taken = exec.template make<uint8_t>(before);
+    Buffer<uint32_t> merged_into = exec.template make<uint32_t>(before);
+    exec.fill(taken.view(), uint8_t(0));
+    exec.for_each("start apart", before, StartApart{merged_into.view()});
+    exec.for_each("choose edges", 1,
+                  ChooseEdges{cost.mesh, candidates.view(), before - target, taken.view(), merged_into.view()});
+    exec.for_each(
+        "move to the middle", before,
+        MoveToMiddle{walk, merged_into.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()});
+    close_up(exec, merged_into.view(), seeds, mesh);
+  }
+}
+
+}  // namespace isoshell
