@@ -27,6 +27,7 @@ constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kReoptimisePasses = 20;
 constexpr int kMaxReoptimisations = 4;
 constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
+constexpr int64_t kFewestVerticesPerPart = 24;  // components and handles
 
 void book_time(RemeshReport& report, const char* stage, double ms) {
   for (StageTime& t : report.times)
@@ -64,9 +65,16 @@ void note_digest(const RemeshOptions& options, RemeshReport& report, Context& co
   timed(report, "digests", context, [&] { report.digests[name] = digest_text(digest(product)); });
 }
 
-/// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose.
+/// Whether the vertices asked for can show each component and each handle of the input; clouds of smoke have hundreds.
+bool shows_all_parts(const RemeshOptions& options, const InputTopology& input) {
+  const int64_t parts = input.components + std::max<int64_t>(0, input.genus);
+  return vertex_target(options, input.area_world) >= kFewestVerticesPerPart * parts;
+}
+
+/// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose, unless there are
+/// more than the vertices can show.
 int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
-  if (input.closed && input.oriented) return 0;
+  if (input.closed && input.oriented && shows_all_parts(options, input)) return 0;
   const double cell_world = input.area_world / double(std::max<int64_t>(64, vertex_target(options, input.area_world)));
   const double cell_vox = cell_world / (frame.voxel_size * frame.voxel_size);
   return int64_t(4 * cell_vox * 65536);
@@ -289,8 +297,8 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
   const int32_t first = free_grid && wants_lengths(options)
                             ? resolution_for_lengths(soup, input, options, usual, report, context)
                             : usual;
-  // Each component takes four vertices at least: where there are fewer, no grid brings the input's topology.
-  const bool reachable = can_compare(input) && vertex_target(options, input.area_world) >= 4 * input.components;
+  // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
+  const bool reachable = can_compare(input) && shows_all_parts(options, input);
   const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
 
   Prepared best;
@@ -316,7 +324,11 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
         "the surface is open and its gaps are too wide to close: the result follows both of its sides, about two "
         "voxels of " +
         std::to_string(best.surface.frame.voxel_size) + " apart; --close-gaps may close it");
-  if (report.topology_compared && !report.topology_agrees)
+  if (input.closed && !shows_all_parts(options, input))
+    report.warnings.push_back(std::to_string(input.components) + " components of genus " + std::to_string(input.genus) +
+                              " are more than so few vertices can show: those smaller than four cells were left out, " +
+                              std::to_string(report.sheet.components) + " stay; ask for more --vertices");
+  else if (report.topology_compared && !report.topology_agrees)
     report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +
                               std::to_string(report.sheet.genus) + ", the input " + std::to_string(input.components) +
                               " and " + std::to_string(input.genus) +

@@ -53,7 +53,7 @@ class Walk {
   /// A struct of the grid, wholly inside of it. `Bytes`: its size, where the type is only a name for it.
   template <class T, size_t Bytes = sizeof(T)>
   const T* node(int64_t at) const {
-    if (at < 0 || at % 8 != 0 || at > bytes_.size - int64_t(Bytes))
+    if (at < 0 || at % int64_t(alignof(T)) != 0 || at > bytes_.size - int64_t(Bytes))
       throw Fault{"a node at byte " + std::to_string(at) + " lies outside of the grid's " +
                   std::to_string(bytes_.size)};
     return reinterpret_cast<const T*>(bytes_.data + at);

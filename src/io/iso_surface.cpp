@@ -5,28 +5,26 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <sstream>
 
 #include "io/face_collector.h"
 #include "io/iso_cases.h"
+#include "io/tile_borders.h"
 #include "isoshell/error.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kEdgeEnd = 1.0 / 4096;     // vertices keep that far from the ends of their edges, so none coincide
-constexpr int kCentreLoop = 6;              // patches of as many corners get a vertex in their middle: they can meet
-                                            // a face of the cell twice, where a diagonal might be the neighbour's too
-constexpr int64_t kMaxTileSteps = 1 << 26;  // blocks along the sides of tiles; beyond it a file is absurd
+constexpr double kEdgeEnd = 1.0 / 4096;  // vertices keep that far from the ends of their edges, so none coincide
+constexpr int kCentreLoop = 6;           // patches of as many corners get a vertex in their middle: they can meet
+                                         // a face of the cell twice, where a diagonal might be the neighbour's too
 
-bool before(const Voxel& a, const Voxel& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
 Voxel plus(Voxel a, int32_t x, int32_t y, int32_t z) { return {a.x + x, a.y + y, a.z + z}; }
 
 void sort_unique(std::vector<Voxel>& voxels) {
-  tbb::parallel_sort(voxels.begin(), voxels.end(), before);
+  tbb::parallel_sort(voxels.begin(), voxels.end(), comes_before);
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
 }
 
@@ -53,8 +51,9 @@ struct CellBlock {
 
 class IsoSurface {
  public:
-  IsoSurface(const ScalarField& field, double iso)
+  IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes)
       : field_(field),
+        memory_limit_bytes_(memory_limit_bytes > 0 ? memory_limit_bytes : INT64_MAX),
         inside_{iso, field.background == iso ? field.grid_class == "level set" : field.background > iso} {}
 
   TriangleSoup extract() {
@@ -72,45 +71,34 @@ class IsoSurface {
   /// Blocks whose cells touch a voxel with a value of its own, or lie where tiles of the two sides meet.
   void list_cell_blocks() {
     std::vector<Voxel> held = field_.blocks();
+    for (const Voxel& block : held) check_reach(block);
+    for (const FieldTile& tile : field_.tiles()) check_reach(tile.origin);
     sort_unique(held);
-    add_tile_borders(held);
-    for (const Voxel& b : held)
-      if (std::max({std::abs(int64_t(b.x)), std::abs(int64_t(b.y)), std::abs(int64_t(b.z))}) > kFieldReach)
-        throw Error(ErrorCode::unreadable_input, "read",
-                    field_.title() + " has values at (" + std::to_string(b.x) + ", " + std::to_string(b.y) + ", " +
-                        std::to_string(b.z) + "), farther out than " + std::to_string(kFieldReach) + " voxels");
+    const int64_t most = memory_limit_bytes_ / int64_t(8 * sizeof(Voxel));
+    const std::vector<Voxel> beside = blocks_beside_tiles(field_, inside_, held, most);
+    held.insert(held.end(), beside.begin(), beside.end());
+    sort_unique(held);
     origin_.resize(8 * held.size());
     tbb::parallel_for(size_t(0), held.size(), [&](size_t i) {
       for (int n = 0; n < 8; ++n) origin_[8 * i + size_t(n)] = neighbour(held[i], n, -kFieldBlock);
     });
     sort_unique(origin_);
+    check_memory(int64_t(origin_.size() * (sizeof(Voxel) + sizeof(CellBlock))));
   }
 
-  void add_tile_borders(std::vector<Voxel>& held) const {
-    std::vector<Voxel> more;
-    int64_t steps = 0;
-    for (const FieldTile& tile : field_.tiles()) {
-      if (!inside_(tile.value)) continue;
-      const int32_t side = tile.size / kFieldBlock;
-      if ((steps += 6 * int64_t(side) * side) > kMaxTileSteps)
-        throw Error(ErrorCode::out_of_memory, "read",
-                    field_.title() + " is solid over more tiles than can be looked at; resample it coarser");
-      for (int32_t i = 0; i < side; ++i)
-        for (int32_t j = 0; j < side; ++j)
-          for (int face = 0; face < 6; ++face) {
-            const int32_t away = face & 1 ? side : -1;
-            const int32_t at[3][3] = {{away, i, j}, {i, away, j}, {i, j, away}};
-            const int32_t* s = at[face >> 1];
-            const Voxel next = plus(tile.origin, s[0] * kFieldBlock, s[1] * kFieldBlock, s[2] * kFieldBlock);
-            if (std::binary_search(held.begin(), held.end(), next, before)) continue;
-            const int one[3] = {1, 1, 1};
-            float value;
-            field_.copy(next, one, &value);
-            if (!inside_(value)) more.push_back(next);
-          }
-    }
-    held.insert(held.end(), more.begin(), more.end());
-    sort_unique(held);
+  void check_reach(Voxel v) const {
+    if (std::max({std::abs(int64_t(v.x)), std::abs(int64_t(v.y)), std::abs(int64_t(v.z))}) > kFieldReach)
+      throw Error(ErrorCode::unreadable_input, "read",
+                  field_.title() + " has values at (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+                      std::to_string(v.z) + "), farther out than " + std::to_string(kFieldReach) + " voxels");
+  }
+
+  void check_memory(int64_t bytes) const {
+    if (bytes > memory_limit_bytes_)
+      throw Error(ErrorCode::out_of_memory, "memory",
+                  field_.title() + ": extracting its surface takes " + std::to_string(bytes >> 20) +
+                      " MiB, more than the limit of " + std::to_string(memory_limit_bytes_ >> 20) +
+                      " MiB; resample it coarser or raise --max-memory");
   }
 
   static Voxel neighbour(Voxel block, int corner, int32_t step) {
@@ -184,6 +172,8 @@ class IsoSurface {
       throw Error(ErrorCode::out_of_memory, "read",
                   field_.title() + " has a surface of " + std::to_string(triangles) +
                       " triangles, more than 32-bit indices can name; resample it coarser");
+    check_memory(int64_t(origin_.size() * (sizeof(Voxel) + sizeof(CellBlock))) +
+                 vertices * int64_t(sizeof(WorldPoint)) + triangles * int64_t(sizeof(soup.triangles[0])));
     soup.vertices.resize(size_t(vertices));
     soup.triangles.resize(size_t(triangles));
     soup.faces_in_file = triangles;
@@ -204,7 +194,7 @@ class IsoSurface {
     uint32_t owners[8];
     for (int n = 0; n < 8; ++n) {
       const auto found =
-          std::lower_bound(origin_.begin(), origin_.end(), neighbour(origin_[b], n, kFieldBlock), before);
+          std::lower_bound(origin_.begin(), origin_.end(), neighbour(origin_[b], n, kFieldBlock), comes_before);
       owners[n] = uint32_t(found - origin_.begin());  // only looked at where an edge begins there: then it is listed
     }
     int64_t middle = cell_[b].first_vertex + cell_[b].cuts, triangle = cell_[b].first_triangle;
@@ -280,6 +270,7 @@ class IsoSurface {
   }
 
   const ScalarField& field_;
+  const int64_t memory_limit_bytes_;
   const Inside inside_;
   const bool mirrored_ = is_mirror(field_.to_world);
   std::vector<Voxel> origin_;    // of the blocks of cells, sorted
@@ -304,6 +295,8 @@ ValueRange value_range(const ScalarField& field) {
   return range;
 }
 
-TriangleSoup extract_iso_surface(const ScalarField& field, double iso) { return IsoSurface(field, iso).extract(); }
+TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes) {
+  return IsoSurface(field, iso, memory_limit_bytes).extract();
+}
 
 }  // namespace isoshell

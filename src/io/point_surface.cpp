@@ -181,7 +181,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   IndicatorField field(shape, std::move(value), level);
   field.file = "the points";
   field.name = "indicator";
-  TriangleSoup soup = extract_iso_surface(field, level);
+  TriangleSoup soup = extract_iso_surface(field, level, memory_limit_bytes);
   std::vector<uint8_t> supported = Pull(points, tree, shape.voxel_size).run(soup.vertices);
   drop_bubbles(soup, supported);
   if (soup.triangles.empty())

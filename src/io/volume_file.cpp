@@ -114,7 +114,7 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
   info.iso = iso_of(*field, options);
   info.voxel_size_world = voxel_size(field->to_world);
   info.blocks = int64_t(field->blocks().size());
-  return extract_iso_surface(*field, info.iso);
+  return extract_iso_surface(*field, info.iso, options.memory_limit_bytes);
 }
 
 }  // namespace isoshell

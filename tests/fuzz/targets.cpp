@@ -17,7 +17,7 @@
 namespace isoshell::fuzz {
 namespace {
 
-constexpr int64_t kMemory = 256 << 20;
+constexpr int64_t kMemory = 8 << 20;
 
 template <TriangleSoup (*read)(const MeshSource&)>
 void run_mesh(View<const char> bytes) {

@@ -147,6 +147,30 @@ TEST_CASE("iso surface: tiles without blocks around them are closed too", "[volu
   CHECK(measure_topology(soup, dirt, context).components == 2);
 }
 
+TEST_CASE("iso surface: tiles of different sizes that touch make one solid", "[volume][unit]") {
+  MadeField field(
+      128, 136, [](Voxel) { return 1.f; }, 0);
+  field.made_tiles = {{{0, 0, 0}, 128, 1.f}, {{128, 8, 0}, 8, 1.f}, {{128, 16, 0}, 8, 0.25f}, {{0, 128, 0}, 128, 1.f}};
+  const TriangleSoup soup = extract_iso_surface(field, 0.5);
+  CHECK(is_closed_2_manifold_by_edges(soup));
+  Context context;
+  DirtCounts dirt;
+  CHECK(measure_topology(soup, dirt, context).components == 2);  // the block is apart
+  CHECK(volume(soup) == Approx(128 * 128 * 256 + 2 * 8 * 8 * 8).epsilon(1e-3));
+}
+
+TEST_CASE("iso surface: a solid too large for the memory limit is refused before it is made", "[volume][unit]") {
+  MadeField field(
+      0, 8, [](Voxel) { return 1.f; }, 0);
+  field.made_tiles = {{{4096, 0, 0}, 4096, 1.f}, {{8192, 0, 0}, 4096, 1.f}};
+  try {
+    extract_iso_surface(field, 0.5, 16 << 20);
+    FAIL("not refused");
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::out_of_memory);
+  }
+}
+
 TEST_CASE("iso surface: what is no number is refused by its place, and what has no surface by its values",
           "[volume][unit]") {
   MadeField broken(
