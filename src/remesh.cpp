@@ -26,7 +26,7 @@ namespace {
 constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kReoptimisePasses = 20;
 constexpr int kMaxReoptimisations = 4;
-constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
+constexpr int64_t kFewRepairPerMille = 5;       // the mesh takes these without relaxing again
 constexpr int64_t kFewestVerticesPerPart = 24;  // components and handles
 
 void book_time(RemeshReport& report, const char* stage, double ms) {

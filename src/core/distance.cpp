@@ -28,9 +28,9 @@ void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
   for (const auto& t : mesh.triangles)
     if (const uint32_t largest = std::max({t[0], t[1], t[2]}); largest >= mesh.vertices.size())
-      throw Error(ErrorCode::usage, "distance",
-                  "a triangle names vertex " + std::to_string(largest) + "; there are " +
-                      std::to_string(mesh.vertices.size()));
+      throw Error(
+          ErrorCode::usage, "distance",
+          "a triangle names vertex " + std::to_string(largest) + "; there are " + std::to_string(mesh.vertices.size()));
 }
 
 /// One point in each of kDistanceSamples strata of equal area, along the triangles.
@@ -94,8 +94,8 @@ OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to) {
   const auto vertices = int64_t(from.vertices.size());
   const int64_t stride = (vertices + kDistanceVertices - 1) / kDistanceVertices;
   const Sums inside = sum_over(kDistanceSamples, grid, [&](int64_t i) { return samples[i]; });
-  const Sums corners = sum_over((vertices + stride - 1) / stride, grid,
-                                [&](int64_t i) { return from.vertices[size_t(i * stride)]; });
+  const Sums corners =
+      sum_over((vertices + stride - 1) / stride, grid, [&](int64_t i) { return from.vertices[size_t(i * stride)]; });
   const double count = double(kDistanceSamples);
   return {inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))};
 }

@@ -10,7 +10,7 @@
 namespace isoshell {
 namespace {
 
-constexpr int64_t kWays = 4096;      // tried for a component, at most twice as many
+constexpr int64_t kWays = 4096;       // tried for a component, at most twice as many
 constexpr int32_t kThickestWall = 3;  // voxels of the component's own sites that a way starts in
 
 Voxel axis_of(Normal8 n) {
@@ -39,7 +39,10 @@ struct Hollow {
 class HollowFinder {
  public:
   HollowFinder(const LatticeSurface& surface, const SiteSet& sites)
-      : surface_(surface), sites_(sites.voxels.view()), parent_(surface.points.size()), hollow_(size_t(parent_.size())) {
+      : surface_(surface),
+        sites_(sites.voxels.view()),
+        parent_(surface.points.size()),
+        hollow_(size_t(parent_.size())) {
     for (int64_t v = 0; v < parent_.size(); ++v) parent_[v] = uint32_t(v);
     for (const TriangleIndices t : surface.triangles) {
       join(parent_.view(), t.a, t.b);

@@ -45,8 +45,7 @@ TriangleGrid::TriangleGrid(const TriangleMesh& mesh) : mesh_(mesh) {
       hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
     }
   choose_cells(lo, hi);
-  for (size_t t = 0; t < mesh.triangles.size(); ++t)
-    for_each_cell_of(t, [&](Cell c) { ++first_[number_of(c)]; });
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) for_each_cell_of(t, [&](Cell c) { ++first_[number_of(c)]; });
   for (size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
   triangles_.resize(first_.back());
   for (size_t t = mesh.triangles.size(); t-- > 0;)

@@ -191,8 +191,7 @@ class Union {
 
   /// Pieces that nothing cuts lie on one side; of the others that are small those are kept that lie outside in part.
   void split(uint32_t f, const Piece& piece, int splits, const std::vector<uint32_t>& cutters, Parts& parts) {
-    const bool is_last =
-        cutters.empty() || splits == kMostSplits || piece.longest_edge() <= options_.finest_edge_world;
+    const bool is_last = cutters.empty() || splits == kMostSplits || piece.longest_edge() <= options_.finest_edge_world;
     if (!is_last) {
       const WorldPoint ab = piece.at(.5, .5, 0), bc = piece.at(0, .5, .5), ca = piece.at(.5, 0, .5);
       for (const Piece& part :

@@ -1,9 +1,8 @@
 // unite, and the rays that it counts windings with.
-#include "isoshell/unite.h"
-
 #include <cmath>
 
 #include "core/winding.h"
+#include "isoshell/unite.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 
@@ -61,8 +60,7 @@ TEST_CASE("winding: numbers are those of a torus and a box, at random points and
   for (int x = -1; x <= 4; ++x)  // rays along edges and diagonals of the box
     for (int y = -1; y <= 4; ++y)
       for (int z = -1; z <= 4; ++z)
-        if (const bool within = x > 0 && y > 0 && z > 0 && x < 4 && y < 4 && z < 4;
-            within || x < 0 || y < 0 || z < 0)
+        if (const bool within = x > 0 && y > 0 && z > 0 && x < 4 && y < 4 && z < 4; within || x < 0 || y < 0 || z < 0)
           CHECK(winding_at(box, {double(x), double(y), double(z)}) == int(within));
 }
 
