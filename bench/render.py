@@ -18,10 +18,11 @@ def read_mesh(path):
         lines = head.decode().split("\n")
         nv = next(int(l.split()[2]) for l in lines if l.startswith("element vertex"))
         nf = next(int(l.split()[2]) for l in lines if l.startswith("element face"))
-        kind = "<f8" if any("property double x" in l for l in lines) else "<f4"
-        floats = sum(l.startswith(("property float", "property double")) for l in lines)
-        v = np.frombuffer(body, kind, nv * floats).reshape(nv, floats)[:, :3].astype(float)
-        faces = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<i4", 3)]), nf, nv * floats * np.dtype(kind).itemsize)
+        types = {"float": "<f4", "double": "<f8", "uchar": "u1"}
+        row = np.dtype([(l.split()[2], types[l.split()[1]]) for l in lines if l.split()[:1] == ["property"] and "list" not in l])
+        table = np.frombuffer(body, row, nv)
+        v = np.stack([table["x"], table["y"], table["z"]], axis=1).astype(float)
+        faces = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<i4", 3)]), nf, nv * row.itemsize)
         return v, faces["i"].astype(int)
     text = data.decode().split("\n")
     if path.endswith(".off"):

@@ -310,6 +310,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
     LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
     surface.topology = input;
+    surface.first_cap = soup.first_cap;
     Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
     const int64_t gap = topology_gap(p);
     fruitless = gap < best_gap ? 0 : fruitless + 1;
@@ -334,6 +335,16 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
                               " and " + std::to_string(input.genus) +
                               "; a higher --resolution may tell near parts apart");
   return best;
+}
+
+/// A vertex lies in a gap when its home does.
+void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
+  const std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet);
+  if (gaps.empty()) return;
+  const OnHost<SeedSet> here(seeds);
+  mesh.gap.resize(mesh.vertices.size());
+  for (int64_t i = 0; i < here->size(); ++i) report.vertices += mesh.gap[size_t(i)] = gaps[here->home[i]];
+  report.area_world = gap_area_world(p.sheet, gaps);
 }
 
 }  // namespace
@@ -435,6 +446,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
                               "edges are long; ask for more --vertices");
   measure_edges(p.sheet, seeds, dual, report.sizing, context);
   TriangleMesh mesh = to_world(dual, p.surface.frame);
+  flag_gaps(p, seeds, mesh, report.gaps);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;
 }

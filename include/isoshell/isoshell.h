@@ -5,6 +5,7 @@
 #include "isoshell/digest.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
+#include "isoshell/gaps.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/sizing_vdb.h"

@@ -4,6 +4,7 @@
 #include "isoshell/buffer.h"
 #include "isoshell/lattice.h"
 #include "isoshell/surface_source.h"
+#include "isoshell/voxel_set.h"
 
 namespace isoshell {
 
@@ -35,6 +36,7 @@ struct LatticeSurface {
   Buffer<TriangleIndices> triangles;
   Buffer<uint32_t> source_face;  ///< smallest index of the soup's triangle that became this one
   InputTopology topology;
+  uint32_t first_cap = kNone;  ///< source faces from this one on close holes
 };
 
 }  // namespace isoshell

@@ -12,6 +12,8 @@ namespace isoshell {
 /// cracks, whose caps are small in terms of its area.
 constexpr double kLargestHole = .6;
 constexpr double kLargestCrack = .01;
+/// Boundaries nearer to each other than this part of the diagonal are one.
+constexpr double kWidestCrack = 1e-5;
 
 struct MendOptions {
   bool cap_loops = true;  ///< close holes with new faces
@@ -19,8 +21,9 @@ struct MendOptions {
 
 /// What was changed, by kind.
 struct MendReport {
-  int64_t repeated_faces = 0;  ///< the same corners as another face, whichever way round; dropped
-  int64_t fins = 0;            ///< small patches that hang on the surface by edges of three faces; dropped
+  int64_t joined_vertices = 0;  ///< of boundaries, moved by next to nothing onto others: cracks
+  int64_t repeated_faces = 0;   ///< the same corners as another face, whichever way round; dropped
+  int64_t fins = 0;             ///< small patches that hang on the surface by edges of three faces; dropped
   int64_t fin_faces = 0;
   int64_t islands = 0;  ///< small open patches apart from the rest; dropped
   int64_t island_faces = 0;
@@ -32,18 +35,22 @@ struct MendReport {
   double widest_cap_world =
       0;  ///< four areas over the length of the loop: the diameter of a round hole, twice a slit's width
 
-  bool changed_anything() const { return repeated_faces + fins + islands + turned_faces + capped_loops > 0; }
+  bool changed_anything() const {
+    return joined_vertices + repeated_faces + fins + islands + turned_faces + capped_loops > 0;
+  }
 };
 
-/// Result: the soup without repeated faces, fins and islands, its faces turned to agree with their neighbours over
-/// every edge of two faces, and holes capped by triangulations of least area. A patch is what edges of exactly two
-/// faces connect. A fin is a patch that ends in the open and on edges of more faces, none of which it leaves with one
-/// face, and that has less than a thousandth of the area. A hole is a loop of edges with one face whose box has a
-/// diagonal of at most kLargestHole of its component's, or whose cap has at most kLargestCrack of its area. An island
-/// is an open patch that shares no vertex with another and has less than a hundredth of the area. Fins, and islands,
-/// stay when all of them have more than a twentieth together: then they are the surface. Closed patches in which faces
-/// disagreed are turned outward. The set of positions and triangles does not depend on the order of the soup's. Cost:
-/// sorts of vertices, faces and edges; n^3 steps for a hole of n edges up to 128, n^2 beyond.
+/// Result: boundaries that lie on each other edge by edge, to within kWidestCrack and a quarter of the edges around,
+/// and in opposite directions, are one; then the soup without repeated faces, fins and islands, its faces turned to
+/// agree with their neighbours over every edge of two faces, and holes capped by triangulations of least area. A patch
+/// is what edges of exactly two faces connect. A fin is a patch that ends in the open and on edges of more faces, none
+/// of which it leaves with one face, and that has less than a thousandth of the area. A hole is a loop of edges with
+/// one face whose box has a diagonal of at most kLargestHole of its component's, or whose cap has at most kLargestCrack
+/// of its area. An island is an open patch that shares no vertex with another and has less than a hundredth of the
+/// area. Fins, and islands, stay when all of them have more than a twentieth together: then they are the surface.
+/// Closed patches in which faces disagreed are turned outward. The set of positions and triangles does not depend on
+/// the order of the soup's. Cost: sorts of vertices, faces and edges; n^3 steps for a hole of n edges up to 128, n^2
+/// beyond.
 TriangleSoup mend(const TriangleSoup& soup, const MendOptions& options, MendReport& report);
 
 }  // namespace isoshell

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/gaps.h"
 #include "isoshell/mend.h"
 #include "isoshell/sizing.h"
 #include "isoshell/stages.h"
@@ -64,6 +65,7 @@ struct RemeshReport {
   DualReport dual;
   PostReport post;  ///< of the final mesh, when post_done
   SizingReport sizing;
+  GapReport gaps;
   bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections
   int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was tried; see memory_estimate.h
   std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry

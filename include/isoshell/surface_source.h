@@ -26,7 +26,8 @@ struct DirtCounts {
 struct TriangleSoup {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
-  int64_t faces_in_file = 0;  ///< polygons and strips before they were split
+  int64_t faces_in_file = 0;         ///< polygons and strips before they were split
+  uint32_t first_cap = 0xffffffffu;  ///< triangles from this one on were added to close holes
   DirtCounts dirt;
 };
 

@@ -14,6 +14,7 @@ namespace isoshell {
 struct TriangleMesh {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<uint8_t> gap = {};  ///< per vertex 1 where the input has no surface; empty when it has everywhere
 };
 
 }  // namespace isoshell

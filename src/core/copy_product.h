@@ -21,7 +21,7 @@ VoxelSet copy_product(const VoxelSet& v, Copy copy) {
 }
 template <class Copy>
 LatticeSurface copy_product(const LatticeSurface& s, Copy copy) {
-  return {s.frame, copy(s.points), copy(s.triangles), copy(s.source_face), s.topology};
+  return {s.frame, copy(s.points), copy(s.triangles), copy(s.source_face), s.topology, s.first_cap};
 }
 template <class Copy>
 SiteSet copy_product(const SiteSet& s, Copy copy) {

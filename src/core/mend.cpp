@@ -78,6 +78,7 @@ TriangleSoup mended_soup(const TriangleSoup& soup, const MendMesh& mesh, const s
   mended.dirt = soup.dirt;
   for (uint32_t f : face_of)
     if (f != kNoFace) mended.triangles.push_back(mesh.face[f]);
+  if (!caps.empty()) mended.first_cap = uint32_t(mended.triangles.size());
   for (const Cap& cap : caps) mended.triangles.insert(mended.triangles.end(), cap.face.begin(), cap.face.end());
   return mended;
 }
@@ -87,6 +88,7 @@ TriangleSoup mended_soup(const TriangleSoup& soup, const MendMesh& mesh, const s
 TriangleSoup mend(const TriangleSoup& soup, const MendOptions& options, MendReport& report) {
   report = {};
   MendMesh mesh(soup);
+  report.joined_vertices = mesh.joined_vertices();
   report.repeated_faces = mesh.repeats();
   drop_fins(mesh, report);
   drop_islands(mesh, report);

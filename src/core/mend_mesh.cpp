@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
+
+#include "isoshell/mend.h"
+#include "voxel/union_find.h"
 
 namespace isoshell::mending {
 namespace {
@@ -13,6 +17,11 @@ bool before(const WorldPoint& p, const WorldPoint& q) {
   if (p.x != q.x) return p.x < q.x;
   if (p.y != q.y) return p.y < q.y;
   return p.z < q.z;
+}
+
+double distance(const WorldPoint& p, const WorldPoint& q) {
+  const double x = p.x - q.x, y = p.y - q.y, z = p.z - q.z;
+  return std::sqrt(x * x + y * y + z * z);
 }
 
 uint64_t key_of(uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
@@ -26,6 +35,9 @@ Corners smallest_first(Corners t) {
 
 MendMesh::MendMesh(const TriangleSoup& soup) {
   weld(soup);
+  list_faces(soup);
+  list_edges();
+  if (!join_cracks()) return;
   list_faces(soup);
   list_edges();
 }
@@ -67,8 +79,10 @@ void MendMesh::list_faces(const TriangleSoup& soup) {
     const Corners c = {welded_[t[0]], welded_[t[1]], welded_[t[2]]};
     if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) all.push_back({smallest_first(c), i});
   }
-  welded_ = {};
   tbb::parallel_sort(all.begin(), all.end());
+  face.clear();
+  source.clear();
+  repeats_ = 0;
   for (size_t i = 0; i < all.size(); ++i) {
     if (i > 0 && all[i].unsided() == all[i - 1].unsided()) {
       ++repeats_;
@@ -85,6 +99,8 @@ void MendMesh::list_edges() {
   std::vector<std::pair<uint64_t, uint32_t>> keyed(3 * face.size());
   for (uint32_t h = 0; h < keyed.size(); ++h) keyed[h] = {key_of(from(h), to(h)), h};
   tbb::parallel_sort(keyed.begin(), keyed.end());
+  edge_key_.clear();
+  edge_first_.clear();
   edge_of_.resize(keyed.size());
   half_.resize(keyed.size());
   for (uint32_t i = 0; i < keyed.size(); ++i) {
@@ -98,6 +114,74 @@ void MendMesh::list_edges() {
   edge_first_.push_back(uint32_t(keyed.size()));
   live_at_.resize(edge_key_.size());
   for (size_t e = 0; e < live_at_.size(); ++e) live_at_[e] = edge_first_[e + 1] - edge_first_[e];
+}
+
+/// Per vertex how far another one may be to be the same: 0 away from boundaries.
+std::vector<double> MendMesh::crack_widths() const {
+  std::vector<double> width(position.size(), 0);
+  double y[2] = {0, 0}, z[2] = {0, 0};
+  for (const WorldPoint& p : position) {
+    y[0] = std::min(y[0], p.y - position[0].y), y[1] = std::max(y[1], p.y - position[0].y);
+    z[0] = std::min(z[0], p.z - position[0].z), z[1] = std::max(z[1], p.z - position[0].z);
+  }
+  const double widest = position.empty()
+                            ? 0
+                            : kWidestCrack * std::sqrt(std::pow(position.back().x - position[0].x, 2) +
+                                                       std::pow(y[1] - y[0], 2) + std::pow(z[1] - z[0], 2));
+  for (uint32_t h = 0; h < edge_of_.size(); ++h) {
+    if (live_at_[edge_of_[h]] != 1) continue;
+    const WorldPoint &p = position[from(h)], &q = position[to(h)];
+    const double most = distance(p, q) / 4;
+    for (const uint32_t v : {from(h), to(h)}) width[v] = std::min(width[v] > 0 ? width[v] : widest, most);
+  }
+  return width;
+}
+
+/// Per vertex of a boundary the first one that lies within both their widths; per other vertex itself.
+std::vector<uint32_t> MendMesh::first_within_cracks() const {
+  const std::vector<double> width = crack_widths();
+  const double cell = width.empty() ? 0 : *std::max_element(width.begin(), width.end());
+  using Cell = std::array<int64_t, 3>;
+  const auto cell_of = [&](const WorldPoint& p) {
+    return Cell{int64_t(std::floor((p.x - position[0].x) / cell)), int64_t(std::floor((p.y - position[0].y) / cell)),
+                int64_t(std::floor((p.z - position[0].z) / cell))};
+  };
+  std::map<Cell, std::vector<uint32_t>> kept;
+  std::vector<uint32_t> first(position.size());
+  for (uint32_t v = 0; v < first.size(); ++v) {
+    first[v] = v;
+    if (!(width[v] > 0)) continue;
+    const Cell at = cell_of(position[v]);
+    for (int n = 0; n < 27; ++n) {
+      const auto near = kept.find({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1});
+      if (near == kept.end()) continue;
+      for (const uint32_t u : near->second)
+        if (u < first[v] && distance(position[u], position[v]) <= std::min(width[u], width[v])) first[v] = u;
+    }
+    if (first[v] == v) kept[at].push_back(v);
+  }
+  return first;
+}
+
+/// Joins boundaries that lie on each other edge by edge, two that run in opposite directions, as a whole or not at all.
+bool MendMesh::join_cracks() {
+  const std::vector<uint32_t> first = first_within_cracks();
+  std::map<uint64_t, std::vector<uint32_t>> at;
+  Buffer<uint32_t> parent(int64_t(position.size()));
+  for (uint32_t v = 0; v < position.size(); ++v) parent[v] = v;
+  for (uint32_t h = 0; h < edge_of_.size(); ++h) {
+    if (live_at_[edge_of_[h]] != 1) continue;
+    at[key_of(first[from(h)], first[to(h)])].push_back(h);
+    for (const uint32_t v : {to(h), first[from(h)], first[to(h)]}) join(parent.view(), from(h), v);
+  }
+  std::vector<uint8_t> stays(position.size(), 0);  // per root
+  for (const auto& [key, halves] : at)
+    if (halves.size() != 2 || first[from(halves[0])] != first[to(halves[1])])
+      stays[find_root(parent.view(), from(halves[0]))] = 1;
+  const auto becomes = [&](uint32_t v) { return stays[find_root(parent.view(), v)] ? v : first[v]; };
+  for (uint32_t v = 0; v < position.size(); ++v) joined_ += becomes(v) != v;
+  for (uint32_t& v : welded_) v = becomes(v);
+  return joined_ > 0;
 }
 
 void MendMesh::drop(uint32_t f) {

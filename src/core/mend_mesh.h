@@ -27,6 +27,8 @@ class MendMesh {
   bool is_turned(uint32_t f) const { return turned_[f]; }
   /// Faces with three distinct corners that repeat another one, whichever way round.
   int64_t repeats() const { return repeats_; }
+  /// Vertices on boundaries that became others next to them.
+  int64_t joined_vertices() const { return joined_; }
 
   uint32_t from(uint32_t half_edge) const { return face[half_edge / 3][half_edge % 3]; }
   uint32_t to(uint32_t half_edge) const { return from(next_half_edge(half_edge)); }
@@ -43,7 +45,7 @@ class MendMesh {
   WorldPoint doubled_area(uint32_t f) const;
   double area(uint32_t f) const;
 
-  std::vector<WorldPoint> position;  ///< distinct, in the order of x, y, z
+  std::vector<WorldPoint> position;  ///< distinct, in the order of x, y, z; some may belong to no face
   std::vector<Corners> face;         ///< three distinct corners, once each; begins sorted, smallest corner first
   std::vector<uint32_t> source;      ///< the soup's triangle, the smallest of its repeats
 
@@ -51,6 +53,9 @@ class MendMesh {
   void weld(const TriangleSoup& soup);
   void list_faces(const TriangleSoup& soup);
   void list_edges();
+  bool join_cracks();
+  std::vector<double> crack_widths() const;
+  std::vector<uint32_t> first_within_cracks() const;
   int64_t find_edge(uint32_t a, uint32_t b) const;
 
   std::vector<uint32_t> welded_;  ///< per vertex of the soup
@@ -59,7 +64,7 @@ class MendMesh {
   std::vector<uint32_t> edge_first_;  ///< where the edge's half-edges start in half_
   std::vector<uint32_t> half_;        ///< half-edges in the order of their edges; turning a face keeps its edges' lists
   std::vector<uint32_t> edge_of_, live_at_;
-  int64_t repeats_ = 0;
+  int64_t repeats_ = 0, joined_ = 0;
 };
 
 }  // namespace isoshell::mending

@@ -105,7 +105,7 @@ class Union {
       if (!is_cut)
         keep(f, own.turned);
       else
-        for (const Piece& part : parts.kept) keep_piece(part, own.turned);
+        for (const Piece& part : parts.kept) keep_piece(f, part, own.turned);
     }
     count_components();
   }
@@ -251,17 +251,20 @@ TriangleSoup unite(const TriangleSoup& soup, const UniteOptions& options, UniteR
   united.vertices = mesh.position;
   united.faces_in_file = soup.faces_in_file;
   united.dirt = soup.dirt;
-  const auto add = [&](Corners corner, bool turned) {
+  std::vector<Corners> caps;
+  const auto add = [&](uint32_t f, Corners corner, bool turned) {
     if (turned) std::swap(corner[1], corner[2]);
-    united.triangles.push_back(corner);
+    (mesh.source[f] < soup.first_cap ? united.triangles : caps).push_back(corner);
   };
   Union(mesh, options, report)
-      .for_each_kept([&](uint32_t f, bool turned) { add(mesh.face[f], turned); },
-                     [&](const Piece& piece, bool turned) {
+      .for_each_kept([&](uint32_t f, bool turned) { add(f, mesh.face[f], turned); },
+                     [&](uint32_t f, const Piece& piece, bool turned) {
                        const uint32_t first = uint32_t(united.vertices.size());
                        united.vertices.insert(united.vertices.end(), {piece.a, piece.b, piece.c});
-                       add({first, first + 1, first + 2}, turned);
+                       add(f, {first, first + 1, first + 2}, turned);
                      });
+  if (!caps.empty()) united.first_cap = uint32_t(united.triangles.size());
+  united.triangles.insert(united.triangles.end(), caps.begin(), caps.end());
   return report.changed_anything() && !united.triangles.empty() ? united : soup;
 }
 

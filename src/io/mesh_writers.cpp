@@ -79,11 +79,12 @@ void put_text(RowBuffer& out, const std::array<uint32_t, 3>& t, uint32_t first_i
 
 template <class Real>
 void write_ply_vertices(OutputFile& file, const TriangleMesh& mesh) {
-  write_rows(file, int64_t(mesh.vertices.size()), 3 * sizeof(Real), [&](int64_t i, RowBuffer& out) {
+  write_rows(file, int64_t(mesh.vertices.size()), 3 * sizeof(Real) + 1, [&](int64_t i, RowBuffer& out) {
     const WorldPoint& p = mesh.vertices[size_t(i)];
     out.put_binary(Real(p.x));
     out.put_binary(Real(p.y));
     out.put_binary(Real(p.z));
+    if (!mesh.gap.empty()) out.put(char(mesh.gap[size_t(i)]));
   });
 }
 
@@ -132,7 +133,8 @@ void write_ply(OutputFile& file, const TriangleMesh& mesh) {
   const bool as_double = needs_double(mesh);
   const std::string type = as_double ? "double" : "float";
   file.write("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
-             "\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type + " z\nelement face " +
+             "\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type + " z\n" +
+             (mesh.gap.empty() ? "" : "property uchar gap\n") + "element face " +
              std::to_string(mesh.triangles.size()) + "\nproperty list uchar uint vertex_indices\nend_header\n");
   if (as_double)
     write_ply_vertices<double>(file, mesh);

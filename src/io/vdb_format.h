@@ -12,6 +12,7 @@ constexpr char kKeyInput[] = "isoshell:input_sha256";
 constexpr char kKeyFrame[] = "isoshell:frame";
 constexpr char kKeyBand[] = "isoshell:band_vox";
 constexpr char kKeyClosing[] = "isoshell:closing_vox";
+constexpr char kKeyFirstCap[] = "isoshell:first_cap";
 constexpr char kKeyTopology[] = "isoshell:input_topology";
 constexpr char kKeyDigest[] = "isoshell:digest_";  // then the product's name
 constexpr char kKeyCreator[] = "creator";

@@ -240,6 +240,7 @@ void read_surface(const StageReader& file, LatticeSurface& surface) {
   });
   file.require(surface.source_face.size() == surface.triangles.size(), kSurfaceSource, surface.source_face.size(),
                "has another count than the triangles");
+  if (file.has(kKeyFirstCap)) surface.first_cap = uint32_t(file.number(kKeyFirstCap, 0, INT32_MAX));
   file.check_digest("surface", surface);
 }
 

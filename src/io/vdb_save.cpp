@@ -16,6 +16,7 @@
 #include "io/vdb_stream.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
+#include "isoshell/gaps.h"
 #include "isoshell/io/vdb_file.h"
 #include "voxel/random.h"
 
@@ -152,15 +153,36 @@ struct ClosestOffset {
 
 void add_surface(StageWriter& file, const LatticeSurface& surface) {
   file.text(kKeyTopology, topology_text(surface.topology));
+  if (surface.first_cap != kNone) file.text(kKeyFirstCap, std::to_string(surface.first_cap));
   file.digest_of("surface", surface);
   file.table<VdbVec3iGrid>(kSurfacePoints, surface.points.view());
   file.table<VdbVec3iGrid>(kSurfaceTriangles, surface.triangles.view());
   file.table<VdbIntGrid>(kSurfaceSource, surface.source_face.view());
 }
 
-/// `sites` is scratch that lives as long as the writer.
-void add_shell(StageWriter& file, const LatticeFrame& frame, const SiteSamples& samples, const Shell& shell,
-               Buffer<Voxel>& sites, bool view_grids) {
+/// What grids are made of that no product holds; lives as long as the writer.
+struct ShellScratch {
+  Buffer<Voxel> sites;
+  std::vector<uint8_t> gap, risk;  ///< per site
+};
+
+std::vector<uint8_t> sites_on_caps(const LatticeSurface& surface, const SiteSamples& samples) {
+  std::vector<uint8_t> gap(size_t(samples.sample.size()));
+  for (size_t site = 0; site < gap.size(); ++site)
+    gap[site] = surface.source_face[samples.sample[int64_t(site)].triangle] >= surface.first_cap;
+  return gap;
+}
+
+void add_flags(StageWriter& file, const char* name, const Shell& shell, const std::vector<uint8_t>& flag) {
+  if (std::find(flag.begin(), flag.end(), 1) == flag.end()) return;
+  file.voxels<VdbFloatGrid>(
+      name, shell.voxels, 0.f,
+      [&flag, site = shell.closest_site.view()](int64_t, int, int64_t i) { return float(flag[site[i]]); });
+}
+
+void add_shell(StageWriter& file, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
+               ShellScratch& scratch, bool view_grids) {
+  const LatticeFrame& frame = surface.frame;
   const SiteSet site_set = sites_of_shell(shell, frame);
   check_fits(samples.sample.size(), site_set.voxels.voxel_count(), "SiteSamples::sample");
   file.text(kKeyBand, std::to_string(shell.band_vox));
@@ -168,14 +190,18 @@ void add_shell(StageWriter& file, const LatticeFrame& frame, const SiteSamples& 
   file.digest_of("shell", shell);
   const VoxelSet& set = shell.voxels;
   if (view_grids) {
-    sites = list_voxels(site_set.voxels);
+    scratch.sites = list_voxels(site_set.voxels);
     const auto distance = [distance_sq = shell.distance_sq_vox.view(), size = frame.voxel_size](
                               int64_t, int, int64_t i) { return float(std::sqrt(double(distance_sq[i])) * size); };
     file.voxels<VdbFloatGrid>("shell_distance", set, float(shell.band_vox * frame.voxel_size), distance);
     file.voxels<VdbVec3fGrid>("closest_offset", set, openvdb::Vec3f(0),
-                              ClosestOffset{set.view(), sites.view(), samples.sample.view(), shell.closest_site.view(),
-                                            frame.voxel_size / kOneVoxelQ8},
+                              ClosestOffset{set.view(), scratch.sites.view(), samples.sample.view(),
+                                            shell.closest_site.view(), frame.voxel_size / kOneVoxelQ8},
                               openvdb::GRID_UNKNOWN, openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    scratch.gap = sites_on_caps(surface, samples);
+    add_flags(file, "gap", shell, scratch.gap);
+    scratch.risk = find_risks(surface, samples);
+    add_flags(file, "risk", shell, scratch.risk);
   }
   file.voxels<VdbIntGrid>(kClosestSite, set, -1,
                           [site = shell.closest_site.view()](int64_t, int, int64_t i) { return int32_t(site[i]); });
@@ -202,8 +228,8 @@ void write_shell(const std::string& path, const LatticeSurface& surface, const S
   check_shell(shell);
   initialize_openvdb();
   StageWriter file(surface.frame, "shell", options);
-  Buffer<Voxel> sites;
-  add_shell(file, surface.frame, samples, shell, sites, options.view_grids);
+  ShellScratch scratch;
+  add_shell(file, surface, samples, shell, scratch, options.view_grids);
   add_surface(file, surface);
   file.write(path, options.overwrite);
 }
@@ -221,8 +247,8 @@ void write_voronoi(const std::string& path, const LatticeSurface& surface, const
   file.digest_of("labels", labels);
   file.voxels<VdbIntGrid>(kSeedId, shell.voxels, -1,
                           [seed = labels.voxel_seed.view()](int64_t, int, int64_t i) { return int32_t(seed[i]); });
-  Buffer<Voxel> sites;
-  add_shell(file, surface.frame, samples, shell, sites, options.view_grids);
+  ShellScratch scratch;
+  add_shell(file, surface, samples, shell, scratch, options.view_grids);
   add_surface(file, surface);
   Buffer<PointQ8> normals(seeds.size());
   for (int64_t i = 0; i < seeds.size(); ++i) normals[i] = {seeds.normal[i].x, seeds.normal[i].y, seeds.normal[i].z};

@@ -243,6 +243,9 @@ TEST_CASE("run: a damaged surface is mended, said so, and becomes one closed bod
   CHECK(j["input"]["closed"] == false);
   CHECK(j["input"]["mended"]["capped_loops"] > 0);
   CHECK(j["input"]["mended"]["open_loops"] == 0);
+  CHECK(j["gaps"]["loops"] == j["input"]["mended"]["capped_loops"]);
+  CHECK(j["gaps"]["area"] > 0);
+  CHECK(contains(folder.content("out.ply"), "property uchar gap"));
   CHECK(j["grid"]["closing"] == 0);
   CHECK(j["topology"]["agrees_with_input"] == true);
   CHECK(folder.run("broken.off out2.ply --close-gaps 0 --stats - -q" + kQuick).out.find("\"capped_loops\": 0") !=

@@ -1,4 +1,5 @@
 // prepare on surfaces that are open, or several that pass through each other.
+#include <algorithm>
 #include <cmath>
 
 #include "isoshell/isoshell.h"
@@ -125,6 +126,51 @@ TEST_CASE("prepare: bars through each other that make a frame have its handle", 
   CHECK(run.report.unite.joined_components == 1);
   CHECK(run.report.sheet.components == 1);
   CHECK(run.report.sheet.genus == 1);
+}
+
+TEST_CASE("prepare: vertices over a hole are flagged, whether faces closed it or voxels", "[prepare]") {
+  TriangleSoup holed = shapes::sphere({0, 0, 0}, 1, 64);
+  const double hole_height = .9;
+  holed.triangles.erase(
+      std::remove_if(holed.triangles.begin(), holed.triangles.end(),
+                     [&](const std::array<uint32_t, 3>& t) { return holed.vertices[t[0]].z > hole_height; }),
+      holed.triangles.end());
+  RemeshOptions options;
+  options.vertices = 600;
+  TestContext context;
+  const RemeshResult capped = remesh(holed, options, context);
+  REQUIRE(capped.mesh.gap.size() == 600);
+  int64_t flagged = 0;
+  for (size_t i = 0; i < 600; ++i) {
+    const WorldPoint& p = capped.mesh.vertices[i];
+    flagged += capped.mesh.gap[i];
+    if (capped.mesh.gap[i]) CHECK(p.z > hole_height - .1);
+    if (std::hypot(p.x, p.y) < .3 && p.z > 0) CHECK(capped.mesh.gap[i] == 1);
+  }
+  CHECK(flagged > 5);
+  CHECK(capped.report.gaps.vertices == flagged);
+  CHECK(capped.report.gaps.area_world == Approx(capped.report.mend.cap_area_world).epsilon(.2));
+  CHECK(remesh(shapes::sphere({0, 0, 0}, 1, 32), options, context).mesh.gap.empty());
+
+  options.resolution = 100;
+  options.closing_world = 12 * 2. / 99;
+  const RemeshResult bridged = remesh(slotted_ball(8 * 2. / 99), options, context);
+  CHECK(bridged.report.mend.capped_loops == 0);
+  CHECK(bridged.report.gaps.vertices > 0);
+  for (size_t i = 0; i < bridged.mesh.gap.size(); ++i)
+    if (bridged.mesh.gap[i]) CHECK(std::abs(bridged.mesh.vertices[i].z) < .15);
+}
+
+TEST_CASE("prepare: sites that hold both sides of a thin plate are risky, those of a cube are not", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 200;
+  options.resolution = 40;
+  const Run plate = prepare_with(shapes::box({0, 0, 0}, {1, 1, .003}), options);
+  const std::vector<uint8_t> risks = find_risks(plate.prepared.surface, plate.prepared.samples);
+  CHECK(std::count(risks.begin(), risks.end(), 1) > int64_t(risks.size()) / 3);
+  const Run cube = prepare_with(shapes::box({0, 0, 0}, {1, 1, 1}), options);
+  const std::vector<uint8_t> none = find_risks(cube.prepared.surface, cube.prepared.samples);
+  CHECK(std::count(none.begin(), none.end(), 1) == 0);
 }
 
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {

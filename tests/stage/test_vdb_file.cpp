@@ -151,9 +151,11 @@ TEST_CASE("vdb: a shell file gives back the surface, the sites and the shell", "
 
 TEST_CASE("vdb: a stage file gives back frame, topology and options to the last bit", "[vdb][stage]") {
   const TemporaryFile file("meta.vdb");
-  const Products p = make_products(50, 20, 4);
+  Products p = make_products(50, 20, 4);
+  p.surface.first_cap = 77;
   save_shell(file.path, p.surface, p.samples, p.shell, some_options());
   const StageFile back = read_stage(file.path);
+  CHECK(back.surface.first_cap == 77);
   const LatticeFrame &is = back.surface.frame, &was = p.surface.frame;
   CHECK(is.origin.x == was.origin.x);
   CHECK(is.origin.y == was.origin.y);

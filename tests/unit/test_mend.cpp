@@ -99,6 +99,28 @@ TEST_CASE("mend: holes of any number of edges are capped, the caps look outward"
   CHECK(large.report.widest_cap_world < .6);
 }
 
+TEST_CASE("mend: caps are the last faces, and known as such", "[mend]") {
+  const Mended m = mended(without(ball(), [](WorldPoint p) { return p.z > .9; }));
+  CHECK(m.report.cap_faces > 0);
+  CHECK(m.soup.first_cap == m.soup.triangles.size() - size_t(m.report.cap_faces));
+  CHECK(mended(ball()).soup.first_cap > m.soup.triangles.size());
+}
+
+TEST_CASE("mend: boundaries a hair apart are one, boundaries farther apart are capped", "[mend]") {
+  const auto halves = [](double apart) {
+    TriangleSoup upper = without(ball(), [](WorldPoint p) { return p.z < .1; });
+    for (WorldPoint& p : upper.vertices) p.z += apart;
+    return shapes::together(upper, without(ball(), [](WorldPoint p) { return p.z > .1; }));
+  };
+  const Mended joined = mended(halves(1e-6));
+  check_solid(joined, six_volume(ball()));
+  CHECK(joined.report.joined_vertices == 64);
+  CHECK(joined.report.capped_loops == 0);
+  const Mended apart = mended(halves(1e-3));
+  CHECK(apart.report.joined_vertices == 0);
+  CHECK(apart.report.capped_loops + apart.report.open_loops == 2);
+}
+
 TEST_CASE("mend: a bowl's rim and a sheet's are no holes", "[mend]") {
   for (const TriangleSoup& soup :
        {without(ball(), [](WorldPoint p) { return p.z > 0; }), shapes::two_sheets(3, 1), shapes::two_sheets(3, .01)}) {

@@ -50,6 +50,7 @@ class Run {
     }
     Prepared prepared = step("prepare", [&] { return prepare_from(source); });
     warn_of_dirt();
+    if (!a_.stats.empty()) step("risks", [&] { count_risks(prepared); });
     save_shell_if_asked(prepared);
     if (a_.stop_after == StopAfter::shell) return finish();
     SeedSet seeds = step("relax", [&] { return relaxed_seeds(source, prepared); });
@@ -288,6 +289,7 @@ class Run {
     note(d.nonmanifold_edges, "edges that more than two faces share");
     note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
     const MendReport& m = record_.report.mend;
+    note(m.joined_vertices, "vertices of boundaries joined over cracks");
     note(m.fins, "fins dropped: small patches that hang on edges of more than two faces");
     note(m.islands, "islands dropped: small open patches apart from the rest");
     note(m.turned_faces, "faces turned to agree with their neighbours");
@@ -301,6 +303,11 @@ class Run {
     note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
     note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
     note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
+  }
+
+  void count_risks(const Prepared& p) {
+    record_.risky_sites = 0;
+    for (const uint8_t risky : find_risks(p.surface, p.samples)) record_.risky_sites += risky;
   }
 
   void print_estimate(const Source& source) {

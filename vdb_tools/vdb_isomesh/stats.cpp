@@ -27,11 +27,17 @@ Json dirt_json(const DirtCounts& d) {
 }
 
 Json mend_json(const MendReport& m) {
-  return {{"repeated_faces", m.repeated_faces}, {"fins", m.fins},
-          {"fin_faces", m.fin_faces},           {"islands", m.islands},
-          {"island_faces", m.island_faces},     {"turned_faces", m.turned_faces},
-          {"capped_loops", m.capped_loops},     {"cap_faces", m.cap_faces},
-          {"cap_area", m.cap_area_world},       {"widest_cap", m.widest_cap_world},
+  return {{"joined_vertices", m.joined_vertices},
+          {"repeated_faces", m.repeated_faces},
+          {"fins", m.fins},
+          {"fin_faces", m.fin_faces},
+          {"islands", m.islands},
+          {"island_faces", m.island_faces},
+          {"turned_faces", m.turned_faces},
+          {"capped_loops", m.capped_loops},
+          {"cap_faces", m.cap_faces},
+          {"cap_area", m.cap_area_world},
+          {"widest_cap", m.widest_cap_world},
           {"open_loops", m.open_loops}};
 }
 
@@ -76,6 +82,17 @@ Json counts_json(const RunRecord& r) {
           {"seeds", r.report.seeds},
           {"vertices", known(r.vertices)},
           {"triangles", known(r.triangles)}};
+}
+
+/// Holes that faces closed, and how much of the result lies where the input has no surface.
+Json gaps_json(const RunRecord& r) {
+  const MendReport& m = r.report.mend;
+  return {{"loops", m.capped_loops},
+          {"widest", m.widest_cap_world},
+          {"bridged_sheet_vertices", r.report.sheet.bridged_vertices},
+          {"area", r.report.gaps.area_world},
+          {"vertices", r.report.gaps.vertices},
+          {"risky_sites", known(r.risky_sites)}};
 }
 
 Json topology_json(const RunRecord& r) {
@@ -173,6 +190,7 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   j["output"] = {{"path", a.output}, {"format", a.output_format}};
   j["grid"] = grid_json(r.report);
   j["counts"] = counts_json(r);
+  j["gaps"] = gaps_json(r);
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
   j["sizing"] = sizing_json(r.report.sizing);

@@ -29,6 +29,7 @@ struct RunRecord {
   std::optional<MeshQuality> quality;
   std::optional<MeshDistance> distance;  ///< of the result and the input, as mended
   int64_t vertices = -1, triangles = -1;
+  int64_t risky_sites = -1;      ///< with two walls in one voxel
   std::vector<StageTime> times;  ///< of the command; the library's are in the report
   double total_ms = 0;
   DeviceInfo device;
