@@ -138,6 +138,7 @@ class Preparation {
     p.sheet = timed(report_, "sheet", context_, [&] {
       return build_outline(p.sites, p.surface.frame, {p.closing_vox, smallest, kNoGenus, false}, context_);
     });
+    p.sheet.topology.bridged_vertices = 0;  // an outline has no sources
   }
 
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
@@ -337,8 +338,9 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
   return best;
 }
 
-/// A vertex lies in a gap when its home does.
+/// A vertex lies in a gap when its home does. A sheet that follows both sides lies off the surface everywhere.
 void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
+  if (p.follows_both_sides) return;
   const std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet);
   if (gaps.empty()) return;
   const OnHost<SeedSet> here(seeds);

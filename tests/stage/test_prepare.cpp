@@ -185,6 +185,8 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   CHECK(run.report.sheet.components == 1);
   TestContext context;
   const RemeshResult result = remesh(bowl, options, context);
+  CHECK(result.mesh.gap.empty());
+  CHECK(result.report.sheet.bridged_vertices == 0);
   CHECK(result.report.post.self_intersections == 0);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   const Run ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
