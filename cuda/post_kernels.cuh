@@ -159,7 +159,7 @@ inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles,
 inline void search_places(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk,
                           const SearchOptions& options, View<PointQ8> position, View<uint32_t> home,
                           View<uint32_t> poor) {
-  const SearchVertex search{mesh, walk, {}, options.edge, false, options.onto_sheet, position, home};
+  const SearchVertex search{mesh, walk, {}, options.edge, options.hold, false, options.onto_sheet, position, home};
   device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
                                 options.least_merit, options.rounds);
   exec.check("search places");

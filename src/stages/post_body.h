@@ -21,8 +21,10 @@ constexpr int kUndoRounds = 3;
 constexpr int kSamplesPerTriangle = 9;  ///< fewer miss tips, more change little
 constexpr double kStiffness = 0.5;      ///< less is nearer to the surface, more has better triangles
 constexpr double kFitMomentum = 0.7;
-// No step may make a triangle below its bound worse; bounds rise to where the search begins.
-constexpr double kPoorMerit = 0.8, kFairMerit = 0.9, kFineMerit = 0.97, kGoodMerit = 1;
+constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
+// No step may make a triangle below its bound worse; bounds rise to where the search begins. What flips make poor is
+// smoothed after them.
+constexpr double kFlippedMerit = 0.7, kPoorMerit = 0.8, kFairMerit = 0.9, kGoodMerit = 1;
 // Weight of the size to aim at against a triangle's own. Shapes are best with none.
 constexpr double kEvenness = 0, kSizedEvenness = 0.1, kUniformEvenness = 4;
 
@@ -103,9 +105,10 @@ class Improvement {
 
   /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where that
   /// one harms, vertices return to where they last were on the sheet.
-  void smooth(int steps, double momentum, double least_merit) {
+  void smooth(int steps, double momentum, double hold, double least_merit) {
     SmoothOptions options = smooth_options(0.2);
     options.momentum = momentum;
+    options.hold = hold;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
     exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     for (int left = steps - 1; left >= 0; --left) {
@@ -171,8 +174,8 @@ class Improvement {
   }
 
   /// Looks for better places for the corners of triangles below kGoodMerit.
-  void search(int rounds, bool onto_sheet) {
-    search_places(exec_, view(), walk_, {rounds, kGoodMerit, size_, onto_sheet}, mesh_.position.view(),
+  void search(int rounds, double hold, bool onto_sheet) {
+    search_places(exec_, view(), walk_, {rounds, kGoodMerit, size_, hold, onto_sheet}, mesh_.position.view(),
                   seeds_.home.view(), harmed_.view());
   }
 
@@ -267,25 +270,27 @@ class Improvement {
 template <class Exec>
 PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds,
                              DualMesh& mesh) {
-  post::Improvement<Exec> work(exec, sheet, options, seeds, mesh);
+  using namespace post;
+  Improvement<Exec> work(exec, sheet, options, seeds, mesh);
   PostReport report;
-  report.flips = work.flip(options.flip_rounds, post::kPoorMerit);
-  if (options.smoothing_steps > 0) {
-    work.smooth(options.smoothing_steps, 0.95, post::kPoorMerit);
-    report.flips += work.flip(options.flip_rounds, post::kPoorMerit);
-    work.smooth(options.smoothing_steps / 8, 0.5, post::kFairMerit);
+  const bool flips_only = options.smoothing_steps == 0;
+  report.flips = work.flip(options.flip_rounds, kPoorMerit);
+  if (!flips_only) {
+    work.smooth(options.smoothing_steps, 0.95, kHold, kPoorMerit);
+    report.flips += work.flip(options.flip_rounds, kFlippedMerit);
+    work.smooth(options.smoothing_steps / 8, 0.5, 0, kFairMerit);
     const bool balanced = options.fit == Fit::balanced;
     if (balanced) {
       work.attach_samples();
-      work.fit(6, 1, post::kPoorMerit);
-      work.fit(5, 0.6, post::kFairMerit);
-      work.search(options.search_rounds, false);
-      work.fit(3, 0.6, post::kFineMerit);
+      work.fit(6, 1, kPoorMerit);
+      work.fit(5, 0.6, kFairMerit);
     }
-    work.search(3 * options.search_rounds, !balanced);
+    work.search(3 * options.search_rounds, kHold, !balanced);
+    work.search(options.search_rounds, 0, !balanced);
+    if (balanced) work.fit(3, 0.6, kGoodMerit);
     work.undo_intersections(report);
     if (report.undone_vertices > 0) {  // what went back may be poor
-      work.search(3 * options.search_rounds, true);
+      work.search(3 * options.search_rounds, 0, true);
       work.undo_intersections(report);
     }
   }

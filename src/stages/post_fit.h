@@ -3,6 +3,7 @@
 // least squares of all samples.
 #pragma once
 
+#include "stages/post_planes.h"
 #include "stages/post_samples.h"
 #include "stages/post_smooth.h"
 #include "stages/sheet_walk.h"
@@ -14,22 +15,6 @@ struct FitOptions {
   double stiffness = 0;  ///< weight of the shape, in samples where edges are shortest: an area has as many everywhere
   double damping = 1;    ///< part of the move that is made
   double rms_q8 = 0;     ///< of the samples' residuals
-};
-
-/// A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
-struct Symmetric {
-  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-  ISOSHELL_HD void add(double w, Vector d) {
-    xx += w * d.x * d.x, xy += w * d.x * d.y, xz += w * d.x * d.z;
-    yy += w * d.y * d.y, yz += w * d.y * d.z, zz += w * d.z * d.z;
-  }
-  /// x of A x = b for a positive definite A.
-  ISOSHELL_HD Vector solve(Vector b) const {
-    const double a = yy * zz - yz * yz, c = xz * yz - xy * zz, d = xy * yz - xz * yy, e = xx * zz - xz * xz,
-                 f = xy * xz - xx * yz, g = xx * yy - xy * xy;
-    return 1 / (xx * a + xy * c + xz * d) *
-           Vector{a * b.x + c * b.y + d * b.z, c * b.x + e * b.y + f * b.z, d * b.x + f * b.y + g * b.z};
-  }
 };
 
 /// The place between what the samples and the shapes of the triangles ask for.

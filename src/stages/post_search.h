@@ -3,6 +3,7 @@
 #pragma once
 
 #include "stages/post_mesh.h"
+#include "stages/post_planes.h"
 #include "stages/post_shape.h"
 #include "stages/post_size.h"
 #include "stages/sheet_walk.h"
@@ -45,7 +46,8 @@ struct SearchVertex {
   WalkOntoSheet walk;
   View<const uint32_t> chosen;
   EdgeSize edge;
-  bool odd;  ///< turns the compass by half a point
+  double hold;  ///< how much places are held to the planes of the triangles
+  bool odd;     ///< turns the compass by half a point
   bool onto_sheet;
   View<PointQ8> position;
   View<uint32_t> home;
@@ -82,13 +84,18 @@ struct SearchVertex {
   ISOSHELL_HD Compass compass_at(uint32_t v) const {
     const PointQ8 p = position[v];
     Vector normal = {0, 0, 0};
-    for_each_triangle_around(mesh, v,
-                             [&](uint32_t b, uint32_t c) { normal = normal + normal_of(p, position[b], position[c]); });
+    PlanesAround planes;
+    for_each_triangle_around(mesh, v, [&](uint32_t b, uint32_t c) {
+      const Vector n = normal_of(p, position[b], position[c]);
+      normal = normal + n;
+      planes.add(n);
+    });
     normal = unit(normal);
     const double ax = normal.x * normal.x, ay = normal.y * normal.y, az = normal.z * normal.z;
     const Vector axis = ax <= ay && ax <= az ? Vector{1, 0, 0} : (ay <= az ? Vector{0, 1, 0} : Vector{0, 0, 1});
     const Vector east = unit(cross(axis, normal));
-    return {east, cross(normal, east), 0.16 * edge.at(home[v])};
+    const Symmetric holding = planes.holding(hold);
+    return {holding.solve(east), holding.solve(cross(normal, east)), 0.16 * edge.at(home[v])};
   }
   /// The nearer ones come later.
   ISOSHELL_HD PointQ8 place_at(PointQ8 p, const Compass& compass, int number) const {
@@ -132,6 +139,7 @@ struct SearchOptions {
   int rounds;
   double least_merit;  ///< vertices of triangles below it are poor
   EdgeSize edge;
+  double hold;  ///< see SearchVertex
   bool onto_sheet;
 };
 
@@ -144,9 +152,9 @@ void search_places(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, 
     exec.for_each("mark poor", mesh.triangles.size, MarkPoor{mesh.triangles, position, options.least_merit, poor});
     const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
     if (chosen.empty()) return;
-    exec.for_each(
-        "search", chosen.size(),
-        SearchVertex{mesh, walk, chosen.view(), options.edge, r % 2 == 1, options.onto_sheet, position, home});
+    exec.for_each("search", chosen.size(),
+                  SearchVertex{mesh, walk, chosen.view(), options.edge, options.hold, r % 2 == 1, options.onto_sheet,
+                               position, home});
   }
 }
 

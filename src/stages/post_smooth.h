@@ -3,6 +3,7 @@
 #pragma once
 
 #include "stages/post_mesh.h"
+#include "stages/post_planes.h"
 #include "stages/post_shape.h"
 #include "stages/post_size.h"
 #include "stages/sheet_walk.h"
@@ -16,6 +17,7 @@ struct SmoothOptions {
   double evenness = 0.1;  ///< weight of the mean size against the triangle's own, 0 to 1
   EdgeSize size;
   double most_edges = 0;   ///< longest move, in edges
+  double hold = 0;         ///< how much moves are held to the planes of the triangles
   bool onto_sheet = true;  ///< back onto the sheet, or only along the mesh
 };
 
@@ -44,12 +46,16 @@ struct SmoothVertex {
     const PointQ8 p = from[v];
     const double edge_q8 = options.size.at(home[v]), radius_q8 = edge_q8 * kRadiusOfEdge;
     Vector sum = {0, 0, 0}, normal = {0, 0, 0};
+    PlanesAround planes;
     for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
       sum = sum + to_equilateral_corner(p, from[b], from[c], options.evenness, radius_q8);
-      normal = normal + normal_of(p, from[b], from[c]);
+      const Vector n = normal_of(p, from[b], from[c]);
+      normal = normal + n;
+      planes.add(n);
     });
     normal = unit(normal);
-    const Vector wanted = 1 / double(mesh.valence[v]) * sum + options.momentum * from_to(previous[v], p);
+    const Vector asked = 1 / double(mesh.valence[v]) * sum + options.momentum * from_to(previous[v], p);
+    const Vector wanted = planes.holding(options.hold).solve(asked);
     const Vector move = at_most(wanted - dot(wanted, normal) * normal, options.most_edges * edge_q8);
     const PointQ8 target = moved_by(p, move);
     to[v] = target;
