@@ -173,6 +173,14 @@ class Improvement {
     }
   }
 
+  /// Most of the memory, which the test for intersections needs.
+  void drop_samples() {
+    sample_ = {};
+    rest_sq_ = {};
+    triangle_pull_ = {};
+    vertex_pull_ = {};
+  }
+
   /// Looks for better places for the corners of triangles below kGoodMerit.
   void search(int rounds, double hold, bool onto_sheet) {
     search_places(exec_, view(), walk_, {rounds, kGoodMerit, size_, hold, onto_sheet}, mesh_.position.view(),
@@ -271,6 +279,7 @@ template <class Exec>
 PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds,
                              DualMesh& mesh) {
   using namespace post;
+  if (mesh.triangles.empty()) return {};
   Improvement<Exec> work(exec, sheet, options, seeds, mesh);
   PostReport report;
   const bool flips_only = options.smoothing_steps == 0;
@@ -287,7 +296,10 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     }
     work.search(3 * options.search_rounds, kHold, !balanced);
     work.search(options.search_rounds, 0, !balanced);
-    if (balanced) work.fit(3, 0.6, kGoodMerit);
+    if (balanced) {
+      work.fit(3, 0.6, kGoodMerit);
+      work.drop_samples();
+    }
     work.undo_intersections(report);
     if (report.undone_vertices > 0) {  // what went back may be poor
       work.search(3 * options.search_rounds, 0, true);

@@ -1,5 +1,5 @@
-// The planes of the triangles around a vertex. Smoothing and searching move vertices along the mesh, and would wear down
-// what is finer than an edge, tips, ridges and rims: a move that leaves those planes is shortened.
+// The planes of the triangles around a vertex. Smoothing and searching move vertices along the mesh, and would wear
+// down what is finer than an edge, tips, ridges and rims: a move that leaves those planes is shortened.
 #pragma once
 
 #include "stages/post_shape.h"

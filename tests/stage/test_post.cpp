@@ -5,7 +5,7 @@
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/stages.h"
-#include "stages/post_shape.h"
+#include "stages/post_planes.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/solid_soup.h"
@@ -220,6 +220,36 @@ TEST_CASE("post: points that the sheet misses draw the mesh towards them", "[pos
   sheet.missed = {};
   sheet.missed_vertex = {};
   CHECK(seen < 0.8 * distance_of_pit());
+}
+
+TEST_CASE("post: a mesh without triangles stays one", "[post][stage]") {
+  TestContext context;
+  Start s = std::move(starts().front());
+  SeedSet none;
+  DualMesh empty;
+  const PostReport report = improve_mesh(s.sheet, {}, none, empty, context);
+  CHECK(report.flips == 0);
+  CHECK(report.self_intersections == 0);
+  CHECK(empty.triangles.empty());
+}
+
+TEST_CASE("post: moves are held to the planes of triangles, at creases and tips, not on smooth places", "[post]") {
+  const auto held = [](std::vector<post::Vector> normals, post::Vector move) {
+    post::PlanesAround planes;
+    for (const post::Vector& n : normals) planes.add(n);
+    return planes.holding(64).solve(move);
+  };
+  const post::Vector flat = held({{0, 0, 2}, {0, 0, 3}}, {4, 5, 0});
+  CHECK(flat.x == Approx(4));
+  CHECK(flat.y == Approx(5));
+  const post::Vector smooth = held({{0.1, 0, 1}, {-0.1, 0, 1}, {0, 0.1, 1}, {0, -0.1, 1}}, {1, 0, 0});
+  CHECK(smooth.x > 0.99);
+  const post::Vector crease = held({{1, 0, 1}, {-1, 0, 1}}, {1, 1, 0});
+  CHECK(crease.x < 0.1);
+  CHECK(crease.y == Approx(1));
+  const post::Vector tip = held({{1, 0, 0.5}, {-1, 0, 0.5}, {0, 1, 0.5}, {0, -1, 0.5}}, {1, 1, 0});
+  CHECK(tip.x < 0.15);
+  CHECK(tip.y < 0.15);
 }
 
 TEST_CASE("post: areas are more even when that is asked for", "[post][stage]") {
