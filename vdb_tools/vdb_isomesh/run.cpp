@@ -135,6 +135,8 @@ class Run {
     return source;
   }
 
+  std::string input_name() const { return a_.input == "-" ? "standard input" : a_.input; }
+
   void read_point_cloud(TriangleSoup& soup) {
     const PointFormat format = a_.input_format == "ply"   ? PointFormat::ply
                                : a_.input_format == "xyz" ? PointFormat::xyz
@@ -144,13 +146,13 @@ class Run {
     note_soup(soup);
     record_.input.vertices = points.points;
     std::ostringstream text;
-    text << a_.input << ": " << counted(points.points, "point") << ", spacing " << points.spacing_world
+    text << input_name() << ": " << counted(points.points, "point") << ", spacing " << points.spacing_world
          << ", surface from voxels of " << points.voxel_size_world << ", normals "
          << (points.normals_given ? "given" : "estimated") << (points.normals_turned ? " and turned" : "");
     console_.detail(text.str());
     if (points.open_part < kNotableOpenPart) return;
     text.str("");
-    text << a_.input << ": " << std::lround(100 * points.open_part)
+    text << input_name() << ": " << std::lround(100 * points.open_part)
          << " % of the surface has no points near it and was closed smoothly";
     warn(text.str());
   }
@@ -178,7 +180,7 @@ class Run {
     bounding_box(soup, lo, hi);
     facts.box_min = lo;
     facts.box_max = hi;
-    console_.detail(a_.input + ": " + counted(facts.vertices, "vertex", "vertices") + ", " +
+    console_.detail(input_name() + ": " + counted(facts.vertices, "vertex", "vertices") + ", " +
                     counted(facts.faces, "face"));
   }
 
