@@ -104,7 +104,16 @@ TEST_CASE("lengths: the curvature of a ball is one over its radius, of a flat wa
   CHECK(std::abs(mean * radius_vox - 1) < 0.15);
   const Sheet plate = plate_sheet();
   const Buffer<uint32_t> flat = measure_curvature(plate, 16, context).to_host();
-  std::vector<uint32_t> sorted(flat.begin(), flat.end());
-  std::nth_element(sorted.begin(), sorted.begin() + int64_t(sorted.size() / 2), sorted.end());
-  CHECK(sorted[sorted.size() / 2] < 200);  // 3 / 1000 a voxel
+  PointQ8 lo = plate.position[0], hi = lo;
+  for (const PointQ8& p : plate.position)
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), 0}, hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), 0};
+  constexpr int32_t kClear = 32 * kOneVoxelQ8;  // of the rim, whose turn is spread
+  int64_t inner = 0;
+  for (int64_t v = 0; v < plate.vertex_count(); ++v) {
+    const PointQ8 p = plate.position[v];
+    if (std::min({p.x - lo.x, hi.x - p.x, p.y - lo.y, hi.y - p.y}) < kClear) continue;
+    ++inner;
+    CHECK(flat[v] < 200);  // 3 / 1000 a voxel
+  }
+  CHECK(inner > 500);
 }

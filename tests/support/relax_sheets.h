@@ -25,7 +25,7 @@ inline Sheet with_lengths(Sheet sheet, uint32_t ratio) {
   return sheet;
 }
 
-/// Two walls two voxels apart with opposite normals.
+/// A plate two voxels thick: two walls with opposite normals, and a rim that makes it a closed manifold as sheets are.
 inline Sheet plate_sheet() {
   TriangleSoup s;
   const int n = 41;
@@ -40,6 +40,17 @@ inline Sheet plate_sheet() {
       s.triangles.push_back({at(0, i, j), at(0, i + 1, j + 1), at(0, i + 1, j)});
       s.triangles.push_back({at(0, i, j), at(0, i, j + 1), at(0, i + 1, j + 1)});
     }
+  const int e = n - 1;
+  const auto add_rim = [&](int i, int j, int to_i, int to_j) {
+    s.triangles.push_back({at(1, to_i, to_j), at(1, i, j), at(0, i, j)});
+    s.triangles.push_back({at(1, to_i, to_j), at(0, i, j), at(0, to_i, to_j)});
+  };
+  for (int i = 0; i < e; ++i) {
+    add_rim(i, 0, i + 1, 0);
+    add_rim(e, i, e, i + 1);
+    add_rim(e - i, e, e - i - 1, e);
+    add_rim(0, e - i, 0, e - i - 1);
+  }
   return sheet_of_soup(s, 120, 2, 0);
 }
 
