@@ -131,8 +131,9 @@ class Preparation {
   /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. The boundary of
   /// the sites keeps them apart.
   void keep_sides_apart(Prepared& p) {
+    if (p.surface.topology.closed) return;
     const double voxel = p.sheet.frame.voxel_size, area_vox = sheet_area_world(p.sheet) / (voxel * voxel);
-    p.follows_both_sides = !p.surface.topology.closed && double(six_volume_vox(p.sheet, context_)) / 3 < area_vox;
+    p.follows_both_sides = double(six_volume_vox(p.sheet, context_)) / 3 < area_vox;
     if (!p.follows_both_sides) return;
     const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
     p.sheet = timed(report_, "sheet", context_, [&] {
