@@ -129,7 +129,7 @@ struct LabelLeafInLanes {
     int64_t limit;
     int count = middle[leaf] != kNone ? gather_as_far_as(middle[leaf], bounds, limit, seeds)
                                       : plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
-    if (count > kMaxCandidates) return plain.label_directly(bounds, limit, begin, end);
+    if (count > kMaxCandidates) return plain.label_directly(limit, begin, end);
     const LeafSeeds leaf_seeds(bounds, plain.spacing.penalty_q16);
     if (!leaf_seeds.fit(seeds, count)) return plain.label_from(leaf, seeds, count);
     count = leaf_seeds.drop_beaten(seeds, count);

@@ -121,7 +121,7 @@ struct LabelLeaf {
     LabelSeed candidates[kCapacity];
     int64_t limit;
     const int count = gather(bounds, spacing.h_at(uint32_t(begin)), candidates, limit);
-    if (count > kCapacity) return label_directly(bounds, limit, begin, end);
+    if (count > kCapacity) return label_directly(limit, begin, end);
     label_from(leaf, candidates, count);
   }
 
@@ -171,16 +171,24 @@ struct LabelLeaf {
     }
   }
 
-  /// The exact path without lists: every seed in reach against every vertex.
-  ISOSHELL_HD void label_directly(const Bounds& bounds, int64_t limit, int64_t begin, int64_t end) const {
+  /// The exact path without lists, where too many seeds can win somewhere in the leaf: each vertex looks for its own,
+  /// farther until the best one is nearer than it looked. No label costs more than the limit.
+  ISOSHELL_HD void label_directly(int64_t limit, int64_t begin, int64_t end) const {
     for (int64_t v = begin; v < end; ++v) {
-      int64_t best = INT64_MAX;
-      uint32_t id = kNone;
-      for_each_within(bounds, limit, [&](const LabelSeed& s) {
-        const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
-        if (c < best || (c == best && s.id < id)) best = c, id = s.id;
-      });
-      out[v] = id;
+      Bounds at = empty_bounds();
+      include(at, position[v], normal[v]);
+      for (int64_t reach = spacing.h_at(uint32_t(v)) + 1;; reach *= 2) {
+        const int64_t within = reach * reach < limit ? reach * reach : limit;
+        int64_t best = INT64_MAX;
+        uint32_t id = kNone;
+        for_each_within(at, within, [&](const LabelSeed& s) {
+          const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
+          if (c < best || (c == best && s.id < id)) best = c, id = s.id;
+        });
+        if (best > within && within < limit) continue;
+        out[v] = id;
+        break;
+      }
     }
   }
 
