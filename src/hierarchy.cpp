@@ -137,7 +137,7 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     seeds = place_seeds(prepared.sheet, options, context);
   } else {
     finest.max_passes = std::min(finest.max_passes, kFinestPasses);
-    finest.tolerance_ppb = std::max(finest.tolerance_ppb, kFinestTolerancePpb);
+    if (finest.tolerance_ppb == RelaxOptions{}.tolerance_ppb) finest.tolerance_ppb = kFinestTolerancePpb;
   }
   report = relax_on_sheet(prepared.sheet, seeds, finest, context);
   return seeds;

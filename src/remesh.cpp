@@ -327,9 +327,10 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
         "the surface is open and its gaps are too wide to close: the result follows both of its sides, about two "
         "voxels of " +
         std::to_string(best.surface.frame.voxel_size) + " apart; --close-gaps may close it");
-  if (input.closed && !shows_all_parts(options, input))
-    report.warnings.push_back(std::to_string(input.components) + " components of genus " + std::to_string(input.genus) +
-                              " are more than so few vertices can show: those smaller than four cells were left out, " +
+  if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
+    report.warnings.push_back(std::to_string(input.components) +
+                              " components and their handles are more than so few vertices can show: those smaller "
+                              "than four cells were left out, " +
                               std::to_string(report.sheet.components) + " stay; ask for more --vertices");
   else if (report.topology_compared && !report.topology_agrees)
     report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +

@@ -32,6 +32,7 @@ bool share_a_corner(TriangleIndices s, TriangleIndices t) {
 }  // namespace
 
 std::vector<uint8_t> find_gaps(const LatticeSurface& of, const Sheet& on) {
+  if (on.source_triangle.size() == 0) return {};  // an outline
   if (of.first_cap == kNone && on.topology.bridged_vertices == 0) return {};
   const OnHost<LatticeSurface> surface(of);
   const OnHost<Sheet> sheet(on);

@@ -1,5 +1,7 @@
 #include "core/joined_components.h"
 
+#include <algorithm>
+
 #include "voxel/intersect.h"
 #include "voxel/union_find.h"
 
@@ -22,13 +24,15 @@ int64_t count_joined_components(const LatticeSurface& surface, const SiteSamples
     join(sets, t.a, t.c);
   }
   const auto set_of = [&](uint32_t triangle) { return find_root(sets, surface.triangles[triangle].a); };
-  for (int64_t site = 0; site + 1 < samples.first.size(); ++site)
-    for (int64_t i = samples.first[site]; i < samples.first[site + 1]; ++i)
-      for (int64_t j = i + 1; j < samples.first[site + 1]; ++j) {
-        const uint32_t s = samples.triangles[i], t = samples.triangles[j];
-        if (set_of(s) != set_of(t) && triangles_intersect(corners_of(surface, s), corners_of(surface, t)))
-          join(sets, surface.triangles[s].a, surface.triangles[t].a);
-      }
+  for (int64_t site = 0; site + 1 < samples.first.size(); ++site) {
+    const uint32_t* const begin = samples.triangles.begin() + samples.first[site];
+    const uint32_t* const end = samples.triangles.begin() + samples.first[site + 1];
+    if (std::all_of(begin, end, [&](uint32_t t) { return set_of(t) == set_of(*begin); })) continue;
+    for (const uint32_t* s = begin; s < end; ++s)
+      for (const uint32_t* t = s + 1; t < end; ++t)
+        if (set_of(*s) != set_of(*t) && triangles_intersect(corners_of(surface, *s), corners_of(surface, *t)))
+          join(sets, surface.triangles[*s].a, surface.triangles[*t].a);
+  }
   int64_t count = 0;
   for (int64_t v = 0; v < parent.size(); ++v) count += find_root(sets, uint32_t(v)) == uint32_t(v);
   return count;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "isoshell/mend.h"
@@ -119,15 +120,13 @@ void MendMesh::list_edges() {
 /// Per vertex how far another one may be to be the same: 0 away from boundaries.
 std::vector<double> MendMesh::crack_widths() const {
   std::vector<double> width(position.size(), 0);
-  double y[2] = {0, 0}, z[2] = {0, 0};
+  if (position.empty()) return width;
+  WorldPoint lo = position[0], hi = lo;
   for (const WorldPoint& p : position) {
-    y[0] = std::min(y[0], p.y - position[0].y), y[1] = std::max(y[1], p.y - position[0].y);
-    z[0] = std::min(z[0], p.z - position[0].z), z[1] = std::max(z[1], p.z - position[0].z);
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
   }
-  const double widest = position.empty()
-                            ? 0
-                            : kWidestCrack * std::sqrt(std::pow(position.back().x - position[0].x, 2) +
-                                                       std::pow(y[1] - y[0], 2) + std::pow(z[1] - z[0], 2));
+  const double widest = kWidestCrack * distance(lo, hi);
   for (uint32_t h = 0; h < edge_of_.size(); ++h) {
     if (live_at_[edge_of_[h]] != 1) continue;
     const WorldPoint &p = position[from(h)], &q = position[to(h)];
@@ -140,25 +139,31 @@ std::vector<double> MendMesh::crack_widths() const {
 /// Per vertex of a boundary the first one that lies within both their widths; per other vertex itself.
 std::vector<uint32_t> MendMesh::first_within_cracks() const {
   const std::vector<double> width = crack_widths();
-  const double cell = width.empty() ? 0 : *std::max_element(width.begin(), width.end());
-  using Cell = std::array<int64_t, 3>;
-  const auto cell_of = [&](const WorldPoint& p) {
-    return Cell{int64_t(std::floor((p.x - position[0].x) / cell)), int64_t(std::floor((p.y - position[0].y) / cell)),
-                int64_t(std::floor((p.z - position[0].z) / cell))};
+  // Cells as wide as the widths of the vertices in them, up to the next power of two: a grid for each.
+  using Cell = std::array<int64_t, 4>;
+  const auto cell_at = [&](const WorldPoint& p, int level) {
+    const auto along = [&](double at) { return int64_t(std::clamp(std::floor(std::ldexp(at, -level)), -4e18, 4e18)); };
+    return Cell{level, along(p.x - position[0].x), along(p.y - position[0].y), along(p.z - position[0].z)};
   };
+  std::set<int> levels;
   std::map<Cell, std::vector<uint32_t>> kept;
   std::vector<uint32_t> first(position.size());
   for (uint32_t v = 0; v < first.size(); ++v) {
     first[v] = v;
     if (!(width[v] > 0)) continue;
-    const Cell at = cell_of(position[v]);
-    for (int n = 0; n < 27; ++n) {
-      const auto near = kept.find({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1});
-      if (near == kept.end()) continue;
-      for (const uint32_t u : near->second)
-        if (u < first[v] && distance(position[u], position[v]) <= std::min(width[u], width[v])) first[v] = u;
+    for (const int level : levels) {
+      const Cell at = cell_at(position[v], level);
+      for (int n = 0; n < 27; ++n) {
+        const auto near = kept.find({level, at[1] + n / 9 - 1, at[2] + n / 3 % 3 - 1, at[3] + n % 3 - 1});
+        if (near == kept.end()) continue;
+        for (const uint32_t u : near->second)
+          if (u < first[v] && distance(position[u], position[v]) <= std::min(width[u], width[v])) first[v] = u;
+      }
     }
-    if (first[v] == v) kept[at].push_back(v);
+    if (first[v] != v) continue;
+    const int level = std::ilogb(width[v]) + 1;
+    levels.insert(level);
+    kept[cell_at(position[v], level)].push_back(v);
   }
   return first;
 }

@@ -22,7 +22,7 @@ struct Component {
   uint32_t largest_face = 0;  ///< the first of the largest
   double largest_area = -1, six_volume = 0;
   bool turned = false, inner = false;  ///< inner: lies in another component
-  int64_t faces = 0, kept = 0;
+  int64_t kept = 0;
 
   bool looks_inward() const { return (six_volume < 0) != turned; }
   bool is_within_box_of(const Component& o) const {
@@ -133,7 +133,6 @@ class Union {
   }
 
   void add(Component& c, uint32_t f) {
-    ++c.faces;
     const WorldPoint &p = mesh_.position[mesh_.face[f][0]], &q = mesh_.position[mesh_.face[f][1]],
                      &r = mesh_.position[mesh_.face[f][2]], &start = mesh_.position[0];
     for (const WorldPoint* v : {&p, &q, &r}) {

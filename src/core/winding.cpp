@@ -6,7 +6,8 @@
 namespace isoshell {
 namespace {
 
-constexpr int64_t kMostCells = 1024;  // an axis
+constexpr int64_t kMostCells = 1024;    // an axis
+constexpr int64_t kListedPerFace = 32;  // more, and columns are too thin for faces that lie across many
 
 /// On which side of the line through two points of the plane (y, z) the third lies, as if it were moved by a little in
 /// y and by much less in z. Both orders of the two give opposite answers.
@@ -31,11 +32,16 @@ RayColumns::RayColumns(const std::vector<WorldPoint>& points, const std::vector<
         least_[axis] = std::min(least_[axis], at);
         most[axis] = std::max(most[axis], at);
       }
-  const int64_t cells = std::clamp(int64_t(std::sqrt(double(faces.size()))), int64_t(1), kMostCells);
-  for (int axis = 0; axis < 2; ++axis) {
-    const double length = most[axis] - least_[axis];
-    cells_[axis] = length > 0 ? cells : 1;
-    cell_[axis] = length > 0 ? length / double(cells) : 1;
+  int64_t cells = std::clamp(int64_t(std::sqrt(double(faces.size()))), int64_t(1), kMostCells);
+  for (;; cells = (cells + 1) / 2) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const double length = most[axis] - least_[axis];
+      cells_[axis] = length > 0 ? cells : 1;
+      cell_[axis] = length > 0 ? length / double(cells) : 1;
+    }
+    int64_t listed = 0;
+    for (const auto& f : faces) listed += columns_of(f).count();
+    if (cells == 1 || listed <= kListedPerFace * int64_t(faces.size())) break;
   }
   first_.assign(size_t(cells_[0] * cells_[1]) + 1, 0);
   for (const auto& f : faces) for_each_column(f, [&](int64_t column) { ++first_[size_t(column) + 1]; });
@@ -50,13 +56,17 @@ int64_t RayColumns::column_of(double at, int axis) const {
   return std::clamp(int64_t((at - least_[axis]) / cell_[axis]), int64_t(0), cells_[axis] - 1);
 }
 
+RayColumns::Columns RayColumns::columns_of(const std::array<uint32_t, 3>& face) const {
+  const WorldPoint &a = points_[face[0]], &b = points_[face[1]], &c = points_[face[2]];
+  return {column_of(std::min({a.y, b.y, c.y}), 0), column_of(std::max({a.y, b.y, c.y}), 0),
+          column_of(std::min({a.z, b.z, c.z}), 1), column_of(std::max({a.z, b.z, c.z}), 1)};
+}
+
 template <class Each>
 void RayColumns::for_each_column(const std::array<uint32_t, 3>& face, Each each) const {
-  const WorldPoint &a = points_[face[0]], &b = points_[face[1]], &c = points_[face[2]];
-  const int64_t y0 = column_of(std::min({a.y, b.y, c.y}), 0), y1 = column_of(std::max({a.y, b.y, c.y}), 0);
-  const int64_t z0 = column_of(std::min({a.z, b.z, c.z}), 1), z1 = column_of(std::max({a.z, b.z, c.z}), 1);
-  for (int64_t y = y0; y <= y1; ++y)
-    for (int64_t z = z0; z <= z1; ++z) each(y * cells_[1] + z);
+  const Columns at = columns_of(face);
+  for (int64_t y = at.y0; y <= at.y1; ++y)
+    for (int64_t z = at.z0; z <= at.z1; ++z) each(y * cells_[1] + z);
 }
 
 int RayColumns::crossing(const WorldPoint& p, uint32_t own, uint32_t face) const {

@@ -37,6 +37,11 @@ class RayColumns {
 
  private:
   int64_t column_of(double at, int axis) const;
+  struct Columns {
+    int64_t y0, y1, z0, z1;
+    int64_t count() const { return (y1 - y0 + 1) * (z1 - z0 + 1); }
+  };
+  Columns columns_of(const std::array<uint32_t, 3>& face) const;
   int crossing(const WorldPoint& p, uint32_t own, uint32_t face) const;
   template <class Each>
   void for_each_column(const std::array<uint32_t, 3>& face, Each each) const;

@@ -51,6 +51,8 @@ TriangleSoup read_mesh(const std::string& path, MeshFormat format) {
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options) {
   const MeshFormat format = format_of(path, options.format, "write_mesh");
+  if (!mesh.gap.empty() && mesh.gap.size() != mesh.vertices.size())
+    throw Error(ErrorCode::usage, "write_mesh", "the mesh has another number of gap flags than of vertices");
   OutputFile file(path, options.overwrite);
   switch (format) {
     case MeshFormat::ply:
