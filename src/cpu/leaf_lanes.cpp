@@ -8,8 +8,6 @@
 
 #include "cpu/vector_versions.h"
 
-#define ISOSHELL_INLINE inline __attribute__((always_inline))
-
 namespace isoshell {
 namespace {
 

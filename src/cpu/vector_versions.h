@@ -7,3 +7,6 @@
 #else
 #define ISOSHELL_VECTOR_VERSIONS
 #endif
+
+/// For what they call: a clone only takes in what is inlined.
+#define ISOSHELL_INLINE inline __attribute__((always_inline))
