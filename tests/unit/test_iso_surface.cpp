@@ -8,6 +8,7 @@
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
+#include "support/soup_volume.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
@@ -55,15 +56,6 @@ bool is_closed_2_manifold_by_edges(const TriangleSoup& soup) {
     const auto opposite = edges.find({e.first.second, e.first.first});
     return e.second == 1 && opposite != edges.end() && opposite->second == 1;
   });
-}
-
-double volume(const TriangleSoup& soup) {
-  double six = 0;
-  for (const auto& t : soup.triangles) {
-    const WorldPoint &a = soup.vertices[t[0]], &b = soup.vertices[t[1]], &c = soup.vertices[t[2]];
-    six += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
-  }
-  return six / 6;
 }
 
 float ball(Voxel v, double radius) { return float(std::sqrt(double(v.x * v.x + v.y * v.y + v.z * v.z)) - radius); }

@@ -12,6 +12,7 @@
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
+#include "support/soup_volume.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
@@ -63,15 +64,6 @@ double worst_radius_error(const TriangleSoup& soup, double above) {
     if (z > above) worst = std::max(worst, std::abs(std::sqrt(x * x + y * y + z * z) - 1));
   }
   return worst;
-}
-
-double volume(const TriangleSoup& soup) {
-  double six = 0;
-  for (const auto& t : soup.triangles) {
-    const WorldPoint &a = soup.vertices[t[0]], &b = soup.vertices[t[1]], &c = soup.vertices[t[2]];
-    six += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
-  }
-  return six / 6;
 }
 
 std::string raw(const void* data, size_t size) { return {static_cast<const char*>(data), size}; }

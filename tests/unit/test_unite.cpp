@@ -5,6 +5,7 @@
 #include "isoshell/unite.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "support/soup_volume.h"
 
 using namespace isoshell;
 using shapes::inside_out;
@@ -24,15 +25,6 @@ United united(const TriangleSoup& soup, bool outer_only = false, double finest_e
 }
 
 TriangleSoup ball(double radius, double x = 0) { return shapes::sphere({x, 0, 0}, radius, 24); }
-
-double volume(const TriangleSoup& soup) {
-  double six = 0;
-  for (const auto& t : soup.triangles) {
-    const WorldPoint &a = soup.vertices[t[0]], &b = soup.vertices[t[1]], &c = soup.vertices[t[2]];
-    six += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
-  }
-  return six / 6;
-}
 
 int winding_at(const TriangleSoup& soup, const WorldPoint& p) {
   int number = 0;
