@@ -7,7 +7,8 @@
 namespace isoshell {
 
 /// Number of components of a surface when those are one whose triangles share a point or intersect, exactly decided.
-/// Both products are in host memory. Cost: the triangles of the sites that see more than one component.
+/// Both products are in host memory. Cost: the pairs of triangles in sites that
+/// see more than one component.
 int64_t count_joined_components(const LatticeSurface& surface, const SiteSamples& samples);
 
 }  // namespace isoshell

@@ -63,7 +63,7 @@ void TriangleGrid::choose_cells(WorldPoint lo, WorldPoint hi) {
     int64_t cells = 1, entries = 0;
     for (size_t axis = 0; axis < 3; ++axis) cells *= dims_[axis] = 1 + int64_t(extent[axis] / edge_);
     if (cells > kCellsPerTriangle * triangles) continue;
-    for (size_t t = 0; t < mesh_.triangles.size(); ++t) for_each_cell_of(t, [&](Cell) { ++entries; });
+    for (size_t t = 0; t < mesh_.triangles.size(); ++t) entries += cells_of(t).count();
     if (cells > 1 && entries > kEntriesPerTriangle * triangles) continue;
     first_.assign(size_t(cells) + 1, 0);
     return;
@@ -78,12 +78,16 @@ TriangleGrid::Cell TriangleGrid::cell_of(WorldPoint p) const {
   return cell;
 }
 
-template <class Visit>
-void TriangleGrid::for_each_cell_of(size_t triangle, Visit visit) const {
+TriangleGrid::CellBox TriangleGrid::cells_of(size_t triangle) const {
   const auto& t = mesh_.triangles[triangle];
   const WorldPoint a = mesh_.vertices[t[0]], b = mesh_.vertices[t[1]], c = mesh_.vertices[t[2]];
-  const Cell lo = cell_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})});
-  const Cell hi = cell_of({std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})});
+  return {cell_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})}),
+          cell_of({std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})})};
+}
+
+template <class Visit>
+void TriangleGrid::for_each_cell_of(size_t triangle, Visit visit) const {
+  const auto [lo, hi] = cells_of(triangle);
   for (int64_t z = lo[2]; z <= hi[2]; ++z)
     for (int64_t y = lo[1]; y <= hi[1]; ++y)
       for (int64_t x = lo[0]; x <= hi[0]; ++x) visit(Cell{x, y, z});

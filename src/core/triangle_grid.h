@@ -21,8 +21,14 @@ class TriangleGrid {
  private:
   using Cell = std::array<int64_t, 3>;
 
+  struct CellBox {
+    Cell lo, hi;
+    int64_t count() const { return (hi[0] - lo[0] + 1) * (hi[1] - lo[1] + 1) * (hi[2] - lo[2] + 1); }
+  };
+
   void choose_cells(WorldPoint lo, WorldPoint hi);
   Cell cell_of(WorldPoint p) const;
+  CellBox cells_of(size_t triangle) const;
   template <class Visit>
   void for_each_cell_of(size_t triangle, Visit visit) const;
   void look_into(Cell cell, WorldPoint p, double& best_sq) const;
