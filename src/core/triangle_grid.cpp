@@ -10,6 +10,7 @@ namespace {
 constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr int64_t kCellsPerTriangle = 8;
 constexpr int64_t kEntriesPerTriangle = 32;  // more, and cells are too small for the largest triangles
+constexpr int64_t kMostEntries = std::numeric_limits<uint32_t>::max();
 
 WorldPoint operator-(WorldPoint a, WorldPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 WorldPoint plus(WorldPoint a, double t, WorldPoint d) { return {a.x + t * d.x, a.y + t * d.y, a.z + t * d.z}; }
@@ -64,7 +65,7 @@ void TriangleGrid::choose_cells(WorldPoint lo, WorldPoint hi) {
     for (size_t axis = 0; axis < 3; ++axis) cells *= dims_[axis] = 1 + int64_t(extent[axis] / edge_);
     if (cells > kCellsPerTriangle * triangles) continue;
     for (size_t t = 0; t < mesh_.triangles.size(); ++t) entries += cells_of(t).count();
-    if (cells > 1 && entries > kEntriesPerTriangle * triangles) continue;
+    if (cells > 1 && entries > std::min(kEntriesPerTriangle * triangles, kMostEntries)) continue;
     first_.assign(size_t(cells) + 1, 0);
     return;
   }

@@ -121,16 +121,6 @@ struct StaysVertex {
   View<const uint32_t> merged_into;
   ISOSHELL_HD bool operator()(int64_t v) const { return merged_into[v] == v; }
 };
-struct StaysTriangle {
-  View<const TriangleIndices> triangles;
-  View<const uint32_t> merged_into;
-  ISOSHELL_HD bool operator()(int64_t i) const {
-    const TriangleIndices t = triangles[i];
-    const uint32_t a = merged_into[t.a], b = merged_into[t.b], c = merged_into[t.c];
-    return a != b && b != c && c != a;
-  }
-};
-
 /// Merged vertices go to the middle of their edge, then back onto the sheet.
 struct MoveToMiddle {
   WalkOntoSheet walk;
@@ -173,7 +163,7 @@ struct CopyKeptTriangle {
   View<TriangleIndices> to;
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = from[kept[i]];
-    to[i] = post::smallest_first({new_id[merged_into[t.a]], new_id[merged_into[t.b]], new_id[merged_into[t.c]]});
+    to[i] = smallest_first({new_id[merged_into[t.a]], new_id[merged_into[t.b]], new_id[merged_into[t.c]]});
   }
 };
 
@@ -182,7 +172,7 @@ template <class Exec>
 void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh) {
   const Buffer<uint32_t> vertices = exec.select(merged_into.size, StaysVertex{merged_into});
   const Buffer<uint32_t> triangles =
-      exec.select(mesh.triangles.size(), StaysTriangle{mesh.triangles.view(), merged_into});
+      exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
   Buffer<uint32_t> new_id = exec.template make<uint32_t>(merged_into.size);
   exec.for_each("number vertices", vertices.size(), NumberKept{vertices.view(), new_id.view()});
   SeedSet left;
@@ -198,7 +188,7 @@ void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, Dual
   exec.for_each(
       "copy kept triangles", triangles.size(),
       CopyKeptTriangle{triangles.view(), merged_into, new_id.view(), mesh.triangles.view(), out.triangles.view()});
-  exec.sort(out.triangles.view(), post::ByIndices{});
+  exec.sort(out.triangles.view(), ByIndices{});
   seeds = std::move(left);
   mesh = std::move(out);
 }

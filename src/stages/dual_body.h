@@ -195,7 +195,7 @@ DualMesh triangulate_dual_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, c
   dual::Partition<Exec> partition(exec, sheet, seeds, options, report);
   DualMesh mesh;
   mesh.triangles = partition.repair();
-  exec.sort(mesh.triangles.view(), dual::FaceLess{});
+  exec.sort(mesh.triangles.view(), ByIndices{});
   dual::grow(exec, mesh.position, seeds.size(), PointQ8{0, 0, 0});
   exec.for_each("place vertices", seeds.size(),
                 dual::CopyOrFill<PointQ8>{seeds.position.view(), mesh.position.view(), PointQ8{0, 0, 0}});

@@ -3,18 +3,9 @@
 #pragma once
 
 #include "stages/dual_cells_body.h"
+#include "stages/labelled_triangles.h"
 
 namespace isoshell::dual {
-
-struct HasThreeLabels {
-  View<const TriangleIndices> triangles;
-  View<const uint32_t> label;
-  ISOSHELL_HD bool operator()(int64_t i) const {
-    const TriangleIndices t = triangles[i];
-    const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
-    return a != b && b != c && c != a;
-  }
-};
 
 /// The labels of sheet triangle selected[i], smallest first.
 struct MakeFace {
@@ -23,13 +14,7 @@ struct MakeFace {
   View<TriangleIndices> face;
   ISOSHELL_HD void operator()(int64_t i) const {
     const TriangleIndices t = triangles[selected[i]];
-    const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
-    if (a < b && a < c)
-      face[i] = {a, b, c};
-    else if (b < c)
-      face[i] = {b, c, a};
-    else
-      face[i] = {c, a, b};
+    face[i] = smallest_first({label[t.a], label[t.b], label[t.c]});
   }
 };
 template <class Exec>
@@ -43,13 +28,6 @@ Buffer<TriangleIndices> make_faces(Exec& exec, const Sheet& sheet, View<const ui
   exec.for_each("make faces", selected.size, MakeFace{sheet.triangles.view(), label, selected, faces.view()});
   return faces;
 }
-
-struct FaceLess {
-  ISOSHELL_HD bool operator()(const TriangleIndices& s, const TriangleIndices& t) const {
-    if (s.a != t.a) return s.a < t.a;
-    return s.b != t.b ? s.b < t.b : s.c < t.c;
-  }
-};
 
 /// Both ends of the three edges of face i: smaller id << 32 | larger id.
 struct MakePairs {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "isoshell/stages.h"
+#include "stages/labelled_triangles.h"
 #include "voxel/atomic.h"
 
 namespace isoshell::post {
@@ -96,16 +97,6 @@ struct Connections {
     exec.for_each("count valences", twin.size(), CountValence{view(mesh)});
   }
   MeshView view(DualMesh& mesh) { return {mesh.triangles.view(), twin.view(), valence.view(), outgoing.view()}; }
-};
-
-ISOSHELL_HD inline TriangleIndices smallest_first(TriangleIndices t) {
-  if (t.a < t.b && t.a < t.c) return t;
-  return t.b < t.c && t.b < t.a ? TriangleIndices{t.b, t.c, t.a} : TriangleIndices{t.c, t.a, t.b};
-}
-struct ByIndices {
-  ISOSHELL_HD bool operator()(const TriangleIndices& s, const TriangleIndices& t) const {
-    return s.a != t.a ? s.a < t.a : (s.b != t.b ? s.b < t.b : s.c < t.c);
-  }
 };
 
 }  // namespace isoshell::post

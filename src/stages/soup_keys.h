@@ -4,6 +4,7 @@
 #include <array>
 
 #include "isoshell/stages.h"
+#include "stages/labelled_triangles.h"
 #include "voxel/atomic.h"
 
 namespace isoshell {
@@ -30,16 +31,6 @@ struct KeyedLess {
     return a.key < b.key || (a.key == b.key && a.rest < b.rest);
   }
 };
-
-ISOSHELL_HD inline bool less_corners(TriangleIndices s, TriangleIndices t) {
-  return s.a != t.a ? s.a < t.a : s.b != t.b ? s.b < t.b : s.c < t.c;
-}
-/// Corners turned so that the triple is the smallest of its three rotations.
-ISOSHELL_HD inline TriangleIndices smallest_first(TriangleIndices t) {
-  const TriangleIndices r = {t.b, t.c, t.a}, s = {t.c, t.a, t.b};
-  const TriangleIndices u = less_corners(s, r) ? s : r;
-  return less_corners(u, t) ? u : t;
-}
 
 struct MarkUsedVertices {
   SoupView soup;

@@ -49,12 +49,31 @@ ISOSHELL_HD inline int best_axis(PointQ8 a, PointQ8 b, PointQ8 c) {
   return x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
 }
 
-/// Closed segment pq against closed triangle abc that has an area.
+ISOSHELL_HD inline bool boxes_of_segments_meet(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b) {
+  const auto apart = [](int32_t s, int32_t t, int32_t u, int32_t v) {
+    return (s < u && s < v && t < u && t < v) || (s > u && s > v && t > u && t > v);
+  };
+  return !apart(p.x, q.x, a.x, b.x) && !apart(p.y, q.y, a.y, b.y) && !apart(p.z, q.z, a.z, b.z);
+}
+/// Closed segments, each of which may be a point.
+ISOSHELL_HD inline bool segments_meet_in_space(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b) {
+  if (side_of_plane(p, q, a, b) != 0) return false;
+  int axis = best_axis(p, q, a);
+  if (axis < 0) axis = best_axis(p, q, b);
+  if (axis < 0) axis = best_axis(a, b, p);
+  if (axis < 0) return boxes_of_segments_meet(p, q, a, b);  // all on one line
+  return segments_meet(seen_along(p, axis), seen_along(q, axis), seen_along(a, axis), seen_along(b, axis));
+}
+
+/// Closed segment pq, which may be a point, against closed triangle abc.
 ISOSHELL_HD inline bool segment_meets_triangle(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b, PointQ8 c) {
   const int side_p = side_of_plane(a, b, c, p), side_q = side_of_plane(a, b, c, q);
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) {
     const int axis = best_axis(a, b, c);
+    if (axis < 0)
+      return segments_meet_in_space(p, q, a, b) || segments_meet_in_space(p, q, b, c) ||
+             segments_meet_in_space(p, q, c, a);
     const Point2 p2 = seen_along(p, axis), q2 = seen_along(q, axis), a2 = seen_along(a, axis), b2 = seen_along(b, axis),
                  c2 = seen_along(c, axis);
     return triangle_holds(a2, b2, c2, p2) || segments_meet(p2, q2, a2, b2) || segments_meet(p2, q2, b2, c2) ||
@@ -70,10 +89,10 @@ struct CornersOfTriangle {
   PointQ8 at[3];
 };
 
-/// Two different closed triangles: do they meet outside of what they share? Corners are shared by id. False for
-/// triangles without area, and for three shared corners.
+/// Two different closed triangles: do they meet outside of what they share? Corners are shared by id: another one at
+/// the same place counts. A triangle without area is the segment, or the point, that its corners span. False for three
+/// shared corners.
 ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const CornersOfTriangle& t) {
-  if (best_axis(s.at[0], s.at[1], s.at[2]) < 0 || best_axis(t.at[0], t.at[1], t.at[2]) < 0) return false;
   int shared = 0, own_s = 0, own_t = 0, corner_s = 0, corner_t = 0;  // the sums of the places give the place left over
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -85,6 +104,9 @@ ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const Co
     const PointQ8 a = s.at[(c + 1) % 3], b = s.at[(c + 2) % 3];
     if (side_of_plane(a, b, s.at[c], t.at[d]) != 0) return false;
     const int axis = best_axis(a, b, s.at[c]);
+    if (axis < 0 || best_axis(a, b, t.at[d]) < 0)  // what sticks out of the edge is a corner, or ends at one
+      return segment_meets_triangle(s.at[c], s.at[c], t.at[0], t.at[1], t.at[2]) ||
+             segment_meets_triangle(t.at[d], t.at[d], s.at[0], s.at[1], s.at[2]);
     const Point2 a2 = seen_along(a, axis), b2 = seen_along(b, axis);
     return turn(a2, b2, seen_along(s.at[c], axis)) == turn(a2, b2, seen_along(t.at[d], axis));
   }
