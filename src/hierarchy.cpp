@@ -19,6 +19,7 @@ constexpr int64_t kMostRepairPerMille = 60;
 constexpr int64_t kFewestSeedsPerHandle = 50;   // that an outline has too many or too few
 constexpr int64_t kFewestVerticesPerSeed = 28;  // of an outline: cells are four voxels wide or more
 constexpr int32_t kCoarsePasses = 60;
+constexpr int32_t kCoarseSmoothingSteps = 40;
 // Of the finest level after a coarser one. It ends early: post-processing does the rest better than more passes.
 constexpr int32_t kFinestPasses = 40;
 constexpr int32_t kFinestTolerancePpb = 500000;
@@ -42,15 +43,18 @@ std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
   return counts;
 }
 
-/// Dual of a coarse level with as many vertices as it had seeds and its flips done; null triangles when the level is
-/// too coarse for the shape.
+/// Dual of a coarse level with as many vertices as it had seeds, flipped and smoothed, so that the cells of the seeds
+/// that it is split into meet as its triangles do; null triangles when the level is too coarse for the shape.
 DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
   const int64_t asked = seeds.size();
   DualReport report;
   DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
   if (report.failed_cells > 0 || seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
   collapse_edges(sheet, asked, seeds, mesh, context);
-  improve_mesh(sheet, {6, 0, 0}, seeds, mesh, context);
+  PostOptions post;
+  post.smoothing_steps = kCoarseSmoothingSteps;
+  post.for_seeds = true;
+  improve_mesh(sheet, post, seeds, mesh, context);
   return mesh;
 }
 

@@ -170,11 +170,13 @@ struct PostOptions {
   int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
+  bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
 };
 struct PostReport {
   int64_t flips = 0;
   int64_t undone_vertices = 0;     ///< went back because of intersections; counted each time
-  int64_t self_intersections = 0;  ///< pairs of triangles that still intersect; not looked for after flips only
+  int64_t self_intersections = 0;  ///< pairs of triangles that still intersect; not looked for when the vertices
+                                   ///< stay in place or are to be seeds
 };
 /// Valence flips, shape matching, a fit to the surface and searches around the worst triangles of a closed mesh whose
 /// vertices are the seeds; homes and positions of the seeds follow. Where triangles intersect in the end, exactly

@@ -288,6 +288,8 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     work.smooth(options.smoothing_steps, 0.95, kHold, kPoorMerit);
     report.flips += work.flip(options.flip_rounds, kFlippedMerit);
     work.smooth(options.smoothing_steps / 8, 0.5, 0, kFairMerit);
+  }
+  if (!flips_only && !options.for_seeds) {
     const bool balanced = options.fit == Fit::balanced;
     if (balanced) {
       work.attach_samples();

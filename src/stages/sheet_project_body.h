@@ -8,7 +8,8 @@
 
 namespace isoshell {
 
-constexpr int kSheetSmoothingSteps = 2;                 ///< before projection
+constexpr int kSheetSmoothingSteps = 2;  ///< before projection
+constexpr int kOutlineSmoothingSteps = 6;               ///< even: odd ones turn checkerboards of corners over
 constexpr int kBridgeSteps = 60;                        ///< for vertices over a gap, after projection
 constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther from the surface are over a gap
 
@@ -46,6 +47,16 @@ struct SmoothCorners {
       ++count;
     });
     to[v] = mean_of(sum, count);
+  }
+};
+
+/// Moves vertices from where they went with one smoothing by what a second one moved them, the other way.
+struct GiveBack {
+  View<const PointQ8> twice;
+  View<PointQ8> once;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const PointQ8 p = once[v], q = twice[v];
+    once[v] = {2 * p.x - q.x, 2 * p.y - q.y, 2 * p.z - q.z};
   }
 };
 
@@ -137,20 +148,30 @@ struct LaidMesh {
   Buffer<uint32_t> source_triangle;
 };
 
-/// Smooths only: the vertices stay where the solid's boundary is, and have no source.
+/// Takes vertices to the means of their neighbours, `steps` times.
+template <class Exec>
+void smooth_corners(Exec& exec, const QuadMesh& mesh, int steps, Buffer<PointQ8>& position, Buffer<PointQ8>& scratch) {
+  for (int step = 0; step < steps; ++step) {
+    exec.for_each("smooth", mesh.corners.leaf_count(),
+                  sheet_steps::SmoothCorners{mesh.corners.view(), mesh.edges.view(), position.view(), scratch.view()});
+    std::swap(position, scratch);
+  }
+}
+
+/// Smooths only: the vertices stay where the solid's boundary is, and have no source. What smoothing takes from the
+/// volume is what as many steps more would take, so that much is given back.
 template <class Exec>
 LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
   using namespace sheet_steps;
   LaidMesh laid;
   const int64_t vertices = mesh.position.size();
-  laid.smooth = std::move(mesh.position);
-  laid.position = exec.template make<PointQ8>(vertices);
-  for (int step = 0; step < kSheetSmoothingSteps; ++step) {
-    exec.for_each("smooth", mesh.corners.leaf_count(),
-                  SmoothCorners{mesh.corners.view(), mesh.edges.view(), laid.smooth.view(), laid.position.view()});
-    std::swap(laid.smooth, laid.position);
-  }
-  exec.copy(View<const PointQ8>(laid.smooth.view()), laid.position.view());
+  laid.position = std::move(mesh.position);
+  laid.smooth = exec.template make<PointQ8>(vertices);
+  Buffer<PointQ8> scratch = exec.template make<PointQ8>(vertices);
+  smooth_corners(exec, mesh, kOutlineSmoothingSteps, laid.position, scratch);
+  exec.copy(View<const PointQ8>(laid.position.view()), laid.smooth.view());
+  smooth_corners(exec, mesh, kOutlineSmoothingSteps, laid.smooth, scratch);
+  exec.for_each("give back", vertices, GiveBack{laid.smooth.view(), laid.position.view()});
   laid.source_triangle = exec.template make<uint32_t>(vertices);
   exec.fill(laid.source_triangle.view(), kNone);
   return laid;
@@ -159,9 +180,14 @@ LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
 template <class Exec>
 LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
   using namespace sheet_steps;
-  LaidMesh laid = lay_smooth(exec, mesh);
+  LaidMesh laid;
+  const int64_t vertices = mesh.position.size();
+  laid.smooth = std::move(mesh.position);
+  laid.position = exec.template make<PointQ8>(vertices);
+  laid.source_triangle = exec.template make<uint32_t>(vertices);
+  smooth_corners(exec, mesh, kSheetSmoothingSteps, laid.smooth, laid.position);
   exec.for_each(
-      "project", laid.smooth.size(),
+      "project", vertices,
       ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
   smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
   return laid;

@@ -125,6 +125,26 @@ TEST_CASE("post: smooth shapes get no angle below 38 degrees", "[post][stage]") 
   }
 }
 
+TEST_CASE("post: vertices that are to be seeds again end on the sheet, in better triangles", "[post][stage]") {
+  TestContext context;
+  PostOptions options;
+  options.for_seeds = true;
+  for (Start& s : starts()) {
+    const double before = measure_quality(to_world(s.mesh, s.sheet.frame)).q_avg;
+    improve_mesh(s.sheet, options, s.seeds, s.mesh, context);
+    INFO(s.name);
+    CHECK(measure_quality(to_world(s.mesh, s.sheet.frame)).q_avg > before);
+    for (int64_t v = 0; v < s.mesh.position.size(); ++v) {
+      int64_t least = INT64_MAX;
+      for (const TriangleIndices& t : s.sheet.triangles)
+        least = std::min(least, distance_sq_q16(s.mesh.position[v], closest_point_on_triangle(
+                                                                        s.mesh.position[v], s.sheet.position[t.a],
+                                                                        s.sheet.position[t.b], s.sheet.position[t.c])));
+      REQUIRE(least <= 3);  // a corner of the lattice away
+    }
+  }
+}
+
 TEST_CASE("post: flips alone move nothing and make valences more even", "[post][stage]") {
   TestContext context;
   for (Start& s : starts()) {

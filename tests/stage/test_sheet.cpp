@@ -406,3 +406,15 @@ TEST_CASE("sheet: an outline has the sheet's vertices and topology, is within a 
   const int64_t volume = six_volume_vox(sheet, context);
   CHECK(std::abs(six_volume_vox(outline, context) - volume) < volume / 100);
 }
+
+TEST_CASE("sheet: smoothing an outline takes less than a hundredth of a small ball", "[sheet][stage]") {
+  TestContext context;
+  for (const int resolution : {24, 48}) {
+    const Pipeline p = sites_of(shapes::sphere({0, 0, 0}, 1, 24), resolution, context);
+    const Sheet outline = build_outline(p.sites, p.surface.frame, {}, context),
+                sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
+    const int64_t volume = six_volume_vox(sheet, context);
+    INFO("resolution " << resolution << ": " << double(six_volume_vox(outline, context)) / double(volume));
+    CHECK(std::abs(six_volume_vox(outline, context) - volume) < volume / 100);
+  }
+}
