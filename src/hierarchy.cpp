@@ -7,6 +7,7 @@
 #include "choose_grid.h"
 #include "core/copy_product.h"
 #include "core/seed_count.h"
+#include "thin_walls.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -70,10 +71,10 @@ class Outlines {
  public:
   Outlines(const Prepared& prepared, const std::vector<int64_t>& counts, Context& context) : finest_(prepared.sheet) {
     halvings_.assign(counts.size(), 0);
-    const SiteSet* sites = &prepared.sites;
+    const SiteSet* sites = &walls_of(prepared);
     const double crowding = crowding_of(finest_, context);
     LatticeFrame frame = prepared.sheet.frame;
-    int32_t closing_vox = prepared.closing_vox;
+    int32_t closing_vox = closing_of_walls(prepared);
     for (int64_t level = int64_t(counts.size()) - 2; level >= 0; --level) {
       halvings_[size_t(level)] = int(outlines_.size());
       const double cells = crowding * double(counts[size_t(level)]);

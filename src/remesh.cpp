@@ -17,7 +17,9 @@
 #include "isoshell/memory_estimate.h"
 #include "isoshell/mend.h"
 #include "isoshell/to_host.h"
+#include "shown_parts.h"
 #include "sizing.h"
+#include "thin_walls.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -26,8 +28,7 @@ namespace {
 constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kReoptimisePasses = 20;
 constexpr int kMaxReoptimisations = 4;
-constexpr int64_t kFewRepairPerMille = 5;       // the mesh takes these without relaxing again
-constexpr int64_t kFewestVerticesPerPart = 24;  // components and handles
+constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
 
 void book_time(RemeshReport& report, const char* stage, double ms) {
   for (StageTime& t : report.times)
@@ -65,21 +66,6 @@ void note_digest(const RemeshOptions& options, RemeshReport& report, Context& co
   timed(report, "digests", context, [&] { report.digests[name] = digest_text(digest(product)); });
 }
 
-/// Whether the vertices asked for can show each component and each handle of the input; clouds of smoke have hundreds.
-bool shows_all_parts(const RemeshOptions& options, const InputTopology& input) {
-  const int64_t parts = input.components + std::max<int64_t>(0, input.genus);
-  return vertex_target(options, input.area_world) >= kFewestVerticesPerPart * parts;
-}
-
-/// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose, unless there are
-/// more than the vertices can show.
-int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
-  if (input.closed && input.oriented && shows_all_parts(options, input)) return 0;
-  const double cell_world = input.area_world / double(std::max<int64_t>(64, vertex_target(options, input.area_world)));
-  const double cell_vox = cell_world / (frame.voxel_size * frame.voxel_size);
-  return int64_t(4 * cell_vox * 65536);
-}
-
 /// Sites, samples and sheet of a surface, with the closing that is asked for or found.
 class Preparation {
  public:
@@ -93,13 +79,19 @@ class Preparation {
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
     join_components(p);
     mark_hollows(p);
+    if (!shows_most_handles(options_, p.surface.topology)) {
+      const int32_t grown = growth_for_edge(edge_vox(p));
+      p.closing_vox = 2 * grown;
+      grow(p, grown);
+      return p;
+    }
     if (closing_vox >= 0) {
       p.closing_vox = closing_vox;
       p.sheet = sheet(p, closing_vox);
     } else {
       close_leaks(p);
     }
-    keep_sides_apart(p);
+    if (!p.surface.topology.closed && is_thinner_than(p, 1)) keep_sides_apart(p);
     return p;
   }
 
@@ -128,18 +120,29 @@ class Preparation {
     std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
   }
 
-  /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. The boundary of
-  /// the sites keeps them apart.
-  void keep_sides_apart(Prepared& p) {
-    if (p.surface.topology.closed) return;
+  double edge_vox(const Prepared& p) const {
+    return usual_edge_length(options_, p.surface.topology.area_world) / p.surface.frame.voxel_size;
+  }
+
+  /// Whether what the sheet bounds is a crust, on average so thin.
+  bool is_thinner_than(const Prepared& p, double thickness_vox) const {
     const double voxel = p.sheet.frame.voxel_size, area_vox = sheet_area_world(p.sheet) / (voxel * voxel);
-    p.follows_both_sides = double(six_volume_vox(p.sheet, context_)) / 3 < area_vox;
-    if (!p.follows_both_sides) return;
+    return double(six_volume_vox(p.sheet, context_)) / 3 < thickness_vox * area_vox;
+  }
+
+  /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not
+  /// close what no one asked to close.
+  void keep_sides_apart(Prepared& p) {
+    int32_t grown = growth_for_edge(std::sqrt(2) * edge_vox(p));  // both sides share the vertices
+    for (;; grown /= 2) {
+      grow(p, grown);
+      if (grown == 1 || is_thinner_than(p, 2 * grown + 3)) return;
+    }
+  }
+
+  void grow(Prepared& p, int32_t grown_vox) {
     const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    p.sheet = timed(report_, "sheet", context_, [&] {
-      return build_outline(p.sites, p.surface.frame, {p.closing_vox, smallest, kNoGenus, false}, context_);
-    });
-    p.sheet.topology.bridged_vertices = 0;  // an outline has no sources
+    timed(report_, "sheet", context_, [&] { grow_walls(p, grown_vox, smallest, context_); });
   }
 
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
@@ -237,6 +240,7 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.frame = p.surface.frame;
   report.band_vox = options.band_vox;
   report.closing_vox = p.closing_vox;
+  report.grown_vox = p.grown_vox;
   report.sites = p.sites.voxels.voxel_count();
   report.sheet_vertices = p.sheet.vertex_count();
   report.sheet = p.sheet.topology;
@@ -322,27 +326,13 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     }
   }
   finish(best, options, report, context);
-  if (best.follows_both_sides)
-    report.warnings.push_back(
-        "the surface is open and its gaps are too wide to close: the result follows both of its sides, about two "
-        "voxels of " +
-        std::to_string(best.surface.frame.voxel_size) + " apart; --close-gaps may close it");
-  if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
-    report.warnings.push_back(std::to_string(input.components) +
-                              " components and their handles are more than so few vertices can show: those smaller "
-                              "than four cells were left out, " +
-                              std::to_string(report.sheet.components) + " stay; ask for more --vertices");
-  else if (report.topology_compared && !report.topology_agrees)
-    report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +
-                              std::to_string(report.sheet.genus) + ", the input " + std::to_string(input.components) +
-                              " and " + std::to_string(input.genus) +
-                              "; a higher --resolution may tell near parts apart");
+  warn_of_topology(best, input, options, report);
   return best;
 }
 
-/// A vertex lies in a gap when its home does. A sheet that follows both sides lies off the surface everywhere.
+/// A vertex lies in a gap when its home does. Grown walls lie off the surface everywhere.
 void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
-  if (p.follows_both_sides) return;
+  if (p.grown_vox > 0) return;
   const std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet);
   if (gaps.empty()) return;
   const OnHost<SeedSet> here(seeds);

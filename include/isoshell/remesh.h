@@ -55,7 +55,7 @@ struct RemeshReport {
   MendReport mend;
   UniteReport unite;
   LatticeFrame frame;
-  int32_t band_vox = 0, closing_vox = 0;
+  int32_t band_vox = 0, closing_vox = 0, grown_vox = 0;
   int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
   int64_t sheet_vertices = 0, seeds = 0;
   SheetTopology sheet;
@@ -81,7 +81,8 @@ struct Prepared {
   Shell shell;  ///< empty unless the method or want_shell asks for it
   Sheet sheet;  ///< with edge lengths where they vary
   int32_t closing_vox = 0;
-  bool follows_both_sides = false;  ///< the outside reaches both sides of an open surface: the sheet lies outside of it
+  int32_t grown_vox = 0;  ///< above 0: the sheet bounds all within so many voxels of a site, see `walls`
+  SiteSet walls;          ///< those voxels, where edges could not follow both sides of the surface's walls; else empty
   int64_t vertices = 0;             ///< as many as the sizing field asks for; 0: as the options say
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
+#include "core/winding.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
 #include "voxel/union_find.h"
@@ -22,6 +24,28 @@ Voxel axis_of(Normal8 n) {
 Voxel along(Voxel v, Voxel axis, int32_t steps) {
   return {v.x + steps * axis.x, v.y + steps * axis.y, v.z + steps * axis.z};
 }
+
+/// Where a lattice surface has been wound around a point as often forth as back: not in solid.
+class Outside {
+ public:
+  explicit Outside(const LatticeSurface& surface) {
+    for (const PointQ8 p : surface.points) points_.push_back({double(p.x), double(p.y), double(p.z)});
+    for (const TriangleIndices t : surface.triangles) faces_.push_back({t.a, t.b, t.c});
+    rays_.emplace(points_, faces_);
+  }
+  bool holds(Voxel v) const {
+    const auto middle = [](int32_t i) { return (i + 0.5) * kOneVoxelQ8; };
+    int number = 0;
+    rays_->for_each_crossing({middle(v.x), middle(v.y), middle(v.z)}, kNone,
+                             [&](uint32_t, int sign) { number += sign; });
+    return number == 0;
+  }
+
+ private:
+  std::vector<WorldPoint> points_;
+  std::vector<std::array<uint32_t, 3>> faces_;
+  std::optional<RayColumns> rays_;
+};
 
 /// A component that looks inward, and the longest way through its hollow.
 struct Hollow {
@@ -59,16 +83,20 @@ class HollowFinder {
   }
   Hollow& hollow_of(TriangleIndices t) { return hollow_[find_root(parent_.view(), t.a)]; }
 
-  void follow(Voxel site, Normal8 normal, Hollow& hollow) const {
+  /// A hollow too small for voxels is left through its other side: what lies beyond is no hollow.
+  void follow(Voxel site, Normal8 normal, Hollow& hollow) {
     const Voxel axis = axis_of(normal);
     int32_t first = 1;
     while (first <= kThickestWall && is_site(along(site, axis, first))) ++first;
     int32_t last = first;
     for (; !is_site(along(site, axis, last)); ++last)
       if (is_beyond(along(site, axis, last))) return;
+    const Voxel middle = along(site, axis, (first + last) / 2);
     if (last - first <= hollow.longest) return;
+    if (!outside_) outside_.emplace(surface_);
+    if (!outside_->holds(middle)) return;
     hollow.longest = last - first;
-    hollow.middle = along(site, axis, (first + last) / 2);
+    hollow.middle = middle;
   }
 
   std::vector<Voxel> middles() const {
@@ -88,6 +116,7 @@ class HollowFinder {
   const LatticeSurface& surface_;
   const VoxelSetView sites_;
   Buffer<uint32_t> parent_;
+  std::optional<Outside> outside_;
   std::vector<Hollow> hollow_;  ///< per point, at the roots
 };
 

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "io/face_collector.h"
+#include "io/mesh_readers.h"
 #include "io/ply_body.h"
 #include "io/point_readers.h"
 #include "io/text_scan.h"
@@ -116,20 +117,52 @@ PointCloud read_xyz(const MeshSource& source) {
   return cloud;
 }
 
-PointCloud read_points(const std::string& path, PointFormat format) {
-  const MeshSource source(path);
-  if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with points");
+namespace {
+
+PointCloud points_of(const MeshSource& source, PointFormat format) {
+  PointCloud cloud = format == PointFormat::ply   ? read_ply_points(source)
+                     : format == PointFormat::xyz ? read_xyz(source)
+                                                  : read_pcd(source);
+  drop_nonfinite(cloud);
+  if (cloud.position.empty()) source.nothing_to_mesh("holds no finite point");
+  return cloud;
+}
+
+bool holds_rows(const PlyHeader& header, const char* element) {
+  const PlyElement* const found = header.find(element);
+  return found && found->count > 0;
+}
+
+template <class Read>
+auto read_or_say_why(const MeshSource& source, const char* what, Read read) {
+  if (source.size() == 0) source.nothing_to_mesh(std::string("is empty (0 bytes); give a file with ") + what);
   try {
-    PointCloud cloud = format == PointFormat::ply   ? read_ply_points(source)
-                       : format == PointFormat::xyz ? read_xyz(source)
-                                                    : read_pcd(source);
-    drop_nonfinite(cloud);
-    if (cloud.position.empty()) source.nothing_to_mesh("holds no finite point");
-    return cloud;
+    return read();
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::out_of_memory, "read",
-                source.name() + ": " + std::to_string(source.size()) + " bytes do not fit into memory as points");
+                source.name() + ": " + std::to_string(source.size()) + " bytes do not fit into memory as " + what);
   }
+}
+
+}  // namespace
+
+PointCloud read_points(const std::string& path, PointFormat format) {
+  const MeshSource source(path);
+  return read_or_say_why(source, "points", [&] { return points_of(source, format); });
+}
+
+PlyContent read_ply_content(const std::string& path) {
+  const MeshSource source(path);
+  return read_or_say_why(source, "faces or points", [&] {
+    const PlyHeader header = read_ply_header(source);
+    PlyContent content;
+    content.is_points = holds_rows(header, "vertex") && !holds_rows(header, "face") && !holds_rows(header, "tristrips");
+    if (content.is_points)
+      content.points = points_of(source, PointFormat::ply);
+    else
+      content.mesh = read_ply(source);
+    return content;
+  });
 }
 
 }  // namespace isoshell

@@ -24,9 +24,14 @@ class VdbField : public ScalarField {
 
   explicit VdbField(typename GridT::ConstPtr grid) : grid_(std::move(grid)) {
     background = double(grid_->background());
-    const openvdb::Mat4d m = grid_->transform().baseMap()->getAffineMap()->getMat4();
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) to_world.at[i][j] = m(j, i);
+    // Not by getAffineMap(), which throws where the determinant is almost 0.
+    const auto map = grid_->transform().baseMap();
+    for (int j = 0; j < 4; ++j) {
+      openvdb::Vec3d axis(0.0);
+      if (j < 3) axis[j] = 1;
+      const openvdb::Vec3d column = j < 3 ? map->applyJacobian(axis) : map->applyMap(axis);
+      for (int i = 0; i < 3; ++i) to_world.at[i][j] = column[i];
+    }
   }
 
   std::vector<Voxel> blocks() const override {

@@ -118,6 +118,22 @@ TEST_CASE("run: standard input and output carry meshes, and the same bytes as fi
   CHECK(piped.status == 0);
   CHECK(piped.out == folder.content("file.off"));
   CHECK_FALSE(piped.out.empty());
+  std::ostringstream cloud;
+  cloud << "ply\nformat ascii 1.0\nelement vertex 600\nproperty float x\nproperty float y\nproperty float "
+           "z\nend_header\n";
+  for (int i = 0; i < 600; ++i) {  // a spiral of even steps on a ball
+    const double z = 1 - (2 * i + 1) / 600., r = std::sqrt(1 - z * z);
+    cloud << r * std::cos(2.399963 * i) << " " << r * std::sin(2.399963 * i) << " " << z << "\n";
+  }
+  folder.write("cloud.ply", cloud.str());
+  REQUIRE(folder.run("cloud.ply points.off --require closed,components=1" + kQuick).status == 0);
+  const std::string from_ply = " --input-format ply --output-format off" + kQuick;
+  const auto points = folder.shell("cat cloud.ply | '" + command_path() + "' - -" + from_ply);
+  CHECK(points.status == 0);
+  CHECK(points.out == folder.content("points.off"));
+  const auto fifo = folder.shell("mkfifo pipe; cat cloud.ply > pipe & '" + command_path() + "' pipe -" + from_ply);
+  CHECK(fifo.out == folder.content("points.off"));
+  CHECK(folder.shell("'" + command_path() + "' - -" + from_ply + " < /dev/null").status == 5);
   const auto full = folder.run("ball.off out.off --stats - > /dev/full" + kQuick);
   CHECK(full.status == 4);
 }

@@ -5,6 +5,7 @@
 #include "isoshell/isoshell.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "support/solid_soup.h"
 #include "support/test_context.h"
 
 using namespace isoshell;
@@ -97,6 +98,19 @@ TEST_CASE("prepare: a hollow ball stays hollow, unless only outer surfaces are w
   CHECK(volume_in_balls(nested) / ball == Approx(1 - .216 + .027).margin(.01));
 }
 
+TEST_CASE("prepare: hollows about as small as a voxel do not open the solid around them", "[prepare]") {
+  RemeshOptions options;
+  options.resolution = 40;
+  TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 32);
+  for (const double radius_vox : {.4, .7, 1., 1.3, 1.6}) {
+    const double at = radius_vox / 4 - .3;
+    ball = shapes::together(ball, shapes::inside_out(shapes::sphere({at, .2, .1 - at}, radius_vox * 2 / 39, 12)));
+  }
+  const Run run = prepare_with(ball, options);
+  CHECK(run.report.unite.inner_surfaces == 5);
+  CHECK(volume_in_balls(run) > .9);
+}
+
 TEST_CASE("prepare: a hollow survives coarse levels, and a run from the lattice", "[prepare]") {
   RemeshOptions options;
   options.vertices = 1000;
@@ -179,7 +193,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const Run run = prepare_with(bowl, options);
-  CHECK(run.prepared.follows_both_sides);
+  CHECK(run.prepared.grown_vox > 0);
   REQUIRE(run.report.warnings.size() == 1);
   CHECK(run.report.warnings[0].find("both of its sides") != std::string::npos);
   CHECK(run.report.sheet.components == 1);
@@ -189,8 +203,43 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   CHECK(result.report.sheet.bridged_vertices == 0);
   CHECK(result.report.post.self_intersections == 0);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(measure_quality(result.mesh).theta_min_deg > 30);
+  CHECK(measure_quality(result.mesh).q_avg > .92);
   const Run ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
-  CHECK_FALSE(ball.prepared.follows_both_sides);
+  CHECK(ball.prepared.grown_vox == 0);
+}
+
+TEST_CASE("prepare: walls of what the widest closing does not close grow too", "[prepare]") {
+  RemeshOptions options;
+  options.resolution = 200;
+  options.vertices = 500;
+  options.closing_world = 2 * kMaxClosingVox * 2. / 199;
+  TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
+  bowl.triangles.resize(bowl.triangles.size() / 2);
+  const Run run = prepare_with(bowl, options);
+  CHECK(run.report.closing_vox == kMaxClosingVox);
+  CHECK(run.prepared.grown_vox > 2);
+  CHECK(run.report.sheet.components == 1);
+  CHECK(run.report.sheet.genus == 0);
+}
+
+TEST_CASE("prepare: more handles than vertices can show are closed, and it is said", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 400;
+  const TriangleSoup sieve = shapes::sieve(9, 1, 1, 1);
+  TestContext context;
+  const RemeshResult few = remesh(sieve, options, context);
+  CHECK(few.report.input.genus == 81);
+  CHECK(few.report.grown_vox > 0);
+  CHECK(few.report.sheet.genus < 81);
+  REQUIRE(few.report.warnings.size() == 1);
+  CHECK(few.report.warnings[0].find("81 handles are more than so few vertices can show") != std::string::npos);
+  CHECK(check_mesh(few.mesh).is_closed_manifold());
+  CHECK(few.report.post.self_intersections == 0);
+  options.vertices = 3000;
+  const Run all = prepare_with(sieve, options);
+  CHECK(all.report.grown_vox == 0);
+  CHECK(all.report.topology_agrees);
 }
 
 TEST_CASE("prepare: a slot closes when its width is asked for, and stays open from four voxels below on", "[prepare]") {
@@ -203,6 +252,7 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
       RemeshOptions options;
       options.resolution = kResolution;
       options.closing_world = asked_vox * voxel;
+      options.vertices = asked_vox == width_vox ? 10000 : 2500;  // walls grow as far as edges are long
       const Run run = prepare_with(ball, options);
       INFO("slot of " << width_vox << " voxels, closing " << asked_vox << ", volume " << volume_in_balls(run));
       CHECK(run.report.mend.capped_loops == 0);

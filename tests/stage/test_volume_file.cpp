@@ -118,6 +118,20 @@ TEST_CASE("volume: rotated, sheared and mirrored transforms put the surface wher
   CHECK(error_of(soup) < 0.0136);
 }
 
+TEST_CASE("volume: voxels of any size put the surface where they say", "[volume][stage]") {
+  const TemporaryFile file(".vdb");
+  for (const double size : {2e-5, 1e6}) {
+    const openvdb::FloatGrid::Ptr grid = ball();
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(size));
+    write(file.path, {grid});
+    TriangleSoup soup = read(file.path);
+    for (WorldPoint& p : soup.vertices) p = {p.x / size / 2, p.y / size / 2, p.z / size / 2};
+    INFO("voxels of " << size);
+    CHECK(is_closed(soup));
+    CHECK(error_of(soup) < .05);
+  }
+}
+
 TEST_CASE("volume: a fog volume needs an iso value and a file of several grids a name", "[volume][stage]") {
   const TemporaryFile file("several.vdb");
   auto fog = ball();

@@ -1,11 +1,11 @@
 // Tells meshes, point clouds, volumes and stage files apart.
 #include "vdb_isomesh/input.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
@@ -20,26 +20,7 @@ void check_exists(const std::string& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) refuse(path + ": no such file");
   if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
-  if (!std::ifstream(path, std::ios::binary)) refuse(path + ": " + std::strerror(errno));
-}
-
-/// Whether the header of a PLY file declares no faces and no strips, so that it holds points only.
-bool is_ply_without_faces(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  if (!std::getline(file, line) || line.compare(0, 3, "ply") != 0) return false;
-  bool vertices = false;
-  for (int lines = 0; lines < 1000 && std::getline(file, line); ++lines) {
-    std::istringstream words(line);
-    std::string word, element;
-    int64_t count = 0;
-    words >> word >> element >> count;
-    if (word == "end_header") return vertices;
-    if (word != "element") continue;
-    if (element == "vertex") vertices = count > 0;
-    if ((element == "face" || element == "tristrips") && count > 0) return false;
-  }
-  return false;
+  if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once
 }
 
 }  // namespace
@@ -47,6 +28,7 @@ bool is_ply_without_faces(const std::string& path) {
 const char* kind_name(InputKind kind) {
   switch (kind) {
     case InputKind::mesh:
+    case InputKind::ply:
       return "mesh";
     case InputKind::points:
       return "points";
@@ -61,7 +43,7 @@ const char* kind_name(InputKind kind) {
 InputKind classify_input(const std::string& path, const std::string& format) {
   if (path != "-") check_exists(path);
   if (format == "obj" || format == "stl" || format == "off") return InputKind::mesh;
-  if (format == "ply") return path != "-" && is_ply_without_faces(path) ? InputKind::points : InputKind::mesh;
+  if (format == "ply") return InputKind::ply;
   if (format == "xyz" || format == "pcd") return InputKind::points;
   if (format == "nvdb") return InputKind::volume;
   if (format == "vdb") return path != "-" && is_stage_file(path) ? InputKind::stage : InputKind::volume;

@@ -1,4 +1,4 @@
-// What INPUT is, by its name and its first bytes.
+// What INPUT is, by its format and its first bytes.
 #pragma once
 
 #include <string>
@@ -7,7 +7,13 @@
 
 namespace isoshell::tool {
 
-enum class InputKind { mesh, points, volume, stage };
+enum class InputKind {
+  mesh,
+  points,
+  ply,  ///< a mesh or points: only reading it tells
+  volume,
+  stage
+};
 
 const char* kind_name(InputKind kind);
 

@@ -127,7 +127,11 @@ class Run {
         read_volume_file(source.soup);
         break;
       case InputKind::points:
-        read_point_cloud(source.soup);
+        make_surface(read_points(a_.input, a_.input_format == "xyz" ? PointFormat::xyz : PointFormat::pcd),
+                     source.soup);
+        break;
+      case InputKind::ply:
+        read_ply_file(source.soup);
         break;
     }
     if (a_.iso && record_.input.kind != InputKind::volume)
@@ -137,12 +141,20 @@ class Run {
 
   std::string input_name() const { return a_.input == "-" ? "standard input" : a_.input; }
 
-  void read_point_cloud(TriangleSoup& soup) {
-    const PointFormat format = a_.input_format == "ply"   ? PointFormat::ply
-                               : a_.input_format == "xyz" ? PointFormat::xyz
-                                                          : PointFormat::pcd;
+  void read_ply_file(TriangleSoup& soup) {
+    PlyContent content = read_ply_content(a_.input);
+    record_.input.kind = content.is_points ? InputKind::points : InputKind::mesh;
+    if (content.is_points) {
+      make_surface(std::move(content.points), soup);
+    } else {
+      soup = std::move(content.mesh);
+      note_soup(soup);
+    }
+  }
+
+  void make_surface(PointCloud cloud, TriangleSoup& soup) {
     PointSurfaceInfo points;
-    soup = surface_of_points(read_points(a_.input, format), context_.memory_limit_bytes, points);
+    soup = surface_of_points(cloud, context_.memory_limit_bytes, points);
     note_soup(soup);
     record_.input.vertices = points.points;
     std::ostringstream text;

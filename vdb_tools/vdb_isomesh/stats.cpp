@@ -71,7 +71,8 @@ Json grid_json(const RemeshReport& r) {
   return {{"resolution", r.frame.resolution},
           {"voxel_size", r.frame.voxel_size},
           {"band", r.band_vox},
-          {"closing", r.closing_vox}};
+          {"closing", r.closing_vox},
+          {"grown", r.grown_vox}};
 }
 
 Json counts_json(const RunRecord& r) {

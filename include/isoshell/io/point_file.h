@@ -21,6 +21,16 @@ struct PointCloud {
 /// nothing_to_mesh when there is no point.
 PointCloud read_points(const std::string& path, PointFormat format);
 
+/// A PLY file holds a mesh, or vertices only.
+struct PlyContent {
+  bool is_points = false;
+  TriangleSoup mesh;  ///< empty when it is points
+  PointCloud points;
+};
+
+/// Reads either, once, so that pipes and standard input ("-") do. Throws: as read_mesh and read_points.
+PlyContent read_ply_content(const std::string& path);
+
 /// What the surface was made with.
 struct PointSurfaceInfo {
   int64_t points = 0;           ///< different ones

@@ -1,0 +1,22 @@
+// Walls that the edges of the result cannot follow on both sides are grown: what the sheet and its outlines bound then.
+#pragma once
+
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// How far walls without thickness grow to each side so that edges of this length turn around their rims: cells are as
+/// wide as a rim then, and triangles across it as good as others.
+int32_t growth_for_edge(double edge_vox);
+
+/// Gives a prepared surface the sheet of all voxels within `grown_vox` of a site. Gaps up to twice its closing close,
+/// or twice the growth if that is more.
+void grow_walls(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
+
+/// The voxels whose solid the sheet bounds, and by how much that is closed.
+inline const SiteSet& walls_of(const Prepared& p) { return p.grown_vox > 0 ? p.walls : p.sites; }
+inline int32_t closing_of_walls(const Prepared& p) {
+  return p.closing_vox > p.grown_vox ? p.closing_vox - p.grown_vox : 0;
+}
+
+}  // namespace isoshell
