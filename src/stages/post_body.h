@@ -26,7 +26,7 @@ constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
 // smoothed after them.
 constexpr double kFlippedMerit = 0.7, kPoorMerit = 0.8, kFairMerit = 0.9, kGoodMerit = 1;
 // Weight of the size to aim at against a triangle's own. Shapes are best with none.
-constexpr double kEvenness = 0, kSizedEvenness = 0.1, kUniformEvenness = 4;
+constexpr double kEvenness = 0, kSizedEvenness = 0.1, kUniformEvenness = 6;
 
 /// Seeds go where the vertices are: position, home and normal.
 struct UpdateSeed {
@@ -103,8 +103,8 @@ class Improvement {
     return flip_edges(exec_, FlipKey{view(), mesh_.position.view(), least_merit}, claim_.view(), rounds);
   }
 
-  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where that
-  /// one harms, vertices return to where they last were on the sheet.
+  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where eight
+  /// did harm, vertices return to where they last were on the sheet.
   void smooth(int steps, double momentum, double hold, double least_merit) {
     SmoothOptions options = smooth_options(0.2);
     options.momentum = momentum;
@@ -120,7 +120,8 @@ class Improvement {
         for_each_walk(exec_, "smooth", walk_, seeds_.home.view(), step);
       else
         exec_.for_each("smooth", vertices_, step);
-      take_step(least_merit, options.onto_sheet ? on_sheet_.view() : mesh_.position.view());
+      if (options.onto_sheet) restore_harmed(least_merit, on_sheet_.view());
+      take_step();
       if (options.onto_sheet) exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     }
   }
@@ -169,7 +170,8 @@ class Improvement {
       for_each_walk(exec_, "fit", walk_, seeds_.home.view(),
                     FitVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
                               vertex_pull_.view(), moved_home_.view(), moved_.view()});
-      take_step(least_merit, mesh_.position.view());
+      restore_harmed(least_merit, mesh_.position.view());
+      take_step();
     }
   }
 
@@ -242,10 +244,13 @@ class Improvement {
         UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(), seeds_.home.view()});
   }
 
-  /// What was moved becomes the position, except where that would harm: there `before` does.
-  void take_step(double least_merit, View<const PointQ8> before) {
+  /// Where what was moved would harm, `before` takes its place.
+  void restore_harmed(double least_merit, View<const PointQ8> before) {
     undo_harm(exec_, mesh_.triangles.view(), least_merit,
               RestoreHarmed{before, seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
+  }
+
+  void take_step() {
     std::swap(previous_, mesh_.position);
     std::swap(mesh_.position, moved_);
     std::swap(seeds_.home, moved_home_);
