@@ -77,9 +77,10 @@ class Preparation {
     p.surface = std::move(surface);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
+    const bool shows_handles = shows_most_handles(options_, p.surface.topology);
     join_components(p);
     mark_hollows(p);
-    if (!shows_most_handles(options_, p.surface.topology)) {
+    if (!shows_handles) {
       const int32_t grown = growth_for_edge(edge_vox(p));
       p.closing_vox = 2 * grown;
       grow(p, grown);
@@ -100,10 +101,10 @@ class Preparation {
   void join_components(Prepared& p) {
     InputTopology& input = p.surface.topology;
     if (input.genus < 0 || input.components < 2) return;
-    const int64_t joined = timed(report_, "topology", context_,
-                                 [&] { return count_joined_components(*OnHost(p.surface), *OnHost(p.samples)); });
-    if (joined == input.components) return;
-    input.components = joined;
+    const int64_t joins =
+        timed(report_, "topology", context_, [&] { return count_joins(*OnHost(p.surface), *OnHost(p.samples)); });
+    if (joins == 0) return;
+    input.components -= joins;
     input.genus = -1;
   }
 

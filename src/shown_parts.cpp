@@ -30,7 +30,7 @@ void warn_of_grown_walls(const Prepared& p, const InputTopology& input, RemeshRe
     return;
   }
   report.warnings.push_back(std::to_string(input.components) + " components and " + std::to_string(input.genus) +
-                            " handles are more than so few vertices can show: gaps below " +
+                            " handles are more than so few vertices can show: hollows and gaps below " +
                             length_text(2 * p.closing_vox * voxel) + " were closed and walls grown to at least " +
                             thickness + "; ask for about " + std::to_string(vertices_for_parts(input)) +
                             " --vertices, or, of a volume, for another --iso");

@@ -18,7 +18,6 @@ void grow_walls(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, 
   p.sheet = {};
   p.grown_vox = grown_vox;
   p.walls.voxels = build_shell(p.sites, {grown_vox}, context).voxels;
-  p.walls.hollows = p.sites.hollows.to_host();
   const SheetOptions options{closing_of_walls(p), smallest_component_q16, kNoGenus, false};
   p.sheet = build_outline(p.walls, p.surface.frame, options, context);
   p.sheet.topology.bridged_vertices = 0;  // an outline has no sources

@@ -10,7 +10,7 @@ namespace isoshell {
 int32_t growth_for_edge(double edge_vox);
 
 /// Gives a prepared surface the sheet of all voxels within `grown_vox` of a site. Gaps up to twice its closing close,
-/// or twice the growth if that is more.
+/// or twice the growth if that is more; hollows too.
 void grow_walls(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 /// The voxels whose solid the sheet bounds, and by how much that is closed.

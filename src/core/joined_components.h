@@ -6,9 +6,9 @@
 
 namespace isoshell {
 
-/// Number of components of a surface when those are one whose triangles share a point or intersect, exactly decided.
-/// Both products are in host memory. Cost: the pairs of triangles in sites that
-/// see more than one component.
-int64_t count_joined_components(const LatticeSurface& surface, const SiteSamples& samples);
+/// By how many the components of a surface become fewer when those are one whose triangles share a point or intersect,
+/// exactly decided. Components that vanished in snapping do not count. Both products are in host memory. Cost: a sort of
+/// the edges, and the pairs of triangles in sites that see more than one component.
+int64_t count_joins(const LatticeSurface& surface, const SiteSamples& samples);
 
 }  // namespace isoshell

@@ -224,9 +224,12 @@ class Union {
   }
 
   void count_components() {
+    std::vector<uint8_t> counted(components_.size());  // by root, which may itself have been swallowed
     for (uint32_t c = 0; c < components_.size(); ++c) {
       const Component& here = components_[c];
-      report_.joined_components += find_root(joined_.view(), c) == c && here.kept > 0;
+      uint8_t& set_counted = counted[find_root(joined_.view(), c)];
+      report_.joined_components += here.kept > 0 && !set_counted;
+      set_counted |= here.kept > 0;
       report_.swallowed_components += here.kept == 0 && !is_dropped(here);
       report_.inner_surfaces += here.kept > 0 && here.inner && here.looks_inward();
     }

@@ -46,12 +46,15 @@ class HeaderReader {
         refuse(quoted(words_[0]) + " is no word of a PLY header; the header is damaged");
       }
     }
+    if (source_.end() - p_ > kMaxLineBytes)
+      refuse("a line of the header is longer than " + std::to_string(kMaxLineBytes) + " bytes; the file is damaged");
     source_.refuse("the header has no end_header within " + std::to_string(source_.size()) +
                    " bytes; the file is truncated or damaged, restore it");
   }
 
  private:
   static constexpr int64_t kMaxLineBytes = 1 << 16;
+  static constexpr size_t kMostOfAKind = 4096;  // elements, properties of one: each is compared with those before
 
   static std::string quoted(const std::string& word) { return quoted_token(word.data(), word.data() + word.size()); }
 
@@ -93,6 +96,7 @@ class HeaderReader {
     const char* const end = p + words_[2].size();
     if (!parse_integer(p, end, element.count) || p != end || element.count < 0)
       refuse("element " + quoted(words_[1]) + " has the count " + quoted(words_[2]) + "; it must be a number from 0");
+    if (header_.elements.size() == kMostOfAKind) refuse("the header has more than 4096 elements; it is damaged");
     if (header_.find(element.name)) refuse("element " + quoted(words_[1]) + " is declared twice");
     header_.elements.push_back(std::move(element));
   }
@@ -110,6 +114,7 @@ class HeaderReader {
     property.type = type_named(words_[words_.size() - 2]);
     property.name = words_.back();
     PlyElement& element = header_.elements.back();
+    if (element.properties.size() == kMostOfAKind) refuse("the element has more than 4096 properties; it is damaged");
     if (element.find(property.name) >= 0) refuse("property " + quoted(words_.back()) + " is declared twice");
     element.properties.push_back(std::move(property));
   }

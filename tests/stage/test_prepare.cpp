@@ -69,9 +69,12 @@ TEST_CASE("prepare: balls through each other are one body, on the first grid; ba
   CHECK(joined.report.sheet.genus == 0);
   CHECK_FALSE(joined.report.topology_compared);
   CHECK(joined.report.warnings.empty());
-  const Run apart = prepare_with(shapes::together(ball, shapes::sphere({2.3, .1, 0}, 1, 32)), options);
+  TriangleSoup two = shapes::together(ball, shapes::sphere({2.3, .1, 0}, 1, 32));
+  const Run apart = prepare_with(two, options);
   CHECK(apart.report.sheet.components == 2);
   CHECK(apart.report.topology_agrees);
+  two = shapes::together(two, shapes::sphere({0, 2, 0}, 1e-7, 8));  // a point on the lattice: joined with nothing
+  CHECK(prepare_with(two, options).report.topology_compared);
 }
 
 TEST_CASE("prepare: a hollow ball stays hollow, unless only outer surfaces are wanted", "[prepare]") {

@@ -276,3 +276,15 @@ TEST_CASE("read_mesh: names, folders and absent files", "[mesh_file][unit]") {
   put_file(folder / "c.dat", kTriangleObj + "f 1 2 3");
   CHECK(read_mesh(folder / "c.dat", MeshFormat::obj).triangles.size() == 1);
 }
+
+TEST_CASE("ply: a header of endless elements, properties or lines is refused at once", "[mesh_file][unit]") {
+  std::string elements = "ply\nformat ascii 1.0\n", properties = elements + "element vertex 1\n";
+  for (int i = 0; i < 100000; ++i) {
+    elements += "element e" + std::to_string(i) + " 4000000000\n";
+    properties += "property float p" + std::to_string(i) + "\n";
+  }
+  CHECK(says(refusal_of("ply", elements + "end_header\n"), "more than 4096 elements"));
+  CHECK(says(refusal_of("ply", properties + "end_header\n"), "more than 4096 properties"));
+  CHECK(says(refusal_of("ply", "ply\ncomment " + std::string(1 << 17, 'y') + "\nend_header\n"),
+             "longer than 65536 bytes"));
+}
