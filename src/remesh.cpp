@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <type_traits>
 
+#include "check_options.h"
 #include "choose_grid.h"
 #include "core/copy_product.h"
 #include "core/hollows.h"
@@ -185,11 +187,12 @@ int64_t topology_gap(const Prepared& p) {
 int32_t asked_closing(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
   if (options.closing_world >= 0) {
     const double r = std::ceil(options.closing_world / frame.voxel_size / 2);
-    if (r > kMaxClosingVox)
-      throw Error(ErrorCode::usage, "close-gaps",
-                  "a gap of " + std::to_string(options.closing_world) + " is " + std::to_string(int64_t(2 * r)) +
-                      " voxels wide on this grid; at most " + std::to_string(2 * kMaxClosingVox) +
-                      " can be closed: lower the resolution");
+    if (r > kMaxClosingVox) {
+      std::ostringstream text;
+      text << "a gap of " << options.closing_world << " is " << 2 * r << " voxels wide on this grid; at most "
+           << 2 * kMaxClosingVox << " can be closed: lower the resolution";
+      throw Error(ErrorCode::usage, "close-gaps", text.str());
+    }
     return int32_t(r);
   }
   return options.closing_vox < 0 && input.closed ? 0 : options.closing_vox;
@@ -220,8 +223,10 @@ InputTopology topology_of_union(InputTopology input, const UniteReport& unite) {
 /// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
 /// yet.
 bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
-  report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
-  if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) return true;
+  if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) {
+    report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
+    return true;
+  }
   const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
                            std::to_string(estimate.bytes >> 20) + " MiB, more than the limit of " +
                            std::to_string(context.memory_limit_bytes >> 20) + " MiB";
@@ -317,8 +322,14 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
     LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
     surface.topology = input;
-    surface.first_cap = soup.first_cap;
-    Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+    Prepared p;
+    try {
+      p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+    } catch (const Error& error) {  // what is there is better than nothing
+      if (error.code() != ErrorCode::out_of_memory || best_gap == INT64_MAX) throw;
+      report.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
+      break;
+    }
     const int64_t gap = topology_gap(p);
     fruitless = gap < best_gap ? 0 : fruitless + 1;
     if (gap < best_gap) {
@@ -346,12 +357,14 @@ void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapR
 
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
                  Context& context) {
+  check_options(options);
   Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
   finish(p, options, report, context);
   return p;
 }
 
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+  check_options(asked);
   const RemeshOptions options = with_even_length(asked, soup);
   report.dirt = soup.dirt;
   const InputTopology given =
@@ -386,6 +399,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
 }
 
 SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  check_options(options);
   const double area_world = options.edge_length_world > 0 ? sheet_area_world(p.sheet) : 0;
   const int64_t target = p.vertices > 0 ? p.vertices : vertex_target(options, area_world);
   const SeedOptions seed_options{target, options.seed};

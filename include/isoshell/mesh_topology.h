@@ -28,7 +28,7 @@ struct MeshTopology {
 };
 
 /// Cost: linear in triangles for bounded valence; about 50 bytes a triangle.
-/// Throws: internal when an index is not below vertex_count.
+/// Throws: usage when an index is not below vertex_count, or when there are more than 2^32 / 3 triangles.
 MeshTopology check_mesh(View<const TriangleIndices> triangles, int64_t vertex_count);
 MeshTopology check_mesh(const TriangleMesh& mesh);
 

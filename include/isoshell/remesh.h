@@ -67,7 +67,7 @@ struct RemeshReport {
   SizingReport sizing;
   GapReport gaps;
   bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections
-  int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was tried; see memory_estimate.h
+  int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was begun; see memory_estimate.h
   std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry
   std::map<std::string, std::string> digests;
   std::vector<std::string> warnings;

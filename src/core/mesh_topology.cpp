@@ -36,12 +36,17 @@ class Sets {
 class Checker {
  public:
   Checker(View<const TriangleIndices> triangles, int64_t vertex_count) : vertex_count_(vertex_count) {
+    constexpr int64_t kMaxTriangles = UINT32_MAX / 3;  // half-edges are numbered in 32 bits
+    if (triangles.size > kMaxTriangles)
+      throw Error(ErrorCode::usage, "check",
+                  "the mesh has " + std::to_string(triangles.size) + " triangles; at most " +
+                      std::to_string(kMaxTriangles) + " can be numbered");
     corners_.reserve(size_t(triangles.size) * 3);
     for (const TriangleIndices& t : triangles) {
       for (uint32_t v : {t.a, t.b, t.c})
         if (v >= vertex_count)
-          throw Error(ErrorCode::internal, "check",
-                      "triangle corner " + std::to_string(v) + " of " + std::to_string(vertex_count) + " vertices");
+          throw Error(ErrorCode::usage, "check",
+                      "a triangle names vertex " + std::to_string(v) + "; there are " + std::to_string(vertex_count));
       if (t.a == t.b || t.b == t.c || t.c == t.a)
         ++found_.degenerate_triangles;
       else

@@ -1,14 +1,14 @@
 // relax_in_shell: checks its arguments, then runs on the backend that the context asks for.
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
+#include "stages/relax_options.h"
 
 namespace isoshell {
 
 RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
                            const RelaxOptions& options, Context& context) {
   if (seeds.size() == 0) throw Error(ErrorCode::usage, "relax", "there are no seeds; place at least 4");
-  if (options.max_passes < 0 || options.tolerance_ppb < 0 || options.max_step_q8 < 0)
-    throw Error(ErrorCode::usage, "relax", "passes, tolerance and step must not be negative; 0 is allowed for each");
+  require_relax_options(options);
   return backend_for(context).relax_in_shell(shell, sites, samples, seeds, options, context);
 }
 

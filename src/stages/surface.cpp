@@ -50,7 +50,9 @@ InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Conte
 LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
   require_triangles(soup);
   require_countable(soup);
-  return backend_for(context).snap_surface(soup, frame, context);
+  LatticeSurface surface = backend_for(context).snap_surface(soup, frame, context);
+  surface.first_cap = soup.first_cap;
+  return surface;
 }
 
 }  // namespace isoshell

@@ -270,3 +270,38 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
     CHECK(volume_in_balls(run) > .9);
   }
 }
+
+TEST_CASE("prepare: options out of range are refused with their name", "[prepare][stage]") {
+  const TriangleSoup box = shapes::box({0, 0, 0}, {1, 1, 1});
+  struct Case {
+    const char* name;
+    void (*spoil)(RemeshOptions&);
+  };
+  const Case cases[] = {
+      {"vertices", [](RemeshOptions& o) { o.vertices = -1; }},
+      {"edge_length_world", [](RemeshOptions& o) { o.edge_length_world = std::nan(""); }},
+      {"resolution", [](RemeshOptions& o) { o.resolution = 7; }},
+      {"voxel_size_world", [](RemeshOptions& o) { o.voxel_size_world = -1; }},
+      {"band_vox", [](RemeshOptions& o) { o.band_vox = kMaxBandVox + 1; }},
+      {"closing_vox", [](RemeshOptions& o) { o.closing_vox = kMaxClosingVox + 1; }},
+      {"max_passes", [](RemeshOptions& o) { o.max_passes = -1; }},
+      {"tolerance", [](RemeshOptions& o) { o.tolerance = 2; }},
+      {"max_step_vox", [](RemeshOptions& o) { o.max_step_vox = 1e300; }},
+      {"adaptivity", [](RemeshOptions& o) { o.adaptivity = 1.5; }},
+      {"gradation", [](RemeshOptions& o) { o.gradation = 1; }},
+      {"method sheet", [](RemeshOptions& o) { o.method = Method::shell, o.adaptivity = .5; }},
+      {"a gap of 1e+30", [](RemeshOptions& o) { o.closing_world = 1e30; }},
+  };
+  for (const Case& c : cases) {
+    RemeshOptions options;
+    c.spoil(options);
+    INFO(c.name);
+    try {
+      prepare_with(box, options);
+      FAIL_CHECK("was taken");
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::usage);
+      CHECK(std::string(error.what()).find(c.name) != std::string::npos);
+    }
+  }
+}

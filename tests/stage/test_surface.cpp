@@ -210,3 +210,10 @@ TEST_CASE("surface: order of the file and threads change nothing", "[surface][st
     }
   }
 }
+
+TEST_CASE("surface: what closes holes stays known on the lattice", "[surface][stage]") {
+  TriangleSoup soup = shapes::box({0, 0, 0}, {1, 1, 1});
+  soup.first_cap = 10;
+  TestContext context;
+  CHECK(snap_surface(soup, LatticeFrame::around({0, 0, 0}, {1, 1, 1}, 16), context).first_cap == 10);
+}
