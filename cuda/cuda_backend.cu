@@ -32,6 +32,7 @@ const BackendTable* cuda_backend() {
       cuda_improve_mesh,
       cuda_six_volume_vox,
       cuda_collapse_edges,
+      cuda_untangle_sheet,
       [](Context& context) { DeviceStream::of(context).synchronize(); },
   };
   return &table;

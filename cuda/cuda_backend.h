@@ -29,7 +29,8 @@ VoronoiLabels cuda_flood_shell(const Shell&, const SeedSet&, Context&);
 DualMesh cuda_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&);
 SeedSet cuda_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
 int64_t cuda_six_volume_vox(const Sheet&, Context&);
-void cuda_collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&);
+void cuda_collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart);
+int64_t cuda_untangle_sheet(Sheet&, SeedSet&, Context&);
 PostReport cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 
 /// What a body that needs a shell on its way calls.

@@ -13,9 +13,11 @@ SeedSet cuda_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const See
                               *OnDevice<SeedSet>(exec, seeds), target);
 }
 
-void cuda_collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context) {
+void cuda_collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
+                         bool keep_apart) {
   CudaExecutor exec(context, "collapse");
-  collapse_edges_body(exec, *OnDevice<Sheet>(exec, sheet), target, on_device(exec, seeds), on_device(exec, mesh));
+  collapse_edges_body(exec, *OnDevice<Sheet>(exec, sheet), {target, keep_apart}, on_device(exec, seeds),
+                      on_device(exec, mesh));
 }
 
 }  // namespace isoshell

@@ -19,6 +19,7 @@
 #include "isoshell/memory_estimate.h"
 #include "isoshell/mend.h"
 #include "isoshell/to_host.h"
+#include "resolve_intersections.h"
 #include "shown_parts.h"
 #include "sizing.h"
 #include "thin_walls.h"
@@ -447,6 +448,8 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   post.uniform_area = options.uniform_area;
   if (report.dual.failed_cells == 0) {
     report.post = timed(report, "post", context, [&] { return improve_mesh(p.sheet, post, seeds, dual, context); });
+    if (report.post.self_intersections > 0)
+      timed(report, "untangle", context, [&] { resolve_intersections(p, post, seeds, dual, report, context); });
     report.post_done = true;
   }
   if (report.post.self_intersections > 0)

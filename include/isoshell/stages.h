@@ -136,12 +136,15 @@ struct DualReport {
   int64_t failed_cells = 0;  ///< left after the last round; 0 means the guarantee holds
 };
 struct DualOptions {
-  int32_t max_repair_rounds = 64;  ///< 0 only checks
+  int32_t max_repair_rounds = 64;     ///< 0 only checks
+  int64_t most_against_crossing = 0;  ///< seeds put in where triangles of the dual intersect; 0: not looked for
 };
 /// DualTriangulation(V_k) on the sheet: a sheet triangle whose vertices carry three labels is a face. Four checks
 /// (cells in one piece, cells are disks, pairs meet in one arc, four cells a component) are repaired by splitting
 /// cells; ids are kept, and a seed that owns nothing moves to the next split before seeds are appended. Result: when
-/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the sheet that uses every seed. Cost:
+/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the sheet that uses every seed. Where asked
+/// to, it then splits the cells of triangles that intersect, and puts the seeds of both halves in their middles, until
+/// no triangles do or no more seeds may be put in; on a sheet without intersections enough seeds always end them. Cost:
 /// labels, then O(sheet) and O(split cells) a round; 14 bytes a sheet vertex. Throws: usage when there are no seeds or
 /// more than sheet vertices.
 DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
@@ -155,9 +158,16 @@ SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet&
 
 /// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
 /// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The
-/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. Cost: a sort of the
-/// edges a round, then one step for each looked at.
-void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context);
+/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. With `keep_apart` no
+/// edge is taken where triangles would intersect then. Cost: a sort of the edges a round, then one step for each looked
+/// at.
+void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
+                    bool keep_apart = false);
+
+/// Takes the vertices of a sheet's triangles that intersect back towards their lattice corners, where no triangles do,
+/// half of the way a round and in the end all of it. Returns the pairs that still intersect after the last round.
+/// Seeds keep their homes; where those moved, seeds go along.
+int64_t untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context);
 
 /// Where vertices of the result lie.
 enum class Fit {

@@ -31,6 +31,7 @@ const BackendTable& cpu_backend() {
       cpu_improve_mesh,
       cpu_six_volume_vox,
       cpu_collapse_edges,
+      cpu_untangle_sheet,
       [](Context&) {},
   };
   return table;

@@ -29,7 +29,8 @@ DualMesh cpu_triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualRe
 SeedSet cpu_subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
 PostReport cpu_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 int64_t cpu_six_volume_vox(const Sheet&, Context&);
-void cpu_collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&);
+void cpu_collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart);
+int64_t cpu_untangle_sheet(Sheet&, SeedSet&, Context&);
 SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 

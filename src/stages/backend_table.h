@@ -37,7 +37,8 @@ struct BackendTable {
   SeedSet (*subdivide_seeds)(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&);
   PostReport (*improve_mesh)(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
   int64_t (*six_volume_vox)(const Sheet&, Context&);
-  void (*collapse_edges)(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&);
+  void (*collapse_edges)(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart);
+  int64_t (*untangle_sheet)(Sheet&, SeedSet&, Context&);
   void (*finish_stages)(Context&);
 };
 

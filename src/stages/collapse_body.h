@@ -2,7 +2,8 @@
 #pragma once
 
 #include "isoshell/stages.h"
-#include "stages/edge_lengths.h"
+#include "stages/label_body.h"
+#include "stages/post_intersections.h"
 #include "stages/post_mesh.h"
 #include "stages/post_shape.h"
 #include "stages/sheet_walk.h"
@@ -138,6 +139,33 @@ struct MoveToMiddle {
   }
 };
 
+/// The triangle that stays, by the vertices that stay.
+struct MergeTriangle {
+  View<const uint32_t> kept, merged_into;
+  View<const TriangleIndices> from;
+  View<TriangleIndices> to;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const TriangleIndices t = from[kept[i]];
+    to[i] = {merged_into[t.a], merged_into[t.b], merged_into[t.c]};
+  }
+};
+/// Takes back what makes triangles intersect, and blocks it.
+struct PartCrossing {
+  View<const uint32_t> marked;
+  View<uint32_t> merged_into;
+  View<uint8_t> blocked;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const uint32_t into = merged_into[v];
+    if (into == v || !marked[into]) return;
+    blocked[v] = blocked[into] = 1;
+    merged_into[v] = uint32_t(v);
+  }
+};
+struct IsMerged {
+  View<const uint32_t> merged_into;
+  ISOSHELL_HD int64_t operator()(int64_t v) const { return merged_into[v] != v; }
+};
+
 struct NumberKept {
   View<const uint32_t> kept;
   View<uint32_t> new_id;
@@ -157,6 +185,12 @@ struct CopyKeptSeed {
     home[i] = from_home[kept[i]];
   }
 };
+struct CopyKeptMark {
+  View<const uint32_t> kept;
+  View<const uint8_t> from;
+  View<uint8_t> to;
+  ISOSHELL_HD void operator()(int64_t i) const { to[i] = from[kept[i]]; }
+};
 struct CopyKeptTriangle {
   View<const uint32_t> kept, merged_into, new_id;
   View<const TriangleIndices> from;
@@ -167,9 +201,42 @@ struct CopyKeptTriangle {
   }
 };
 
+/// Takes back, of the chosen edges, those that take part in intersections, until none does. Returns how many.
+template <class Exec>
+int64_t part_crossing(Exec& exec, const Sheet& sheet, const WalkOntoSheet& walk, const SeedSet& seeds,
+                      const DualMesh& mesh, View<uint32_t> merged_into, View<uint8_t> blocked) {
+  const int64_t vertices = seeds.size(), chosen = exec.sum(vertices, IsMerged{merged_into});
+  const int64_t spacing_vox = seed_spacing(exec, sheet, vertices).h_q8 / kOneVoxelQ8 + 1;
+  Buffer<PointQ8> position = exec.template make<PointQ8>(vertices);
+  Buffer<Normal8> normal = exec.template make<Normal8>(vertices);
+  Buffer<uint32_t> home = exec.template make<uint32_t>(vertices), marked = exec.template make<uint32_t>(vertices);
+  for (int64_t left = chosen, before = INT64_MAX; left > 0 && left < before;) {
+    before = left;
+    exec.copy(seeds.position.view(), position.view());
+    exec.copy(seeds.home.view(), home.view());
+    exec.for_each("move to the middle", vertices,
+                  MoveToMiddle{walk, merged_into, position.view(), normal.view(), home.view()});
+    const Buffer<uint32_t> kept =
+        exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
+    Buffer<TriangleIndices> triangles = exec.template make<TriangleIndices>(kept.size());
+    exec.for_each("merge triangles", kept.size(),
+                  MergeTriangle{kept.view(), merged_into, mesh.triangles.view(), triangles.view()});
+    post::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, spacing_vox,
+                             marked.view());
+    exec.for_each("part crossing", vertices, PartCrossing{marked.view(), merged_into, blocked});
+    left = exec.sum(vertices, IsMerged{merged_into});
+  }
+  return chosen - exec.sum(vertices, IsMerged{merged_into});
+}
+
+struct CollapseOptions {
+  int64_t target;
+  bool keep_apart;
+};
+
 /// Numbers what stays anew.
 template <class Exec>
-void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh) {
+void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh, Buffer<uint8_t>& blocked) {
   const Buffer<uint32_t> vertices = exec.select(merged_into.size, StaysVertex{merged_into});
   const Buffer<uint32_t> triangles =
       exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
@@ -189,6 +256,9 @@ void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, Dual
       "copy kept triangles", triangles.size(),
       CopyKeptTriangle{triangles.view(), merged_into, new_id.view(), mesh.triangles.view(), out.triangles.view()});
   exec.sort(out.triangles.view(), ByIndices{});
+  Buffer<uint8_t> still_blocked = exec.template make<uint8_t>(vertices.size());
+  exec.for_each("copy blocked", vertices.size(), CopyKeptMark{vertices.view(), blocked.view(), still_blocked.view()});
+  blocked = std::move(still_blocked);
   seeds = std::move(left);
   mesh = std::move(out);
 }
@@ -196,12 +266,15 @@ void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, Dual
 }  // namespace collapse
 
 template <class Exec>
-void collapse_edges_body(Exec& exec, const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh) {
+void collapse_edges_body(Exec& exec, const Sheet& sheet, const collapse::CollapseOptions& options, SeedSet& seeds,
+                         DualMesh& mesh) {
   using namespace collapse;
   const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
                            sheet.vertex_first.view(), sheet.vertex_triangles.view()};
-  for (int64_t before = INT64_MAX; seeds.size() > target && seeds.size() < before;) {
-    before = seeds.size();
+  Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
+  exec.fill(blocked.view(), uint8_t(0));
+  for (bool any = true; any && seeds.size() > options.target;) {
+    const int64_t before = seeds.size();
     post::Connections connections(exec, mesh);
     const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(sheet)};
     const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
@@ -210,14 +283,18 @@ void collapse_edges_body(Exec& exec, const Sheet& sheet, int64_t target, SeedSet
     exec.sort(candidates.view(), CheapestFirst{});
     Buffer<uint8_t> taken = exec.template make<uint8_t>(before);
     Buffer<uint32_t> merged_into = exec.template make<uint32_t>(before);
-    exec.fill(taken.view(), uint8_t(0));
+    exec.copy(View<const uint8_t>(blocked.view()), taken.view());
     exec.for_each("start apart", before, StartApart{merged_into.view()});
     exec.for_each("choose edges", 1,
-                  ChooseEdges{cost.mesh, candidates.view(), before - target, taken.view(), merged_into.view()});
+                  ChooseEdges{cost.mesh, candidates.view(), before - options.target, taken.view(), merged_into.view()});
+    int64_t taken_back = 0;
+    if (options.keep_apart)
+      taken_back = part_crossing(exec, sheet, walk, seeds, mesh, merged_into.view(), blocked.view());
     exec.for_each(
         "move to the middle", before,
         MoveToMiddle{walk, merged_into.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()});
-    close_up(exec, merged_into.view(), seeds, mesh);
+    close_up(exec, merged_into.view(), seeds, mesh, blocked);
+    any = seeds.size() < before || taken_back > 0;
   }
 }
 

@@ -13,6 +13,7 @@
 #include "stages/dual_split_body.h"
 #include "stages/dual_strays_body.h"
 #include "stages/label_body.h"
+#include "stages/post_intersections.h"
 
 namespace isoshell {
 namespace dual {
@@ -38,9 +39,11 @@ class Partition {
         report_(report),
         rounds_left_(options.max_repair_rounds),
         first_count_(seeds.size()),
+        most_against_crossing_(options.most_against_crossing),
+        spacing_(seed_spacing(exec, sheet, seeds.size())),
         label_(exec.template make<uint32_t>(sheet.vertex_count())) {
     report_ = {};
-    label_sheet(exec_, sheet_, seeds_, seed_spacing(exec_, sheet_, seeds_.size()), label_.view());
+    label_sheet(exec_, sheet_, seeds_, spacing_, label_.view());
     grow(exec_, cells_, seeds_.size());
   }
 
@@ -53,6 +56,7 @@ class Partition {
       const Buffer<uint32_t> failing = find_failing(faces);
       const Buffer<uint32_t> unused = unused_seeds();
       report_.failed_cells = strays + failing.size() + unused.size();
+      if (report_.failed_cells == 0 && split_crossing(faces)) continue;
       if (report_.failed_cells == 0 || strays > 0 || !take_round()) break;
       if (failing.size() > 0)
         split(failing, unused);
@@ -152,7 +156,28 @@ class Partition {
   }
   Buffer<uint32_t> requested() { return exec_.select(cells_.count(), IsRequested{request_.view()}); }
 
-  void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused) {
+  /// Splits the cells of triangles that intersect. False when there are none, or not enough seeds for them.
+  bool split_crossing(const Buffer<TriangleIndices>& faces) {
+    if (most_against_crossing_ == 0) return false;
+    Buffer<uint32_t> marked = exec_.template make<uint32_t>(seeds_.size());
+    const int64_t pairs =
+        post::find_intersections(exec_, {faces.view(), seeds_.position.view()}, sheet_.corners.block_dims,
+                                 spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
+    if (pairs == 0) return false;
+    exec_.for_each("request crossing cells", cells_.count(),
+                   RequestCrossing{marked.view(), cells_.view(), request_.view()});
+    const Buffer<uint32_t> crossing = requested();
+    Buffer<int64_t> moved = exec_.template make<int64_t>(cells_.count());
+    exec_.for_each("settle crossing cells", cells_.count(),
+                   SettleCrossing{marked.view(), cells_.view(), writer_of(sheet_, seeds_), moved.view()});
+    const int64_t settled = exec_.sum(cells_.count(), MovedSeeds{moved.view()});
+    if (crossing.size() + settled == 0 || crossing.size() > most_against_crossing_ || !take_round()) return false;
+    most_against_crossing_ -= crossing.size();
+    if (!crossing.empty()) split(crossing, {}, true);
+    return true;
+  }
+
+  void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused, bool to_middles = false) {
     const int64_t count = cell.size();
     Buffer<int64_t> first = exec_.template make<int64_t>(count + 1);
     exec_.for_each("size splits", count + 1, SizeOfRequested{cell.view(), cells_.size.view(), first.view()});
@@ -169,6 +194,10 @@ class Partition {
                   seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()},
         ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(), cells_.view(),
                    writer_of(sheet_, seeds_)});
+    if (to_middles)
+      exec_.for_each("seeds to middles", count,
+                     SeedsToMiddles{cell.view(), ids.view(), queue.view(), first.view(), label_.view(),
+                                    sheet_.position.view(), writer_of(sheet_, seeds_)});
     if (!face_triangle_.empty())
       add_new_faces(exec_, {graph_of(sheet_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
                     cell.view(), cells_.count(), face_triangle_);
@@ -180,6 +209,8 @@ class Partition {
   DualReport& report_;
   int64_t rounds_left_;
   int64_t first_count_;
+  int64_t most_against_crossing_;
+  SeedSpacing spacing_;
   Buffer<uint32_t> label_;
   Cells cells_;
   Buffer<uint32_t> request_;

@@ -17,7 +17,8 @@ namespace isoshell {
 namespace post {
 
 constexpr int kStepsOffSheet = 8;
-constexpr int kUndoRounds = 3;
+constexpr int kUndoRounds = 3;          ///< back to the sheet
+constexpr int kUndoRoundsInAll = 12;    ///< the others back to where vertices began
 constexpr int kSamplesPerTriangle = 9;  ///< fewer miss tips, more change little
 constexpr double kStiffness = 0.5;      ///< less is nearer to the surface, more has better triangles
 constexpr double kFitMomentum = 0.7;
@@ -190,14 +191,22 @@ class Improvement {
   }
 
   /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are
-  /// done: first to the sheet, then to where they began. A round that does not help takes more vertices in the next.
+  /// done: first to the sheet, then to where they began. A round that does not help takes more vertices in the next;
+  /// when none did in the end, the best one counts.
   void undo_intersections(PostReport& report) {
     Buffer<uint32_t> spread = exec_.template make<uint32_t>(vertices_);
+    Buffer<PointQ8> best = exec_.template make<PointQ8>(vertices_);
+    int64_t fewest = INT64_MAX;
     const int64_t spacing_vox = int64_t(size_.edge_q8) / kOneVoxelQ8 + 1;
     for (int round = 0;; ++round) {
       report.self_intersections = find_intersections(exec_, {mesh_.triangles.view(), mesh_.position.view()},
                                                      sheet_.corners.block_dims, spacing_vox, harmed_.view());
-      if (report.self_intersections == 0 || round == 2 * kUndoRounds) return;
+      if (report.self_intersections == 0) return;
+      if (report.self_intersections < fewest) {
+        fewest = report.self_intersections;
+        exec_.copy(View<const PointQ8>(mesh_.position.view()), best.view());
+      }
+      if (round == kUndoRoundsInAll) break;
       for (int rings = round % kUndoRounds; rings >= 0; --rings) {
         exec_.for_each("spread marks", vertices_, SpreadMarks{view(), harmed_.view(), spread.view()});
         std::swap(harmed_, spread);
@@ -207,6 +216,8 @@ class Improvement {
           "return marked", vertices_,
           ReturnMarked{harmed_.view(), round < kUndoRounds ? on_sheet_.view() : begin_.view(), mesh_.position.view()});
     }
+    report.self_intersections = fewest;
+    std::swap(mesh_.position, best);
   }
 
   void finish() {

@@ -14,8 +14,9 @@ SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet&
   return backend_for(context).subdivide_seeds(sheet, mesh, seeds, target, context);
 }
 
-void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context) {
-  backend_for(context).collapse_edges(sheet, target, seeds, mesh, context);
+void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
+                    bool keep_apart) {
+  backend_for(context).collapse_edges(sheet, target, seeds, mesh, context, keep_apart);
 }
 
 }  // namespace isoshell

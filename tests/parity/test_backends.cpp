@@ -223,6 +223,16 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
     collapse_edges(p.sheet, seeds.size() * 4 / 5, seeds, mesh, c);
     return made(std::move(mesh), "seeds " + digest_text(hash_arrays(seeds)));
   });
+  both.stage("mesh without intersections", &Products::dual, [](const Products& p, Context& c) {
+    SeedSet seeds = to_host(p.seeds);
+    Sheet sheet = to_host(p.sheet);
+    const int64_t pairs = untangle_sheet(sheet, seeds, c), asked = seeds.size();
+    DualReport report;
+    DualMesh mesh = triangulate_dual(sheet, seeds, {64, asked}, report, c);
+    if (report.failed_cells == 0) collapse_edges(sheet, asked, seeds, mesh, c, true);
+    return made(std::move(mesh), std::to_string(pairs) + " left, " + text_of(report) + ", seeds " +
+                                     digest_text(hash_arrays(seeds)) + ", sheet " + digest_text(hash_arrays(sheet)));
+  });
 }
 
 void relax_and_flood_the_shell(SideBySide& both, int64_t count, bool has_sheet) {

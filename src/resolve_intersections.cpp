@@ -1,0 +1,38 @@
+// See resolve_intersections.h.
+#include "resolve_intersections.h"
+
+#include "core/copy_product.h"
+
+namespace isoshell {
+
+void resolve_intersections(const Prepared& prepared, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                           RemeshReport& report, Context& context) {
+  const int64_t asked = seeds.size();
+  Sheet sheet = host_copy(prepared.sheet);
+  SeedSet start = host_copy(seeds);
+  untangle_sheet(sheet, start, context);
+  DualOptions split;
+  split.most_against_crossing = asked;
+  DualReport found;
+  DualMesh dual = triangulate_dual(sheet, start, split, found, context);
+  if (found.failed_cells > 0) return;
+  const bool keep_apart = true;
+  collapse_edges(sheet, asked, start, dual, context, keep_apart);
+  collapse_edges(sheet, asked, start, dual, context);  // the count goes before what is left
+  if (start.size() != asked) return;
+  PostOptions again = options;
+  for (const int32_t flip_rounds : {options.flip_rounds, 0}) {
+    if (report.post.self_intersections == 0) return;
+    again.flip_rounds = flip_rounds;
+    SeedSet moved = host_copy(start);
+    DualMesh improved = host_copy(dual);
+    const PostReport post = improve_mesh(sheet, again, moved, improved, context);
+    if (post.self_intersections >= report.post.self_intersections) continue;
+    seeds = std::move(moved);
+    mesh = std::move(improved);
+    report.post = post;
+    report.seeds_against_crossing = found.inserted_seeds;
+  }
+}
+
+}  // namespace isoshell
