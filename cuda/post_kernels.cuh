@@ -17,8 +17,9 @@ constexpr int kRoundsPerLook = 3;  ///< of flips
 namespace device_steps {
 
 /// Lists the flips that go ahead, in any order: they touch nothing in common.
+template <class Key>
 struct ListWinners {
-  WinsItsVertices wins;
+  WinsItsVertices<Key> wins;
   View<uint32_t> winners, count;  ///< count: of this round
   ISOSHELL_HD void operator()(int64_t h) const {
     if (wins(h)) winners[atomic_fetch_add(count[0], 1u)] = uint32_t(h);
@@ -126,7 +127,8 @@ void launch_together(CudaExecutor& exec, void (*kernel)(Parameters...), int64_t 
 
 }  // namespace device_steps
 
-inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t> claim, int rounds) {
+template <class Key>
+int64_t flip_edges(CudaExecutor& exec, const Key& key, View<uint64_t> claim, int rounds) {
   using namespace device_steps;
   const int64_t half_edges = key.mesh.twin.size, most = claim.size / 4 + 1;  // a flip holds four vertices
   Buffer<uint32_t> winners = exec.make<uint32_t>(most), count = exec.make<uint32_t>(kRoundsPerLook);
@@ -137,8 +139,8 @@ inline int64_t flip_edges(CudaExecutor& exec, const FlipKey& key, View<uint64_t>
     for (int r = 0; r < now; ++r) {
       const View<uint32_t> count_of_round = count.view().part(r, 1);
       exec.fill(claim, uint64_t(0));
-      exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
-      exec.for_each("list flips", half_edges, ListWinners{{key, claim}, winners.view(), count_of_round});
+      exec.for_each("claim flips", half_edges, ClaimVertices<Key>{key, claim});
+      exec.for_each("list flips", half_edges, ListWinners<Key>{{key, claim}, winners.view(), count_of_round});
       exec.for_each("flip edges", most, FlipWinners{{key.mesh, winners.view()}, count_of_round});
     }
     const Buffer<uint32_t> found = count.to_host();

@@ -6,6 +6,7 @@
 
 #include "isoshell/stages.h"
 #include "stages/label_body.h"
+#include "stages/post_chords.h"
 #include "stages/post_fit.h"
 #include "stages/post_flips.h"
 #include "stages/post_guard.h"
@@ -176,6 +177,24 @@ class Improvement {
     }
   }
 
+  /// Flips edges that cross what they should follow, as the samples of the last step of the fit show it.
+  int64_t flip_chords() {
+    Buffer<uint32_t> far = exec_.template make<uint32_t>(mesh_.triangles.size());
+    Buffer<uint32_t> now = exec_.template make<uint32_t>(half_edges_),
+                     flipped = exec_.template make<uint32_t>(half_edges_);
+    exec_.fill(far.view(), 0u);
+    exec_.fill(now.view(), 0u);
+    exec_.fill(flipped.view(), 0u);
+    const ChordGaps gaps{now.view(), flipped.view()};
+    exec_.for_each("mark far triangles", sample_.size(),
+                   MarkFarTriangles{sample_.view(), rest_sq_.view(), kFarTriangle * size_.edge_q8, far.view()});
+    exec_.for_each("measure samples", sample_.size(),
+                   MeasureSamples{view(), mesh_.position.view(), sample_.view(), far.view(), gaps});
+    exec_.for_each("measure middles", half_edges_,
+                   MeasureMiddles{view(), walk_, mesh_.position.view(), seeds_.home.view(), gaps});
+    return flip_edges(exec_, ChordKey{view(), mesh_.position.view(), gaps}, claim_.view(), 1);
+  }
+
   /// Most of the memory, which the test for intersections needs.
   void drop_samples() {
     sample_ = {};
@@ -309,8 +328,10 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     const bool balanced = options.fit == Fit::balanced;
     if (balanced) {
       work.attach_samples();
-      work.fit(6, 1, kPoorMerit);
-      work.fit(5, 0.6, kFairMerit);
+      work.fit(5, 1, kPoorMerit);
+      report.flips += work.flip_chords();
+      work.fit(3, 0.6, kPoorMerit);
+      work.fit(4, 0.6, kFairMerit);
     }
     work.search(3 * options.search_rounds, kHold, !balanced);
     work.search(options.search_rounds, 0, !balanced);

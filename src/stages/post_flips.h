@@ -1,4 +1,4 @@
-// Valence flips of a closed mesh, in independent sets.
+// Flips of a closed mesh's edges, in independent sets, and those that make valences more even.
 #pragma once
 
 #include "stages/post_mesh.h"
@@ -14,7 +14,7 @@ struct FlipKey {
 
   ISOSHELL_HD static int32_t excess_sq(uint32_t valence) { return (int32_t(valence) - 6) * (int32_t(valence) - 6); }
 
-  /// 0 when the flip gains nothing or would harm the mesh.
+  /// By half-edge. 0 when the flip gains nothing or would harm the mesh.
   ISOSHELL_HD uint64_t operator()(uint32_t h) const {
     const uint32_t g = mesh.twin[h];
     if (g < h) return 0;
@@ -37,8 +37,9 @@ struct FlipKey {
   }
   ISOSHELL_HD static double smaller(double a, double b) { return a < b ? a : b; }
 };
+template <class Key>
 struct ClaimVertices {
-  FlipKey key;
+  Key key;
   View<uint64_t> claim;
   ISOSHELL_HD void operator()(int64_t i) const {
     const uint32_t h = uint32_t(i);
@@ -50,9 +51,12 @@ struct ClaimVertices {
     atomic_max(claim[key.mesh.opposite(key.mesh.twin[h])], k);
   }
 };
+template <class Key>
+ClaimVertices(Key, View<uint64_t>) -> ClaimVertices<Key>;
 /// A flip goes ahead when it holds the claim of all its four vertices.
+template <class Key>
 struct WinsItsVertices {
-  FlipKey key;
+  Key key;
   View<const uint64_t> claim;
   ISOSHELL_HD bool operator()(int64_t i) const {
     const uint32_t h = uint32_t(i);
@@ -62,6 +66,8 @@ struct WinsItsVertices {
     return k != 0 && claim[m.to(h)] == k && claim[m.opposite(h)] == k && claim[m.opposite(m.twin[h])] == k;
   }
 };
+template <class Key>
+WinsItsVertices(Key, View<uint64_t>) -> WinsItsVertices<Key>;
 /// (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
 struct Flip {
   MeshView mesh;
@@ -94,9 +100,10 @@ struct Flip {
   }
 };
 
-/// Flips in independent sets until none is left or `rounds` are done. Returns how many were made.
-template <class Exec>
-int64_t flip_edges(Exec& exec, const FlipKey& key, View<uint64_t> claim, int rounds) {
+/// Flips in independent sets until none is left or `rounds` are done: of flips that share a vertex, the one with the
+/// largest key. Returns how many were made.
+template <class Exec, class Key>
+int64_t flip_edges(Exec& exec, const Key& key, View<uint64_t> claim, int rounds) {
   const int64_t half_edges = key.mesh.twin.size;
   int64_t flips = 0;
   for (int r = 0; r < rounds; ++r) {

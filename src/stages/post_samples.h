@@ -97,7 +97,7 @@ constexpr double kMissedWeight = 4;  ///< of missed points where tails begin; ot
 
 struct PullOptions {
   double rms_q8 = 0;  ///< of the residuals; 0: all samples weigh the same, and missed points nothing
-  double far_q8 = 0;  ///< samples farther than this look around
+  double far_q8 = 0;  ///< samples farther than this look around, and those twice as far weigh ever more
 };
 
 /// Lets a sample slide to a closer triangle near its own, and adds what it asks for.
@@ -160,7 +160,8 @@ struct PullCorners {
     return s.triangle != own;
   }
   /// Weights fall with the residual: the mean distance is to shrink, not the mean of its square. In the tails they rise
-  /// again, for the largest distance. Missed points count only there: they are not spread evenly.
+  /// again, for the largest distance, and steeply where it is a good part of an edge. Missed points count only there:
+  /// they are not spread evenly.
   ISOSHELL_HD double weight_of(const FitSample& s, double distance_sq) const {
     if (!(options.rms_q8 > 0)) return s.is_missed ? 0 : 1;
     const double part = rounded_sqrt(distance_sq) / options.rms_q8;
@@ -168,7 +169,9 @@ struct PullCorners {
       if (s.is_missed) return 0;
       return part * kFarOfRms > 1 ? 1 / part : kFarOfRms;
     }
-    const double beyond = part / kFarOfRms, w = (s.is_missed ? kMissedWeight : 1 / kFarOfRms) * (beyond * beyond);
+    const double beyond = part / kFarOfRms, far = distance_sq / (4 * options.far_q8 * options.far_q8);
+    const double steep = far > 1 ? far * far * far : 1;
+    const double w = (s.is_missed ? kMissedWeight : 1 / kFarOfRms) * (beyond * beyond) * steep;
     return w < kLargestWeight ? w : kLargestWeight;
   }
   ISOSHELL_HD static int64_t scaled(double x) { return int64_t(x * kPullScale); }

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu/executor_tbb.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/stages.h"
+#include "stages/post_chords.h"
 #include "stages/post_planes.h"
 #include "support/catch.h"
 #include "support/shapes.h"
@@ -240,6 +242,59 @@ TEST_CASE("post: points that the sheet misses draw the mesh towards them", "[pos
   sheet.missed = {};
   sheet.missed_vertex = {};
   CHECK(seen < 0.8 * distance_of_pit());
+}
+
+TEST_CASE("post: an edge far from the surface is flipped where that brings it nearer", "[post]") {
+  TestContext context;
+  TbbExecutor exec(context, "test");
+  constexpr uint32_t kAround = 4;  // vertices around the tube
+  const TriangleSoup soup = shapes::torus(3000, 1500, 16, kAround);
+  // An edge along the outside of the tube, and the corners opposite of it, above and below.
+  const uint32_t a = kAround, b = 2 * kAround, c = 2 * kAround + 1, d = 2 * kAround - 1;
+  const auto snapped = [](WorldPoint p) {
+    return PointQ8{int32_t(std::lround(p.x)), int32_t(std::lround(p.y)), int32_t(std::lround(p.z))};
+  };
+  const auto middle = [&](uint32_t u, uint32_t v) {
+    const WorldPoint p = soup.vertices[u], q = soup.vertices[v];
+    return WorldPoint{(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2};
+  };
+  const auto flips_for_sample_at = [&](WorldPoint at) {
+    DualMesh mesh{Buffer<PointQ8>(int64_t(soup.vertices.size())),
+                  Buffer<TriangleIndices>(int64_t(soup.triangles.size()))};
+    std::transform(soup.vertices.begin(), soup.vertices.end(), mesh.position.begin(), snapped);
+    std::transform(soup.triangles.begin(), soup.triangles.end(), mesh.triangles.begin(), [](const auto& t) {
+      return TriangleIndices{t[0], t[1], t[2]};
+    });
+    post::Connections connections(exec, mesh);
+    const post::MeshView view = connections.view(mesh);
+    uint32_t edge = 0;
+    while (view.from(edge) != a || view.to(edge) != b) ++edge;
+    REQUIRE(view.opposite(edge) == c);
+    REQUIRE(view.opposite(view.twin[edge]) == d);
+
+    Buffer<post::FitSample> sample(1);
+    sample[0] = {snapped(at), {0, 0, 0}, false, edge / 3};
+    const PointQ8 corners[3] = {mesh.position[a], mesh.position[b], mesh.position[c]};
+    const post::Vector rest = post::foot_on_triangle(sample[0].position, corners[0], corners[1], corners[2]).rest;
+    Buffer<int64_t> rest_sq(1);
+    rest_sq[0] = int64_t(post::dot(rest, rest));
+    Buffer<uint32_t> far(mesh.triangles.size()), now(view.twin.size), flipped(view.twin.size);
+    exec.fill(far.view(), 0u);
+    exec.fill(now.view(), 0u);
+    exec.fill(flipped.view(), 0u);
+    exec.for_each("mark", 1, post::MarkFarTriangles{sample.view(), rest_sq.view(), 250, far.view()});
+    const post::ChordGaps gaps{now.view(), flipped.view()};
+    exec.for_each("measure", 1, post::MeasureSamples{view, mesh.position.view(), sample.view(), far.view(), gaps});
+    Buffer<uint64_t> claim(mesh.position.size());
+    const int64_t flips = post::flip_edges(exec, post::ChordKey{view, mesh.position.view(), gaps}, claim.view(), 1);
+    CHECK(view.are_neighbours(c, d) == (flips > 0));
+    CHECK(view.are_neighbours(a, b) == (flips == 0));
+    return flips;
+  };
+  const WorldPoint inside = middle(c, d), outside = middle(a, b);
+  CHECK(flips_for_sample_at(inside) == 1);
+  CHECK(flips_for_sample_at(outside) == 0);                                        // on the edge
+  CHECK(flips_for_sample_at({1.5 * outside.x, 1.5 * outside.y, outside.z}) == 0);  // far, and farther when flipped
 }
 
 TEST_CASE("post: a mesh without triangles stays one", "[post][stage]") {
