@@ -346,7 +346,13 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
 /// A vertex lies in a gap when its home does. Grown walls lie off the surface everywhere.
 void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
   if (p.grown_vox > 0) return;
-  const std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet);
+  std::vector<uint8_t> bridges;
+  if (p.closing_vox > 0) {
+    bridges = find_bridges(p.sites, p.sheet);
+    measure_bridges(p.sheet, bridges, report);
+    if (report.bridges == 0) bridges.clear();
+  }
+  const std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet, bridges);
   if (gaps.empty()) return;
   const OnHost<SeedSet> here(seeds);
   mesh.gap.resize(mesh.vertices.size());

@@ -3,12 +3,20 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
 
 #include "core/copy_product.h"
 #include "voxel/exact_int.h"
+#include "voxel/leaf.h"
+#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
+
+constexpr double kRimVoxels = 1;  // of those that hold the rims, half of each is gap
 
 Vec64 doubled_area(const LatticeSurface& surface, TriangleIndices t) {
   const PointQ8 a = surface.points[t.a];
@@ -24,6 +32,14 @@ bool face_away(Vec64 m, Vec64 n) {
   return mn < 0 && 4 * mn * mn > product(m, m) * product(n, n);
 }
 
+template <class Each>
+void for_each_corner(const Sheet& sheet, Each each) {
+  const VoxelSetView corners = sheet.corners.view();
+  for (int64_t leaf = 0; leaf < corners.leaf_key.size; ++leaf)
+    for_each_active(corners, leaf,
+                    [&](int offset, int64_t v) { each(v, voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset)); });
+}
+
 bool share_a_corner(TriangleIndices s, TriangleIndices t) {
   const auto is_of_t = [&](uint32_t v) { return v == t.a || v == t.b || v == t.c; };
   return is_of_t(s.a) || is_of_t(s.b) || is_of_t(s.c);
@@ -31,15 +47,78 @@ bool share_a_corner(TriangleIndices s, TriangleIndices t) {
 
 }  // namespace
 
-std::vector<uint8_t> find_gaps(const LatticeSurface& of, const Sheet& on) {
+std::vector<uint8_t> find_bridges(const SiteSet& of, const Sheet& on) {
+  const OnHost<SiteSet> sites(of);
+  const OnHost<Sheet> sheet(on);
+  std::vector<uint8_t> bridges(size_t(sheet->vertex_count()));
+  const VoxelSetView voxels = sites->voxels.view();
+  for_each_corner(*sheet, [&](int64_t v, Voxel c) {
+    bool holds_surface = false;
+    for (int o = 0; o < 8 && !holds_surface; ++o)
+      holds_surface = find_voxel(voxels, {c.x - (o >> 2), c.y - (o >> 1 & 1), c.z - (o & 1)}) >= 0;
+    bridges[size_t(v)] = !holds_surface;
+  });
+  return bridges;
+}
+
+void measure_bridges(const Sheet& on, const std::vector<uint8_t>& bridges, GapReport& report) {
+  const OnHost<Sheet> sheet(on);
+  std::vector<Voxel> corner(bridges.size());
+  for_each_corner(*sheet, [&](int64_t v, Voxel c) { corner[size_t(v)] = c; });
+  // Each bridging vertex takes the nearest of its neighbours' nearest corners of the rim, nearest first.
+  std::vector<std::pair<int64_t, uint32_t>> rim_of(bridges.size(), {INT64_MAX, kNone});  // squared distance, vertex
+  using Step = std::tuple<int64_t, uint32_t, uint32_t>;  // squared distance, rim, vertex
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> next;
+  Buffer<uint32_t> parent(int64_t(bridges.size()));
+  for (int64_t v = 0; v < parent.size(); ++v) parent[v] = uint32_t(v);
+  const auto offer = [&](uint32_t rim, uint32_t v) {
+    const Voxel p = corner[rim], q = corner[v];
+    const int64_t x = p.x - q.x, y = p.y - q.y, z = p.z - q.z, distance_sq = x * x + y * y + z * z;
+    if (std::pair(distance_sq, rim) >= rim_of[v]) return;
+    rim_of[v] = {distance_sq, rim};
+    next.push({distance_sq, rim, v});
+  };
+  const auto for_each_neighbour = [&](uint32_t v, auto each) {
+    for (int64_t i = sheet->vertex_first[v]; i < sheet->vertex_first[v + 1]; ++i) {
+      const TriangleIndices t = sheet->triangles[sheet->vertex_triangles[i]];
+      for (const uint32_t w : {t.a, t.b, t.c})
+        if (w != v) each(w);
+    }
+  };
+  for (uint32_t v = 0; v < bridges.size(); ++v) {
+    if (!bridges[v]) continue;
+    for_each_neighbour(v, [&](uint32_t w) {
+      if (bridges[w])
+        join(parent.view(), v, w);
+      else
+        offer(w, v);
+    });
+  }
+  int64_t farthest_sq = 0;
+  while (!next.empty()) {
+    const auto [distance_sq, rim, v] = next.top();
+    next.pop();
+    if (rim_of[v] != std::pair(distance_sq, rim)) continue;
+    farthest_sq = std::max(farthest_sq, distance_sq);
+    for_each_neighbour(v, [&, rim = rim](uint32_t w) {
+      if (bridges[w]) offer(rim, w);
+    });
+  }
+  for (uint32_t v = 0; v < bridges.size(); ++v) report.bridges += bridges[v] && find_root(parent.view(), v) == v;
+  if (report.bridges > 0)
+    report.widest_bridge_world = (2 * std::sqrt(double(farthest_sq)) + kRimVoxels) * sheet->frame.voxel_size;
+}
+
+std::vector<uint8_t> find_gaps(const LatticeSurface& of, const Sheet& on, const std::vector<uint8_t>& bridges) {
   if (on.source_triangle.size() == 0) return {};  // an outline
-  if (of.first_cap == kNone && on.topology.bridged_vertices == 0) return {};
+  if (of.first_cap == kNone && bridges.empty()) return {};
   const OnHost<LatticeSurface> surface(of);
   const OnHost<Sheet> sheet(on);
   std::vector<uint8_t> gaps(size_t(sheet->vertex_count()));
   for (int64_t v = 0; v < sheet->vertex_count(); ++v) {
     const uint32_t source = sheet->source_triangle[v];
-    gaps[size_t(v)] = source == kNone || surface->source_face[source] >= of.first_cap;
+    gaps[size_t(v)] =
+        source == kNone || surface->source_face[source] >= of.first_cap || (!bridges.empty() && bridges[size_t(v)]);
   }
   return gaps;
 }

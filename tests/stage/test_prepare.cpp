@@ -174,6 +174,7 @@ TEST_CASE("prepare: vertices over a hole are flagged, whether faces closed it or
   const RemeshResult bridged = remesh(slotted_ball(8 * 2. / 99), options, context);
   CHECK(bridged.report.mend.capped_loops == 0);
   CHECK(bridged.report.gaps.vertices > 0);
+  CHECK(bridged.report.gaps.bridges == 1);
   for (size_t i = 0; i < bridged.mesh.gap.size(); ++i)
     if (bridged.mesh.gap[i]) CHECK(std::abs(bridged.mesh.vertices[i].z) < .15);
 }
@@ -259,7 +260,13 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
       const Run run = prepare_with(ball, options);
       INFO("slot of " << width_vox << " voxels, closing " << asked_vox << ", volume " << volume_in_balls(run));
       CHECK(run.report.mend.capped_loops == 0);
-      if (asked_vox == width_vox) CHECK(volume_in_balls(run) > .9);
+      if (asked_vox == width_vox) {
+        CHECK(volume_in_balls(run) > .9);
+        GapReport gaps;
+        measure_bridges(run.prepared.sheet, find_bridges(run.prepared.sites, run.prepared.sheet), gaps);
+        if (width_vox >= 4) CHECK(gaps.bridges == 1);
+        if (width_vox >= 4) CHECK(gaps.widest_bridge_world / voxel == Approx(width_vox).margin(1.2 + .08 * width_vox));
+      }
       if (asked_vox <= width_vox - 4) CHECK(volume_in_balls(run) < .5);
     }
     RemeshOptions automatic;

@@ -1,6 +1,7 @@
 // JSON in and out.
 #include "vdb_isomesh/stats.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "isoshell/error.h"
@@ -85,11 +86,12 @@ Json counts_json(const RunRecord& r) {
           {"triangles", known(r.triangles)}};
 }
 
-/// Holes that faces closed, and how much of the result lies where the input has no surface.
+/// Holes that faces closed and gaps that voxels bridged, and how much of the result lies where the input has no
+/// surface.
 Json gaps_json(const RunRecord& r) {
   const MendReport& m = r.report.mend;
-  return {{"loops", m.capped_loops},
-          {"widest", m.widest_cap_world},
+  return {{"loops", m.capped_loops + r.report.gaps.bridges},
+          {"widest", std::max(m.widest_cap_world, r.report.gaps.widest_bridge_world)},
           {"bridged_sheet_vertices", r.report.sheet.bridged_vertices},
           {"area", r.report.gaps.area_world},
           {"vertices", r.report.gaps.vertices},
