@@ -129,14 +129,15 @@ __device__ inline int64_t short_floor_div(int64_t n, int64_t d) {
   return rest < 0 ? q - 1 : rest >= d ? q + 1 : q;
 }
 
-/// The way from a seed to its cell's centre (see relax_sheet::way_to_centre), by a group of lanes with the same
+/// The step of a seed past its cell's centre (see relax_sheet::point_past_centre), by a group of lanes with the same
 /// arguments: each divides for one component.
-__device__ inline Vec64 way_together(const relax_sheet::CellSum& cell) {
+__device__ inline Vec64 step_together(const relax_sheet::CellSum& cell) {
   const int component = threadIdx.x & 3, group = threadIdx.x & 31 & ~(kWalkLanes - 1);
   const int64_t first = component == 0 ? cell.first_x : component == 1 ? cell.first_y : cell.first_z;
   const int64_t three = 3 * cell.mass;
   const int64_t way = cell.mass > 0 ? short_floor_div(2 * first + three, 2 * three) : 0;
-  return {__shfl_sync(~0u, way, group), __shfl_sync(~0u, way, group + 1), __shfl_sync(~0u, way, group + 2)};
+  const int64_t step = relax_sheet::past_centre(way);
+  return {__shfl_sync(~0u, step, group), __shfl_sync(~0u, step, group + 1), __shfl_sync(~0u, step, group + 2)};
 }
 
 /// MovingSeeds::moved, for a seed at home at a vertex.
@@ -153,7 +154,7 @@ __device__ inline PointQ8 moved_by(const relax_sheet::MovingSeeds& seeds, uint32
   return {from.x + int32_t(step.x), from.y + int32_t(step.y), from.z + int32_t(step.z)};
 }
 
-/// Everything a seed does between two sums, by a group of lanes a seed: the way to the centre, and on ahead.
+/// Everything a seed does between two sums, by a group of lanes a seed: the step past the centre, and on ahead.
 template <int kBlocks>
 __global__ void __launch_bounds__(kMoveThreads, at_once(kBlocks)) move_seeds(const __grid_constant__ SheetMove move) {
   wait_for_earlier_kernels();
@@ -168,7 +169,7 @@ __global__ void __launch_bounds__(kMoveThreads, at_once(kBlocks)) move_seeds(con
   const relax_sheet::CellSum cell = move.cell[i];
   Landing at{seeds.home[i], before};
   PointQ8 centre = before;
-  Vec64 step = way_together(cell);
+  Vec64 step = step_together(cell);
   bool active = exists && cell.mass > 0, moved = active;
   const int legs = goes_on && beta_q15 != 0 ? 2 : 1;
 #pragma unroll 1

@@ -10,7 +10,10 @@
 namespace isoshell {
 namespace {
 
-constexpr double kVoxelsPerSpacing = 5.5;  // default grid: a cell is about this many voxels wide
+// Default grid: a cell is about so many voxels wide, more when cells are few and large. What a grid loses of tips is as
+// wide as its voxels.
+constexpr double kVoxelsPerSpacing = 4.5, kMostVoxelsPerSpacing = 5.5;
+constexpr double kFewestVoxels = 2e5;  // of the surface, unless cells are that wide
 constexpr int32_t kMinDefaultResolution = 64;
 constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
 
@@ -20,6 +23,10 @@ constexpr int64_t kMaxVertices = 2147483647;
 
 int32_t resolution_for_voxel(double longest, double voxel_size) {
   return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
+}
+
+double voxels_per_spacing(int64_t vertices) {
+  return std::clamp(std::sqrt(kFewestVoxels / double(vertices)), kVoxelsPerSpacing, kMostVoxelsPerSpacing);
 }
 
 int32_t asked_voxel_resolution(double longest, double voxel_size) {
@@ -51,13 +58,14 @@ int32_t first_resolution(const RemeshOptions& options, double area_world, WorldP
   if (options.resolution > 0) return options.resolution;
   const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
   if (options.voxel_size_world > 0) return asked_voxel_resolution(longest, options.voxel_size_world);
-  const double spacing = std::sqrt(area_world / double(vertex_target(options, area_world)));
-  return spacing > 0 ? resolution_for_cell(longest, spacing) : kMinDefaultResolution;
+  const int64_t vertices = vertex_target(options, area_world);
+  const double spacing = std::sqrt(area_world / double(vertices));
+  return spacing > 0 ? resolution_for_cell(longest, spacing, vertices) : kMinDefaultResolution;
 }
 
-int32_t resolution_for_cell(double longest_world, double cell_world) {
-  return std::clamp(resolution_for_voxel(longest_world, cell_world / kVoxelsPerSpacing), kMinDefaultResolution,
-                    kMaxResolution);
+int32_t resolution_for_cell(double longest_world, double cell_world, int64_t vertices) {
+  return std::clamp(resolution_for_voxel(longest_world, cell_world / voxels_per_spacing(vertices)),
+                    kMinDefaultResolution, kMaxResolution);
 }
 
 double usual_edge_length(const RemeshOptions& options, double area_world) {

@@ -14,10 +14,11 @@ double usual_edge_length(const RemeshOptions& options, double area_world);
 /// Area of a sheet in world units.
 double sheet_area_world(const Sheet& sheet);
 
-/// So many voxels along the longest side that cells of this width are about 5.5 voxels wide, within limits.
-int32_t resolution_for_cell(double longest_world, double cell_world);
+/// So many voxels along the longest side that cells of this width are 4.5 to 5.5 voxels wide, by how many vertices
+/// there are, within limits.
+int32_t resolution_for_cell(double longest_world, double cell_world, int64_t vertices);
 
-/// Voxels along the longest side of the box: the user's, or so many that a cell is about 5.5 voxels wide.
+/// Voxels along the longest side of the box: the user's, or so many that a cell is 4.5 to 5.5 voxels wide.
 /// Throws: usage when a voxel size does not give 8 to 8192.
 int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint box_min, WorldPoint box_max);
 

@@ -18,8 +18,9 @@ constexpr int64_t kFewestSeeds = 64;  // of a level
 constexpr int64_t kFewestPerComponent = 12;
 constexpr int64_t kMostRepairPerMille = 60;
 constexpr int64_t kFewestSeedsPerHandle = 50;   // that an outline has too many or too few
-constexpr int64_t kFewestVerticesPerSeed = 28;  // of an outline: cells are four voxels wide or more
+constexpr int64_t kFewestVerticesPerSeed = 24;  // of an outline: cells are nearly four voxels wide or more
 constexpr int32_t kCoarsePasses = 60;
+constexpr int32_t kCoarseTolerancePpb = 30000;
 constexpr int32_t kCoarseSmoothingSteps = 40;
 // Of the finest level after a coarser one. It ends early: post-processing does the rest better than more passes.
 constexpr int32_t kFinestPasses = 40;
@@ -123,7 +124,9 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
                         RelaxReport& report, Context& context) {
   require_seed_count(prepared.sheet, options.count);
   std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
-  const RelaxOptions coarse{kCoarsePasses, relax.tolerance_ppb, relax.max_step_q8};
+  const bool tolerance_is_free = relax.tolerance_ppb == RelaxOptions{}.tolerance_ppb;
+  const RelaxOptions coarse{kCoarsePasses, tolerance_is_free ? kCoarseTolerancePpb : relax.tolerance_ppb,
+                            relax.max_step_q8};
   const Outlines outlines(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // outlines may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], outlines.sheet(level).topology);
@@ -142,7 +145,7 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     seeds = place_seeds(prepared.sheet, options, context);
   } else {
     finest.max_passes = std::min(finest.max_passes, kFinestPasses);
-    if (finest.tolerance_ppb == RelaxOptions{}.tolerance_ppb) finest.tolerance_ppb = kFinestTolerancePpb;
+    if (tolerance_is_free) finest.tolerance_ppb = kFinestTolerancePpb;
   }
   report = relax_on_sheet(prepared.sheet, seeds, finest, context);
   return seeds;

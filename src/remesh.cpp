@@ -282,7 +282,8 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& in
   timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
   if (p.sheet.lengths.at.empty()) return usual;
   const double cell_world = smallest_cell_vox(options, p, context) * frame.voxel_size;
-  int32_t resolution = resolution_for_cell(frame.voxel_size * (usual - 1), cell_world);
+  int32_t resolution =
+      resolution_for_cell(frame.voxel_size * (usual - 1), cell_world, vertex_target(options, input.area_world));
   while (resolution > usual && context.memory_limit_bytes > 0 &&
          estimate_run(soup, input, options, resolution).bytes > context.memory_limit_bytes)
     resolution = std::max(usual, resolution - resolution / 8);

@@ -18,10 +18,10 @@ namespace isoshell {
 namespace post {
 
 constexpr int kStepsOffSheet = 8;
-constexpr int kUndoRounds = 3;          ///< back to the sheet
-constexpr int kUndoRoundsInAll = 12;    ///< the others back to where vertices began
-constexpr int kSamplesPerTriangle = 9;  ///< fewer miss tips, more change little
-constexpr double kStiffness = 0.5;      ///< less is nearer to the surface, more has better triangles
+constexpr int kUndoRounds = 3;           ///< back to the sheet
+constexpr int kUndoRoundsInAll = 12;     ///< the others back to where vertices began
+constexpr int kSamplesPerTriangle = 12;  ///< fewer miss tips, more change little
+constexpr double kStiffness = 0.5;       ///< less is nearer to the surface, more has better triangles
 constexpr double kFitMomentum = 0.7;
 constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
 // No step may make a triangle below its bound worse; bounds rise to where the search begins. What flips make poor is
@@ -134,17 +134,15 @@ class Improvement {
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
     label_sheet(exec_, sheet_, seeds_, spacing_, label.view());
     const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
-    const int64_t stride = std::max<int64_t>(1, sheet_.vertex_count() / (kSamplesPerTriangle * smallest));
-    samples_of_sheet_ = (sheet_.vertex_count() + stride - 1) / stride;
+    samples_of_sheet_ = std::min(sheet_.vertex_count(), kSamplesPerTriangle * smallest);
     const int64_t count = samples_of_sheet_ + sheet_.missed.size();
     sample_ = exec_.template make<FitSample>(count);
     rest_sq_ = exec_.template make<int64_t>(count);
     triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
     vertex_pull_ = exec_.template make<VertexPull>(vertices_);
-    exec_.for_each(
-        "attach samples", count,
-        AttachSample{view(), mesh_.position.view(), sheet_.position.view(), sheet_.normal.view(), label.view(),
-                     sheet_.missed.view(), sheet_.missed_vertex.view(), stride, sample_.view()});
+    exec_.for_each("attach samples", count,
+                   AttachSample{view(), mesh_.position.view(), sheet_.position.view(), sheet_.normal.view(),
+                                label.view(), sheet_.missed.view(), sheet_.missed_vertex.view(), sample_.view()});
   }
 
   /// Steps towards the samples.

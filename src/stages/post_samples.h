@@ -46,8 +46,8 @@ ISOSHELL_HD inline Foot foot_on_triangle(PointQ8 q, PointQ8 a, PointQ8 b, PointQ
   return {{1 - v - w, v, w}, aq - (v * ab + w * ac)};
 }
 
-/// Every stride-th sheet vertex, then the missed points, on the triangle around its label's vertex that is closest and
-/// faces its way. Missed points take label and normal of the sheet vertex nearest to them.
+/// Sheet vertices at even distances in their order, then the missed points, on the triangle around its label's vertex
+/// that is closest and faces its way. Missed points take label and normal of the sheet vertex nearest to them.
 struct AttachSample {
   MeshView mesh;
   View<const PointQ8> position;
@@ -56,12 +56,11 @@ struct AttachSample {
   View<const uint32_t> label;
   View<const PointQ8> missed;
   View<const uint32_t> missed_vertex;
-  int64_t stride;
   View<FitSample> sample;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const int64_t missed_number = i - (sample.size - missed.size);
+    const int64_t of_sheet = sample.size - missed.size, missed_number = i - of_sheet;
     const bool is_missed = missed_number >= 0;
-    const int64_t s = is_missed ? missed_vertex[missed_number] : i * stride;
+    const int64_t s = is_missed ? missed_vertex[missed_number] : i * sheet_position.size / of_sheet;
     FitSample out{is_missed ? missed[missed_number] : sheet_position[s], sheet_normal[s], is_missed, kNone};
     double best = 0;
     const uint32_t start = mesh.outgoing[label[s]];

@@ -2,7 +2,7 @@
 // sheet in place of the shell and cells clipped by their bisectors instead of counted in voxels).
 //
 // A pass: look ahead along the last move (Nesterov), label the sheet, sum area and moments of every clipped cell in
-// integers, move each seed to its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy
+// integers, move each seed past its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy
 // rose.
 #pragma once
 
@@ -266,11 +266,13 @@ ISOSHELL_HD inline PointQ8 point_ahead(const MovingSeeds& seeds, PointQ8 s, int6
 /// One component of the way from a seed to its cell's centre; `first` is that of the cell, which must have an area.
 ISOSHELL_HD inline int64_t way_to_centre(int64_t first, int64_t mass) { return round_div(first, 3 * mass); }
 
-/// Centre of the cell measured at here, no farther than a step. The cell must have an area.
-ISOSHELL_HD inline PointQ8 point_towards_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
-  return seeds.moved(
-      i, seeds.here[i],
-      {way_to_centre(c.first_x, c.mass), way_to_centre(c.first_y, c.mass), way_to_centre(c.first_z, c.mass)});
+/// Seeds go 1.3 times as far as their centres: neighbours follow, and fewer passes are needed.
+ISOSHELL_HD inline int64_t past_centre(int64_t way) { return way + way * 3 / 10; }
+
+/// A place beyond the centre of the cell measured at here, no farther than a step. The cell must have an area.
+ISOSHELL_HD inline PointQ8 point_past_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
+  const auto step = [&](int64_t first) { return past_centre(way_to_centre(first, c.mass)); };
+  return seeds.moved(i, seeds.here[i], {step(c.first_x), step(c.first_y), step(c.first_z)});
 }
 
 struct LookAhead {
@@ -285,19 +287,19 @@ struct LookAhead {
   }
 };
 
-struct MoveToCentre {
+struct MovePastCentre {
   MovingSeeds seeds;
   View<const CellSum> cell;
   View<const PassState> state;
   ISOSHELL_HD void operator()(int64_t i) const {
     if (state[0].converged || cell[i].mass <= 0) return;
-    seeds.here[i] = seeds.settle(i, point_towards_centre(seeds, cell[i], i));
+    seeds.here[i] = seeds.settle(i, point_past_centre(seeds, cell[i], i));
   }
 };
 
 /// Nesterov's momentum factors, capped: the one for the next pass. One square root a pass.
 ISOSHELL_HD inline void advance_momentum(PassState& state) {
-  constexpr double kCap = 0.95;
+  constexpr double kCap = 0.9;
   const double after = (1 + rounded_sqrt(1 + 4 * state.momentum * state.momentum)) / 2;
   const double beta = (state.momentum - 1) / after;
   state.momentum = after;
@@ -393,7 +395,8 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
     for_each_walk(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
     exec.fill(cells.view(), CellSum{0, 0, 0, 0});
     pass.measure(exec, seeds, cells.view(), leaf_energy.view(), state.view());
-    for_each_walk(exec, "move to centre", walk, seeds.home.view(), MoveToCentre{moving, cells.view(), state.view()});
+    for_each_walk(exec, "move past centre", walk, seeds.home.view(),
+                  MovePastCentre{moving, cells.view(), state.view()});
     sum_split_into(exec, energy.view(), leaf_energy.view());
     exec.for_each("finish pass", 1, finish);
   });

@@ -49,7 +49,8 @@ std::vector<Start> starts() {
   add("torus", shapes::torus(2, 0.7, 160, 70), 256, 400, 20);
   add("torus, not relaxed", shapes::torus(2, 0.7, 160, 70), 256, 400, 0);
   add("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 300, 10);
-  add("frame of a cube, genus 5", shapes::cube_frame(12, 2), 24, 60, 5);
+  add("frame of a cube, genus 5", shapes::cube_frame(12, 2), 24, 150, 5);
+  add("frame of a cube, too few seeds", shapes::cube_frame(12, 2), 24, 60, 5);
   add("sieve, genus 9", shapes::sieve(3, 2, 2, 2), 28, 80, 5);
   add("two bodies", shapes::together(shapes::torus(2, 0.5, 100, 40), shapes::sphere({0, 0, 2}, 0.5, 24)), 400, 200, 5);
   return out;
@@ -188,6 +189,7 @@ TEST_CASE("post: a balanced fit is nearer to the surface than vertices on it, wh
   TestContext context;
   for (Start& s : starts()) {
     if (s.name == "torus, not relaxed") continue;
+    if (s.name == "frame of a cube, too few seeds") continue;  // triangles intersect, and go back to where they began
     INFO(s.name);
     PostOptions options;
     double distance[2];

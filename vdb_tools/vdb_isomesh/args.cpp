@@ -62,7 +62,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
 
   const char* grid = "Grid";
   CLI::Option* resolution = option(grid, "--resolution", raw.resolution, "R",
-                                   "voxels along the longest side, 8 to 8192", "a cell is about 5.5 voxels wide");
+                                   "voxels along the longest side, 8 to 8192", "a cell is 4.5 to 5.5 voxels wide");
   option(grid, "--voxel-size", raw.voxel_size, "S", "the same in world units, instead of --resolution", "")
       ->excludes(resolution);
   option(grid, "--band", raw.band, "D", "thickness of the shell in voxels, 1 to 20", "2");
