@@ -13,6 +13,7 @@ namespace {
 
 }  // namespace
 
+bool can_write_vdb() { return false; }
 void save_shell(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&,
                 const StageWriteOptions&) {
   throw_without_openvdb(ErrorCode::unwritable_output, path);

@@ -1,7 +1,5 @@
 // PCD, the Point Cloud Library's format: a header of text, then rows as text, as binary, or columns packed by LZF.
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "io/face_collector.h"
 #include "io/lzf.h"
@@ -115,9 +113,12 @@ class PcdReader {
   }
 
   void settle() {
+    if (h_.width > 0 && h_.height > kMaxSoupVertices / h_.width)
+      source_.refuse("WIDTH " + std::to_string(h_.width) + " times HEIGHT " + std::to_string(h_.height) +
+                     " is more than " + std::to_string(kMaxSoupVertices) + " points; split the file");
     if (h_.points < 0) h_.points = h_.width < 0 ? 0 : h_.height > 0 ? h_.width * h_.height : h_.width;
     if (h_.points > kMaxSoupVertices || h_.points == 0) source_.refuse("it promises no points, or too many");
-    if (h_.width >= 0 && h_.width <= kMaxSoupVertices && h_.height > 0 && h_.width * h_.height != h_.points)
+    if (h_.width >= 0 && h_.height > 0 && h_.width * h_.height != h_.points)
       source_.refuse("WIDTH times HEIGHT is " + std::to_string(h_.width * h_.height) + ", POINTS " +
                      std::to_string(h_.points) + ": the header is damaged");
     for (PcdField& field : h_.fields) {

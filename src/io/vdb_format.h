@@ -8,7 +8,6 @@ constexpr int kVersion = 1;
 constexpr char kKeyStage[] = "isoshell:stage";
 constexpr char kKeyVersion[] = "isoshell:version";
 constexpr char kKeyOptions[] = "isoshell:options";
-constexpr char kKeyInput[] = "isoshell:input_sha256";
 constexpr char kKeyFrame[] = "isoshell:frame";
 constexpr char kKeyBand[] = "isoshell:band_vox";
 constexpr char kKeyClosing[] = "isoshell:closing_vox";

@@ -4,7 +4,6 @@
 #include <tbb/parallel_invoke.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "core/voxel_set.h"
@@ -23,6 +22,8 @@ namespace isoshell {
 namespace {
 
 using namespace vdb_format;
+
+constexpr int64_t kMostOfAMesh = int64_t(1) << 36;  // of anything: indices have 32 bits
 
 /// One stage file in memory.
 class StageReader {
@@ -118,7 +119,10 @@ InputTopology read_topology(const StageReader& file) {
       .get("euler", t.euler)
       .get("genus", t.genus)
       .get("area_world", t.area_world);
-  if (!in.ok()) file.fail("metadata \"" + std::string(kKeyTopology) + "\" is not complete: " + text);
+  const auto holds = [](int64_t count, int64_t least) { return count >= least && count <= kMostOfAMesh; };
+  if (!in.ok() || !holds(t.components, 0) || !holds(t.boundary_loops, 0) || !holds(t.euler, -kMostOfAMesh) ||
+      !holds(t.genus, -1) || !std::isfinite(t.area_world) || t.area_world < 0)
+    file.fail("metadata \"" + std::string(kKeyTopology) + "\" is not the topology of a mesh: " + text);
   return t;
 }
 
@@ -317,7 +321,6 @@ StageInfo read_info(const StageReader& file) {
   info.format_version = file.number(kKeyVersion, 1, kVersion);
   info.creator = file.text(kKeyCreator, false);
   info.options_json = file.text(kKeyOptions, false);
-  info.input_sha256 = file.text(kKeyInput, false);
   if (file.has(kKeyClosing)) info.closing_vox = file.number(kKeyClosing, 0, kMaxClosingVox);
   const std::string prefix = kKeyDigest;
   for (const auto& [key, value] : file.texts())

@@ -1,6 +1,5 @@
 // Writing stage files. Every grid is made and compressed on its own, several at a time, and they are joined behind one
 // header: OpenVDB by itself keeps all grids in memory and compresses one leaf after the other.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +78,6 @@ class StageWriter {
     text(kKeyCreator, kCreator);
     text(kKeyFrame, frame_text(frame));
     text(kKeyOptions, options.options_json);
-    if (!options.input_sha256.empty()) text(kKeyInput, options.input_sha256);
     if (options.closing_vox >= 0) text(kKeyClosing, std::to_string(options.closing_vox));
     if (stage) {
       stage_ = stage;
@@ -278,6 +276,8 @@ void write_preview(const std::string& path, const LatticeFrame& frame, const She
 }
 
 }  // namespace
+
+bool can_write_vdb() { return true; }
 
 void save_shell(const std::string& path, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
                 const StageWriteOptions& options) {

@@ -101,7 +101,12 @@ TEST_CASE("args: values outside their range are named with the range", "[cli][ar
   CHECK(contains(refusal({"a.obj", "b.ply", "--vertices", "3"}), "--vertices is 3; it must be 4 to"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--resolution", "8193"}), "8 to 8192"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--band", "0"}), "1 to 20"));
+  CHECK(refusal({"a.obj", "b.ply", "--vertices", "3000000000"}) ==
+        "--vertices is 3000000000; it must be 4 to 2147483647");
+  CHECK(refusal({"a.obj", "b.ply", "--step", "0"}) == "--step is 0; it must be 0.00390625 to 1000");
   CHECK(contains(refusal({"a.obj", "b.ply", "--edge-length", "-1"}), "more than 0"));
+  for (const char* growth : {"0.5", "1", "11", "nan"})
+    CHECK(contains(refusal({"a.obj", "b.ply", "--gradation", growth}), "it must be more than 1 and at most 10"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--voxel-size", "nan"}), "voxel-size"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--vertices", "many"}), "vertices"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--close-gaps", "31vox"}), "0 to 30"));
@@ -117,6 +122,7 @@ TEST_CASE("args: what is no number is refused by name, with what it must be", "[
   CHECK(refusal({"a.obj", "b.ply", "--vertices", "nan"}) == "--vertices is 'nan'; it must be a whole number");
   CHECK(refusal({"a.obj", "b.ply", "--band", "1.5"}) == "--band is '1.5'; it must be a whole number");
   CHECK(refusal({"a.obj", "b.ply", "--step", "far"}) == "--step is 'far'; it must be a number");
+  CHECK(refusal({"a.obj", "b.ply", "--iso", "abc"}) == "--iso is 'abc'; it must be a number");
   CHECK(contains(refusal({"a.obj", "b.ply", "--edge-length", "nan"}), "--edge-length is nan; it must be more than 0"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--tolerance", "nan"}), "0 to 1"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--step", "-1"}), "--step is -1; it must be"));
@@ -132,6 +138,9 @@ TEST_CASE("args: what excludes each other is refused", "[cli][args]") {
   CHECK_FALSE(refusal({"a.obj", "b.ply", "--resolution", "64", "--voxel-size", "1"}).empty());
   CHECK_FALSE(refusal({"a.obj", "b.ply", "-v", "-q"}).empty());
   CHECK(contains(refusal({"a.obj", "-", "--output-format", "ply", "--stats", "-"}), "standard output"));
+  for (const char* save : {"--save-shell", "--save-voronoi"})
+    CHECK(contains(refusal({"a.obj", "b.ply", save, "-"}), "cannot be written to standard output"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--method", "shell", "--adaptivity", "1"}), "--method sheet"));
 }
 
 TEST_CASE("args: files must say what they are", "[cli][args]") {

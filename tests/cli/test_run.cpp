@@ -75,11 +75,10 @@ TEST_CASE("run: statistics have every key of schema 1, and null for what is not 
   CHECK(keys(j["digests"]) == std::set<std::string>{"mesh", "samples", "seeds", "sheet", "sites", "surface"});
 }
 
-TEST_CASE("run: a run on a device names it and gives the bytes of the CPU", "[cli]") {
+TEST_CASE("run: a run on a device names it and gives the bytes of the CPU", "[.device]") {
   Folder folder;
   write_ball(folder);
   const auto r = folder.run("ball.off out.off --stats out.json -v --device cuda:0" + kQuick);
-  if (r.status == 8) return;  // no device; test_command looks at the message
   REQUIRE(r.status == 0);
   const Json j = Json::parse(folder.content("out.json"));
   CHECK(j["device"] == "cuda");
@@ -227,6 +226,21 @@ TEST_CASE("run: resumed from either stage file, the result is the same, byte by 
   }
 }
 
+TEST_CASE("run: every file that a stage is kept in is looked at before any work", "[cli][vdb]") {
+  Folder folder;
+  write_ball(folder);
+  fs::create_directory(folder / "a.vdb.d");
+  folder.write("v.preview.vdb", "precious");
+  for (const char* run : {"ball.off out.ply --save-voronoi v.vdb", "ball.off v.vdb --stop-after voronoi"}) {
+    const auto r = folder.run(run + kQuick);
+    CHECK(r.status == 4);
+    CHECK(contains(r.err, "v.preview.vdb: exists already"));
+  }
+  CHECK(folder.run("ball.off out.ply --save-voronoi w.vdb --save-shell ./w.preview.vdb" + kQuick).status == 2);
+  REQUIRE(folder.run("ball.off out.ply --save-voronoi a.vdb.d/x" + kQuick).status == 0);
+  CHECK(folder.has("a.vdb.d/x.preview.vdb"));
+}
+
 TEST_CASE("run: options that a stage file has fixed are refused", "[cli][vdb]") {
   Folder folder;
   write_ball(folder);
@@ -236,6 +250,9 @@ TEST_CASE("run: options that a stage file has fixed are refused", "[cli][vdb]") 
   CHECK(read_mesh((folder / "out.ply").string()).vertices.size() == 200);
   REQUIRE(folder.run("ball.off voronoi.vdb --stop-after voronoi" + kQuick).status == 0);
   CHECK(folder.run("voronoi.vdb out2.ply --vertices 200").status == 2);
+  CHECK(contains(folder.run("shell.vdb out3.ply --method shell --adaptivity 1").err, "--method sheet"));
+  REQUIRE(folder.run("ball.off paper.vdb --stop-after shell --method shell" + kQuick).status == 0);
+  CHECK(contains(folder.run("paper.vdb out3.ply --adaptivity 1").err, "--method sheet"));
   folder.write("fake.vdb", folder.content("shell.vdb").substr(0, 3000));
   CHECK(folder.run("fake.vdb out3.ply").status == 3);
 }

@@ -2,9 +2,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -112,7 +114,6 @@ Products make_products(int64_t site_count, int64_t point_count, int64_t seed_cou
 StageWriteOptions some_options() {
   StageWriteOptions options;
   options.options_json = R"({"vertices": 1000})";
-  options.input_sha256 = "0123abc";
   options.closing_vox = 3;
   return options;
 }
@@ -169,9 +170,29 @@ TEST_CASE("vdb: a stage file gives back frame, topology and options to the last 
   CHECK(back.info.stage == "shell");
   CHECK(back.info.format_version == 1);
   CHECK(back.info.options_json == R"({"vertices": 1000})");
-  CHECK(back.info.input_sha256 == "0123abc");
   CHECK(back.info.closing_vox == 3);
   CHECK(back.info.digests.at("shell") == digest_text(digest(p.shell)));
+}
+
+TEST_CASE("vdb: a stage file whose topology no mesh can have is refused", "[vdb][stage]") {
+  const TemporaryFile file("topology.vdb");
+  const auto refused = [&](auto change) {
+    Products p = make_products(50, 20, 4);
+    change(p.surface.topology);
+    StageWriteOptions options = some_options();
+    options.overwrite = true;
+    save_shell(file.path, p.surface, p.samples, p.shell, options);
+    return is_refused(file.path);
+  };
+  CHECK_FALSE(refused([](InputTopology& t) { t.genus = -1; }));
+  CHECK(refused([](InputTopology& t) { t.genus = -2; }));
+  CHECK(refused([](InputTopology& t) { t.genus = std::numeric_limits<int64_t>::max(); }));
+  CHECK(refused([](InputTopology& t) { t.euler = std::numeric_limits<int64_t>::min(); }));
+  CHECK(refused([](InputTopology& t) { t.components = -1; }));
+  CHECK(refused([](InputTopology& t) { t.boundary_loops = int64_t(1) << 40; }));
+  CHECK(refused([](InputTopology& t) { t.area_world = -1; }));
+  CHECK(refused([](InputTopology& t) { t.area_world = std::nan(""); }));
+  CHECK(refused([](InputTopology& t) { t.area_world = std::numeric_limits<double>::infinity(); }));
 }
 
 TEST_CASE("vdb: a Voronoi file gives back the seeds and the labels as well", "[vdb][stage]") {

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
+#include <type_traits>
 
 #include "isoshell/error.h"
 #include "vdb_isomesh/help.h"
+#include "vdb_isomesh/ranges.h"
 
 namespace isoshell::tool {
 namespace {
@@ -32,6 +33,7 @@ struct Raw {
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
   std::string seed, close_gaps, method, fit, device, stop_after, require, max_memory, progress;
   bool verbose = false, quiet = false, help = false, version = false;
+  std::vector<std::string> reals;  ///< options that take any number, not only whole ones
 };
 
 void describe(CLI::App& app, Arguments& a, Raw& raw) {
@@ -42,6 +44,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
 
   const auto option = [&](const char* group, const char* name, auto& value, const char* value_name, const char* text,
                           const char* fallback) {
+    if (std::is_floating_point_v<std::decay_t<decltype(value)>>) raw.reals.push_back(name);
     return app.add_option(name, value, text)->group(group)->type_name(value_name)->default_str(fallback);
   };
   const auto flag = [&](const char* group, const char* name, bool& value, const char* text) {
@@ -149,15 +152,8 @@ uint64_t parse_seed(const std::string& text) {
   return value;
 }
 
-void check_range(const std::string& option, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << option << " is " << value << "; it must be ";
-  if (high == std::numeric_limits<double>::max())
-    text << (low == std::numeric_limits<double>::min() ? "more than 0" : "0 or more");
-  else
-    text << std::fixed << std::setprecision(0) << low << " to " << high;
-  refuse(text.str());
+void check_range(const std::string& option, double value, Range range) {
+  if (!range.holds(value)) refuse(option + " is " + number_text(value) + "; it must be " + range.text());
 }
 
 void set_gaps(const std::string& text, RemeshOptions& options) {
@@ -166,7 +162,7 @@ void set_gaps(const std::string& text, RemeshOptions& options) {
   const bool voxels = unit != std::string::npos && unit + 3 == text.size();
   const double width = parse_number("--close-gaps", voxels ? text.substr(0, unit) : text);
   if (width < 0) refuse("--close-gaps is " + text + "; a width is 0 or more");
-  if (voxels) check_range("--close-gaps in voxels", width, 0, 2 * kMaxClosingVox);
+  if (voxels) check_range("--close-gaps in voxels", width, {0, 2 * kMaxClosingVox});
   if (voxels || width == 0)
     options.closing_vox = int32_t(std::ceil(width / 2));
   else
@@ -177,7 +173,7 @@ void set_device(const std::string& text, Arguments& a) {
   if (text.compare(0, 5, "cuda:") == 0) {
     a.backend = Backend::cuda;
     const int64_t number = parse_count("--device", text.substr(5));
-    check_range("the device number", double(number), 0, 1023);
+    check_range("the device number", double(number), {0, 1023});
     a.device = int(number);
     return;
   }
@@ -202,10 +198,10 @@ void set_gate(const std::string& gate, Gates& gates) {
     gates.components = parse_count("--require components", value);
   else if (name == "min-angle" && has_value) {
     gates.min_angle_deg = parse_number("--require min-angle", value);
-    check_range("--require min-angle", *gates.min_angle_deg, 0, 60);
+    check_range("--require min-angle", *gates.min_angle_deg, {0, 60});
   } else if (name == "max-deviation" && has_value) {
     gates.max_deviation_world = parse_number("--require max-deviation", value);
-    check_range("--require max-deviation", *gates.max_deviation_world, 0, std::numeric_limits<double>::max());
+    check_range("--require max-deviation", *gates.max_deviation_world, {});
   } else {
     refuse("--require has '" + gate +
            "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, min-angle=DEG, "
@@ -237,6 +233,8 @@ void split_off_grid(Arguments& a) {
   if (a.grid.empty()) refuse("INPUT names no grid behind its colon");
 }
 
+[[noreturn]] void refuse_vdb_to_pipe() { refuse("a .vdb file cannot be written to standard output; name a file"); }
+
 /// Formats by name or option; "-" has no name to go by.
 void settle_formats(Arguments& a) {
   split_off_grid(a);
@@ -247,39 +245,38 @@ void settle_formats(Arguments& a) {
     refuse("OUTPUT is standard output; say what to write by --output-format");
   if (a.input_format.empty()) a.input_format = extension_of(a.input);
   if (a.output_format.empty() && !a.output.empty()) a.output_format = extension_of(a.output);
+  if (a.save_shell == "-" || a.save_voronoi == "-") refuse_vdb_to_pipe();
   if (a.output.empty()) return;
   if (a.stop_after == StopAfter::mesh) {
     chosen<int>("the format of OUTPUT", a.output_format, {{"ply", 0}, {"obj", 0}, {"stl", 0}, {"off", 0}});
   } else {
     if (a.output_format != "vdb") refuse("with --stop-after, OUTPUT is a .vdb file; it is '" + a.output + "'");
-    if (a.output == "-") refuse("a .vdb file cannot be written to standard output; name a file");
+    if (a.output == "-") refuse_vdb_to_pipe();
   }
 }
 
 void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   for (const CLI::Option* option : app.get_options())
     if (option->count() > 0 && !option->get_lnames().empty()) a.given.push_back(option->get_lnames()[0]);
-  const double tiny = std::numeric_limits<double>::min(), most = std::numeric_limits<double>::max();
-  const auto ranged = [&](const char* name, double value, double low, double high) {
+  const auto ranged = [&](const char* name, double value, Range range) {
     const bool given = a.was_given(name);
-    if (given) check_range(std::string("--") + name, value, low, high);
+    if (given) check_range(std::string("--") + name, value, range);
     return given;
   };
   RemeshOptions& o = a.remesh;
-  if (ranged("vertices", double(raw.vertices), 4, 2147483647)) o.vertices = raw.vertices;
-  if (ranged("edge-length", raw.edge_length, tiny, most)) o.edge_length_world = raw.edge_length;
-  if (ranged("adaptivity", raw.adaptivity, 0, 1)) o.adaptivity = raw.adaptivity;
-  if (ranged("gradation", raw.gradation, 1, 10)) o.gradation = raw.gradation;
-  if (o.gradation <= 1) refuse("--gradation is 1; it must be above 1: at 1 all edges would have one length");
+  if (ranged("vertices", double(raw.vertices), kVertices)) o.vertices = raw.vertices;
+  if (ranged("edge-length", raw.edge_length, kEdgeLength)) o.edge_length_world = raw.edge_length;
+  if (ranged("adaptivity", raw.adaptivity, kAdaptivity)) o.adaptivity = raw.adaptivity;
+  if (ranged("gradation", raw.gradation, kGradation)) o.gradation = raw.gradation;
   if (a.was_given("sizing") && a.sizing.empty()) refuse("--sizing needs the name of a .vdb file");
   if (!a.sizing.empty() && !a.was_given("vertices")) o.vertices = 0;
-  if (ranged("resolution", double(raw.resolution), 8, kMaxResolution)) o.resolution = int32_t(raw.resolution);
-  if (ranged("voxel-size", raw.voxel_size, tiny, most)) o.voxel_size_world = raw.voxel_size;
-  if (ranged("band", double(raw.band), 1, kMaxBandVox)) o.band_vox = int32_t(raw.band);
-  if (ranged("iterations", double(raw.iterations), 1, 1000000)) o.max_passes = int32_t(raw.iterations);
-  if (ranged("tolerance", raw.tolerance, 0, 1)) o.tolerance = raw.tolerance;
-  if (ranged("step", raw.step, 1.0 / kOneVoxelQ8, 1000)) o.max_step_vox = raw.step;
-  if (ranged("threads", double(raw.threads), 1, 4096)) a.threads = int(raw.threads);
+  if (ranged("resolution", double(raw.resolution), {8, kMaxResolution})) o.resolution = int32_t(raw.resolution);
+  if (ranged("voxel-size", raw.voxel_size, kEdgeLength)) o.voxel_size_world = raw.voxel_size;
+  if (ranged("band", double(raw.band), {1, kMaxBandVox})) o.band_vox = int32_t(raw.band);
+  if (ranged("iterations", double(raw.iterations), kIterations)) o.max_passes = int32_t(raw.iterations);
+  if (ranged("tolerance", raw.tolerance, kTolerance)) o.tolerance = raw.tolerance;
+  if (ranged("step", raw.step, kStep)) o.max_step_vox = raw.step;
+  if (ranged("threads", double(raw.threads), {1, 4096})) a.threads = int(raw.threads);
   if (a.was_given("iso")) {
     if (!std::isfinite(raw.iso)) refuse("--iso must be a finite number");
     a.iso = raw.iso;
@@ -288,8 +285,7 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (!raw.close_gaps.empty()) set_gaps(raw.close_gaps, o);
   if (!raw.method.empty())
     o.method = chosen<Method>("--method", raw.method, {{"sheet", Method::sheet}, {"shell", Method::shell}});
-  if (o.method == Method::shell && (!a.sizing.empty() || o.adaptivity > 0))
-    refuse("--sizing and --adaptivity need --method sheet: the paper's loop on the shell has even cells");
+  check_method(o, a.sizing);
   if (!raw.fit.empty()) o.fit = chosen<Fit>("--fit", raw.fit, {{"balanced", Fit::balanced}, {"surface", Fit::surface}});
   if (!raw.device.empty()) set_device(raw.device, a);
   if (!raw.stop_after.empty())
@@ -321,6 +317,11 @@ void refuse_leftovers(const CLI::App& app) {
 
 }  // namespace
 
+void check_method(const RemeshOptions& options, const std::string& sizing) {
+  if (options.method == Method::shell && (!sizing.empty() || options.adaptivity > 0))
+    refuse("--sizing and --adaptivity need --method sheet: the paper's loop on the shell has even cells");
+}
+
 bool Arguments::was_given(const std::string& option) const {
   return std::find(given.begin(), given.end(), option) != given.end();
 }
@@ -351,13 +352,12 @@ int64_t parse_size_bytes(const std::string& text) {
 namespace {
 
 /// CLI11 names neither the kind of number nor the remedy, and takes "-1" for the largest unsigned number.
-[[noreturn]] void refuse_conversion(const CLI::ConversionError& e) {
+[[noreturn]] void refuse_conversion(const CLI::ConversionError& e, const Raw& raw) {
   const std::string text = e.what();
   const size_t dashes = text.find("--"), equals = text.find(" = ");
   if (dashes == std::string::npos || equals == std::string::npos || equals < dashes) refuse(text + "; see --help");
   const std::string option = text.substr(dashes, equals - dashes);
-  const bool real = option == "--edge-length" || option == "--voxel-size" || option == "--tolerance" ||
-                    option == "--step" || option == "--adaptivity" || option == "--gradation";
+  const bool real = std::find(raw.reals.begin(), raw.reals.end(), option) != raw.reals.end();
   refuse(option + " is '" + text.substr(equals + 3) + "'; it must be a " + (real ? "number" : "whole number"));
 }
 
@@ -378,7 +378,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   try {
     app.parse(words);
   } catch (const CLI::ConversionError& e) {
-    refuse_conversion(e);
+    refuse_conversion(e, raw);
   } catch (const CLI::ParseError& e) {
     refuse(std::string(e.what()) + "; see --help");
   }

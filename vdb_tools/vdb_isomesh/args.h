@@ -56,6 +56,9 @@ struct CommandLine {
 /// Throws: usage.
 CommandLine parse_command_line(int argc, const char* const* argv);
 
+/// The paper's loop has even cells: refused with a sizing field or adaptivity. Throws: usage.
+void check_method(const RemeshOptions& options, const std::string& sizing);
+
 /// Bytes of "2G", "512M", "1.5k", "4GiB" or plain bytes. Throws: usage.
 int64_t parse_size_bytes(const std::string& text);
 

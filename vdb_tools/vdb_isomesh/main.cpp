@@ -1,11 +1,9 @@
 // vdb_isomesh: the command. Turns exceptions into exit statuses.
-#include <cstdio>
 #include <exception>
 #include <new>
 
 #include "isoshell/error.h"
 #include "vdb_isomesh/interrupt.h"
-#include "vdb_isomesh/memory.h"
 #include "vdb_isomesh/output.h"
 #include "vdb_isomesh/run.h"
 

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace isoshell::tool {
 
-/// Four fifths of the memory that is free to this process: the machine's, or its control group's if that is less.
-/// 0 where the system does not tell.
-int64_t default_memory_limit_bytes();
+/// Four fifths of the memory that is free to this process: the machine's, or its control group's (the folder `group`)
+/// if that is less. At least 1, or 0 where the system does not tell.
+int64_t default_memory_limit_bytes(const std::string& group = "/sys/fs/cgroup");
 
 /// Most memory the process held at any time, code and libraries included.
 int64_t process_peak_bytes();

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
 #include "isoshell/error.h"
+#include "isoshell/io/vdb_file.h"
 #include "vdb_isomesh/interrupt.h"
 
 namespace isoshell::tool {
@@ -38,13 +40,22 @@ void put(std::FILE* file, const std::string& path, const std::string& text) {
 
 }  // namespace
 
+std::string preview_path(const std::string& path) {
+  const bool named = fs::path(path).extension() == ".vdb";
+  return path.substr(0, path.size() - (named ? 4 : 0)) + ".preview.vdb";
+}
+
 void check_outputs(const Arguments& a) {
-  const std::string files[] = {a.output, a.stats, a.save_shell, a.save_voronoi};
-  for (size_t i = 0; i < std::size(files); ++i) {
+  std::vector<std::string> files = {a.output, a.stats, a.save_shell, a.save_voronoi};
+  if (!a.save_voronoi.empty()) files.push_back(preview_path(a.save_voronoi));
+  if (a.stop_after == StopAfter::voronoi && !a.output.empty()) files.push_back(preview_path(a.output));
+  if (!can_write_vdb() && (a.stop_after != StopAfter::mesh || !a.save_shell.empty() || !a.save_voronoi.empty()))
+    refuse("this build writes no .vdb files: leave out --stop-after and --save-..., or build with -DISOSHELL_VDB=ON");
+  for (size_t i = 0; i < files.size(); ++i) {
     if (files[i].empty() || files[i] == "-") continue;
     check_output(files[i], a.force);
     for (size_t j = 0; j < i; ++j)
-      if (files[i] == files[j])
+      if (fs::path(files[i]).lexically_normal() == fs::path(files[j]).lexically_normal())
         throw Error(ErrorCode::usage, "write", files[i] + " is named twice; every result needs its own file");
   }
 }

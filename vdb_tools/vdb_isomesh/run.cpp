@@ -1,6 +1,7 @@
 // Reads, calls the library step by step, keeps what was asked for, measures, writes.
 #include "vdb_isomesh/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
@@ -41,6 +42,16 @@ class Run {
   }
 
   int go() {
+    try {
+      return steps();
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::interrupted) throw;
+      throw Error(e.code(), e.stage(), "interrupted; " + what_stands());
+    }
+  }
+
+ private:
+  int steps() {
     check_outputs(a_);
     Source source = step("read", [&] { return read(); });
     read_sizing_field();
@@ -65,13 +76,12 @@ class Run {
     return finish();
   }
 
- private:
   /// Before anything is read: asking for a device that is not there should cost no time.
   void choose_device() {
     const DeviceInfo& d = record_.device = device_info(context_);
     const bool cuda = d.backend == "cuda";
     if (context_.memory_limit_bytes <= 0)
-      context_.memory_limit_bytes = cuda ? d.free_bytes / 5 * 4 : default_memory_limit_bytes();
+      context_.memory_limit_bytes = cuda ? std::max<int64_t>(d.free_bytes / 5 * 4, 1) : default_memory_limit_bytes();
     if (!cuda) return;
     console_.detail("device: cuda:" + std::to_string(d.number) + ", " + d.name + ", " + readable_bytes(d.free_bytes) +
                     " of " + readable_bytes(d.memory_bytes) + " free, driver " +
@@ -84,7 +94,7 @@ class Run {
 
   template <class Work>
   std::invoke_result_t<Work> step(const char* name, Work work) {
-    if (context_.cancel) throw Error(ErrorCode::interrupted, name, "interrupted; nothing was written");
+    if (context_.cancel) throw Error(ErrorCode::interrupted, name, "interrupted");
     console_.progress(name, 0);
     struct Book {
       Run& run;
@@ -110,8 +120,11 @@ class Run {
       std::optional<WhileWriting> writing;
       if (path != "-") writing.emplace();
       work();
+      written_ += (written_.empty() ? "" : ", ") + path;
     });
   }
+
+  std::string what_stands() const { return written_.empty() ? "nothing was written" : "written before: " + written_; }
 
   Source read() {
     record_.input.kind = classify_input(a_.input, a_.input_format);
@@ -174,7 +187,7 @@ class Run {
     soup = read_volume(a_.input, {a_.grid, a_.iso, context_.memory_limit_bytes}, volume);
     note_soup(soup);
     std::ostringstream text;
-    text << a_.input << ": grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso
+    text << input_name() << ": grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso
          << ", voxel size " << volume.voxel_size_world << ", " << counted(volume.blocks, "block");
     console_.detail(text.str());
   }
@@ -204,6 +217,7 @@ class Run {
                     "step", "seed"},
                    "is fixed by a Voronoi stage file");
     record_.kept_sizing = adopt_options(source.stage->info.options_json, a_.input, a_, options_);
+    check_method(options_, a_.was_given("sizing") ? a_.sizing : record_.kept_sizing);
     options_.band_vox = source.stage->shell.band_vox;
     if (source.stage->seeds && a_.stop_after == StopAfter::shell)
       throw Error(ErrorCode::usage, "command line", "INPUT is past the shell already; leave out --stop-after shell");
@@ -269,12 +283,6 @@ class Run {
         });
   }
 
-  /// mesh.voronoi.vdb has its picture for programs that open float grids only in mesh.voronoi.preview.vdb.
-  static std::string preview_path(const std::string& path) {
-    const size_t dot = path.rfind(".vdb");
-    return path.substr(0, dot) + ".preview.vdb";
-  }
-
   /// On the triangles alone: no stage's word is taken for it.
   void measure(const TriangleMesh& mesh) {
     record_.vertices = int64_t(mesh.vertices.size());
@@ -292,7 +300,7 @@ class Run {
   void warn_of_dirt() {
     const DirtCounts& d = record_.report.dirt;
     const auto note = [&](int64_t count, const char* what) {
-      if (count > 0) warn(a_.input + ": " + with_commas(count) + " " + what);
+      if (count > 0) warn(input_name() + ": " + with_commas(count) + " " + what);
     };
     note(d.nonfinite_vertices, "vertices that are not finite");
     note(d.dropped_faces_nonfinite, "faces dropped, they use vertices that are not finite");
@@ -331,11 +339,12 @@ class Run {
     DirtCounts dirt;
     const int64_t limit = context_.memory_limit_bytes;
     const RunEstimate e = estimate_run(source.soup, measure_topology(source.soup, dirt, context_), options_);
+    const bool by_sizing = options_.sizing && options_.vertices == 0;
     std::ostringstream text;
     text << "estimate: resolution " << e.resolution << ", voxel size " << e.voxel_size_world << ", "
          << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices")
-         << ", " << counted(e.vertices, "vertex", "vertices") << " in the result, about " << readable_bytes(e.bytes)
-         << " of " << readable_bytes(limit) << " allowed";
+         << ", " << (by_sizing ? "as many vertices as the sizing asks for" : counted(e.vertices, "vertex", "vertices"))
+         << " in the result, about " << readable_bytes(e.bytes) << " of " << readable_bytes(limit) << " allowed";
     if (options_.sizing || options_.adaptivity > 0) text << "; edges that vary may take a finer grid, and more";
     console_.result(text.str());
     if (limit > 0 && e.bytes > limit)
@@ -426,6 +435,7 @@ class Run {
   Context& context_;
   Console& console_;
   RunRecord record_;
+  std::string written_;  ///< files that are whole, for who interrupts
   Clock::time_point start_ = Clock::now();
 };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "isoshell/error.h"
+#include "vdb_isomesh/ranges.h"
 
 namespace isoshell::tool {
 namespace {
@@ -235,18 +236,27 @@ std::string adopt_options(const std::string& json, const std::string& path, cons
     const auto adopt = [&](const char* name, auto& value) {
       if (!a.was_given(name)) value = j.at(name).get<std::decay_t<decltype(value)>>();
     };
+    /// `unset` stands for an option that was not given.
+    const auto adopt_within = [&](const char* name, auto& value, Range range, double unset) {
+      const double kept = j.at(name).get<double>();
+      if (kept != unset && !range.holds(kept))
+        throw Error(ErrorCode::unreadable_input, "read",
+                    path + ": this stage file keeps " + name + " " + number_text(kept) + "; it must be " +
+                        range.text() + ": make the file again");
+      adopt(name, value);
+    };
     const bool size_given = a.was_given("vertices") || a.was_given("edge-length") || a.was_given("sizing");
     if (!size_given) {
-      adopt("vertices", o.vertices);
-      adopt("edge-length", o.edge_length_world);
+      adopt_within("vertices", o.vertices, kVertices, 0);
+      adopt_within("edge-length", o.edge_length_world, kEdgeLength, 0);
     }
-    adopt("iterations", o.max_passes);
-    adopt("tolerance", o.tolerance);
-    adopt("step", o.max_step_vox);
+    adopt_within("iterations", o.max_passes, kIterations, 0);
+    adopt_within("tolerance", o.tolerance, kTolerance, -1);
+    adopt_within("step", o.max_step_vox, kStep, 0);
     adopt("seed", o.seed);
     adopt("uniform-area", o.uniform_area);
-    if (j.contains("adaptivity")) adopt("adaptivity", o.adaptivity);
-    if (j.contains("gradation")) adopt("gradation", o.gradation);
+    if (j.contains("adaptivity")) adopt_within("adaptivity", o.adaptivity, kAdaptivity, 0);
+    if (j.contains("gradation")) adopt_within("gradation", o.gradation, kGradation, 1.2);
     if (!a.was_given("fit")) o.fit = j.at("fit") == "surface" ? Fit::surface : Fit::balanced;
     if (!a.was_given("method")) o.method = j.at("method") == "shell" ? Method::shell : Method::sheet;
     return a.was_given("sizing") ? std::string() : j.value("sizing", "");

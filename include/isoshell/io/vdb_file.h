@@ -17,7 +17,6 @@ namespace isoshell {
 /// What the caller wants to be written beside the products.
 struct StageWriteOptions {
   std::string options_json;  ///< options of the run, kept as given; at most 256 KiB
-  std::string input_sha256;  ///< of the input file; empty when unknown
   int32_t closing_vox = -1;  ///< closing radius r of the run; -1 when not chosen yet
   bool overwrite = false;    ///< replace an existing file
   bool view_grids = true;    ///< also write the grids that are only there to be looked at
@@ -29,7 +28,6 @@ struct StageInfo {
   int32_t format_version = 0;
   std::string creator;
   std::string options_json;
-  std::string input_sha256;
   int32_t closing_vox = -1;
   std::map<std::string, std::string> digests;  ///< by product: surface, sites, shell, seeds, labels
 };
@@ -46,6 +44,9 @@ struct StageFile {
 
 /// Sites of a shell: its voxels at distance 0, in canonical order, which is the order of their ids.
 SiteSet sites_of_shell(const Shell& shell, const LatticeFrame& frame);
+
+/// Whether this build can: without OpenVDB everything here that writes or reads throws.
+bool can_write_vdb();
 
 /// Writes the stage file of the shell. Written under a temporary name and renamed. Result: two saves of equal arguments
 /// give equal bytes. Throws: unwritable_output; usage when sizes do not fit one another or options_json is too long.
