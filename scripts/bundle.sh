@@ -58,7 +58,7 @@ fi
 find "$from/bench" -maxdepth 1 -name 'bench_*' -type f -perm -u+x | while read -r bench; do copy "$bench" "$folder/bench"; done
 cp LICENSE "$folder"
 
-# Everything but the C library, which is the target's own (2.36 or newer), and the driver.
+# Everything but the C library, which is the target's own (as new as this machine's, or newer), and the driver.
 find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + |
   sed -nE 's/.* => (\/[^ ]+) .*/\1/p' | sort -u |
   grep -vE '/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|mvec)|libcuda|libnvidia[^/]*)\.so[^/]*$' |
