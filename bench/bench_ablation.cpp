@@ -27,7 +27,7 @@ struct Bench {
 
   SeedSet from_levels(int32_t passes) const {
     RelaxReport ignored;
-    return relax_by_levels(prepared, start, {passes, kTolerancePpb, 0}, ignored, context);
+    return relax_by_levels(prepared, start, {passes, kTolerancePpb, 0}, true, ignored, context);
   }
   SeedSet from_strata() const { return place_seeds(prepared.sheet, start, context); }
 

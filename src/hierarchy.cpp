@@ -121,12 +121,12 @@ class Outlines {
 }  // namespace
 
 SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
-                        RelaxReport& report, Context& context) {
+                        bool tolerance_asked, RelaxReport& report, Context& context) {
   require_seed_count(prepared.sheet, options.count);
   std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
-  const bool tolerance_is_free = relax.tolerance_ppb == RelaxOptions{}.tolerance_ppb;
-  const RelaxOptions coarse{kCoarsePasses, tolerance_is_free ? kCoarseTolerancePpb : relax.tolerance_ppb,
-                            relax.max_step_q8};
+  RelaxOptions coarse = relax, finest = relax;
+  coarse.max_passes = kCoarsePasses;
+  if (!tolerance_asked) coarse.tolerance_ppb = kCoarseTolerancePpb;
   const Outlines outlines(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // outlines may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], outlines.sheet(level).topology);
@@ -140,12 +140,11 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
     if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);
   }
-  RelaxOptions finest = relax;
   if (seeds.size() == 0) {
     seeds = place_seeds(prepared.sheet, options, context);
   } else {
-    finest.max_passes = std::min(finest.max_passes, kFinestPasses);
-    if (tolerance_is_free) finest.tolerance_ppb = kFinestTolerancePpb;
+    finest.max_passes = std::min(relax.max_passes, kFinestPasses);
+    if (!tolerance_asked) finest.tolerance_ppb = kFinestTolerancePpb;
   }
   report = relax_on_sheet(prepared.sheet, seeds, finest, context);
   return seeds;

@@ -413,8 +413,9 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
-    seeds = timed(report, "relax", context,
-                  [&] { return relax_by_levels(p, seed_options, relax_options(options), report.relax, context); });
+    seeds = timed(report, "relax", context, [&] {
+      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance >= 0, report.relax, context);
+    });
   } else {
     seeds = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
     report.relax = timed(report, "relax", context, [&] {

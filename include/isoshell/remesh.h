@@ -29,7 +29,7 @@ struct RemeshOptions {
   int32_t closing_vox = -1;      ///< r; -1 chooses (0 for a closed surface)
   double closing_world = -1;     ///< width of gaps to close, world units; -1 means by closing_vox
   Method method = Method::sheet;
-  int32_t max_passes = 0;   ///< 0 means the method's own
+  int32_t max_passes = 0;   ///< of the finest level of seeds; 0 means the method's own
   double tolerance = -1;    ///< relative fall of the energy a pass; negative means the method's own
   double max_step_vox = 0;  ///< u; 0 means the method's own
   uint64_t seed = 0;

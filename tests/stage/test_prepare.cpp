@@ -312,3 +312,20 @@ TEST_CASE("prepare: options out of range are refused with their name", "[prepare
     }
   }
 }
+
+TEST_CASE("relax: an asked tolerance holds, also one that is the default of a single level", "[relax][stage]") {
+  RemeshOptions options;
+  options.vertices = 600;
+  Run run = prepare_with(shapes::torus(2, .7, 60, 30), options);
+  const auto passes = [&](double tolerance, int32_t most) {
+    options.tolerance = tolerance;
+    options.max_passes = most;
+    TestContext context;
+    RemeshReport report;
+    relax(run.prepared, options, report, context);
+    return report.relax.passes;
+  };
+  CHECK(passes(1, 0) < passes(-1, 0));
+  CHECK(passes(-1, 0) < passes(1e-5, 0));
+  CHECK(passes(0, 7) == 7);
+}

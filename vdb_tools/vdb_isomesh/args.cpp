@@ -76,7 +76,8 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* relaxation = "Relaxation";
   option(relaxation, "--method", raw.method, "sheet|shell",
          "sheet: exact clipped cells on the closed sheet; shell: the paper's Lloyd loop on shell voxels", "sheet");
-  option(relaxation, "--iterations", raw.iterations, "N", "most passes", "the method's own");
+  option(relaxation, "--iterations", raw.iterations, "N", "most passes, of the finest level of seeds",
+         "the method's own");
   option(relaxation, "--tolerance", raw.tolerance, "E", "stop when the energy falls by less than this part a pass",
          "the method's own");
   option(relaxation, "--step", raw.step, "U", "longest move of a seed in a pass, in voxels", "the method's own");
