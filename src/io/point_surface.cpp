@@ -18,11 +18,16 @@ constexpr int64_t kMaxGrid = int64_t(1) << 27;
 constexpr int64_t kBytesPerVoxel = 9;   // value and source, and an eighth of them on the next grid
 constexpr size_t kPullNeighbours = 16;  // points that a vertex follows
 constexpr int kPullSteps = 3;
-constexpr double kSupportVoxels = 3;     // a vertex farther than that from every point bridges
-constexpr double kPullWidth = 1.0;       // of the weights, in voxels or spacings, whichever is larger
-constexpr double kVoxelSpacings = 1.5;   // noise of a scan is about its spacing: finer voxels make handles of it
-constexpr double kLineSpacings = 0.01;   // points that keep so near to a line have no side
-constexpr double kMinSupported = 0.1;    // of a component's vertices, else it is a bubble
+constexpr double kSupportVoxels = 3;    // a vertex farther than that from every point bridges
+constexpr double kPullWidth = 1.0;      // of the weights, in voxels or spacings, whichever is larger
+constexpr double kVoxelSpacings = 1.5;  // noise of a scan is about its spacing: finer voxels make handles of it
+constexpr double kLineSpacings = 0.01;  // points that keep so near to a line have no side
+constexpr double kMinSupported = 0.1;   // of a component's vertices, else it is a bubble
+constexpr size_t kOutlierNeighbours = 8, kFewestForOutliers = 200;
+constexpr double kOutlierToNeighbours = 2.2;  // times as far from its neighbours as they, or all points, from theirs
+constexpr double kGroupLink = 4;              // what such points are at most apart in a group, in the same distance
+constexpr uint32_t kSmallGroup = 12;
+constexpr double kMostOutliers = 0.1;    // of all points
 constexpr double kSmallestPart = 0.002;  // of all vertices near points; a component with fewer is noise
 
 /// The different points, and their normals in the same order.
@@ -42,6 +47,66 @@ void keep_different(std::vector<WorldPoint>& position, std::vector<WorldPoint>& 
   }
   position = std::move(points);
   normal = std::move(normals);
+}
+
+/// Distance of each point from its eighth neighbour.
+std::vector<double> distances_around(const PointTree& tree, const std::vector<WorldPoint>& position) {
+  std::vector<double> distance(position.size());
+  tbb::parallel_for(size_t(0), position.size(), [&](size_t i) {
+    std::vector<PointTree::Near> near;
+    tree.nearest(position[i], kOutlierNeighbours + 1, near);
+    distance[i] = std::sqrt(near.back().first);
+  });
+  return distance;
+}
+
+/// Leaves out points in small groups that are far from all others, and points much farther from their neighbours than
+/// those are from theirs. A cloud with many of them is uneven rather than dirty and stays as it is. Returns how many.
+int64_t drop_outliers(std::vector<WorldPoint>& position, std::vector<WorldPoint>& normal) {
+  const size_t count = position.size();
+  if (count < kFewestForOutliers) return 0;
+  const PointTree tree(position);
+  const std::vector<double> distance = distances_around(tree, position);
+  std::vector<double> sorted = distance;
+  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(count / 2), sorted.end());
+  const double usual = sorted[count / 2];
+  std::vector<uint8_t> is_outlier(count);
+  Buffer<uint32_t> parent{int64_t(count)};
+  std::iota(parent.view().data, parent.view().data + count, 0u);
+  std::vector<uint32_t> sparse;
+  for (uint32_t i = 0; i < count; ++i)
+    if (distance[i] > kOutlierToNeighbours * usual) sparse.push_back(i);
+  std::vector<PointTree::Near> near;
+  std::vector<double> around;
+  for (const uint32_t i : sparse) {
+    tree.nearest(position[i], kOutlierNeighbours + 1, near);
+    around.clear();
+    for (const auto& [distance_sq, n] : near) {
+      if (n == i) continue;
+      around.push_back(distance[n]);
+      if (distance_sq <= kGroupLink * kGroupLink * usual * usual) join(parent.view(), i, n);
+    }
+    std::nth_element(around.begin(), around.begin() + std::ptrdiff_t(around.size() / 2), around.end());
+    is_outlier[i] = distance[i] > kOutlierToNeighbours * around[around.size() / 2];
+  }
+  // A group with a point that is not sparse is no small one: that point has as many others around it.
+  std::vector<uint32_t> members(count);
+  for (uint32_t i = 0; i < count; ++i)
+    members[find_root(parent.view(), i)] += distance[i] > kOutlierToNeighbours * usual ? 1 : kSmallGroup;
+  for (const uint32_t i : sparse)
+    if (members[find_root(parent.view(), i)] < kSmallGroup) is_outlier[i] = 1;
+  const int64_t dropped = std::count(is_outlier.begin(), is_outlier.end(), uint8_t(1));
+  if (dropped == 0 || double(dropped) > kMostOutliers * double(count)) return 0;
+  size_t kept = 0;
+  for (size_t i = 0; i < count; ++i) {
+    if (is_outlier[i]) continue;
+    position[kept] = position[i];
+    if (!normal.empty()) normal[kept] = normal[i];
+    ++kept;
+  }
+  position.resize(kept);
+  if (!normal.empty()) normal.resize(kept);
+  return dropped;
 }
 
 /// Squares of distances must neither vanish nor overflow.
@@ -164,6 +229,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
     throw Error(ErrorCode::nothing_to_mesh, "points",
                 "only " + std::to_string(info.points) + " different points; a surface needs at least 4");
   check_extent(position);
+  info.outliers = drop_outliers(position, normal);
   const PointTree tree(position);
   const OrientedPoints points = orient_points(position, std::move(normal), tree);
   if (on_a_line(points.position, kLineSpacings * points.spacing))

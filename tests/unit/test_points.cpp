@@ -173,6 +173,31 @@ TEST_CASE("points: normals that point anywhere, or all inwards, are turned", "[p
   }
 }
 
+TEST_CASE("points: five in a hundred far from all others are left out, sparse parts are not", "[points][unit]") {
+  PointCloud cloud = ball(3000, -2, 0, true);
+  const std::vector<WorldPoint> on_ball = cloud.position;
+  for (uint64_t i = 0; i < 150; ++i) {
+    const auto at = [&](uint64_t axis) {
+      return double(random_bits(5, 3 * i + axis) >> 11) / 9007199254740992. * 16 - 8;
+    };
+    cloud.position.push_back({at(0), at(1), at(2)});
+    cloud.normal.push_back({0, 0, 1});
+  }
+  PointSurfaceInfo info;
+  const TriangleSoup soup = surface_of_points(cloud, 0, info);
+  CHECK(info.outliers > 120);
+  CHECK(info.outliers <= 150);
+  const InputTopology t = topology_of(soup);
+  CHECK(t.components == 1);
+  CHECK(t.genus == 0);
+  CHECK(volume(soup) == Approx(4.0 / 3 * 3.14159265 * 27).epsilon(0.03));
+  PointCloud uneven;
+  for (size_t i = 0; i < on_ball.size(); ++i)
+    if (on_ball[i].z < 0 || i % 10 == 0) uneven.position.push_back(on_ball[i]);
+  surface_of_points(uneven, 0, info);
+  CHECK(info.outliers == 0);
+}
+
 TEST_CASE("points: a scan from one side becomes one closed surface, true where there are points", "[points][unit]") {
   PointSurfaceInfo info;
   const TriangleSoup soup = surface_of_points(ball(6000, 0.2, 0.004, false), 0, info);

@@ -175,6 +175,8 @@ class Run {
          << ", surface from voxels of " << points.voxel_size_world << ", normals "
          << (points.normals_given ? "given" : "estimated") << (points.normals_turned ? " and turned" : "");
     console_.detail(text.str());
+    if (points.outliers > 0)
+      warn(input_name() + ": " + counted(points.outliers, "point") + " left out, far from all others");
     if (points.open_part < kNotableOpenPart) return;
     text.str("");
     text << input_name() << ": " << std::lround(100 * points.open_part)
