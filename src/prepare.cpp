@@ -1,0 +1,336 @@
+// prepare (see remesh.h): mends and unites what was given, chooses the grid, voxelises, builds the sheet. The grid is
+// made finer while the sheet lacks the input's topology.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "check_options.h"
+#include "choose_grid.h"
+#include "core/copy_product.h"
+#include "core/hollows.h"
+#include "core/joined_components.h"
+#include "isoshell/error.h"
+#include "isoshell/memory_estimate.h"
+#include "isoshell/mend.h"
+#include "isoshell/remesh.h"
+#include "isoshell/to_host.h"
+#include "shown_parts.h"
+#include "sizing.h"
+#include "thin_walls.h"
+#include "timed.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int32_t kMaxAutoClosingVox = 4;
+
+/// Sites, samples and sheet of a surface, with the closing that is asked for or found.
+class Preparation {
+ public:
+  Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
+      : options_(options), report_(report), context_(context) {}
+
+  Prepared from(LatticeSurface surface, int32_t closing_vox) {
+    Prepared p;
+    p.surface = std::move(surface);
+    p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
+    p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
+    const bool shows_handles = shows_most_handles(options_, p.surface.topology);
+    join_components(p);
+    mark_hollows(p);
+    if (!shows_handles) {
+      const int32_t grown = growth_for_edge(edge_vox(p));
+      p.closing_vox = 2 * grown;
+      grow(p, grown);
+      return p;
+    }
+    if (closing_vox >= 0) {
+      p.closing_vox = closing_vox;
+      p.sheet = sheet(p, closing_vox);
+    } else {
+      close_leaks(p);
+    }
+    if (!p.surface.topology.closed && is_thinner_than(p, 1)) keep_sides_apart(p);
+    return p;
+  }
+
+ private:
+  /// Surfaces that pass through each other bound one solid, whose genus none of them tells.
+  void join_components(Prepared& p) {
+    InputTopology& input = p.surface.topology;
+    if (input.genus < 0 || input.components < 2) return;
+    const int64_t joins =
+        timed(report_, "topology", context_, [&] { return count_joins(*OnHost(p.surface), *OnHost(p.samples)); });
+    if (joins == 0) return;
+    input.components -= joins;
+    input.genus = -1;
+  }
+
+  /// What inner surfaces bound is open to the outside, as it were.
+  void mark_hollows(Prepared& p) {
+    const InputTopology& input = p.surface.topology;
+    if (!input.closed || !input.oriented || input.components < 2) return;
+    const std::vector<Voxel> hollows = timed(report_, "hollows", context_, [&] {
+      return find_hollows(*OnHost(p.surface), *OnHost(p.sites), *OnHost(p.samples));
+    });
+    if (hollows.empty()) return;
+    p.sites = to_host(p.sites);
+    p.sites.hollows = Buffer<Voxel>(int64_t(hollows.size()));
+    std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
+  }
+
+  double edge_vox(const Prepared& p) const {
+    return usual_edge_length(options_, p.surface.topology.area_world) / p.surface.frame.voxel_size;
+  }
+
+  /// Whether what the sheet bounds is a crust, on average so thin.
+  bool is_thinner_than(const Prepared& p, double thickness_vox) const {
+    const double voxel = p.sheet.frame.voxel_size, area_vox = sheet_area_world(p.sheet) / (voxel * voxel);
+    return double(six_volume_vox(p.sheet, context_)) / 3 < thickness_vox * area_vox;
+  }
+
+  /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not
+  /// close what no one asked to close.
+  void keep_sides_apart(Prepared& p) {
+    int32_t grown = growth_for_edge(std::sqrt(2) * edge_vox(p));  // both sides share the vertices
+    for (;; grown /= 2) {
+      grow(p, grown);
+      if (grown == 1 || is_thinner_than(p, 2 * grown + 3)) return;
+    }
+  }
+
+  void grow(Prepared& p, int32_t grown_vox) {
+    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    timed(report_, "sheet", context_, [&] { grow_walls(p, grown_vox, smallest, context_); });
+  }
+
+  Sheet sheet(const Prepared& p, int32_t closing_vox) {
+    const InputTopology& input = p.surface.topology;
+    const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
+    const int64_t genus = !input.closed || !input.oriented ? kNoGenus : input.genus < 0 ? kUnknownGenus : input.genus;
+    return timed(report_, "sheet", context_, [&] {
+      return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest, genus}, context_);
+    });
+  }
+
+  /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in
+  /// and the solid collapses to a crust.
+  void close_leaks(Prepared& p) {
+    Sheet widest = sheet(p, kMaxAutoClosingVox);
+    const int64_t widest_volume = six_volume_vox(widest, context_);
+    for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
+      p.sheet = {};
+      p.sheet = sheet(p, p.closing_vox);
+      if (10 * six_volume_vox(p.sheet, context_) >= 9 * widest_volume) return;
+    }
+    p.sheet = std::move(widest);
+  }
+
+  const RemeshOptions& options_;
+  RemeshReport& report_;
+  Context& context_;
+};
+
+bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
+
+/// How far the sheet's topology is from the input's; 0 when they agree, or when the input's is not known.
+int64_t topology_gap(const Prepared& p) {
+  const InputTopology& input = p.surface.topology;
+  if (!can_compare(input)) return 0;
+  return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
+}
+
+int32_t asked_closing(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
+  if (options.closing_world >= 0) {
+    const double r = std::ceil(options.closing_world / frame.voxel_size / 2);
+    if (r > kMaxClosingVox) {
+      std::ostringstream text;
+      text << "a gap of " << options.closing_world << " is " << 2 * r << " voxels wide on this grid; at most "
+           << 2 * kMaxClosingVox << " can be closed: lower the resolution";
+      throw Error(ErrorCode::usage, "close-gaps", text.str());
+    }
+    return int32_t(r);
+  }
+  return options.closing_vox < 0 && input.closed ? 0 : options.closing_vox;
+}
+
+/// A surface of slivers alone gives a sheet around a line, not a mesh that anyone asked for.
+void check_area(const InputTopology& input) {
+  if (!(input.area_world > 0))
+    throw Error(ErrorCode::nothing_to_mesh, "topology",
+                "no face has an area: the surface is a line or a point; give one with faces that span an area");
+}
+
+/// Edge of a voxel of the first grid.
+double voxel_edge(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options) {
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  return LatticeFrame::around(lo, hi, first_resolution(options, input.area_world, lo, hi)).voxel_size;
+}
+
+/// Of faces that were cut: closed, whatever their edges say, and of a genus that nobody knows.
+InputTopology topology_of_union(InputTopology input, const UniteReport& unite) {
+  input.closed = input.oriented = true;
+  input.components = unite.joined_components;
+  input.genus = -1;
+  return input;
+}
+
+/// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
+/// yet.
+bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
+  if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) {
+    report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
+    return true;
+  }
+  const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
+                           std::to_string(estimate.bytes >> 20) + " MiB, more than the limit of " +
+                           std::to_string(context.memory_limit_bytes >> 20) + " MiB";
+  if (!refining) throw Error(ErrorCode::out_of_memory, "memory", what + "; lower --resolution or raise --max-memory");
+  report.warnings.push_back("the grid was not refined further: " + what);
+  return false;
+}
+
+void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  if (options.want_shell || options.method == Method::shell) {
+    p.shell = timed(report, "shell", context, [&] { return build_shell(p.sites, {options.band_vox}, context); });
+    report.active_voxels = p.shell.voxels.voxel_count();
+    report.leaves = p.shell.voxels.leaf_count();
+    note_digest(options, report, context, "shell", p.shell);
+  }
+  report.input = p.surface.topology;
+  report.frame = p.surface.frame;
+  report.band_vox = options.band_vox;
+  report.closing_vox = p.closing_vox;
+  report.grown_vox = p.grown_vox;
+  report.sites = p.sites.voxels.voxel_count();
+  report.sheet_vertices = p.sheet.vertex_count();
+  report.sheet = p.sheet.topology;
+  report.topology_compared = can_compare(report.input);
+  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
+  timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
+  note_digest(options, report, context, "surface", p.surface);
+  note_digest(options, report, context, "sites", p.sites);
+  note_digest(options, report, context, "samples", p.samples);
+  note_digest(options, report, context, "sheet", p.sheet);
+}
+
+/// A field of one length that decides the count is an edge length.
+RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
+  if (options.sizing && options.vertices <= 0 && options.adaptivity <= 0)
+    if (const double length = even_length_world(*options.sizing, soup); length > 0) options.edge_length_world = length;
+  return options;
+}
+
+/// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
+/// Lengths are first found on the grid that even cells would have.
+int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+                               int32_t usual, RemeshReport& report, Context& context) {
+  memory_allows(estimate_run(soup, input, options, usual), false, report, context);
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
+  LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
+  surface.topology = input;
+  Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+  RemeshReport unsaid;
+  timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
+  if (p.sheet.lengths.at.empty()) return usual;
+  const double cell_world = smallest_cell_vox(options, p, context) * frame.voxel_size;
+  int32_t resolution =
+      resolution_for_cell(frame.voxel_size * (usual - 1), cell_world, vertex_target(options, input.area_world));
+  while (resolution > usual && context.memory_limit_bytes > 0 &&
+         estimate_run(soup, input, options, resolution).bytes > context.memory_limit_bytes)
+    resolution = std::max(usual, resolution - resolution / 8);
+  return resolution;
+}
+
+/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
+Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+                              RemeshReport& report, Context& context) {
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
+  const int32_t usual = first_resolution(options, input.area_world, lo, hi);
+  const int32_t first = free_grid && wants_lengths(options)
+                            ? resolution_for_lengths(soup, input, options, usual, report, context)
+                            : usual;
+  // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
+  const bool reachable = can_compare(input) && shows_all_parts(options, input);
+  const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
+
+  Prepared best;
+  int64_t best_gap = INT64_MAX;
+  int fruitless = 0;
+  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
+       resolution += std::max(1, resolution / 2)) {
+    if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
+    const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
+    LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
+    surface.topology = input;
+    Prepared p;
+    try {
+      p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+    } catch (const Error& error) {  // what is there is better than nothing
+      if (error.code() != ErrorCode::out_of_memory || best_gap == INT64_MAX) throw;
+      report.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
+      break;
+    }
+    const int64_t gap = topology_gap(p);
+    fruitless = gap < best_gap ? 0 : fruitless + 1;
+    if (gap < best_gap) {
+      best_gap = gap;
+      best = std::move(p);
+    }
+  }
+  finish(best, options, report, context);
+  warn_of_topology(best, input, options, report);
+  return best;
+}
+
+}  // namespace
+
+Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
+                 Context& context) {
+  check_options(options);
+  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+  finish(p, options, report, context);
+  return p;
+}
+
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+  check_options(asked);
+  const RemeshOptions options = with_even_length(asked, soup);
+  report.dirt = soup.dirt;
+  const InputTopology given =
+      timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
+  check_area(given);
+  TriangleSoup changed;
+  const TriangleSoup* current = &soup;
+  InputTopology input = given;
+  const auto measure = [&] {
+    DirtCounts counted_already;
+    return measure_topology(*current, counted_already, context);
+  };
+  if (!given.closed || !given.oriented) {
+    const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
+    changed = timed(report, "mend", context, [&] { return mend(soup, {closing_chosen}, report.mend); });
+    current = &changed;
+    input = timed(report, "topology", context, measure);
+  }
+  if (input.closed && input.oriented && input.components > 1) {
+    const UniteOptions unite_options{options.outer_only, voxel_edge(*current, input, options) / 2};
+    TriangleSoup united = timed(report, "unite", context, [&] { return unite(*current, unite_options, report.unite); });
+    if (report.unite.changed_anything()) {
+      changed = std::move(united);
+      current = &changed;
+      input = timed(report, "topology", context, measure);
+      if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
+    }
+  }
+  Prepared prepared = prepare_on_best_grid(*current, input, options, report, context);
+  report.input = given;
+  return prepared;
+}
+
+}  // namespace isoshell
