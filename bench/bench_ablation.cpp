@@ -4,7 +4,6 @@
 //   bench_ablation MESH [--vertices K] [--threads T]
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // CUDA's nano_index_grid: nodes straight from the sorted leaves. The host writes what lies before them, since it knows
 // NanoVDB; the device writes leaves, then lower nodes with their places in the upper ones, then the boxes on top.
 #include <climits>
-#include <cstring>
 
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"

@@ -3,7 +3,6 @@
 
 #include <nanovdb/NanoVDB.h>
 
-#include <cmath>
 #include <cstring>
 
 #include "voxel/leaf.h"

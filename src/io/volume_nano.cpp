@@ -1,13 +1,11 @@
 // Scalar grids of .nvdb files as fields: segments, each an index of its grids and then their bytes.
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <memory>
 
 #include "grid/nano_volume.h"
 #include "io/vdb_cursor.h"
 #include "io/volume_readers.h"
-#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {

@@ -9,7 +9,6 @@
 #include "io/memory_stream.h"
 #include "io/vdb_stream.h"
 #include "io/volume_readers.h"
-#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {

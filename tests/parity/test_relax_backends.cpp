@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "isoshell/digest.h"
-#include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
 #include "support/relax_sheets.h"
