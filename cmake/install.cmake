@@ -3,7 +3,8 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(isoshell_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/isoshell)
 
-install(TARGETS isoshell EXPORT isoshell ARCHIVE COMPONENT dev LIBRARY COMPONENT runtime)
+install(TARGETS isoshell EXPORT isoshell ARCHIVE COMPONENT dev LIBRARY COMPONENT runtime
+        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/isoshell DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT isoshell NAMESPACE isoshell:: FILE isoshellTargets.cmake DESTINATION ${isoshell_cmake_dir} COMPONENT dev)
 
@@ -13,7 +14,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/isoshellConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/isoshellConfig.cmake ${PROJECT_BINARY_DIR}/isoshellConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/openvdb.cmake
         DESTINATION ${isoshell_cmake_dir} COMPONENT dev)
+# One for each package, which may not hold the same file.
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev COMPONENT dev)
 
 if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_GENERATOR DEB)
