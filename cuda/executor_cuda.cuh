@@ -71,8 +71,7 @@ class CudaExecutor {
     if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
       throw Error(ErrorCode::internal, stage_,
                   std::string(name) + " failed on the device: " + cudaGetErrorString(status));
-    if (context_.cancel.load(std::memory_order_relaxed))
-      throw Error(ErrorCode::interrupted, stage_, "interrupted; nothing was written");
+    if (context_.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage_, "interrupted");
   }
 
   template <class T>

@@ -176,7 +176,7 @@ enum class Fit {
 };
 struct PostOptions {
   int32_t flip_rounds = 6;       ///< independent sets each time
-  int32_t smoothing_steps = 60;  ///< 0 leaves vertices where they are: flips only
+  int32_t smoothing_steps = 80;  ///< 0 leaves vertices where they are: flips only
   int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape

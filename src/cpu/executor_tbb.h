@@ -17,8 +17,7 @@ namespace isoshell {
 
 /// Throws Error{interrupted} when the context was cancelled.
 inline void check_cancel(const Context& context, const char* stage) {
-  if (context.cancel.load(std::memory_order_relaxed))
-    throw Error(ErrorCode::interrupted, stage, "interrupted; nothing was written");
+  if (context.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage, "interrupted");
 }
 
 /// Runs under the context's thread limit. One executor per stage call.

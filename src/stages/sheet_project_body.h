@@ -8,7 +8,7 @@
 
 namespace isoshell {
 
-constexpr int kSheetSmoothingSteps = 2;  ///< before projection
+constexpr int kSheetSmoothingSteps = 2;                 ///< before projection
 constexpr int kOutlineSmoothingSteps = 6;               ///< even: odd ones turn checkerboards of corners over
 constexpr int kBridgeSteps = 60;                        ///< for vertices over a gap, after projection
 constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther from the surface are over a gap
