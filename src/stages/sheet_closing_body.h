@@ -126,6 +126,30 @@ Solid complement_of_outside(Exec& exec, const VoxelSetView& walls, View<const Vo
   return solid;
 }
 
+struct IsEmptyVoxel {
+  SolidView solid;
+  View<const Voxel> voxels;
+  ISOSHELL_HD bool operator()(int64_t i) const {
+    const Voxel v = voxels[i];
+    const uint64_t word = solid.at(leaf_of_voxel(v)).word(v.x & 7);
+    return (word >> (offset_in_leaf(v) & 63) & 1) == 0;
+  }
+};
+struct CopyKeptVoxel {
+  View<const uint32_t> kept;
+  View<const Voxel> from;
+  View<Voxel> to;
+  ISOSHELL_HD void operator()(int64_t i) const { to[i] = from[kept[i]]; }
+};
+/// Those of `voxels` that the solid leaves empty.
+template <class Exec>
+Buffer<Voxel> empty_voxels(Exec& exec, const SolidView& solid, View<const Voxel> voxels) {
+  const Buffer<uint32_t> kept = exec.select(voxels.size, IsEmptyVoxel{solid, voxels});
+  Buffer<Voxel> empty = exec.template make<Voxel>(kept.size());
+  exec.for_each("copy empty voxels", kept.size(), CopyKeptVoxel{kept.view(), voxels, empty.view()});
+  return empty;
+}
+
 }  // namespace sheet_steps
 
 /// Result: with outside(r) the voxels that a path of face neighbours, all farther than r from every site (centre to
@@ -156,11 +180,13 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
 }
 
 /// Adds every voxel that the solid encloses outside of hollows. A well-composed solid stays so: only whole components
-/// of its boundary go.
+/// of its boundary go. A hollow that the solid fills is left out: leaves wholly inside have no walls, and the outside
+/// would spread through them.
 template <class Exec>
 void fill_cavities(Exec& exec, Solid& solid, View<const Voxel> hollows = {}) {
+  const Buffer<Voxel> open = sheet_steps::empty_voxels(exec, solid.view(), hollows);
   VoxelSet walls = std::move(solid.set);
-  solid = sheet_steps::complement_of_outside(exec, walls.view(), hollows);
+  solid = sheet_steps::complement_of_outside(exec, walls.view(), View<const Voxel>(open.view()));
   solid.blocked = std::move(walls);
 }
 

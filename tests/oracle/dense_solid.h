@@ -44,8 +44,10 @@ inline Dense thickened(const Dense& set, int32_t r) {
   return out;
 }
 
-/// Voxels off `blocked` that face neighbours off `blocked` join to the border.
-inline Dense outside_of(const Dense& blocked) {
+using Voxels = std::vector<Voxel>;
+
+/// Voxels off `blocked` that face neighbours off `blocked` join to the border or a hollow.
+inline Dense outside_of(const Dense& blocked, const Voxels& hollows = {}) {
   Dense out(blocked.extent);
   std::vector<Voxel> front;
   const auto enter = [&](Voxel v) {
@@ -57,6 +59,7 @@ inline Dense outside_of(const Dense& blocked) {
     const bool border = !out.holds({v.x - 1, v.y - 1, v.z - 1}) || !out.holds({v.x + 1, v.y + 1, v.z + 1});
     if (border) enter(v);
   });
+  for (const Voxel v : hollows) enter(v);
   while (!front.empty()) {
     const Voxel v = front.back();
     front.pop_back();
@@ -69,14 +72,14 @@ inline Dense outside_of(const Dense& blocked) {
   return out;
 }
 
-inline Dense closed(const Dense& sites, int32_t r) {
-  Dense out = thickened(outside_of(thickened(sites, r)), r);
+inline Dense closed(const Dense& sites, int32_t r, const Voxels& hollows = {}) {
+  Dense out = thickened(outside_of(thickened(sites, r), hollows), r);
   for (char& v : out.value) v = !v;
   return out;
 }
 
-inline Dense filled(const Dense& solid) {
-  Dense out = outside_of(solid);
+inline Dense filled(const Dense& solid, const Voxels& hollows = {}) {
+  Dense out = outside_of(solid, hollows);
   for (char& v : out.value) v = !v;
   return out;
 }

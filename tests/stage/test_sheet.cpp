@@ -206,6 +206,34 @@ TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel"
     }
 }
 
+TEST_CASE("sheet: hollows open the solid as far as the closing leaves them empty", "[sheet][stage]") {
+  TestContext context;
+  context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
+  TbbExecutor exec(context, "sheet");
+  const auto cube = [](int x, int y, int z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
+  std::vector<Named> blobs = {noise(20, 20)};
+  for (const int hollow : {1, 3})
+    blobs.push_back(filled("cube with a hollow " + std::to_string(2 * hollow + 1) + " wide",
+                           [&](int x, int y, int z) { return cube(x, y, z) <= 13 && cube(x, y, z) > hollow; }));
+  const std::vector<Voxel> hollows = {{kExtent[0] / 2, kExtent[1] / 2, kExtent[2] / 2}, {30, 20, 35}};
+  for (const Named& blob : blobs)
+    for (const int32_t r : {0, 2}) {
+      INFO(blob.name << ", r = " << r);
+      SiteSet sites = site_set_of(blob);
+      sites.hollows = Buffer<Voxel>(int64_t(hollows.size()));
+      std::transform(hollows.begin(), hollows.end(), sites.hollows.begin(), in_sparse);
+      Solid solid = close_sites(exec, sites, r);
+      oracle::Dense expected = oracle::closed(dense_of(blob.voxels), r, hollows);
+      CHECK(mismatches(solid, expected) == 0);
+      make_well_composed(exec, solid);
+      while (oracle::repair_once(expected)) {
+      }
+      fill_cavities(exec, solid, sites.hollows.view());
+      CHECK(mismatches(solid, oracle::filled(expected, hollows)) == 0);
+      CHECK(count_defects(list_boundary(exec, solid)) == 0);
+    }
+}
+
 TEST_CASE("sheet: holes close as wide as the closing reaches", "[sheet][stage]") {
   TestContext context;
   context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
