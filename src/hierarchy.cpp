@@ -19,7 +19,7 @@ constexpr int64_t kFewestPerComponent = 12;
 constexpr int64_t kMostRepairPerMille = 60;
 constexpr int64_t kFewestSeedsPerHandle = 50;   // that an outline has too many or too few
 constexpr int64_t kFewestVerticesPerSeed = 24;  // of an outline: cells are nearly four voxels wide or more
-constexpr int32_t kCoarsePasses[] = {60, 30};  // each time the level's mesh is smoothed after them
+constexpr int32_t kCoarsePasses = 60;
 constexpr int32_t kCoarseTolerancePpb = 30000;
 constexpr int32_t kCoarseSmoothingSteps = 40;
 // Of the finest level after a coarser one. It ends early: post-processing does the rest better than more passes.
@@ -57,19 +57,6 @@ DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
   post.smoothing_steps = kCoarseSmoothingSteps;
   post.for_seeds = true;
   improve_mesh(sheet, post, seeds, mesh, context);
-  return mesh;
-}
-
-/// Relaxes the seeds of a coarse level and smooths their dual, again and again: a smoothed mesh has fewer irregular
-/// vertices than its seeds had, and relaxes to evener cells.
-DualMesh relax_coarse_level(const Sheet& sheet, RelaxOptions options, SeedSet& seeds, Context& context) {
-  DualMesh mesh;
-  for (const int32_t passes : kCoarsePasses) {
-    options.max_passes = passes;
-    relax_on_sheet(sheet, seeds, options, context);
-    mesh = coarse_dual(sheet, seeds, context);
-    if (mesh.triangles.empty()) break;
-  }
   return mesh;
 }
 
@@ -138,6 +125,7 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
   require_seed_count(prepared.sheet, options.count);
   std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
   RelaxOptions coarse = relax, finest = relax;
+  coarse.max_passes = kCoarsePasses;
   if (!tolerance_asked) coarse.tolerance_ppb = kCoarseTolerancePpb;
   const Outlines outlines(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // outlines may lack handles, or have more
@@ -146,7 +134,8 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
     const Sheet& sheet = outlines.sheet(level);
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
-    const DualMesh dual = relax_coarse_level(sheet, coarse, seeds, context);
+    relax_on_sheet(sheet, seeds, coarse, context);
+    const DualMesh dual = coarse_dual(sheet, seeds, context);
     seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
     if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);

@@ -28,7 +28,7 @@ constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
 // smoothed after them.
 constexpr double kFlippedMerit = 0.7, kPoorMerit = 0.8, kFairMerit = 0.9, kGoodMerit = 1;
 // Weight of the size to aim at against a triangle's own. Shapes are best with none.
-constexpr double kEvenness = 0, kSizedEvenness = 0.1, kUniformEvenness = 6;
+constexpr double kEvenness = 0, kSizedEvenness = 0.05, kUniformEvenness = 6;
 
 /// Seeds go where the vertices are: position, home and normal.
 struct UpdateSeed {
