@@ -291,6 +291,8 @@ class Run {
     record_.triangles = int64_t(mesh.triangles.size());
     if (a_.stats.empty() && !a_.gates.any() && a_.verbosity == 0) return;
     record_.topology = check_mesh(mesh);
+    if (!record_.topology->is_closed_manifold() && record_.report.dual.failed_cells == 0)
+      warn("the result is not a closed 2-manifold, which should not be: please report the input");
     record_.quality = measure_quality(mesh);
   }
 
