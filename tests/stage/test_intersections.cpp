@@ -130,31 +130,44 @@ std::pair<int64_t, std::vector<uint32_t>> brute_force(const std::vector<Triangle
   return out;
 }
 
+/// Holds the test to the oracle and counts, by the number of shared corners, how often each answer was right.
+struct OracleTally {
+  int64_t met[3] = {}, apart[3] = {};
+
+  void compare(const CornersOfTriangle& s, const CornersOfTriangle& t, int shared) {
+    const bool expected = oracle_intersect(s, t);
+    INFO("shared " << shared);
+    REQUIRE(triangles_intersect(s, t) == expected);
+    REQUIRE(triangles_intersect(t, s) == expected);
+    ++(expected ? met : apart)[shared];
+  }
+  void check_that_both_occur() const {
+    for (int shared = 0; shared < 3; ++shared) {
+      CHECK(met[shared] > 20);
+      CHECK(apart[shared] > 20);
+    }
+  }
+};
+
 }  // namespace
 
 TEST_CASE("intersections: pairs of triangles as separating axes say, whatever they share", "[post][stage]") {
-  int64_t met[3] = {}, apart[3] = {};
+  OracleTally tally;
   for (int32_t range : {3, 5, 40, 1000})
     for (uint64_t seed = 0; seed < 3000; ++seed) {
       const CornersOfTriangle s = random_triangle(seed, 0, range);
       for (int shared = 0; shared < 3; ++shared) {
         CornersOfTriangle t = random_triangle(seed, 3, range);
         share_corners(s, t, shared, seed);
-        const bool expected = oracle_intersect(s, t);
-        INFO("range " << range << ", seed " << seed << ", shared " << shared);
-        REQUIRE(triangles_intersect(s, t) == expected);
-        REQUIRE(triangles_intersect(t, s) == expected);
-        ++(expected ? met : apart)[shared];
+        INFO("range " << range << ", seed " << seed);
+        tally.compare(s, t, shared);
       }
     }
-  for (int shared = 0; shared < 3; ++shared) {
-    CHECK(met[shared] > 20);
-    CHECK(apart[shared] > 20);
-  }
+  tally.check_that_both_occur();
 }
 
 TEST_CASE("intersections: triangles without area are the segments or points that they span", "[post][stage]") {
-  int64_t met[3] = {}, apart[3] = {};
+  OracleTally tally;
   for (int32_t range : {2, 3, 5})
     for (uint64_t seed = 0; seed < 3000; ++seed)
       for (int shared = 0; shared < 3; ++shared) {
@@ -165,16 +178,10 @@ TEST_CASE("intersections: triangles without area are the segments or points that
           flatten(t, seed / 7);
           share_corners(s, t, shared, seed / 5);  // they stay where they are in s
         }
-        const bool expected = oracle_intersect(s, t);
-        INFO("range " << range << ", seed " << seed << ", shared " << shared);
-        REQUIRE(triangles_intersect(s, t) == expected);
-        REQUIRE(triangles_intersect(t, s) == expected);
-        ++(expected ? met : apart)[shared];
+        INFO("range " << range << ", seed " << seed);
+        tally.compare(s, t, shared);
       }
-  for (int shared = 0; shared < 3; ++shared) {
-    CHECK(met[shared] > 20);
-    CHECK(apart[shared] > 20);
-  }
+  tally.check_that_both_occur();
 }
 
 TEST_CASE("intersections: a needle pierces, and one that ends on its own edge is folded", "[post][stage]") {
