@@ -1,10 +1,12 @@
 // Reading stage files: layout and checksum first, then each grid, whose values are held to their range and the products
 // to their digests.
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <limits>
+#include <vector>
 
 #include "core/voxel_set.h"
 #include "io/key_values.h"
@@ -126,6 +128,21 @@ InputTopology read_topology(const StageReader& file) {
   return t;
 }
 
+/// Runs the parts beside each other, each to its end, and throws the error of the first one that failed. Where a part
+/// of tbb::parallel_invoke throws, the others' loops end early without a word and leave values that were never written.
+void run_all(const std::vector<std::function<void()>>& parts) {
+  std::vector<std::exception_ptr> errors(parts.size());
+  tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
+    try {
+      parts[i]();
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+}
+
 /// Leaves in the order of the tree, which is the order of leaf keys. Tiles are refused: a stage file has none.
 template <class GridT>
 std::vector<const VdbLeaf<GridT>*> leaves_of(const StageReader& file, const char* name, const GridT& grid) {
@@ -233,9 +250,9 @@ void check_points(const StageReader& file, const char* name, View<const PointQ8>
 }
 
 void read_surface(const StageReader& file, LatticeSurface& surface) {
-  tbb::parallel_invoke([&] { surface.points = table_of<PointQ8, VdbVec3iGrid>(file, kSurfacePoints); },
-                       [&] { surface.triangles = table_of<TriangleIndices, VdbVec3iGrid>(file, kSurfaceTriangles); },
-                       [&] { surface.source_face = table_of<uint32_t, VdbIntGrid>(file, kSurfaceSource); });
+  run_all({[&] { surface.points = table_of<PointQ8, VdbVec3iGrid>(file, kSurfacePoints); },
+           [&] { surface.triangles = table_of<TriangleIndices, VdbVec3iGrid>(file, kSurfaceTriangles); },
+           [&] { surface.source_face = table_of<uint32_t, VdbIntGrid>(file, kSurfaceSource); }});
   check_points(file, kSurfacePoints, surface.points.view(), surface.frame);
   const int64_t points = surface.points.size();
   check_all(surface.triangles.size(), [&](int64_t i) {
@@ -338,11 +355,10 @@ StageFile read_stage(const std::string& path) {
   stage.surface.frame = read_frame(file);
   stage.surface.topology = read_topology(file);
   const LatticeFrame& frame = stage.surface.frame;
-  tbb::parallel_invoke([&] { read_shell(file, frame, stage.shell, stage.sites); },
-                       [&] { read_surface(file, stage.surface); },
-                       [&] {
-                         if (stage.info.stage == "voronoi") stage.seeds = read_seeds(file, frame);
-                       });
+  run_all({[&] { read_shell(file, frame, stage.shell, stage.sites); }, [&] { read_surface(file, stage.surface); },
+           [&] {
+             if (stage.info.stage == "voronoi") stage.seeds = read_seeds(file, frame);
+           }});
   if (stage.seeds) stage.labels = read_labels(file, stage.shell, stage.seeds->size());
   return stage;
 }
