@@ -44,13 +44,13 @@ struct MendReport {
 /// and in opposite directions, are one; then the soup without repeated faces, fins and islands, its faces turned to
 /// agree with their neighbours over every edge of two faces, and holes capped by triangulations of least area. A patch
 /// is what edges of exactly two faces connect. A fin is a patch that ends in the open and on edges of more faces, none
-/// of which it leaves with one face, and that has less than a thousandth of the area. A hole is a loop of edges with
-/// one face whose box has a diagonal of at most kLargestHole of its component's, or whose cap has at most kLargestCrack
-/// of its area. An island is an open patch that shares no vertex with another and has less than a hundredth of the
-/// area. Fins, and islands, stay when all of them have more than a twentieth together: then they are the surface.
-/// Closed patches in which faces disagreed are turned outward. The set of positions and triangles does not depend on
-/// the order of the soup's. Cost: sorts of vertices, faces and edges; n^3 steps for a hole of n edges up to 128, n^2
-/// beyond.
+/// of which it leaves with one face, T-junctions taken for closed, and that has less than a two hundredth of the area.
+/// A hole is a loop of edges with one face whose box has a diagonal of at most kLargestHole of its component's, or
+/// whose cap has at most kLargestCrack of its area. An island is an open patch that shares no vertex with another and
+/// has less than a hundredth of the area. Fins stay when all of them have more than a tenth together, islands more than
+/// a twentieth: then they are the surface. Closed patches in which faces disagreed are turned outward. The set of
+/// positions and triangles does not depend on the order of the soup's. Cost: sorts of vertices, faces and edges; n^3
+/// steps for a hole of n edges up to 128, n^2 beyond.
 TriangleSoup mend(const TriangleSoup& soup, const MendOptions& options, MendReport& report);
 
 }  // namespace isoshell

@@ -36,6 +36,9 @@ class MendMesh {
   int64_t edge_count() const { return int64_t(edge_first_.size()) - 1; }
   /// Number of live faces at an edge.
   uint32_t faces_at(uint32_t edge) const { return live_at_[edge]; }
+  /// Counts a face without area at an edge, and no more.
+  void add_flat_face(uint32_t edge) { ++live_at_[edge]; }
+  void drop_flat_face(uint32_t edge) { --live_at_[edge]; }
   /// The other half-edge of an edge with two live faces.
   uint32_t twin(uint32_t half_edge) const;
   /// Whether the two faces of an edge pass it in opposite directions.

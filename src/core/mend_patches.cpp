@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "core/mend_junctions.h"
+
 namespace isoshell::mending {
 namespace {
 
-constexpr double kLargestFin = .001;  // of the whole area
+constexpr double kLargestFin = .005;  // of the whole area
 constexpr double kLargestIsland = .01;
-constexpr double kDirtTogether = .05;  // more than this is no dirt on a surface, it is the surface
+constexpr double kFinsTogether = .1;  // more than this is no dirt on a surface, it is the surface
+constexpr double kIslandsTogether = .05;
 
 /// Calls with every half-edge of a face whose edge has two faces, and its twin.
 template <class Visit>
@@ -79,7 +82,7 @@ bool drop_fins_once(MendMesh& mesh, MendReport& report) {
       fins.push_back(i);
       together += area[small[i]];
     }
-  if (together > kDirtTogether * whole) return false;
+  if (together > kFinsTogether * whole) return false;
   bool dropped = false;
   for (size_t i : fins) {
     if (!is_fin(mesh, faces.begin(i), faces.end(i))) continue;  // those before it may have freed its edges
@@ -123,8 +126,11 @@ double live_area(const MendMesh& mesh) {
 }
 
 void drop_fins(MendMesh& mesh, MendReport& report) {
+  const std::vector<uint32_t> junctions = edges_at_junctions(mesh);
+  for (uint32_t edge : junctions) mesh.add_flat_face(edge);
   while (drop_fins_once(mesh, report)) {
   }
+  for (uint32_t edge : junctions) mesh.drop_flat_face(edge);
 }
 
 void orient_patches(MendMesh& mesh) {
@@ -171,7 +177,7 @@ void drop_islands(MendMesh& mesh, MendReport& report) {
     is_island[p] = open[p] && !touched[p] && area[p] < kLargestIsland * whole;
     if (is_island[p]) together += area[p];
   }
-  if (!(together < kDirtTogether * whole)) return;
+  if (!(together < kIslandsTogether * whole)) return;
   for (uint8_t island : is_island) report.islands += island;
   for (uint32_t f = 0; f < mesh.face_count(); ++f)
     if (mesh.is_live(f) && is_island[patches.of[f]]) {

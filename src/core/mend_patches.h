@@ -15,7 +15,7 @@ Patches find_patches(const MendMesh& mesh);
 
 double live_area(const MendMesh& mesh);
 
-/// Drops fins (see mend.h), the smallest first, until no patch is one.
+/// Drops fins (see mend.h), the smallest first, until no patch is one. A T-junction counts as closed.
 void drop_fins(MendMesh& mesh, MendReport& report);
 
 /// Turns faces so that the faces of every patch agree as far as they can; the way round that more of them had stays.

@@ -210,6 +210,45 @@ TEST_CASE("mend: fins are dropped, one on another too, and a second body that st
   CHECK_FALSE(mended(boxes).report.changed_anything());
 }
 
+TEST_CASE("mend: fins stand on the undivided sides of T-junctions, and the face between them stays", "[mend]") {
+  for (const bool reversed : {false, true}) {
+    TriangleSoup soup = ball(64);
+    const double volume = six_volume(soup);
+    const auto face = soup.triangles[500];  // all its neighbours are split, and two of its edges have fins
+    const auto split = [&](uint32_t a, uint32_t b, std::vector<double> places) {
+      for (size_t i = 0; i < soup.triangles.size(); ++i)
+        for (size_t k = 0; k < 3; ++k) {
+          const auto t = soup.triangles[i];
+          if (t[k] != b || t[(k + 1) % 3] != a) continue;
+          uint32_t last = b;
+          const WorldPoint p = soup.vertices[b], q = soup.vertices[a];
+          for (const double u : places) {
+            soup.vertices.push_back({p.x + u * (q.x - p.x), p.y + u * (q.y - p.y), p.z + u * (q.z - p.z)});
+            const uint32_t middle = uint32_t(soup.vertices.size() - 1);
+            shapes::add_triangle(soup, last, middle, t[(k + 2) % 3]);
+            last = middle;
+          }
+          soup.triangles[i] = {last, a, t[(k + 2) % 3]};
+          return;
+        }
+    };
+    split(face[0], face[1], {.5});
+    split(face[1], face[2], {.3, .6});
+    split(face[2], face[0], {.4});
+    if (reversed) std::reverse(soup.triangles.begin(), soup.triangles.end());
+    for (const auto& [a, b] : {std::pair{face[0], face[1]}, std::pair{face[1], face[2]}}) {
+      const WorldPoint &p = soup.vertices[a], &q = soup.vertices[b];
+      soup.vertices.push_back({(p.x + q.x) * .51, (p.y + q.y) * .51, (p.z + q.z) * .51});
+      shapes::add_triangle(soup, a, b, uint32_t(soup.vertices.size() - 1));
+    }
+    const Mended m = mended(soup);
+    check_solid(m, volume);
+    CHECK(m.report.fin_faces == 2);
+    CHECK(m.report.capped_loops == 3);
+    CHECK(m.report.cap_area_world < 1e-9);
+  }
+}
+
 TEST_CASE("mend: turned faces are turned back, whole surfaces that look inward stay", "[mend]") {
   TriangleSoup soup = ball();
   const double volume = six_volume(soup);
