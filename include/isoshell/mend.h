@@ -29,6 +29,7 @@ struct MendReport {
   int64_t island_faces = 0;
   int64_t turned_faces = 0;   ///< disagreed with their neighbours about which side is outside
   int64_t capped_loops = 0;   ///< holes closed
+  int64_t tubes = 0;          ///< pairs of those that were joined: an arm or a handle that a hole cut through
   int64_t cap_faces = 0;      ///< new faces, the last ones of the mended soup
   int64_t open_loops = 0;     ///< too large to be holes, or tangled; left open
   double cap_area_world = 0;  ///< square world units
@@ -47,7 +48,10 @@ struct MendReport {
 /// of which it leaves with one face, T-junctions taken for closed, and that has less than a two hundredth of the area.
 /// A hole is a loop of edges with one face whose box has a diagonal of at most kLargestHole of its component's, or
 /// whose cap has at most kLargestCrack of its area. An island is an open patch that shares no vertex with another and
-/// has less than a hundredth of the area. Fins stay when all of them have more than a tenth together, islands more than
+/// has less than a hundredth of the area. Two holes that are rims of one tube, an arm that was cut through, are joined
+/// instead: each looks towards the other, the surface at them runs along the way between them, the radii of circles of
+/// their areas are within 2.5 of each other, and they are no farther apart than five times both together; then neither
+/// is part of an island. Fins stay when all of them have more than a tenth together, islands more than
 /// a twentieth: then they are the surface. Closed patches in which faces disagreed are turned outward. The set of
 /// positions and triangles does not depend on the order of the soup's. Cost: sorts of vertices, faces and edges; n^3
 /// steps for a hole of n edges up to 128, n^2 beyond.

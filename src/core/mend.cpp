@@ -1,7 +1,10 @@
 #include "isoshell/mend.h"
 
+#include <algorithm>
+
 #include "core/mend_holes.h"
 #include "core/mend_patches.h"
+#include "core/mend_tubes.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {
@@ -67,6 +70,13 @@ void turn_outward(MendMesh& mesh, const Patches& patches, std::vector<Cap>& caps
     if (mesh.is_live(f) && bodies.is_inward(f)) mesh.turn(f);
 }
 
+/// Per tube a face at either end.
+std::vector<std::array<uint32_t, 2>> faces_that_join(const std::vector<Cap>& tubes) {
+  std::vector<std::array<uint32_t, 2>> faces;
+  for (const Cap& tube : tubes) faces.push_back({tube.loop.front() / 3, tube.loop.back() / 3});
+  return faces;
+}
+
 /// The soup's own triangles in their order, then the caps.
 TriangleSoup mended_soup(const TriangleSoup& soup, const MendMesh& mesh, const std::vector<Cap>& caps) {
   std::vector<uint32_t> face_of(soup.triangles.size(), kNoFace);
@@ -91,10 +101,14 @@ TriangleSoup mend(const TriangleSoup& soup, const MendOptions& options, MendRepo
   report.joined_vertices = mesh.joined_vertices();
   report.repeated_faces = mesh.repeats();
   drop_fins(mesh, report);
-  drop_islands(mesh, report);
   orient_patches(mesh);
+  std::vector<Cap> tubes;
+  if (options.cap_loops) tubes = find_tubes(mesh);
+  drop_islands(mesh, faces_that_join(tubes), report);
+  const auto is_dropped = [&](const Cap& tube) { return !mesh.is_live(tube.loop[0] / 3); };
+  tubes.erase(std::remove_if(tubes.begin(), tubes.end(), is_dropped), tubes.end());
   const Patches patches = find_patches(mesh);
-  std::vector<Cap> caps = cap_holes(mesh, options, report);
+  std::vector<Cap> caps = cap_holes(mesh, std::move(tubes), options, report);
   turn_outward(mesh, patches, caps);
   for (uint32_t f = 0; f < mesh.face_count(); ++f) report.turned_faces += mesh.is_live(f) && mesh.is_turned(f);
   return report.changed_anything() ? mended_soup(soup, mesh, caps) : soup;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/mend_junctions.h"
+#include "voxel/union_find.h"
 
 namespace isoshell::mending {
 namespace {
@@ -23,6 +24,18 @@ std::vector<double> patch_areas(const MendMesh& mesh, const Patches& patches) {
   std::vector<double> area(patches.count, 0);
   for (uint32_t f = 0; f < mesh.face_count(); ++f)
     if (mesh.is_live(f)) area[patches.of[f]] += mesh.area(f);
+  return area;
+}
+
+/// Per patch the area of all that joins lead to from it.
+std::vector<double> areas_of_joined(const Patches& patches, const std::vector<std::array<uint32_t, 2>>& joins,
+                                    std::vector<double> area) {
+  Buffer<uint32_t> parent(patches.count);
+  for (uint32_t p = 0; p < patches.count; ++p) parent[p] = p;
+  for (const auto& [f, g] : joins) join(parent.view(), patches.of[f], patches.of[g]);
+  std::vector<double> together(patches.count, 0);
+  for (uint32_t p = 0; p < patches.count; ++p) together[find_root(parent.view(), p)] += area[p];
+  for (uint32_t p = 0; p < patches.count; ++p) area[p] = together[find_root(parent.view(), p)];
   return area;
 }
 
@@ -157,9 +170,9 @@ void orient_patches(MendMesh& mesh) {
     if (turn[f]) mesh.turn(f);
 }
 
-void drop_islands(MendMesh& mesh, MendReport& report) {
+void drop_islands(MendMesh& mesh, const std::vector<std::array<uint32_t, 2>>& joins, MendReport& report) {
   const Patches patches = find_patches(mesh);
-  const std::vector<double> area = patch_areas(mesh, patches);
+  const std::vector<double> area = areas_of_joined(patches, joins, patch_areas(mesh, patches));
   const double whole = live_area(mesh);
   std::vector<uint8_t> open(patches.count, 0), touched(patches.count, 0);
   std::vector<uint32_t> patch_at(mesh.position.size(), kNoFace);

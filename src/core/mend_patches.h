@@ -21,7 +21,7 @@ void drop_fins(MendMesh& mesh, MendReport& report);
 /// Turns faces so that the faces of every patch agree as far as they can; the way round that more of them had stays.
 void orient_patches(MendMesh& mesh);
 
-/// Drops islands (see mend.h).
-void drop_islands(MendMesh& mesh, MendReport& report);
+/// Drops islands (see mend.h). Patches of two faces that join count together.
+void drop_islands(MendMesh& mesh, const std::vector<std::array<uint32_t, 2>>& joins, MendReport& report);
 
 }  // namespace isoshell::mending

@@ -249,6 +249,40 @@ TEST_CASE("mend: fins stand on the undivided sides of T-junctions, and the face 
   }
 }
 
+TEST_CASE("mend: what a hole cuts through is joined again, and its cut off end is no island", "[mend]") {
+  const auto is_cut = [](WorldPoint p) { return p.x > 0 && std::abs(p.y) < .8; };
+  const TriangleSoup ring = shapes::torus(3, .5, 80, 24);
+  const Mended m = mended(without(ring, is_cut));
+  CHECK(m.topology.closed);
+  CHECK(m.topology.oriented);
+  CHECK(m.topology.components == 1);
+  CHECK(m.topology.genus == 1);
+  CHECK(m.report.tubes == 1);
+  CHECK(m.report.capped_loops == 2);
+  CHECK(six_volume(m.soup) > .99 * six_volume(ring));
+  CHECK(six_volume(m.soup) < six_volume(ring));
+
+  TriangleSoup cigar = ball(120);
+  for (WorldPoint& p : cigar.vertices) p.z *= 8;
+  const Mended tip = mended(without(cigar, [](WorldPoint p) { return p.z > 7 && p.z < 7.5; }));
+  check_solid(tip, six_volume(cigar));
+  CHECK(tip.report.tubes == 1);
+  CHECK(tip.report.islands == 0);
+}
+
+TEST_CASE("mend: ends of a pipe, and holes that face each other across a gap, are closed one by one", "[mend]") {
+  TriangleSoup pipe = ball();
+  for (WorldPoint& p : pipe.vertices) p.z *= 5;
+  check_solid(mended(without(pipe, [](WorldPoint p) { return std::abs(p.z) > 4.5; })), six_volume(pipe));
+  TriangleSoup upper = ball();
+  for (WorldPoint& p : upper.vertices) p.z += 2.2;
+  const Mended two = mended(shapes::together(without(ball(), [](WorldPoint p) { return p.z > .9; }),
+                                             without(upper, [](WorldPoint p) { return p.z < 1.3; })));
+  CHECK(two.report.tubes == 0);
+  CHECK(two.report.capped_loops == 2);
+  CHECK(two.topology.components == 2);
+}
+
 TEST_CASE("mend: turned faces are turned back, whole surfaces that look inward stay", "[mend]") {
   TriangleSoup soup = ball();
   const double volume = six_volume(soup);

@@ -322,6 +322,7 @@ class Run {
     std::ostringstream caps;
     caps << "holes closed by new faces, up to " << m.widest_cap_world << " wide";
     note(m.capped_loops, caps.str().c_str());
+    note(m.tubes, "pairs of them joined: they face each other like the ends of a tube");
     const UniteReport& u = record_.report.unite;
     note(u.turned_components, "closed components turned outward");
     note(u.swallowed_components, "closed components dropped, they lie inside of others");

@@ -37,6 +37,7 @@ Json mend_json(const MendReport& m) {
           {"island_faces", m.island_faces},
           {"turned_faces", m.turned_faces},
           {"capped_loops", m.capped_loops},
+          {"tubes", m.tubes},
           {"cap_faces", m.cap_faces},
           {"cap_area", m.cap_area_world},
           {"widest_cap", m.widest_cap_world},
