@@ -73,8 +73,26 @@ struct RotateTriangle {
   ISOSHELL_HD void operator()(int64_t i) const { triangles[i] = smallest_first(triangles[i]); }
 };
 
-/// The mesh and its scratch while it is improved.
+/// The steps that take the time, for a backend to do in its own way.
 template <class Exec>
+class StepWork {
+ public:
+  /// Before steps between which the triangles stay.
+  void begin(Exec&, const MeshView&) {}
+  void smooth(Exec& exec, const SmoothVertex& step) {
+    if (step.options.onto_sheet)
+      for_each_walk(exec, "smooth", step.walk, step.home, step);
+    else
+      exec.for_each("smooth", step.to.size, step);
+  }
+  /// Before they are pulled: samples may take another order.
+  void sort(Exec&, int64_t /*triangles*/, View<FitSample>) {}
+  void pull(Exec& exec, const PullCorners& step) { exec.for_each("pull corners", step.sample.size, step); }
+  void fit(Exec& exec, const FitVertex& step) { for_each_walk(exec, "fit", step.walk, step.home, step); }
+};
+
+/// The mesh and its scratch while it is improved.
+template <class Exec, class Work>
 class Improvement {
  public:
   Improvement(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh)
@@ -113,15 +131,12 @@ class Improvement {
     options.hold = hold;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
     exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
+    work_.begin(exec_, view());
     for (int left = steps - 1; left >= 0; --left) {
       options.onto_sheet = left % kStepsOffSheet == 0;
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      const SmoothVertex step{view(),       walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(),
-                              moved_.view()};
-      if (options.onto_sheet)
-        for_each_walk(exec_, "smooth", walk_, seeds_.home.view(), step);
-      else
-        exec_.for_each("smooth", vertices_, step);
+      work_.smooth(
+          exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(), moved_.view()});
       if (options.onto_sheet) restore_harmed(least_merit, on_sheet_.view());
       take_step();
       if (options.onto_sheet) exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
@@ -153,23 +168,23 @@ class Improvement {
     options.stiffness = kStiffness * double(samples_of_sheet_) / (smallest_fit_ * double(vertices_));
     options.damping = damping;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
+    work_.begin(exec_, view());
+    work_.sort(exec_, mesh_.triangles.size(), sample_.view().part(0, samples_of_sheet_));
     for (int s = 0; s < steps; ++s) {
       exec_.fill(triangle_pull_.view(), TrianglePull{});
       exec_.fill(vertex_pull_.view(), VertexPull{});
-      exec_.for_each("pull corners", sample_.size(),
-                     PullCorners{view(),
-                                 mesh_.position.view(),
-                                 {rms_q8_, 0.1 * size_.edge_q8},
-                                 sample_.view(),
-                                 triangle_pull_.view(),
-                                 vertex_pull_.view(),
-                                 rest_sq_.view()});
+      work_.pull(exec_, {view(),
+                         mesh_.position.view(),
+                         {rms_q8_, 0.1 * size_.edge_q8},
+                         sample_.view(),
+                         triangle_pull_.view(),
+                         vertex_pull_.view(),
+                         rest_sq_.view()});
       options.rms_q8 = rms_q8_ =
           rounded_sqrt(double(exec_.sum(samples_of_sheet_, RestSq{rest_sq_.view()})) / double(samples_of_sheet_));
       exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      for_each_walk(exec_, "fit", walk_, seeds_.home.view(),
-                    FitVertex{view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
-                              vertex_pull_.view(), moved_home_.view(), moved_.view()});
+      work_.fit(exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
+                        vertex_pull_.view(), moved_home_.view(), moved_.view()});
       restore_harmed(least_merit, mesh_.position.view());
       take_step();
     }
@@ -293,6 +308,7 @@ class Improvement {
   SeedSpacing spacing_;
   WalkOntoSheet walk_;
   Connections connections_;
+  Work work_;
   EdgeSize size_;
   double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest
   double rms_q8_ = 0;        ///< of the samples' residuals, 0 before they were first looked at
@@ -308,12 +324,12 @@ class Improvement {
 
 }  // namespace post
 
-template <class Exec>
+template <class Exec, class Work = post::StepWork<Exec>>
 PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds,
                              DualMesh& mesh) {
   using namespace post;
   if (mesh.triangles.empty()) return {};
-  Improvement<Exec> work(exec, sheet, options, seeds, mesh);
+  Improvement<Exec, Work> work(exec, sheet, options, seeds, mesh);
   PostReport report;
   const bool flips_only = options.smoothing_steps == 0;
   report.flips = work.flip(options.flip_rounds, kPoorMerit);

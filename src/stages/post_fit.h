@@ -17,6 +17,14 @@ struct FitOptions {
   double rms_q8 = 0;     ///< of the samples' residuals
 };
 
+/// What the triangles around a vertex ask of it in the fit, summed in their order.
+struct FitSums {
+  Vector corners = {0, 0, 0};  ///< ways to the corners of the equilateral triangles
+  Vector normal = {0, 0, 0};
+  Symmetric planes;  ///< sum of w d d^T, the normals times what samples weigh
+  Vector pull = {0, 0, 0};
+};
+
 /// The place between what the samples and the shapes of the triangles ask for.
 struct FitVertex {
   MeshView mesh;
@@ -30,32 +38,43 @@ struct FitVertex {
 
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
-    const double size = options.smooth.size.ratio(home[v]), edge_q8 = options.smooth.size.at(home[v]),
-                 radius_q8 = edge_q8 * kRadiusOfEdge;
-    Vector shape = {0, 0, 0}, normal = {0, 0, 0}, pull = {0, 0, 0};
-    Symmetric a;
+    const double radius = radius_q8(v);
+    FitSums sums;
     const uint32_t start = mesh.outgoing[v];
     uint32_t h = start;
     do {
       const PointQ8 b = from[mesh.to(h)], c = from[mesh.opposite(h)];
-      shape = shape + to_equilateral_corner(p, b, c, options.smooth.evenness, radius_q8);
+      sums.corners = sums.corners + to_equilateral_corner(p, b, c, options.smooth.evenness, radius);
       const Vector n = normal_of(p, b, c), d = unit(n);
-      normal = normal + n;
+      sums.normal = sums.normal + n;
       const TrianglePull& asked = triangle_pull[h / 3];
-      a.add(double(asked.weight[h % 3]), d);
-      pull = pull + double(asked.pull[h % 3]) * d;
+      sums.planes.add(double(asked.weight[h % 3]), d);
+      sums.pull = sums.pull + double(asked.pull[h % 3]) * d;
       h = mesh.twin[previous_half_edge(h)];
     } while (h != start);
+    to[v] = place(v, sums);
+  }
+
+  // The parts of a step.
+
+  /// Of the triangle that is to be around the vertex.
+  ISOSHELL_HD double radius_q8(int64_t v) const { return options.smooth.size.at(home[v]) * kRadiusOfEdge; }
+  /// Where the vertex goes; its home follows where it is held back.
+  ISOSHELL_HD PointQ8 place(int64_t v, const FitSums& sums) const {
+    const PointQ8 p = from[v];
+    const double size = options.smooth.size.ratio(home[v]), edge_q8 = options.smooth.size.at(home[v]);
+    Symmetric a = sums.planes;
+    Vector pull = sums.pull;
     add_samples_beyond(vertex_pull[v], a, pull);
     add_anchor(v, p, a, pull);
-    normal = unit(normal);
-    shape = 1 / double(mesh.valence[v]) * shape;
+    const Vector normal = unit(sums.normal);
+    Vector shape = 1 / double(mesh.valence[v]) * sums.corners;
     shape = shape - dot(shape, normal) * normal;
     const double stiffness = options.stiffness * (size * size) * kPullScale;
     a.xx += stiffness, a.yy += stiffness, a.zz += stiffness;
     const Vector move =
         options.damping * a.solve(pull + stiffness * shape) + options.smooth.momentum * from_to(previous[v], p);
-    to[v] = moved_by(p, at_most(move, options.smooth.most_edges * edge_q8));
+    return moved_by(p, at_most(move, options.smooth.most_edges * edge_q8));
   }
 
  private:

@@ -35,6 +35,13 @@ ISOSHELL_HD inline Vector to_equilateral_corner(PointQ8 p, PointQ8 b, PointQ8 c,
   return (2.0 / 3) * middle + scale * arm;
 }
 
+/// What the triangles around a vertex ask of it, summed in their order.
+struct SmoothingSums {
+  Vector corners = {0, 0, 0};  ///< ways to the corners of the equilateral triangles
+  Vector normal = {0, 0, 0};
+  PlanesAround planes;
+};
+
 struct SmoothVertex {
   MeshView mesh;
   WalkOntoSheet walk;
@@ -44,24 +51,33 @@ struct SmoothVertex {
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
-    const double edge_q8 = options.size.at(home[v]), radius_q8 = edge_q8 * kRadiusOfEdge;
-    Vector sum = {0, 0, 0}, normal = {0, 0, 0};
-    PlanesAround planes;
+    const double radius = radius_q8(v);
+    SmoothingSums sums;
     for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
-      sum = sum + to_equilateral_corner(p, from[b], from[c], options.evenness, radius_q8);
+      sums.corners = sums.corners + to_equilateral_corner(p, from[b], from[c], options.evenness, radius);
       const Vector n = normal_of(p, from[b], from[c]);
-      normal = normal + n;
-      planes.add(n);
+      sums.normal = sums.normal + n;
+      sums.planes.add(n);
     });
-    normal = unit(normal);
-    const Vector asked = 1 / double(mesh.valence[v]) * sum + options.momentum * from_to(previous[v], p);
-    const Vector wanted = planes.holding(options.hold).solve(asked);
-    const Vector move = at_most(wanted - dot(wanted, normal) * normal, options.most_edges * edge_q8);
-    const PointQ8 target = moved_by(p, move);
-    to[v] = target;
-    if (!options.onto_sheet) return;
-    home[v] = walk.nearest_vertex(home[v], target);
-    to[v] = walk.closest_around(home[v], target);
+    to[v] = place(v, sums);
+    if (options.onto_sheet) lay_onto_sheet(v);
+  }
+
+  // The parts of a step.
+
+  /// Of the triangle that is to be around the vertex.
+  ISOSHELL_HD double radius_q8(int64_t v) const { return options.size.at(home[v]) * kRadiusOfEdge; }
+  /// Where the vertex goes along the mesh.
+  ISOSHELL_HD PointQ8 place(int64_t v, const SmoothingSums& sums) const {
+    const PointQ8 p = from[v];
+    const Vector normal = unit(sums.normal);
+    const Vector asked = 1 / double(mesh.valence[v]) * sums.corners + options.momentum * from_to(previous[v], p);
+    const Vector wanted = sums.planes.holding(options.hold).solve(asked);
+    return moved_by(p, at_most(wanted - dot(wanted, normal) * normal, options.most_edges * options.size.at(home[v])));
+  }
+  ISOSHELL_HD void lay_onto_sheet(int64_t v) const {
+    home[v] = walk.nearest_vertex(home[v], to[v]);
+    to[v] = walk.closest_around(home[v], to[v]);
   }
 };
 

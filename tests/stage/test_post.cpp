@@ -6,6 +6,7 @@
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/stages.h"
+#include "stages/post_body.h"
 #include "stages/post_chords.h"
 #include "stages/post_planes.h"
 #include "support/catch.h"
@@ -102,6 +103,22 @@ TEST_CASE("post: the mesh stays closed, of its topology and in canonical order",
       CHECK((j.a != i.a ? j.a < i.a : (j.b != i.b ? j.b < i.b : j.c < i.c)));
     }
   }
+}
+
+TEST_CASE("post: the CPU's own ways of steps give what their definitions give", "[post][stage]") {
+  for (const Start& s : starts())
+    for (const bool uniform_area : {false, true}) {
+      INFO(s.name << (uniform_area ? ", uniform areas" : ""));
+      TestContext context;
+      PostOptions options;
+      options.uniform_area = uniform_area;
+      SeedSet seeds = copy_of(s.seeds), seeds_by_definition = copy_of(s.seeds);
+      DualMesh mesh = copy_of(s.mesh), mesh_by_definition = copy_of(s.mesh);
+      improve_mesh(s.sheet, options, seeds, mesh, context);
+      TbbExecutor exec(context, "test");
+      improve_mesh_body(exec, s.sheet, options, seeds_by_definition, mesh_by_definition);
+      CHECK(same(mesh, mesh_by_definition));
+    }
 }
 
 TEST_CASE("post: triangles get better on average, and the worst one no worse", "[post][stage]") {

@@ -1,0 +1,33 @@
+// Steps of post-processing on the CPU: the definitions of stages/post_smooth.h, post_samples.h and post_fit.h, with
+// what stays the same between steps kept.
+#pragma once
+
+#include "cpu/executor_tbb.h"
+#include "stages/post_fit.h"
+
+namespace isoshell {
+
+/// The triangles (v, b, c) around every vertex v, in the order of for_each_triangle_around.
+struct TrianglesAround {
+  struct Triangle {
+    uint32_t b, c, half_edge;  ///< the half-edge runs from v to b
+  };
+  Buffer<uint32_t> first;  ///< vertex_count + 1
+  Buffer<Triangle> triangles;
+};
+
+/// Taken instead of post::StepWork.
+class CpuStepWork {
+ public:
+  void begin(TbbExecutor& exec, const post::MeshView& mesh);
+  void smooth(TbbExecutor& exec, const post::SmoothVertex& step);
+  /// By triangle.
+  void sort(TbbExecutor& exec, int64_t triangles, View<post::FitSample> samples);
+  void pull(TbbExecutor& exec, const post::PullCorners& step);
+  void fit(TbbExecutor& exec, const post::FitVertex& step);
+
+ private:
+  TrianglesAround around_;
+};
+
+}  // namespace isoshell
