@@ -1,7 +1,5 @@
 #include "cpu/label_lanes.h"
 
-#include <utility>
-
 #include "cpu/vector_versions.h"
 #include "voxel/cell_sum.h"
 
@@ -10,11 +8,10 @@ namespace {
 
 constexpr int kLeafVoxels = 512;
 
-/// Vertices of a leaf, from the smallest of their coordinates on, and the best seed of each so far.
+/// Vertices of a leaf, from the smallest of their coordinates on.
 struct VertexLanes {
-  int32_t x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels];
-  int32_t normal_x[kLeafVoxels], normal_y[kLeafVoxels], normal_z[kLeafVoxels];
-  int32_t least[kLeafVoxels], best[kLeafVoxels];
+  alignas(32) int32_t x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels];
+  alignas(32) int32_t normal_x[kLeafVoxels], normal_y[kLeafVoxels], normal_z[kLeafVoxels];
 };
 
 /// What a seed costs: |s|^2 - 2 s.v, its squared distance up to |v|^2, and the penalty where normals oppose.
@@ -24,82 +21,163 @@ struct SeedForm {
   int32_t penalty;  ///< 0 for a seed that never pays it
 };
 
-ISOSHELL_VECTOR_VERSIONS void compare(VertexLanes& v, int count, const SeedForm* seeds, int seed_count) {
-  for (int i = 0; i < count; ++i) v.least[i] = INT32_MAX, v.best[i] = 0;
-  for (int s = 0; s < seed_count; ++s) {
-    const SeedForm f = seeds[s];
-    if (f.penalty == 0)
-      for (int i = 0; i < count; ++i) {
-        const int32_t here = f.constant + f.x * v.x[i] + f.y * v.y[i] + f.z * v.z[i];
-        v.best[i] = here < v.least[i] ? s : v.best[i];
-        v.least[i] = here < v.least[i] ? here : v.least[i];
+using Lanes = int32_t __attribute__((vector_size(32)));
+constexpr int kWidth = 8;
+ISOSHELL_INLINE const Lanes& lanes(const int32_t* at) { return *reinterpret_cast<const Lanes*>(at); }
+
+/// For every vertex the first of the seeds that cost least. Works on whole vectors, beyond the count too.
+ISOSHELL_VECTOR_VERSIONS void find_cheapest(const VertexLanes& v, int count, const SeedForm* seeds, int seed_count,
+                                            int32_t* cheapest) {
+  for (int i = 0; i < count; i += kWidth) {
+    const Lanes x = lanes(v.x + i), y = lanes(v.y + i), z = lanes(v.z + i);
+    Lanes least = Lanes{} + INT32_MAX, best = {};
+    for (int s = 0; s < seed_count; ++s) {
+      const SeedForm& f = seeds[s];
+      Lanes here = f.constant + f.x * x + f.y * y + f.z * z;
+      if (f.penalty != 0) {
+        const Lanes along = f.normal_x * lanes(v.normal_x + i) + f.normal_y * lanes(v.normal_y + i) +
+                            f.normal_z * lanes(v.normal_z + i);
+        here += (along < label::kOpposite) & f.penalty;
       }
-    else
-      for (int i = 0; i < count; ++i) {
-        const int32_t along = f.normal_x * v.normal_x[i] + f.normal_y * v.normal_y[i] + f.normal_z * v.normal_z[i];
-        const int32_t here =
-            f.constant + f.x * v.x[i] + f.y * v.y[i] + f.z * v.z[i] + (along < label::kOpposite ? f.penalty : 0);
-        v.best[i] = here < v.least[i] ? s : v.best[i];
-        v.least[i] = here < v.least[i] ? here : v.least[i];
-      }
+      best = here < least ? Lanes{} + s : best;
+      least = here < least ? here : least;
+    }
+    *reinterpret_cast<Lanes*>(cheapest + i) = best;
   }
 }
 
-/// The seeds that can win in a leaf, with their costs from `origin` on.
+/// Seeds near a leaf, from the smallest of its vertices' coordinates on.
+struct NearSeeds {
+  static constexpr int kMost = 1024;
+
+  int count = 0;  ///< the first kMost are here
+  int32_t x[kMost], y[kMost], z[kMost];
+  uint32_t id[kMost];
+
+  void add(Local p, uint32_t seed) {
+    if (count < kMost) x[count] = p.x, y[count] = p.y, z[count] = p.z, id[count] = seed;
+    ++count;
+  }
+  Local at(int i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// Whether all coordinates lie within the limit, a power of two.
+ISOSHELL_VECTOR_VERSIONS bool are_within(int32_t limit, const NearSeeds& seeds) {
+  uint32_t bits = 0;
+  for (int i = 0; i < seeds.count; ++i)
+    bits |= uint32_t(seeds.x[i] + limit) | uint32_t(seeds.y[i] + limit) | uint32_t(seeds.z[i] + limit);
+  return (bits & ~uint32_t(2 * limit - 1)) == 0;
+}
+
+/// Squared distances from the middle of a box of this size, four times. Doubles hold them, and what follows, exactly.
+ISOSHELL_VECTOR_VERSIONS void measure_from_middle(const NearSeeds& seeds, Local size, double* off) {
+  const double sx = size.x, sy = size.y, sz = size.z;
+  for (int i = 0; i < seeds.count; ++i) {
+    const double x = 2.0 * seeds.x[i] - sx, y = 2.0 * seeds.y[i] - sy, z = 2.0 * seeds.z[i] - sz;
+    off[i] = x * x + y * y + z * z;
+  }
+}
+
+/// What seeds cost at least more than |v - m|^2 + extra, over the v of the box.
+ISOSHELL_VECTOR_VERSIONS void measure_excess(const NearSeeds& seeds, Local size, Local m, double extra,
+                                             double* excess) {
+  const double sx = size.x, sy = size.y, sz = size.z, mx = m.x, my = m.y, mz = m.z;
+  const double most = mx * mx + my * my + mz * mz + extra;
+  for (int i = 0; i < seeds.count; ++i) {
+    const double x = seeds.x[i], y = seeds.y[i], z = seeds.z[i];
+    const double gain_x = x > mx ? x - mx : 0, gain_y = y > my ? y - my : 0, gain_z = z > mz ? z - mz : 0;
+    excess[i] = x * x + y * y + z * z - most - 2 * (gain_x * sx + gain_y * sy + gain_z * sz);
+  }
+}
+
+/// The places of numbers, no two of them equal, in their order.
+ISOSHELL_VECTOR_VERSIONS void rank(const uint32_t* number, int count, uint32_t* place) {
+  for (int i = 0; i < count; ++i) place[i] = 0;
+  for (int j = 0; j < count; ++j)
+    for (int i = 0; i < count; ++i) place[i] += number[j] < number[i] ? 1 : 0;
+}
+
+/// The seeds that can win in a leaf, by their numbers.
 class LeafSeeds {
  public:
-  LeafSeeds(const label::Bounds& bounds, int64_t penalty_q16)
-      : bounds_(bounds), size_(local(bounds.hi, bounds.lo)), penalty_q16_(penalty_q16) {}
+  LeafSeeds(const label::Bounds& bounds, View<const Normal8> normal, int64_t penalty_q16)
+      : bounds_(bounds), size_(local(bounds.hi, bounds.lo)), normal_(normal), penalty_q16_(penalty_q16) {}
 
   /// False where costs may not fit 32 bits: forms stay below 3 * 2^28 + 2 * 3 * 2^27, and the penalty below 2^28.
-  bool fit(const label::LabelSeed* seeds, int count) const {
-    if (!within(size_, 1 << 13) || penalty_q16_ >= 1 << 28) return false;
-    for (int s = 0; s < count; ++s)
-      if (!within(local(seeds[s].position, bounds_.lo), 1 << 14)) return false;
+  bool fit(const NearSeeds& seeds) const {
+    constexpr int32_t kLargest = 1 << 13;
+    return size_.x < kLargest && size_.y < kLargest && size_.z < kLargest && penalty_q16_ < 1 << 28 &&
+           are_within(1 << 14, seeds);
+  }
+  /// False when they are too many.
+  bool take(const NearSeeds& seeds) {
+    int winner[NearSeeds::kMost];
+    count_ = find_winners(seeds, winner);
+    if (count_ > label::kMaxCandidates) return false;
+    uint32_t number[label::kMaxCandidates], place[label::kMaxCandidates];
+    for (int i = 0; i < count_; ++i) number[i] = seeds.id[winner[i]];
+    rank(number, count_, place);
+    for (int i = 0; i < count_; ++i) {
+      id_[place[i]] = number[i];
+      form_[place[i]] = form(seeds.at(winner[i]), number[i]);
+    }
     return true;
   }
+  /// The one nearest to the middle.
+  uint32_t middle() const { return middle_; }
 
-  /// Moves the seed nearest to the middle to the front, and those that cost more everywhere in the box to the end;
-  /// returns how many are left.
-  int drop_beaten(label::LabelSeed* seeds, int count) const {
-    int middle = 0;
-    int64_t nearest = INT64_MAX;
-    for (int s = 0; s < count; ++s) {
-      const Local p = local(seeds[s].position, bounds_.lo);
-      const int64_t off = square({2 * p.x - size_.x, 2 * p.y - size_.y, 2 * p.z - size_.z});
-      if (off < nearest) nearest = off, middle = s;
+  void label(const label::LabelLeaf<>& plain, int64_t begin, int count) const {
+    bool normals_matter = false;
+    for (int s = 0; s < count_; ++s) normals_matter |= form_[s].penalty != 0;
+    VertexLanes v;
+    for (int i = 0; i < count; ++i) {
+      const Local p = local(plain.position[begin + i], bounds_.lo);
+      v.x[i] = p.x, v.y[i] = p.y, v.z[i] = p.z;
     }
-    std::swap(seeds[0], seeds[middle]);
-    const Local m = local(seeds[0].position, bounds_.lo);
-    const int64_t most = square(m) + form(seeds[0]).penalty;
-    const auto gain = [](int32_t p, int32_t from, int32_t size) {
-      return p > from ? int64_t(p - from) * size : int64_t(0);
-    };
-    int kept = 1;
-    for (int s = 1; s < count; ++s) {
-      const Local p = local(seeds[s].position, bounds_.lo);
-      const int64_t ahead =
-          square(p) - most - 2 * (gain(p.x, m.x, size_.x) + gain(p.y, m.y, size_.y) + gain(p.z, m.z, size_.z));
-      if (ahead <= 0) std::swap(seeds[kept++], seeds[s]);
-    }
-    return kept;
-  }
-
-  SeedForm form(const label::LabelSeed& s) const {
-    const Local p = local(s.position, bounds_.lo);
-    const bool may_pay = label::cost_range(bounds_, s.position, s.normal, penalty_q16_).may_oppose;
-    return {p.x * p.x + p.y * p.y + p.z * p.z,  -2 * p.x, -2 * p.y, -2 * p.z, s.normal.x, s.normal.y, s.normal.z,
-            may_pay ? int32_t(penalty_q16_) : 0};
+    if (normals_matter)
+      for (int i = 0; i < count; ++i) {
+        const Normal8 n = plain.normal[begin + i];
+        v.normal_x[i] = n.x, v.normal_y[i] = n.y, v.normal_z[i] = n.z;
+      }
+    for (int i = count; i % kWidth != 0; ++i)
+      v.x[i] = v.y[i] = v.z[i] = v.normal_x[i] = v.normal_y[i] = v.normal_z[i] = 0;
+    alignas(32) int32_t cheapest[kLeafVoxels];
+    find_cheapest(v, count, form_, count_, cheapest);
+    for (int i = 0; i < count; ++i) plain.out[begin + i] = id_[cheapest[i]];
   }
 
  private:
-  static bool within(Local p, int32_t limit) {
-    return p.x > -limit && p.x < limit && p.y > -limit && p.y < limit && p.z > -limit && p.z < limit;
+  /// Lists those that do not cost more everywhere in the box than the one nearest to its middle.
+  int find_winners(const NearSeeds& seeds, int* winner) {
+    double measure[NearSeeds::kMost];
+    measure_from_middle(seeds, size_, measure);
+    const int middle = int(std::min_element(measure, measure + seeds.count) - measure);
+    middle_ = seeds.id[middle];
+    measure_excess(seeds, size_, seeds.at(middle), may_pay(middle_) ? double(penalty_q16_) : 0, measure);
+    int count = 0;
+    for (int i = 0; i < seeds.count; ++i) {
+      winner[count] = i;
+      count += measure[i] <= 0 ? 1 : 0;
+    }
+    return count;
+  }
+  bool may_pay(uint32_t seed) const {
+    return label::cost_range(bounds_, bounds_.lo, normal_[seed], penalty_q16_).may_oppose;
+  }
+  SeedForm form(Local p, uint32_t seed) const {
+    const Normal8 n = normal_[seed];
+    const int32_t penalty = may_pay(seed) ? int32_t(penalty_q16_) : 0;
+    return {p.x * p.x + p.y * p.y + p.z * p.z, -2 * p.x, -2 * p.y, -2 * p.z, n.x, n.y, n.z, penalty};
   }
 
   const label::Bounds& bounds_;
   const Local size_;
+  const View<const Normal8> normal_;
   const int64_t penalty_q16_;
+  uint32_t middle_ = kNone;
+  int count_ = 0;
+  SeedForm form_[label::kMaxCandidates];
+  uint32_t id_[label::kMaxCandidates];
 };
 
 struct FindBounds {
@@ -122,69 +200,43 @@ struct LabelLeafInLanes {
   View<uint32_t> middle;
 
   void operator()(int64_t leaf) const {
-    using namespace label;
+    const label::Bounds& bounds = leaf_bounds[leaf];
     const int64_t begin = plain.corners.first[leaf], end = plain.corners.first[leaf + 1];
-    const Bounds& bounds = leaf_bounds[leaf];
-    LabelSeed seeds[kMaxCandidates];
-    int64_t limit;
-    int count = middle[leaf] != kNone ? gather_as_far_as(middle[leaf], bounds, limit, seeds)
-                                      : plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
-    if (count > kMaxCandidates) return plain.label_directly(limit, begin, end);
-    const LeafSeeds leaf_seeds(bounds, plain.spacing.penalty_q16);
-    if (!leaf_seeds.fit(seeds, count)) return plain.label_from(leaf, seeds, count);
-    count = leaf_seeds.drop_beaten(seeds, count);
-    middle[leaf] = seeds[0].id;
-    LabelLeaf<>::sort_by_id(seeds, count);
-    label_by(leaf_seeds, seeds, count, bounds.lo, begin, int(end - begin));
+    NearSeeds near;
+    const int64_t limit =
+        middle[leaf] == kNone ? gather_first(bounds, begin, near) : gather_as_far_as(middle[leaf], bounds, near);
+    if (near.count > NearSeeds::kMost) return plain.label_directly(limit, begin, end);
+    LeafSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
+    if (!seeds.fit(near)) return plain(leaf);
+    if (!seeds.take(near)) return plain.label_directly(limit, begin, end);
+    middle[leaf] = seeds.middle();
+    seeds.label(plain, begin, int(end - begin));
   }
 
  private:
-  static int64_t distance_sq_to(const label::Bounds& b, PointQ8 p) {
-    const int64_t x = std::max({b.lo.x - p.x, p.x - b.hi.x, 0}), y = std::max({b.lo.y - p.y, p.y - b.hi.y, 0}),
-                  z = std::max({b.lo.z - p.z, p.z - b.hi.z, 0});
-    return x * x + y * y + z * z;
-  }
+  // Both return a limit that no label's cost exceeds.
 
-  /// Like gather of the plain way; no label costs more than a seed does at most, wherever it is by now.
-  int gather_as_far_as(uint32_t seed, const label::Bounds& bounds, int64_t& limit, label::LabelSeed* seeds) const {
-    limit = label::cost_range(bounds, seed_position[seed], plain.seed_normal[seed], plain.spacing.penalty_q16).hi;
-    int64_t least[label::kMaxCandidates];
-    int count = 0;
-    plain.for_each_within(bounds, limit, [&](const label::LabelSeed& s) {
-      if (distance_sq_to(bounds, s.position) > limit) return;
-      const label::CostRange range = label::cost_range(bounds, s.position, s.normal, plain.spacing.penalty_q16);
-      if (range.lo > limit) return;
-      limit = std::min(limit, range.hi);
-      if (count < label::kMaxCandidates) seeds[count] = s, least[count] = range.lo;
-      ++count;
-    });
-    if (count > label::kMaxCandidates) return count;
-    int kept = 0;
-    for (int s = 0; s < count; ++s)
-      if (least[s] <= limit) seeds[kept++] = seeds[s];
-    return kept;
+  int64_t gather_first(const label::Bounds& bounds, int64_t begin, NearSeeds& near) const {
+    label::LabelSeed seeds[label::kMaxCandidates];
+    int64_t limit;
+    const int count = plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
+    if (count > label::kMaxCandidates)
+      near.count = NearSeeds::kMost + 1;
+    else
+      for (int s = 0; s < count; ++s) near.add(local(seeds[s].position, bounds.lo), seeds[s].id);
+    return limit;
   }
-
-  void label_by(const LeafSeeds& leaf_seeds, const label::LabelSeed* seeds, int seed_count, PointQ8 origin,
-                int64_t begin, int count) const {
-    SeedForm forms[label::kMaxCandidates];
-    bool normals_matter = false;
-    for (int s = 0; s < seed_count; ++s) {
-      forms[s] = leaf_seeds.form(seeds[s]);
-      normals_matter |= forms[s].penalty != 0;
-    }
-    VertexLanes lanes;
-    for (int i = 0; i < count; ++i) {
-      const Local p = local(plain.position[begin + i], origin);
-      lanes.x[i] = p.x, lanes.y[i] = p.y, lanes.z[i] = p.z;
-    }
-    if (normals_matter)
-      for (int i = 0; i < count; ++i) {
-        const Normal8 n = plain.normal[begin + i];
-        lanes.normal_x[i] = n.x, lanes.normal_y[i] = n.y, lanes.normal_z[i] = n.z;
-      }
-    compare(lanes, count, forms, seed_count);
-    for (int i = 0; i < count; ++i) plain.out[begin + i] = seeds[lanes.best[i]].id;
+  /// No label costs more than a seed does at most, wherever it is by now.
+  int64_t gather_as_far_as(uint32_t seed, const label::Bounds& bounds, NearSeeds& near) const {
+    const int64_t limit =
+        label::cost_range(bounds, seed_position[seed], plain.seed_normal[seed], plain.spacing.penalty_q16).hi;
+    const int32_t r = int32_t(isqrt(uint64_t(limit))) + 1;
+    const auto add = [&](const GridPoint& p) { near.add(local(p.position, bounds.lo), p.id); };
+    visit_box(
+        plain.grid,
+        {{bounds.lo.x - r, bounds.lo.y - r, bounds.lo.z - r}, {bounds.hi.x + r, bounds.hi.y + r, bounds.hi.z + r}},
+        add);
+    return limit;
   }
 };
 
