@@ -1,41 +1,53 @@
 // Bounds of the options of a run.
 #include "check_options.h"
 
-#include <limits>
+#include <cmath>
 #include <sstream>
 
 #include "isoshell/error.h"
+#include "isoshell/option_range.h"
 
 namespace isoshell {
 namespace {
 
-/// NaN lies outside of every range.
-void check_range(const char* option, double value, double least, double most) {
-  if (value >= least && value <= most) return;
+/// All digits that a count or a bound has, where a stream would round to six.
+std::string number_text(double value) {
   std::ostringstream text;
-  text << option << " is " << value << "; it must be " << least << " to " << most;
-  throw Error(ErrorCode::usage, "options", text.str());
+  text.precision(10);
+  text << value;
+  return text.str();
+}
+
+/// `unset` stands for an option that the run chooses itself.
+void check(const char* option, double value, const OptionRange& range, double unset = NAN) {
+  if (value != unset && !range.holds(value)) throw Error(ErrorCode::usage, "options", range.refusal(option, value));
 }
 
 }  // namespace
 
+std::string OptionRange::refusal(const std::string& option, double value) const {
+  std::string text =
+      option + " is " + number_text(value) + "; it must be " + (above ? "more than " : "") + number_text(low);
+  if (high == std::numeric_limits<double>::max())
+    text += above ? "" : " or more";
+  else
+    text += (above ? " and at most " : " to ") + number_text(high);
+  return text;
+}
+
 void check_options(const RemeshOptions& o) {
-  const double finite = std::numeric_limits<double>::max();
-  check_range("vertices", double(o.vertices), 0, std::numeric_limits<int32_t>::max());
-  check_range("edge_length_world", o.edge_length_world, 0, finite);
-  if (o.resolution != 0) check_range("resolution", o.resolution, 8, kMaxResolution);
-  check_range("voxel_size_world", o.voxel_size_world, 0, finite);
-  check_range("band_vox", o.band_vox, 1, kMaxBandVox);
-  check_range("closing_vox", o.closing_vox, -1, kMaxClosingVox);
-  check_range("closing_world", o.closing_world, -finite, finite);
-  check_range("max_passes", o.max_passes, 0, 1000000);
-  check_range("tolerance", o.tolerance, -finite, 1);
-  check_range("max_step_vox", o.max_step_vox, 0, 1000);
-  check_range("adaptivity", o.adaptivity, 0, 1);
-  check_range("gradation", o.gradation, 1, 10);
-  if (o.gradation == 1)
-    throw Error(ErrorCode::usage, "options",
-                "gradation is 1; it must be above 1: at 1 all edges would have one length");
+  check("vertices", double(o.vertices), option_range::vertices, 0);
+  check("edge_length_world", o.edge_length_world, option_range::length, 0);
+  check("resolution", o.resolution, option_range::resolution, 0);
+  check("voxel_size_world", o.voxel_size_world, option_range::length, 0);
+  check("band_vox", o.band_vox, option_range::band);
+  check("closing_vox", o.closing_vox, option_range::closing, -1);
+  check("closing_world", o.closing_world, OptionRange{}, -1);
+  check("max_passes", o.max_passes, option_range::iterations, 0);
+  check("tolerance", o.tolerance, option_range::tolerance, -1);
+  check("max_step_vox", o.max_step_vox, option_range::step, 0);
+  check("adaptivity", o.adaptivity, option_range::adaptivity);
+  check("gradation", o.gradation, option_range::gradation);
   if (o.method == Method::shell && (o.sizing || o.adaptivity > 0))
     throw Error(ErrorCode::usage, "options",
                 "a sizing field and adaptivity need the method sheet: the paper's loop on the shell has even cells");

@@ -30,7 +30,7 @@ struct RemeshOptions {
   double closing_world = -1;     ///< width of gaps to close, world units; -1 means by closing_vox
   Method method = Method::sheet;
   int32_t max_passes = 0;   ///< of the finest level of seeds; 0 means the method's own
-  double tolerance = -1;    ///< relative fall of the energy a pass; negative means the method's own
+  double tolerance = -1;    ///< relative fall of the energy a pass; -1 means the method's own
   double max_step_vox = 0;  ///< u; 0 means the method's own
   uint64_t seed = 0;
   std::shared_ptr<const SizingField> sizing;  ///< edge lengths to aim at; null: the same everywhere

@@ -285,7 +285,7 @@ TEST_CASE("prepare: options out of range are refused with their name", "[prepare
     void (*spoil)(RemeshOptions&);
   };
   const Case cases[] = {
-      {"vertices", [](RemeshOptions& o) { o.vertices = -1; }},
+      {"vertices", [](RemeshOptions& o) { o.vertices = 3; }},
       {"edge_length_world", [](RemeshOptions& o) { o.edge_length_world = std::nan(""); }},
       {"resolution", [](RemeshOptions& o) { o.resolution = 7; }},
       {"voxel_size_world", [](RemeshOptions& o) { o.voxel_size_world = -1; }},

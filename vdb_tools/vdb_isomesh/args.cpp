@@ -9,8 +9,8 @@
 #include <type_traits>
 
 #include "isoshell/error.h"
+#include "isoshell/option_range.h"
 #include "vdb_isomesh/help.h"
-#include "vdb_isomesh/ranges.h"
 
 namespace isoshell::tool {
 namespace {
@@ -153,8 +153,8 @@ uint64_t parse_seed(const std::string& text) {
   return value;
 }
 
-void check_range(const std::string& option, double value, Range range) {
-  if (!range.holds(value)) refuse(option + " is " + number_text(value) + "; it must be " + range.text());
+void check_range(const std::string& option, double value, const OptionRange& range) {
+  if (!range.holds(value)) refuse(range.refusal(option, value));
 }
 
 void set_gaps(const std::string& text, RemeshOptions& options) {
@@ -259,24 +259,24 @@ void settle_formats(Arguments& a) {
 void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   for (const CLI::Option* option : app.get_options())
     if (option->count() > 0 && !option->get_lnames().empty()) a.given.push_back(option->get_lnames()[0]);
-  const auto ranged = [&](const char* name, double value, Range range) {
+  const auto ranged = [&](const char* name, double value, const OptionRange& range) {
     const bool given = a.was_given(name);
     if (given) check_range(std::string("--") + name, value, range);
     return given;
   };
   RemeshOptions& o = a.remesh;
-  if (ranged("vertices", double(raw.vertices), kVertices)) o.vertices = raw.vertices;
-  if (ranged("edge-length", raw.edge_length, kEdgeLength)) o.edge_length_world = raw.edge_length;
-  if (ranged("adaptivity", raw.adaptivity, kAdaptivity)) o.adaptivity = raw.adaptivity;
-  if (ranged("gradation", raw.gradation, kGradation)) o.gradation = raw.gradation;
+  if (ranged("vertices", double(raw.vertices), option_range::vertices)) o.vertices = raw.vertices;
+  if (ranged("edge-length", raw.edge_length, option_range::length)) o.edge_length_world = raw.edge_length;
+  if (ranged("adaptivity", raw.adaptivity, option_range::adaptivity)) o.adaptivity = raw.adaptivity;
+  if (ranged("gradation", raw.gradation, option_range::gradation)) o.gradation = raw.gradation;
   if (a.was_given("sizing") && a.sizing.empty()) refuse("--sizing needs the name of a .vdb file");
   if (!a.sizing.empty() && !a.was_given("vertices")) o.vertices = 0;
-  if (ranged("resolution", double(raw.resolution), {8, kMaxResolution})) o.resolution = int32_t(raw.resolution);
-  if (ranged("voxel-size", raw.voxel_size, kEdgeLength)) o.voxel_size_world = raw.voxel_size;
-  if (ranged("band", double(raw.band), {1, kMaxBandVox})) o.band_vox = int32_t(raw.band);
-  if (ranged("iterations", double(raw.iterations), kIterations)) o.max_passes = int32_t(raw.iterations);
-  if (ranged("tolerance", raw.tolerance, kTolerance)) o.tolerance = raw.tolerance;
-  if (ranged("step", raw.step, kStep)) o.max_step_vox = raw.step;
+  if (ranged("resolution", double(raw.resolution), option_range::resolution)) o.resolution = int32_t(raw.resolution);
+  if (ranged("voxel-size", raw.voxel_size, option_range::length)) o.voxel_size_world = raw.voxel_size;
+  if (ranged("band", double(raw.band), option_range::band)) o.band_vox = int32_t(raw.band);
+  if (ranged("iterations", double(raw.iterations), option_range::iterations)) o.max_passes = int32_t(raw.iterations);
+  if (ranged("tolerance", raw.tolerance, option_range::tolerance)) o.tolerance = raw.tolerance;
+  if (ranged("step", raw.step, option_range::step)) o.max_step_vox = raw.step;
   if (ranged("threads", double(raw.threads), {1, 4096})) a.threads = int(raw.threads);
   if (a.was_given("iso")) {
     if (!std::isfinite(raw.iso)) refuse("--iso must be a finite number");

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "isoshell/error.h"
-#include "vdb_isomesh/ranges.h"
+#include "isoshell/option_range.h"
 
 namespace isoshell::tool {
 namespace {
@@ -238,26 +238,26 @@ std::string adopt_options(const std::string& json, const std::string& path, cons
       if (!a.was_given(name)) value = j.at(name).get<std::decay_t<decltype(value)>>();
     };
     /// `unset` stands for an option that was not given.
-    const auto adopt_within = [&](const char* name, auto& value, Range range, double unset) {
+    const auto adopt_within = [&](const char* name, auto& value, const OptionRange& range, double unset) {
       const double kept = j.at(name).get<double>();
       if (kept != unset && !range.holds(kept))
         throw Error(ErrorCode::unreadable_input, "read",
-                    path + ": this stage file keeps " + name + " " + number_text(kept) + "; it must be " +
-                        range.text() + ": make the file again");
+                    path + ": of the options that this stage file keeps, " + range.refusal(name, kept) +
+                        ": make the file again");
       adopt(name, value);
     };
     const bool size_given = a.was_given("vertices") || a.was_given("edge-length") || a.was_given("sizing");
     if (!size_given) {
-      adopt_within("vertices", o.vertices, kVertices, 0);
-      adopt_within("edge-length", o.edge_length_world, kEdgeLength, 0);
+      adopt_within("vertices", o.vertices, option_range::vertices, 0);
+      adopt_within("edge-length", o.edge_length_world, option_range::length, 0);
     }
-    adopt_within("iterations", o.max_passes, kIterations, 0);
-    adopt_within("tolerance", o.tolerance, kTolerance, -1);
-    adopt_within("step", o.max_step_vox, kStep, 0);
+    adopt_within("iterations", o.max_passes, option_range::iterations, 0);
+    adopt_within("tolerance", o.tolerance, option_range::tolerance, -1);
+    adopt_within("step", o.max_step_vox, option_range::step, 0);
     adopt("seed", o.seed);
     adopt("uniform-area", o.uniform_area);
-    if (j.contains("adaptivity")) adopt_within("adaptivity", o.adaptivity, kAdaptivity, 0);
-    if (j.contains("gradation")) adopt_within("gradation", o.gradation, kGradation, 1.2);
+    if (j.contains("adaptivity")) adopt_within("adaptivity", o.adaptivity, option_range::adaptivity, 0);
+    if (j.contains("gradation")) adopt_within("gradation", o.gradation, option_range::gradation, 1.2);
     if (!a.was_given("fit")) o.fit = j.at("fit") == "surface" ? Fit::surface : Fit::balanced;
     if (!a.was_given("method")) o.method = j.at("method") == "shell" ? Method::shell : Method::sheet;
     return a.was_given("sizing") ? std::string() : j.value("sizing", "");
