@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/world_vector.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -79,9 +80,7 @@ double sheet_area_world(const Sheet& sheet) {
   for (TriangleIndices t : sheet.triangles.to_host()) {
     const WorldPoint a = sheet.frame.to_world(position[t.a]), b = sheet.frame.to_world(position[t.b]),
                      c = sheet.frame.to_world(position[t.c]);
-    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    area += std::sqrt(nx * nx + ny * ny + nz * nz) / 2;
+    area += triangle_area(a, b, c);
   }
   return area;
 }

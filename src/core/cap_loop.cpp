@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/world_vector.h"
+
 namespace isoshell::mending {
 namespace {
 
@@ -12,17 +14,6 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 using Part = std::vector<uint32_t>;  // corners of a part of the loop, in order
 using MayJoin = std::function<bool(uint32_t, uint32_t)>;
-
-double triangle_area(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-  const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-  return std::sqrt(nx * nx + ny * ny + nz * nz) / 2;
-}
-
-double length_sq(const WorldPoint& a, const WorldPoint& b) {
-  const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
-  return x * x + y * y + z * z;
-}
 
 /// Dynamic programme over the spans of a part: the best triangle on each span's chord.
 class LeastArea {
@@ -77,7 +68,7 @@ std::array<size_t, 2> shortest_cut(const std::vector<WorldPoint>& corner, const 
   double best_sq = kNever;
   for (size_t i = 0; i < n; i += stride)
     for (size_t j = i + least; j < n && j - i <= n - least; ++j) {
-      const double sq = length_sq(corner[part[i]], corner[part[j]]);
+      const double sq = distance_sq(corner[part[i]], corner[part[j]]);
       if (!(sq < best_sq) || !may_join(part[i], part[j])) continue;
       best_sq = sq;
       best = {i, j};

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/triangle_grid.h"
+#include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "voxel/random.h"
 
@@ -15,14 +16,6 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kChunk = 512;
-
-WorldPoint minus(WorldPoint a, WorldPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-
-double area(WorldPoint a, WorldPoint b, WorldPoint c) {
-  const WorldPoint u = minus(b, a), v = minus(c, a);
-  const double x = u.y * v.z - u.z * v.y, y = u.z * v.x - u.x * v.z, z = u.x * v.y - u.y * v.x;
-  return std::sqrt(x * x + y * y + z * z) / 2;
-}
 
 void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
@@ -40,7 +33,7 @@ class AreaSamples {
     area_until_.reserve(mesh.triangles.size());
     double sum = 0;
     for (const auto& t : mesh.triangles)
-      area_until_.push_back(sum += area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+      area_until_.push_back(sum += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
   }
   WorldPoint operator[](int64_t number) const {
     const double at = area_until_.back() * ((double(number) + part(number, 0)) / double(kDistanceSamples));
@@ -108,7 +101,7 @@ double diagonal(const TriangleMesh& mesh) {
       lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
       hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
     }
-  const WorldPoint d = minus(hi, lo);
+  const WorldPoint d = hi - lo;
   return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 

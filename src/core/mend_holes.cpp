@@ -6,7 +6,7 @@
 #include <unordered_set>
 
 #include "core/cap_loop.h"
-#include "core/mend_vectors.h"
+#include "core/world_vector.h"
 #include "voxel/union_find.h"
 
 namespace isoshell::mending {
@@ -19,7 +19,7 @@ struct Box {
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
   }
-  double diagonal_sq() const { return dot(minus(hi, lo), minus(hi, lo)); }
+  double diagonal_sq() const { return dot(hi - lo, hi - lo); }
 };
 
 /// Boxes and areas of what faces connect by their corners.
@@ -137,14 +137,11 @@ class Capper {
   static uint64_t key_of(uint32_t u, uint32_t v) { return uint64_t(std::min(u, v)) << 32 | std::max(u, v); }
 
   void add_tube(Cap tube) {
-    double area = 0, length = 0;
+    double area = 0, around = 0;
     for (const Corners& c : tube.face)
       area += area_of({mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]}, {{0, 1, 2}});
-    for (uint32_t h : tube.loop) {
-      const WorldPoint d = minus(mesh_.position[mesh_.to(h)], mesh_.position[mesh_.from(h)]);
-      length += std::sqrt(dot(d, d));
-    }
-    count_width(area, length);
+    for (uint32_t h : tube.loop) around += length(mesh_.position[mesh_.to(h)] - mesh_.position[mesh_.from(h)]);
+    count_width(area, around);
     ++report_.tubes;
     add(std::move(tube), 2);
   }
@@ -164,19 +161,13 @@ class Capper {
 
   static double area_of(const std::vector<WorldPoint>& corner, const std::vector<LoopTriangle>& triangles) {
     double area = 0;
-    for (const LoopTriangle& t : triangles) {
-      const WorldPoint n = cross(minus(corner[t[1]], corner[t[0]]), minus(corner[t[2]], corner[t[0]]));
-      area += std::sqrt(dot(n, n)) / 2;
-    }
+    for (const LoopTriangle& t : triangles) area += triangle_area(corner[t[0]], corner[t[1]], corner[t[2]]);
     return area;
   }
   static double length_of(const std::vector<WorldPoint>& corner) {
-    double length = 0;
-    for (size_t i = 0; i < corner.size(); ++i) {
-      const WorldPoint d = minus(corner[(i + 1) % corner.size()], corner[i]);
-      length += std::sqrt(dot(d, d));
-    }
-    return length;
+    double sum = 0;
+    for (size_t i = 0; i < corner.size(); ++i) sum += length(corner[(i + 1) % corner.size()] - corner[i]);
+    return sum;
   }
 
   const MendMesh& mesh_;

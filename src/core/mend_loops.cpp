@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/mend_vectors.h"
+#include "core/world_vector.h"
 
 namespace isoshell::mending {
 namespace {
@@ -86,7 +86,7 @@ class LoopFinder {
     WorldPoint n = {0, 0, 0};
     for (const Fan& fan : fans) n = {n.x + fan.normal.x, n.y + fan.normal.y, n.z + fan.normal.z};
     const WorldPoint& at = mesh_.position[vertex];
-    const WorldPoint u = cross(n, minus(mesh_.position[mesh_.to(fans[0].out)], at)), v = cross(n, u);
+    const WorldPoint u = cross(n, mesh_.position[mesh_.to(fans[0].out)] - at), v = cross(n, u);
     if (dot(u, u) == 0) return false;
     struct Ray {
       double turn;
@@ -94,11 +94,10 @@ class LoopFinder {
       uint32_t half_edge;
     };
     // u and v are perpendicular, v longer by |n|: only their directions count.
-    const double u_length = std::sqrt(dot(u, u)), v_length = std::sqrt(dot(v, v));
+    const double u_length = length(u), v_length = length(v);
     std::vector<Ray> rays;
     for (const Fan& fan : fans) {
-      const WorldPoint in = minus(mesh_.position[mesh_.from(fan.in)], at),
-                       out = minus(mesh_.position[mesh_.to(fan.out)], at);
+      const WorldPoint in = mesh_.position[mesh_.from(fan.in)] - at, out = mesh_.position[mesh_.to(fan.out)] - at;
       rays.push_back({turn_of(dot(in, u) / u_length, dot(in, v) / v_length), true, fan.in});
       rays.push_back({turn_of(dot(out, u) / u_length, dot(out, v) / v_length), false, fan.out});
     }
@@ -118,9 +117,9 @@ class LoopFinder {
 
   /// Grows with the angle of (x, y), 0 to 4.
   static double turn_of(double x, double y) {
-    const double length = std::abs(x) + std::abs(y);
-    if (length == 0) return 0;
-    const double t = y / length;
+    const double size = std::abs(x) + std::abs(y);
+    if (size == 0) return 0;
+    const double t = y / size;
     return x < 0 ? 2 - t : t < 0 ? 4 + t : t;
   }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "core/world_vector.h"
 #include "isoshell/mend.h"
 #include "voxel/union_find.h"
 
@@ -18,11 +19,6 @@ bool before(const WorldPoint& p, const WorldPoint& q) {
   if (p.x != q.x) return p.x < q.x;
   if (p.y != q.y) return p.y < q.y;
   return p.z < q.z;
-}
-
-double distance(const WorldPoint& p, const WorldPoint& q) {
-  const double x = p.x - q.x, y = p.y - q.y, z = p.z - q.z;
-  return std::sqrt(x * x + y * y + z * z);
 }
 
 uint64_t key_of(uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
@@ -126,11 +122,11 @@ std::vector<double> MendMesh::crack_widths() const {
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
   }
-  const double widest = kWidestCrack * distance(lo, hi);
+  const double widest = kWidestCrack * length(hi - lo);
   for (uint32_t h = 0; h < edge_of_.size(); ++h) {
     if (live_at_[edge_of_[h]] != 1) continue;
     const WorldPoint &p = position[from(h)], &q = position[to(h)];
-    const double most = distance(p, q) / 4;
+    const double most = length(q - p) / 4;
     for (const uint32_t v : {from(h), to(h)}) width[v] = std::min(width[v] > 0 ? width[v] : widest, most);
   }
   return width;
@@ -157,7 +153,7 @@ std::vector<uint32_t> MendMesh::first_within_cracks() const {
         const auto near = kept.find({level, at[1] + n / 9 - 1, at[2] + n / 3 % 3 - 1, at[3] + n % 3 - 1});
         if (near == kept.end()) continue;
         for (const uint32_t u : near->second)
-          if (u < first[v] && distance(position[u], position[v]) <= std::min(width[u], width[v])) first[v] = u;
+          if (u < first[v] && length(position[u] - position[v]) <= std::min(width[u], width[v])) first[v] = u;
       }
     }
     if (first[v] != v) continue;
@@ -225,13 +221,9 @@ bool MendMesh::has_edge(uint32_t a, uint32_t b) const {
 
 WorldPoint MendMesh::doubled_area(uint32_t f) const {
   const WorldPoint &a = position[face[f][0]], &b = position[face[f][1]], &c = position[face[f][2]];
-  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-  return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+  return isoshell::doubled_area(a, b, c);
 }
 
-double MendMesh::area(uint32_t f) const {
-  const WorldPoint n = doubled_area(f);
-  return std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / 2;
-}
+double MendMesh::area(uint32_t f) const { return length(doubled_area(f)) / 2; }
 
 }  // namespace isoshell::mending

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/mend_vectors.h"
+#include "core/world_vector.h"
 
 namespace isoshell::mending {
 namespace {
@@ -15,8 +15,6 @@ constexpr double kWidthsApart = 2.5;    // between their radii
 constexpr double kFarthest = 5;         // in sums of their radii
 constexpr size_t kMostRungs = 4 << 20;  // tried
 constexpr size_t kMostRims = 20000;     // more are no holes in a surface
-
-double length(const WorldPoint& p) { return std::sqrt(dot(p, p)); }
 
 /// A loop as the end of a tube.
 struct Rim {
@@ -31,14 +29,14 @@ Rim rim_of(const MendMesh& mesh, const Loop& loop) {
   const WorldPoint start = mesh.position[mesh.from(loop[0])];
   WorldPoint doubled_area = {0, 0, 0}, sum = {0, 0, 0};
   for (uint32_t h : loop) {
-    const WorldPoint p = minus(mesh.position[mesh.from(h)], start), q = minus(mesh.position[mesh.to(h)], start);
-    doubled_area = plus(doubled_area, cross(q, p));  // the cap passes the loop the other way
-    sum = plus(sum, p);
+    const WorldPoint p = mesh.position[mesh.from(h)] - start, q = mesh.position[mesh.to(h)] - start;
+    doubled_area = doubled_area + cross(q, p);  // the cap passes the loop the other way
+    sum = sum + p;
   }
   const double size = length(doubled_area);
   if (!(size > 0)) return rim;
-  rim.middle = plus(start, scaled(1 / double(loop.size()), sum));
-  rim.looks = scaled(1 / size, doubled_area);
+  rim.middle = start + 1 / double(loop.size()) * sum;
+  rim.looks = 1 / size * doubled_area;
   rim.radius = std::sqrt(size / 6.283185307179586);
   rim.along = 0;
   for (uint32_t h : loop) {
@@ -59,7 +57,7 @@ bool is_simple(const MendMesh& mesh, const Loop& loop) {
 /// How far apart rims of one tube are; infinity for others.
 double gap_between(const Rim& p, const Rim& q) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  const WorldPoint way = minus(q.middle, p.middle);
+  const WorldPoint way = q.middle - p.middle;
   const double gap = length(way), wide = p.radius + q.radius;
   if (!(gap > 0) || gap > kFarthest * wide ||
       std::max(p.radius, q.radius) > kWidthsApart * std::min(p.radius, q.radius))
@@ -122,7 +120,7 @@ class Strip {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   double rung_sq(size_t i, size_t j) const {
-    const WorldPoint d = minus(mesh_.position[p_[i % p_.size()]], mesh_.position[q_[j % q_.size()]]);
+    const WorldPoint d = mesh_.position[p_[i % p_.size()]] - mesh_.position[q_[j % q_.size()]];
     return dot(d, d);
   }
   void start_at_shortest_rung() {

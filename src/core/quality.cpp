@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/world_vector.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -49,15 +50,8 @@ struct Part {
   }
 };
 
-WorldPoint minus(WorldPoint a, WorldPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(WorldPoint a, WorldPoint b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double length(WorldPoint a) { return std::sqrt(dot(a, a)); }
-WorldPoint cross(WorldPoint a, WorldPoint b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 void measure_triangle(WorldPoint a, WorldPoint b, WorldPoint c, Part& part) {
-  const WorldPoint side[3] = {minus(b, a), minus(c, b), minus(a, c)};
+  const WorldPoint side[3] = {b - a, c - b, a - c};
   const double edge[3] = {length(side[0]), length(side[1]), length(side[2])};
   const double twice_area = length(cross(side[0], side[2]));
   const double longest = std::max({edge[0], edge[1], edge[2]}), around = edge[0] + edge[1] + edge[2];

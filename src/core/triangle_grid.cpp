@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/world_vector.h"
+
 namespace isoshell {
 namespace {
 
@@ -12,14 +14,10 @@ constexpr int64_t kCellsPerTriangle = 8;
 constexpr int64_t kEntriesPerTriangle = 32;  // more, and cells are too small for the largest triangles
 constexpr int64_t kMostEntries = std::numeric_limits<uint32_t>::max();
 
-WorldPoint operator-(WorldPoint a, WorldPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-WorldPoint plus(WorldPoint a, double t, WorldPoint d) { return {a.x + t * d.x, a.y + t * d.y, a.z + t * d.z}; }
-double dot(WorldPoint a, WorldPoint b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 double to_segment_sq(WorldPoint p, WorldPoint a, WorldPoint b) {
   const WorldPoint ab = b - a, ap = p - a;
   const double length_sq = dot(ab, ab), t = length_sq > 0 ? std::clamp(dot(ap, ab) / length_sq, 0.0, 1.0) : 0;
-  const WorldPoint rest = plus(ap, -t, ab);
+  const WorldPoint rest = ap + -t * ab;
   return dot(rest, rest);
 }
 
@@ -29,7 +27,7 @@ double to_triangle_sq(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c) {
   const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
   const double area_sq = bb * cc - bc * bc, v = cc * pb - bc * pc, w = bb * pc - bc * pb;
   if (area_sq > 0 && v >= 0 && w >= 0 && v + w <= area_sq) {
-    const WorldPoint rest = plus(plus(ap, -v / area_sq, ab), -w / area_sq, ac);
+    const WorldPoint rest = ap + (-v / area_sq) * ab + (-w / area_sq) * ac;
     return dot(rest, rest);
   }
   return std::min({to_segment_sq(p, a, b), to_segment_sq(p, b, c), to_segment_sq(p, c, a)});

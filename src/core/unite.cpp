@@ -7,6 +7,7 @@
 
 #include "core/mend_mesh.h"
 #include "core/winding.h"
+#include "core/world_vector.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {
@@ -30,8 +31,6 @@ struct Component {
   }
 };
 
-WorldPoint minus(const WorldPoint& p, const WorldPoint& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
-
 /// A face, or a piece of one.
 struct Piece {
   WorldPoint a, b, c;
@@ -43,10 +42,7 @@ struct Piece {
     constexpr double kNear = .95, kFar = (1 - kNear) / 2;
     return {at(1. / 3, 1. / 3, 1. / 3), at(kNear, kFar, kFar), at(kFar, kNear, kFar), at(kFar, kFar, kNear)};
   }
-  double longest_edge() const {
-    const auto length_sq = [](const WorldPoint& e) { return e.x * e.x + e.y * e.y + e.z * e.z; };
-    return std::sqrt(std::max({length_sq(minus(b, a)), length_sq(minus(c, b)), length_sq(minus(a, c))}));
-  }
+  double longest_edge() const { return std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)})); }
 };
 
 struct Box {
@@ -61,12 +57,8 @@ struct Box {
 
 /// Whether a piece has points on both sides of another one's plane.
 bool passes_through_plane(const Piece& p, const Piece& of) {
-  const WorldPoint u = minus(of.b, of.a), v = minus(of.c, of.a);
-  const WorldPoint n = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-  const auto height = [&](const WorldPoint& q) {
-    const WorldPoint d = minus(q, of.a);
-    return n.x * d.x + n.y * d.y + n.z * d.z;
-  };
+  const WorldPoint n = doubled_area(of.a, of.b, of.c);
+  const auto height = [&](const WorldPoint& q) { return dot(n, q - of.a); };
   const double a = height(p.a), b = height(p.b), c = height(p.c);
   return std::min({a, b, c}) < 0 && std::max({a, b, c}) > 0;
 }
@@ -143,7 +135,7 @@ class Union {
       c.largest_area = area;
       c.largest_face = f;
     }
-    const WorldPoint n = mesh_.doubled_area(f), from = minus(p, start);
+    const WorldPoint n = mesh_.doubled_area(f), from = p - start;
     c.six_volume += from.x * n.x + from.y * n.y + from.z * n.z;
   }
 

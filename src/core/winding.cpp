@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/world_vector.h"
+
 namespace isoshell {
 namespace {
 
@@ -75,9 +77,7 @@ int RayColumns::crossing(const WorldPoint& p, uint32_t own, uint32_t face) const
   const int turn = side_of(a, b, p);
   if (side_of(b, c, p) != turn || side_of(c, a, p) != turn) return 0;
   // turn is the sign of the normal's x; the face lies beyond where (a - p) and the normal agree with it.
-  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-  const double ahead =
-      (a.x - p.x) * (uy * vz - uz * vy) + (a.y - p.y) * (uz * vx - ux * vz) + (a.z - p.z) * (ux * vy - uy * vx);
+  const double ahead = dot(a - p, doubled_area(a, b, c));
   const bool beyond = ahead != 0 ? (ahead > 0) == (turn > 0) : face > own;
   return beyond ? turn : 0;
 }

@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/world_vector.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -88,16 +89,12 @@ void write_ply_vertices(OutputFile& file, const TriangleMesh& mesh) {
   });
 }
 
-WorldPoint minus(const WorldPoint& a, const WorldPoint& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double length_sq(const WorldPoint& a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
-
 // Unit normal; zero where the triangle has no area.
 WorldPoint normal_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-  const WorldPoint u = minus(b, a), v = minus(c, a);
-  const WorldPoint n = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-  const double length = std::sqrt(length_sq(n));
-  if (!(length > 0) || !std::isfinite(length)) return {0, 0, 0};
-  return {n.x / length, n.y / length, n.z / length};
+  const WorldPoint n = doubled_area(a, b, c);
+  const double size = length(n);
+  if (!(size > 0) || !std::isfinite(size)) return {0, 0, 0};
+  return {n.x / size, n.y / size, n.z / size};
 }
 
 template <class Value, class At>
@@ -117,12 +114,12 @@ bool needs_double(const TriangleMesh& mesh) {
   const double infinity = std::numeric_limits<double>::infinity();
   const auto moved_sq = [&](size_t i) {
     const WorldPoint& p = mesh.vertices[i];
-    return length_sq({p.x - double(float(p.x)), p.y - double(float(p.y)), p.z - double(float(p.z))});
+    return distance_sq({double(float(p.x)), double(float(p.y)), double(float(p.z))}, p);
   };
   const auto shortest_edge_sq = [&](size_t i) {
     const auto& t = mesh.triangles[i];
     const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    return std::min({length_sq(minus(a, b)), length_sq(minus(b, c)), length_sq(minus(c, a))});
+    return std::min({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)});
   };
   const double moved = extreme<double>(int64_t(mesh.vertices.size()), 0.0, moved_sq, std::max<double>);
   const double edge = extreme<double>(int64_t(mesh.triangles.size()), infinity, shortest_edge_sq, std::min<double>);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <queue>
 
+#include "core/world_vector.h"
+
 namespace isoshell {
 namespace {
 
@@ -19,11 +21,9 @@ constexpr double kLayerGap = 10;                    // spacings between two laye
 constexpr double kMostLayered = 0.1;  // of the cells of a scan from one side, at its steps; of a closed surface, most
 constexpr double kMostDisagreeing = 0.05;  // of all pairs of neighbours; beyond it normals are not trusted
 
-double dot(const WorldPoint& a, const WorldPoint& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-WorldPoint scaled(const WorldPoint& a, double by) { return {a.x * by, a.y * by, a.z * by}; }
 WorldPoint normalised(const WorldPoint& a) {
-  const double length = std::sqrt(dot(a, a));
-  return length > 0 && std::isfinite(length) ? scaled(a, 1 / length) : WorldPoint{0, 0, 0};
+  const double size = length(a);
+  return size > 0 && std::isfinite(size) ? (1 / size) * a : WorldPoint{0, 0, 0};
 }
 
 /// Direction in which the matrix (xx, xy, xz, yy, yz, zz) is smallest, by Jacobi rotations.
@@ -60,7 +60,7 @@ WorldPoint smallest_direction(const double m[6]) {
 WorldPoint plane_normal(const std::vector<WorldPoint>& position, const std::vector<PointTree::Near>& near) {
   WorldPoint mean{0, 0, 0};
   for (const auto& [d, i] : near) mean = {mean.x + position[i].x, mean.y + position[i].y, mean.z + position[i].z};
-  mean = scaled(mean, 1 / double(near.size()));
+  mean = (1 / double(near.size())) * mean;
   double m[6] = {};
   for (const auto& [d, i] : near) {
     const double x = position[i].x - mean.x, y = position[i].y - mean.y, z = position[i].z - mean.z;
@@ -121,7 +121,7 @@ class Orientation {
     }
     if (!(least < kMostLayered)) return false;
     for (WorldPoint& n : p_.normal)
-      if (dot(n, viewer) < 0) n = scaled(n, -1);
+      if (dot(n, viewer) < 0) n = -1 * n;
     return true;
   }
 
@@ -161,7 +161,7 @@ class Orientation {
         steps.pop();
         if (part_[step.to]) continue;
         part_[step.to] = parts;
-        if (dot(p_.normal[step.to], p_.normal[step.from]) < 0) p_.normal[step.to] = scaled(p_.normal[step.to], -1);
+        if (dot(p_.normal[step.to], p_.normal[step.from]) < 0) p_.normal[step.to] = -1 * p_.normal[step.to];
         add_steps(step.to, steps);
       }
     }
@@ -181,17 +181,17 @@ class Orientation {
     std::vector<double> area(parts, 0), volume(parts, 0);
     for (size_t i = 0; i < part_.size(); ++i) {
       WorldPoint& m = middle[part_[i]];
-      const WorldPoint p = scaled(p_.position[i], p_.area[i]);
+      const WorldPoint p = p_.area[i] * p_.position[i];
       m = {m.x + p.x, m.y + p.y, m.z + p.z};
       area[part_[i]] += p_.area[i];
     }
-    for (uint32_t k = 0; k < parts; ++k) middle[k] = scaled(middle[k], area[k] > 0 ? 1 / area[k] : 0);
+    for (uint32_t k = 0; k < parts; ++k) middle[k] = (area[k] > 0 ? 1 / area[k] : 0) * middle[k];
     for (size_t i = 0; i < part_.size(); ++i) {
       const WorldPoint &m = middle[part_[i]], &p = p_.position[i];
       volume[part_[i]] += p_.area[i] * dot(p_.normal[i], {p.x - m.x, p.y - m.y, p.z - m.z});
     }
     for (size_t i = 0; i < part_.size(); ++i)
-      if (volume[part_[i]] < 0) p_.normal[i] = scaled(p_.normal[i], -1);
+      if (volume[part_[i]] < 0) p_.normal[i] = -1 * p_.normal[i];
   }
 
   OrientedPoints& p_;

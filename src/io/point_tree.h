@@ -8,15 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/world_vector.h"
 #include "isoshell/lattice.h"
 
 namespace isoshell {
 
 inline double coordinate(const WorldPoint& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-inline double distance_sq(const WorldPoint& a, const WorldPoint& b) {
-  const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return x * x + y * y + z * z;
-}
 
 class PointTree {
  public:

@@ -4,17 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/world_vector.h"
+
 namespace isoshell {
-namespace {
-
-WorldPoint minus(WorldPoint a, WorldPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-WorldPoint cross(WorldPoint a, WorldPoint b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(WorldPoint a, WorldPoint b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double distance_sq(WorldPoint a, WorldPoint b) { return dot(minus(a, b), minus(a, b)); }
-
-}  // namespace
 
 void PolygonSplitter::split(const WorldPoint* vertices, const uint32_t* corners, int64_t count,
                             std::vector<std::array<uint32_t, 3>>& triangles) {
@@ -35,7 +27,7 @@ bool PolygonSplitter::project(const WorldPoint* vertices) {
   const WorldPoint origin = vertices[ids_[0]];
   WorldPoint normal{0, 0, 0};
   for (size_t i = 1; i + 1 < ids_.size(); ++i) {
-    const WorldPoint part = cross(minus(vertices[ids_[i]], origin), minus(vertices[ids_[i + 1]], origin));
+    const WorldPoint part = cross(vertices[ids_[i]] - origin, vertices[ids_[i + 1]] - origin);
     normal = {normal.x + part.x, normal.y + part.y, normal.z + part.z};
   }
   const double length = std::sqrt(dot(normal, normal));
@@ -46,7 +38,7 @@ bool PolygonSplitter::project(const WorldPoint* vertices) {
   const WorldPoint u = cross(axis, normal), v = cross(normal, u);
   at_.clear();
   for (const uint32_t id : ids_) {
-    const WorldPoint offset = minus(vertices[id], origin);
+    const WorldPoint offset = vertices[id] - origin;
     at_.push_back({dot(offset, u), dot(offset, v)});
   }
   return true;
