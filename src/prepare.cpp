@@ -23,6 +23,7 @@ namespace isoshell {
 namespace {
 
 constexpr int32_t kMaxAutoClosingVox = 4;
+constexpr int32_t kCoarsestGrid = 8;
 
 /// Sites, samples and sheet of a surface, with the closing that is asked for or found.
 class Preparation {
@@ -305,6 +306,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const InputTopology given =
       timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
   check_area(given);
+  memory_allows(estimate_run(soup, given, options, kCoarsestGrid), false, report, context);  // mending comes first
   TriangleSoup changed;
   const TriangleSoup* current = &soup;
   InputTopology input = given;
@@ -320,7 +322,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   }
   if (input.closed && input.oriented && input.components > 1) {
     const UniteOptions unite_options{options.outer_only, voxel_edge(*current, input, options) / 2};
-    TriangleSoup united = timed(report, "unite", context, [&] { return unite(*current, unite_options, report.unite); });
+    TriangleSoup united =
+        timed(report, "unite", context, [&] { return unite(*current, unite_options, report.unite, context); });
     if (report.unite.changed_anything()) {
       changed = std::move(united);
       current = &changed;

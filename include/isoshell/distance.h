@@ -1,6 +1,7 @@
 // How far a mesh is from another one, both ways.
 #pragma once
 
+#include "isoshell/backend.h"
 #include "isoshell/lattice_surface.h"
 #include "isoshell/triangle_mesh.h"
 
@@ -26,7 +27,7 @@ constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh th
 /// n-th vertex, n the smallest that leaves at most kDistanceVertices; the distances are exact up to rounding, sums run
 /// in one fixed shape. Cost: about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160.
 /// Throws: usage when a mesh has no triangle or names a vertex that it does not have.
-MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference);
+MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context);
 
 /// The triangles of the input as the stages see it: snapped, and mended where it was.
 TriangleMesh to_world(const LatticeSurface& surface);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "isoshell/backend.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {
@@ -32,6 +33,6 @@ struct UniteReport {
 /// that only touch stay as they are. A soup in which nothing changes comes back as it is. Cost: sorts of vertices and
 /// faces, four rays a face, and where faces are cut about as many pieces as cuts are long in terms of
 /// finest_edge_world.
-TriangleSoup unite(const TriangleSoup& soup, const UniteOptions& options, UniteReport& report);
+TriangleSoup unite(const TriangleSoup& soup, const UniteOptions& options, UniteReport& report, const Context& context);
 
 }  // namespace isoshell

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/triangle_grid.h"
+#include "core/watched.h"
 #include "core/world_vector.h"
-#include "isoshell/error.h"
 #include "voxel/random.h"
 
 namespace isoshell {
@@ -60,18 +60,21 @@ struct Sums {
   double sum = 0, sum_sq = 0, max_sq = 0;
 };
 
+/// A search may be long where triangles are, so each point asks whether to go on.
 template <class PointAt>
-Sums sum_over(int64_t count, const TriangleGrid& to, PointAt point_at) {
+Sums sum_over(int64_t count, const TriangleGrid& to, const Context& context, PointAt point_at) {
   std::vector<Sums> parts(size_t((count + kChunk - 1) / kChunk));
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
     const int64_t end = std::min(count, int64_t(c + 1) * kChunk);
     for (int64_t i = int64_t(c) * kChunk; i < end; ++i) {
+      if (context.cancel.load(std::memory_order_relaxed)) return;
       const double distance_sq = to.distance_sq(point_at(i));
       parts[c].sum += std::sqrt(distance_sq);
       parts[c].sum_sq += distance_sq;
       parts[c].max_sq = std::max(parts[c].max_sq, distance_sq);
     }
   });
+  check_cancel(context, "distance");
   Sums all;
   for (const Sums& part : parts) {
     all.sum += part.sum;
@@ -81,14 +84,15 @@ Sums sum_over(int64_t count, const TriangleGrid& to, PointAt point_at) {
   return all;
 }
 
-OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to) {
+OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to, const Context& context) {
+  check_cancel(context, "distance");
   const TriangleGrid grid(to);
   const AreaSamples samples(from);
   const auto vertices = int64_t(from.vertices.size());
   const int64_t stride = (vertices + kDistanceVertices - 1) / kDistanceVertices;
-  const Sums inside = sum_over(kDistanceSamples, grid, [&](int64_t i) { return samples[i]; });
-  const Sums corners =
-      sum_over((vertices + stride - 1) / stride, grid, [&](int64_t i) { return from.vertices[size_t(i * stride)]; });
+  const Sums inside = sum_over(kDistanceSamples, grid, context, [&](int64_t i) { return samples[i]; });
+  const Sums corners = sum_over((vertices + stride - 1) / stride, grid, context,
+                                [&](int64_t i) { return from.vertices[size_t(i * stride)]; });
   const double count = double(kDistanceSamples);
   return {inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))};
 }
@@ -107,10 +111,12 @@ double diagonal(const TriangleMesh& mesh) {
 
 }  // namespace
 
-MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference) {
+MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context) {
   check(mesh);
   check(reference);
-  return {one_sided(mesh, reference), one_sided(reference, mesh), diagonal(reference)};
+  return run_with_threads(context, [&] {
+    return MeshDistance{one_sided(mesh, reference, context), one_sided(reference, mesh, context), diagonal(reference)};
+  });
 }
 
 TriangleMesh to_world(const LatticeSurface& surface) {

@@ -1,11 +1,14 @@
 #include "isoshell/unite.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
 #include "core/mend_mesh.h"
+#include "core/watched.h"
 #include "core/winding.h"
 #include "core/world_vector.h"
 #include "voxel/union_find.h"
@@ -16,7 +19,8 @@ namespace {
 using mending::Corners;
 using mending::MendMesh;
 
-constexpr int kMostSplits = 12;  // halvings of an edge
+constexpr int kMostSplits = 12;            // halvings of an edge
+constexpr int64_t kFacesAtOnce = 1 << 16;  // whose pieces are kept until they are told
 
 struct Component {
   WorldPoint lo, hi;
@@ -70,8 +74,8 @@ bool may_cut(const Piece& p, const Piece& q) {
 
 class Union {
  public:
-  Union(const MendMesh& mesh, const UniteOptions& options, UniteReport& report)
-      : mesh_(mesh), options_(options), report_(report), rays_(mesh.position, mesh.face) {
+  Union(const MendMesh& mesh, const UniteOptions& options, UniteReport& report, const Context& context)
+      : mesh_(mesh), options_(options), report_(report), context_(context), rays_(mesh.position, mesh.face) {
     find_components();
     turn_outward();
     for (const Component& c : components_) {
@@ -85,24 +89,36 @@ class Union {
   void for_each_kept(Keep keep, KeepPiece keep_piece) {
     joined_ = Buffer<uint32_t>(int64_t(components_.size()));
     for (uint32_t c = 0; c < components_.size(); ++c) joined_[c] = c;
-    for (uint32_t f = 0; f < mesh_.face_count(); ++f) {
-      Component& own = components_[component_[f]];
-      if (is_dropped(own)) continue;
-      Parts parts;
-      split(f, piece_of(f), 0, cutters_of(f), parts);
-      own.kept += !parts.kept.empty();
-      const bool is_cut = !parts.kept.empty() && parts.dropped > 0;
-      report_.cut_faces += is_cut;
-      if (parts.kept.empty()) continue;
-      if (!is_cut)
-        keep(f, own.turned);
-      else
-        for (const Piece& part : parts.kept) keep_piece(f, part, own.turned);
+    std::vector<Parts> parts;
+    for (uint32_t begin = 0, end; begin < mesh_.face_count(); begin = end) {
+      end = uint32_t(std::min(mesh_.face_count(), int64_t(begin) + kFacesAtOnce));
+      parts.assign(end - begin, {});
+      tbb::parallel_for(begin, end, [&](uint32_t f) {
+        if (!is_dropped(components_[component_[f]])) split(f, piece_of(f), 0, cutters_of(f), parts[f - begin]);
+      });
+      for (uint32_t f = begin; f < end; ++f) take(f, parts[f - begin], keep, keep_piece);
     }
     count_components();
   }
 
  private:
+  struct Parts {
+    std::vector<Piece> kept;
+    std::vector<uint32_t> joins;  ///< components that a piece which is kept lies partly in
+    int64_t dropped = 0;
+  };
+
+  template <class Keep, class KeepPiece>
+  void take(uint32_t f, const Parts& parts, Keep& keep, KeepPiece& keep_piece) {
+    Component& own = components_[component_[f]];
+    for (const uint32_t other : parts.joins) join(joined_.view(), component_[f], other);
+    if (parts.kept.empty()) return;
+    ++own.kept;
+    if (parts.dropped == 0) return keep(f, own.turned);
+    ++report_.cut_faces;
+    for (const Piece& part : parts.kept) keep_piece(f, part, own.turned);
+  }
+
   void find_components() {
     Buffer<uint32_t> parent(int64_t(mesh_.position.size()));
     for (int64_t v = 0; v < parent.size(); ++v) parent[v] = uint32_t(v);
@@ -143,6 +159,7 @@ class Union {
     double all = 0;
     for (const Component& c : components_) all += c.six_volume;
     for (uint32_t i = 0; i < components_.size(); ++i) {
+      check_cancel(context_, "unite");
       Component& c = components_[i];
       c.turned = all < 0;
       std::map<uint32_t, int> winding;
@@ -175,13 +192,9 @@ class Union {
     return found;
   }
 
-  struct Parts {
-    std::vector<Piece> kept;
-    int64_t dropped = 0;
-  };
-
   /// Pieces that nothing cuts lie on one side; of the others that are small those are kept that lie outside in part.
-  void split(uint32_t f, const Piece& piece, int splits, const std::vector<uint32_t>& cutters, Parts& parts) {
+  void split(uint32_t f, const Piece& piece, int splits, const std::vector<uint32_t>& cutters, Parts& parts) const {
+    check_cancel(context_, "unite");
     const bool is_last = cutters.empty() || splits == kMostSplits || piece.longest_edge() <= options_.finest_edge_world;
     if (!is_last) {
       const WorldPoint ab = piece.at(.5, .5, 0), bc = piece.at(0, .5, .5), ca = piece.at(.5, 0, .5);
@@ -201,17 +214,18 @@ class Union {
     else
       ++parts.dropped;
     if (outside > 0 && outside < 4)
-      for (const uint32_t g : cutters) join(joined_.view(), component_[f], component_[g]);
+      for (const uint32_t g : cutters) parts.joins.push_back(component_[g]);
   }
 
   /// Whether the outer side of a face of the union is free at p, which lies on face f.
   bool is_on_boundary(uint32_t f, const WorldPoint& p) const {
     const uint32_t own = component_[f];
     int number = components_[own].looks_inward() ? -1 : 0;
-    rays_.for_each_crossing(p, f, [&](uint32_t g, int sign) {
-      const Component& other = components_[component_[g]];
-      if (component_[g] != own && !is_dropped(other)) number += other.turned ? -sign : sign;
-    });
+    const auto is_of_another = [&](uint32_t g) {
+      return component_[g] != own && !is_dropped(components_[component_[g]]);
+    };
+    rays_.for_each_crossing(p, f, is_of_another,
+                            [&](uint32_t g, int sign) { number += components_[component_[g]].turned ? -sign : sign; });
     return number == 0;
   }
 
@@ -230,6 +244,7 @@ class Union {
   const MendMesh& mesh_;
   const UniteOptions& options_;
   UniteReport& report_;
+  const Context& context_;
   const RayColumns rays_;
   std::vector<Component> components_;
   std::vector<uint32_t> component_;  ///< per face
@@ -238,7 +253,7 @@ class Union {
 
 }  // namespace
 
-TriangleSoup unite(const TriangleSoup& soup, const UniteOptions& options, UniteReport& report) {
+TriangleSoup unite(const TriangleSoup& soup, const UniteOptions& options, UniteReport& report, const Context& context) {
   report = {};
   const MendMesh mesh(soup);
   TriangleSoup united;
@@ -250,13 +265,13 @@ TriangleSoup unite(const TriangleSoup& soup, const UniteOptions& options, UniteR
     if (turned) std::swap(corner[1], corner[2]);
     (mesh.source[f] < soup.first_cap ? united.triangles : caps).push_back(corner);
   };
-  Union(mesh, options, report)
-      .for_each_kept([&](uint32_t f, bool turned) { add(f, mesh.face[f], turned); },
-                     [&](uint32_t f, const Piece& piece, bool turned) {
-                       const uint32_t first = uint32_t(united.vertices.size());
-                       united.vertices.insert(united.vertices.end(), {piece.a, piece.b, piece.c});
-                       add(f, {first, first + 1, first + 2}, turned);
-                     });
+  const auto keep = [&](uint32_t f, bool turned) { add(f, mesh.face[f], turned); };
+  const auto keep_piece = [&](uint32_t f, const Piece& piece, bool turned) {
+    const uint32_t first = uint32_t(united.vertices.size());
+    united.vertices.insert(united.vertices.end(), {piece.a, piece.b, piece.c});
+    add(f, {first, first + 1, first + 2}, turned);
+  };
+  run_with_threads(context, [&] { Union(mesh, options, report, context).for_each_kept(keep, keep_piece); });
   if (!caps.empty()) united.first_cap = uint32_t(united.triangles.size());
   united.triangles.insert(united.triangles.end(), caps.begin(), caps.end());
   return report.changed_anything() && !united.triangles.empty() ? united : soup;

@@ -18,10 +18,16 @@ class RayColumns {
   /// through the outer side, -1 where it enters. A face through p itself counts when its index is larger than own's.
   template <class Visit>
   void for_each_crossing(const WorldPoint& p, uint32_t own, Visit visit) const {
+    for_each_crossing(
+        p, own, [](uint32_t) { return true; }, visit);
+  }
+  /// The same for faces that count only.
+  template <class Counts, class Visit>
+  void for_each_crossing(const WorldPoint& p, uint32_t own, Counts counts, Visit visit) const {
     const int64_t column = column_of(p.y, 0) * cells_[1] + column_of(p.z, 1);
     for (int64_t i = first_[size_t(column)]; i < first_[size_t(column) + 1]; ++i) {
       const uint32_t face = listed_[size_t(i)];
-      if (face == own) continue;
+      if (face == own || !counts(face)) continue;
       if (const int sign = crossing(p, own, face)) visit(face, sign);
     }
   }

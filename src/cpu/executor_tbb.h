@@ -4,21 +4,14 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <functional>
 
-#include "isoshell/backend.h"
+#include "core/watched.h"
 #include "isoshell/buffer.h"
-#include "isoshell/error.h"
 
 namespace isoshell {
-
-/// Throws Error{interrupted} when the context was cancelled.
-inline void check_cancel(const Context& context, const char* stage) {
-  if (context.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage, "interrupted");
-}
 
 /// Runs under the context's thread limit. One executor per stage call.
 class TbbExecutor {
@@ -126,13 +119,5 @@ class TbbExecutor {
   Context& context_;
   const char* stage_;
 };
-
-/// Runs `work` with at most context.threads threads.
-template <class Work>
-auto run_with_threads(const Context& context, Work work) {
-  if (context.threads <= 0) return work();
-  tbb::task_arena arena(context.threads);
-  return arena.execute(work);
-}
 
 }  // namespace isoshell

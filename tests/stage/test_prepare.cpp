@@ -191,6 +191,18 @@ TEST_CASE("prepare: sites that hold both sides of a thin plate are risky, those 
   CHECK(std::count(none.begin(), none.end(), 1) == 0);
 }
 
+TEST_CASE("prepare: a limit that the faces alone exceed ends it before they are mended", "[prepare]") {
+  TriangleSoup open = shapes::sphere({0, 0, 0}, 1, 60);
+  open.triangles.pop_back();
+  RemeshOptions options;
+  options.vertices = 100;
+  TestContext context;
+  context.memory_limit_bytes = 1 << 20;
+  RemeshReport report;
+  CHECK_THROWS_AS(prepare(open, options, report, context), Error);
+  CHECK_FALSE(report.mend.changed_anything());
+}
+
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
   RemeshOptions options;
   options.vertices = 500;

@@ -20,18 +20,24 @@ TriangleMesh square(double size, double z) {
   return {{{0, 0, z}, {size, 0, z}, {size, size, z}, {0, size, z}}, {{{0, 1, 2}}, {{0, 2, 3}}}};
 }
 
+MeshDistance distance(const TriangleMesh& mesh, const TriangleMesh& reference, int threads = 0) {
+  Context context;
+  context.threads = threads;
+  return measure_distance(mesh, reference, context);
+}
+
 }  // namespace
 
 TEST_CASE("distance: a mesh is at distance zero of itself", "[distance][unit]") {
   const TriangleMesh torus = mesh_of(shapes::torus(2, 0.7, 60, 30));
-  const MeshDistance d = measure_distance(torus, torus);
+  const MeshDistance d = distance(torus, torus);
   CHECK(d.to_reference.mean == Approx(0).margin(1e-7));
   CHECK(d.largest() == Approx(0).margin(1e-7));
 }
 
 TEST_CASE("distance: spheres of two radii are apart by their difference", "[distance][unit]") {
   const MeshDistance d =
-      measure_distance(mesh_of(shapes::sphere({0, 0, 0}, 1.1, 60)), mesh_of(shapes::sphere({0, 0, 0}, 1, 60)));
+      distance(mesh_of(shapes::sphere({0, 0, 0}, 1.1, 60)), mesh_of(shapes::sphere({0, 0, 0}, 1, 60)));
   CHECK(d.to_reference.mean == Approx(0.1).epsilon(0.03));
   CHECK(d.to_reference.rms >= d.to_reference.mean);
   CHECK(d.to_reference.max >= d.to_reference.rms);
@@ -40,7 +46,7 @@ TEST_CASE("distance: spheres of two radii are apart by their difference", "[dist
 }
 
 TEST_CASE("distance: what only one of two meshes has shows in one direction", "[distance][unit]") {
-  const MeshDistance d = measure_distance(square(1, 0), square(3, 0));
+  const MeshDistance d = distance(square(1, 0), square(3, 0));
   CHECK(d.to_reference.max == Approx(0).margin(1e-12));
   CHECK(d.from_reference.max == Approx(2 * std::sqrt(2.0)));
   CHECK(d.largest() == d.from_reference.max);
@@ -54,7 +60,7 @@ TEST_CASE("distance: samples weigh areas, not triangles", "[distance][unit]") {
     mesh.vertices.insert(mesh.vertices.end(), {{x, 0, 1}, {x + size, 0, 1}, {x, size, 1}});
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
-  const MeshDistance d = measure_distance(mesh, square(1, 0));
+  const MeshDistance d = distance(mesh, square(1, 0));
   CHECK(d.to_reference.mean < 1e-4);
   CHECK(d.to_reference.max == Approx(1));
 }
@@ -86,6 +92,14 @@ TEST_CASE("distance: the grid of triangles finds what looking at each one finds"
 }
 
 TEST_CASE("distance: a mesh without triangles, or of vertices that are not there, is refused", "[distance][unit]") {
-  CHECK_THROWS_AS(measure_distance({}, square(1, 0)), Error);
-  CHECK_THROWS_AS(measure_distance(square(1, 0), {{{0, 0, 0}}, {{{0, 0, 1}}}}), Error);
+  CHECK_THROWS_AS(distance({}, square(1, 0)), Error);
+  CHECK_THROWS_AS(distance(square(1, 0), {{{0, 0, 0}}, {{{0, 0, 1}}}}), Error);
+}
+
+TEST_CASE("distance: threads change nothing, and a cancelled context ends it", "[distance][unit]") {
+  const TriangleMesh torus = mesh_of(shapes::torus(2, 0.7, 60, 30)), other = mesh_of(shapes::torus(2, 0.6, 50, 20));
+  CHECK(distance(torus, other, 1).to_reference.mean == distance(torus, other, 3).to_reference.mean);
+  Context cancelled;
+  cancelled.cancel = true;
+  CHECK_THROWS_AS(measure_distance(torus, other, cancelled), Error);
 }

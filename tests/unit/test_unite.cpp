@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/winding.h"
+#include "isoshell/error.h"
 #include "isoshell/unite.h"
 #include "support/catch.h"
 #include "support/shapes.h"
@@ -20,7 +21,8 @@ struct United {
 
 United united(const TriangleSoup& soup, bool outer_only = false, double finest_edge = .01) {
   United u;
-  u.soup = unite(soup, {outer_only, finest_edge}, u.report);
+  const Context context;
+  u.soup = unite(soup, {outer_only, finest_edge}, u.report, context);
   return u;
 }
 
@@ -109,4 +111,11 @@ TEST_CASE("unite: where balls pass through each other, faces end at the cut", "[
     const double depth = 1 - std::min(std::hypot(m.x, std::hypot(m.y, m.z)), std::hypot(m.x - 1, std::hypot(m.y, m.z)));
     CHECK(depth < .04);  // chords of balls of 24 meridians, and a piece
   }
+}
+
+TEST_CASE("unite: a cancelled context ends it", "[unite]") {
+  Context cancelled;
+  cancelled.cancel = true;
+  UniteReport report;
+  CHECK_THROWS_AS(unite(together(ball(1), ball(1, .5)), {false, .01}, report, cancelled), Error);
 }

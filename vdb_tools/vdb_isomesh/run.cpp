@@ -71,7 +71,8 @@ class Run {
         step("triangulate", [&] { return triangulate(prepared, seeds, options_, record_.report, context_); });
     step("measure", [&] { measure(mesh); });
     if (!a_.stats.empty() || a_.gates.max_deviation_world)
-      step("distance", [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface))); });
+      step("distance",
+           [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface)), context_); });
     write_step("write", a_.output, [&] { write_mesh(a_.output, mesh, {mesh_format(a_.output_format), a_.force}); });
     return finish();
   }

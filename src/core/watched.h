@@ -1,0 +1,24 @@
+// What all work obeys, in the backend or beside it: the context's thread limit, and its wish to stop.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include "isoshell/backend.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+
+/// Throws Error{interrupted} when the context was cancelled.
+inline void check_cancel(const Context& context, const char* stage) {
+  if (context.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage, "interrupted");
+}
+
+/// Runs `work` with at most context.threads threads.
+template <class Work>
+auto run_with_threads(const Context& context, Work work) {
+  if (context.threads <= 0) return work();
+  tbb::task_arena arena(context.threads);
+  return arena.execute(work);
+}
+
+}  // namespace isoshell
