@@ -20,13 +20,6 @@ void for_each_neighbour(const MendMesh& mesh, uint32_t f, Visit visit) {
     if (mesh.faces_at(mesh.edge_of(h)) == 2) visit(h, mesh.twin(h));
 }
 
-std::vector<double> patch_areas(const MendMesh& mesh, const Patches& patches) {
-  std::vector<double> area(patches.count, 0);
-  for (uint32_t f = 0; f < mesh.face_count(); ++f)
-    if (mesh.is_live(f)) area[patches.of[f]] += mesh.area(f);
-  return area;
-}
-
 /// Per patch the area of all that joins lead to from it.
 std::vector<double> areas_of_joined(const Patches& patches, const std::vector<std::array<uint32_t, 2>>& joins,
                                     std::vector<double> area) {
@@ -108,6 +101,13 @@ bool drop_fins_once(MendMesh& mesh, MendReport& report) {
 }
 
 }  // namespace
+
+std::vector<double> patch_areas(const MendMesh& mesh, const Patches& patches) {
+  std::vector<double> area(patches.count, 0);
+  for (uint32_t f = 0; f < mesh.face_count(); ++f)
+    if (mesh.is_live(f)) area[patches.of[f]] += mesh.area(f);
+  return area;
+}
 
 Patches find_patches(const MendMesh& mesh) {
   Patches patches;

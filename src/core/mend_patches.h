@@ -12,6 +12,7 @@ struct Patches {
   uint32_t count = 0;
 };
 Patches find_patches(const MendMesh& mesh);
+std::vector<double> patch_areas(const MendMesh& mesh, const Patches& patches);
 
 double live_area(const MendMesh& mesh);
 

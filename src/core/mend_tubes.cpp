@@ -12,7 +12,8 @@ namespace {
 constexpr double kFacing = .8;          // cosine between the way and where a rim looks
 constexpr double kRunsAlong = .4;       // mean cosine, without sign, between where rims look and the faces at them
 constexpr double kWidthsApart = 2.5;    // between their radii
-constexpr double kFarthest = 5;         // in sums of their radii
+constexpr double kFarthest = 3;         // in sums of their radii
+constexpr double kLargestEnd = .2;      // of the area of the surface that it was cut off
 constexpr size_t kMostRungs = 4 << 20;  // tried
 constexpr size_t kMostRims = 20000;     // more are no holes in a surface
 
@@ -22,6 +23,8 @@ struct Rim {
   WorldPoint middle, looks;  ///< looks: of length 1, out of the surface that it ends
   double radius = 0;         ///< of a circle of its area
   double along = 1;          ///< cosine, without sign, between where it looks and the mean normal of the faces at it
+  uint32_t patch = 0;
+  double patch_area = 0;
 };
 
 Rim rim_of(const MendMesh& mesh, const Loop& loop) {
@@ -54,12 +57,18 @@ bool is_simple(const MendMesh& mesh, const Loop& loop) {
   return std::adjacent_find(vertex.begin(), vertex.end()) == vertex.end();
 }
 
+/// Of one surface, or of a surface and an end that it lost. Two pipes in a line are two bodies.
+bool may_be_one_body(const Rim& p, const Rim& q) {
+  return p.patch == q.patch ||
+         std::min(p.patch_area, q.patch_area) <= kLargestEnd * std::max(p.patch_area, q.patch_area);
+}
+
 /// How far apart rims of one tube are; infinity for others.
 double gap_between(const Rim& p, const Rim& q) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const WorldPoint way = q.middle - p.middle;
   const double gap = length(way), wide = p.radius + q.radius;
-  if (!(gap > 0) || gap > kFarthest * wide ||
+  if (!may_be_one_body(p, q) || !(gap > 0) || gap > kFarthest * wide ||
       std::max(p.radius, q.radius) > kWidthsApart * std::min(p.radius, q.radius))
     return kNone;
   const bool face = dot(way, p.looks) >= kFacing * gap && dot(way, q.looks) <= -kFacing * gap;
@@ -140,9 +149,13 @@ class Strip {
 
 std::vector<Cap> find_tubes(const MendMesh& mesh) {
   const std::vector<Loop> loops = closed_loops(mesh);
+  const Patches patches = find_patches(mesh);
+  const std::vector<double> area = patch_areas(mesh, patches);
   std::vector<Rim> rims;
   for (const Loop& loop : loops) {
-    const Rim rim = rim_of(mesh, loop);
+    Rim rim = rim_of(mesh, loop);
+    rim.patch = patches.of[loop[0] / 3];
+    rim.patch_area = area[rim.patch];
     if (rim.radius > 0 && rim.along <= 2 * kRunsAlong && is_simple(mesh, loop)) rims.push_back(rim);
   }
   std::stable_sort(rims.begin(), rims.end(), [](const Rim& p, const Rim& q) { return p.middle.x < q.middle.x; });

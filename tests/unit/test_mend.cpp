@@ -281,6 +281,9 @@ TEST_CASE("mend: ends of a pipe, and holes that face each other across a gap, ar
   CHECK(two.report.tubes == 0);
   CHECK(two.report.capped_loops == 2);
   CHECK(two.topology.components == 2);
+  const Mended pipes = mended(without(pipe, [](WorldPoint p) { return std::abs(p.z) < 2; }));
+  CHECK(pipes.report.tubes == 0);
+  CHECK(pipes.topology.components == 2);
 }
 
 TEST_CASE("mend: turned faces are turned back, whole surfaces that look inward stay", "[mend]") {
