@@ -1,38 +1,14 @@
 #include "cpu/cut_lanes.h"
 
-#include "cpu/vector_versions.h"
+#include "cpu/cut_arithmetic.h"
 
 namespace isoshell {
 namespace {
-
-// What is in 32 bits here fits them while the coordinates of corners and of seeds are below these.
-constexpr int32_t kCornerReach = 1 << 12, kSeedReach = 1 << 13;
-
-/// crossing_q15, for values in 32 bits. Signs are masks: the compiler takes no loop with branches.
-ISOSHELL_INLINE int32_t crossing(int32_t here, int32_t there) {
-  const int32_t before = -here & here >> 31, after = there & -there >> 31;
-  const uint32_t neither = (uint32_t(before | after) - 1) >> 31;
-  return int32_t(float(kOneQ15) * (float(before) / (float(before) + float(after + int32_t(neither)))));
-}
-
-ISOSHELL_INLINE int32_t part_way(int32_t a, int32_t b, int32_t t_q15) {
-  return a + (((b - a) * t_q15 + kOneQ15 / 2) >> 15);
-}
-
-/// Not 0 when a coordinate is not within the reach, a power of two.
-ISOSHELL_INLINE uint32_t beyond(int32_t reach, const CutLanes::Corner& c, int i) {
-  return (uint32_t(c.x[i] + reach) | uint32_t(c.y[i] + reach) | uint32_t(c.z[i] + reach)) & ~uint32_t(2 * reach - 1);
-}
 
 /// Sum of the corners of a triangle and sum_of_squares of it.
 struct Corners {
   int32_t x[CutLanes::kLanes], y[CutLanes::kLanes], z[CutLanes::kLanes], squares[CutLanes::kLanes];
 };
-
-ISOSHELL_INLINE int32_t squares_of(int32_t p, int32_t q, int32_t r) {
-  const int32_t sum = p + q + r;
-  return p * p + q * q + r * r + sum * sum;
-}
 
 /// False when some coordinates do not fit; then nothing was done.
 ISOSHELL_VECTOR_VERSIONS bool cut_in_lanes(CutLanes& lanes) {
@@ -40,8 +16,8 @@ ISOSHELL_VECTOR_VERSIONS bool cut_in_lanes(CutLanes& lanes) {
   const CutLanes::Corner &p = lanes.p, &q = lanes.q, &r = lanes.r, &s = lanes.seed, &o = lanes.other_seed;
   uint32_t misfits = 0;
   for (int i = 0; i < n; ++i)
-    misfits |= beyond(kCornerReach, p, i) | beyond(kCornerReach, q, i) | beyond(kCornerReach, r, i) |
-               beyond(kSeedReach, s, i) | beyond(kSeedReach, o, i) | lanes.area2[i] >> 31;
+    misfits |= beyond(kCornerReach, p.at(i)) | beyond(kCornerReach, q.at(i)) | beyond(kCornerReach, r.at(i)) |
+               beyond(kSeedReach, s.at(i)) | beyond(kSeedReach, o.at(i)) | lanes.area2[i] >> 31;
   if (misfits != 0) return false;
 
   Corners all, piece;

@@ -1,18 +1,14 @@
 // Triangles between two cells, many at a time: SplitTriangle::two_cells of voxel/cell_sum.h in lanes.
 #pragma once
 
-#include "voxel/cell_sum.h"
+#include "cpu/cut_arithmetic.h"
 
 namespace isoshell {
 
 /// Triangles whose corner p lies in another cell than q and r, and the piece that each moves from one cell to another.
 struct CutLanes {
   static constexpr int kLanes = 128;
-  struct Corner {
-    int32_t x[kLanes], y[kLanes], z[kLanes];
-    void set(int i, Local u) { x[i] = u.x, y[i] = u.y, z[i] = u.z; }
-    Local at(int i) const { return {x[i], y[i], z[i]}; }
-  };
+  using Corner = LocalLanes<kLanes>;
 
   int count = 0;  ///< at most kLanes
   Corner p, q, r;

@@ -21,7 +21,7 @@ struct SeedForm {
   int32_t penalty;  ///< 0 for a seed that never pays it
 };
 
-using Lanes = int32_t __attribute__((vector_size(32)));
+using Lanes = int32_t __attribute__((vector_size(32), may_alias));
 constexpr int kWidth = 8;
 ISOSHELL_INLINE const Lanes& lanes(const int32_t* at) { return *reinterpret_cast<const Lanes*>(at); }
 

@@ -3,6 +3,7 @@
 #include "cpu/pass_work.h"
 
 #include "cpu/cut_lanes.h"
+#include "cpu/three_cell_lanes.h"
 
 namespace isoshell {
 namespace {
@@ -82,16 +83,22 @@ struct SumLeafInLanes {
     LeafSums sums(origin, seed, cell);
     add_vertices(leaf, sums);
     CutLanes lanes;
+    ThreeCellLanes meeting;
     constexpr int64_t kChunk = 256;
-    uint32_t cut[kChunk];
     for (int64_t begin = first[leaf]; begin < first[leaf + 1]; begin += kChunk) {
-      const int count = list_cut(begin, std::min(begin + kChunk, first[leaf + 1]), cut);
-      for (int i = 0; i < count; ++i) {
-        split(triangles[begin + cut[i]], origin, sums, lanes);
+      CutTriangles<kChunk> cut;
+      list_cut(begin, std::min(begin + kChunk, first[leaf + 1]), cut);
+      for (int i = 0; i < cut.two_count; ++i) {
+        add_lane(triangles[cut.two[i]], origin, lanes);
         if (lanes.count == CutLanes::kLanes) empty(lanes, sums);
+      }
+      for (int i = 0; i < cut.three_count; ++i) {
+        add_lane(triangles[cut.three[i]], origin, meeting);
+        if (meeting.count == ThreeCellLanes::kLanes) empty(meeting, sums);
       }
     }
     empty(lanes, sums);
+    empty(meeting, sums);
     energy[leaf] = SplitSum::of(sums.finish());
   }
 
@@ -107,44 +114,43 @@ struct SumLeafInLanes {
     }
   }
 
-  /// Lists the triangles between cells, counted from `begin`, without a branch that would be guessed wrong.
-  int list_cut(int64_t begin, int64_t end, uint32_t* cut) const {
-    int count = 0;
+  /// Triangles between two cells, and between three.
+  template <int64_t kMost>
+  struct CutTriangles {
+    int two_count = 0, three_count = 0;
+    int64_t two[kMost], three[kMost];
+  };
+  /// Without a branch that would be guessed wrong.
+  template <class Cut>
+  void list_cut(int64_t begin, int64_t end, Cut& cut) const {
     for (int64_t t = begin; t < end; ++t) {
       const uint32_t a = label[triangles[t].a], b = label[triangles[t].b], c = label[triangles[t].c];
-      cut[count] = uint32_t(t - begin);
-      count += ((a ^ b) | (a ^ c)) != 0 ? 1 : 0;
+      const int same = (a == b) + (b == c) + (c == a);
+      cut.two[cut.two_count] = t;
+      cut.two_count += same == 1;
+      cut.three[cut.three_count] = t;
+      cut.three_count += same == 0;
     }
-    return count;
-  }
-
-  void split(const LeafPatches::Triangle& t, PointQ8 origin, LeafSums& sums, CutLanes& lanes) const {
-    const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
-    if (a != b && b != c && c != a)
-      split_three(t, {a, b, c}, origin, sums);
-    else
-      add_lane(t, a, b, c, origin, lanes);
   }
 
   Local here(uint32_t vertex, PointQ8 origin) const { return local(position[vertex], origin); }
 
-  void split_three(const LeafPatches::Triangle& t, TriangleIndices id, PointQ8 origin, LeafSums& sums) const {
-    const SplitTriangle split{{here(t.a, origin), here(t.b, origin), here(t.c, origin)},
-                              {local(seed[id.a], origin), local(seed[id.b], origin), local(seed[id.c], origin)},
-                              t.area2};
-    const uint32_t ids[3] = {id.a, id.b, id.c};
-    sums.take(owner(t, id.a, id.b, id.c), split.total());
-    split.three_cells([&](int corner, const PieceSum& piece) { sums.add(ids[corner], piece); });
-  }
-
-  /// Which of the corners' values is that of the smallest vertex.
-  static uint32_t owner(const LeafPatches::Triangle& t, uint32_t at_a, uint32_t at_b, uint32_t at_c) {
-    return t.a < t.b ? (t.a < t.c ? at_a : at_c) : (t.b < t.c ? at_b : at_c);
-  }
-
-  void add_lane(const LeafPatches::Triangle& t, uint32_t a, uint32_t b, uint32_t c, PointQ8 origin,
-                CutLanes& lanes) const {
+  void add_lane(const LeafPatches::Triangle& t, PointQ8 origin, ThreeCellLanes& lanes) const {
     const int i = lanes.count++;
+    const uint32_t vertices[3] = {t.a, t.b, t.c}, smallest = std::min({t.a, t.b, t.c});
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t id = label[vertices[k]];
+      lanes.corner[k].set(i, here(vertices[k], origin));
+      lanes.seed[k].set(i, local(seed[id], origin));
+      lanes.cell[k][i] = id;
+      lanes.has_all[k][i] = vertices[k] == smallest ? 1 : 0;
+    }
+    lanes.area2[i] = t.area2;
+  }
+
+  void add_lane(const LeafPatches::Triangle& t, PointQ8 origin, CutLanes& lanes) const {
+    const int i = lanes.count++;
+    const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
     const uint32_t p = b == c ? t.a : (c == a ? t.b : t.c), q = b == c ? t.b : (c == a ? t.c : t.a),
                    r = b == c ? t.c : (c == a ? t.a : t.b);
     const uint32_t alone = b == c ? a : (c == a ? b : c), other = b == c ? b : a;
@@ -166,6 +172,12 @@ struct SumLeafInLanes {
       sums.take(lanes.from[i], lanes.moved(i));
       sums.add(lanes.to[i], lanes.moved(i));
     }
+    lanes.count = 0;
+  }
+  static void empty(ThreeCellLanes& lanes, LeafSums& sums) {
+    lanes.split();
+    for (int i = 0; i < lanes.count; ++i)
+      for (int k = 0; k < 3; ++k) sums.add(lanes.cell[k][i], lanes.gained(k, i));
     lanes.count = 0;
   }
 };

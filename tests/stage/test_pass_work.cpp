@@ -1,9 +1,11 @@
 // The CPU's own ways of labelling a sheet and of summing its cells, against brute force and against the definition.
 #include "cpu/pass_work.h"
+#include "cpu/three_cell_lanes.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/test_context.h"
+#include "voxel/random.h"
 
 using namespace isoshell;
 
@@ -76,6 +78,41 @@ TEST_CASE("labels: lanes find what brute force finds where seeds are far or crow
   const Sheet torus = torus_sheet(), plate = plate_sheet();
   check_labels(torus, seeds_on(torus, 4));
   check_labels(plate, crowded_seeds(plate));
+}
+
+TEST_CASE("cells: triangles between three cells are split in lanes as by their definition", "[cells][stage]") {
+  uint64_t drawn = 0;
+  const auto draw = [&](int32_t reach) { return int32_t(random_bits(5, drawn++) % uint64_t(2 * reach + 1)) - reach; };
+  for (int round = 0; round < 2000; ++round) {
+    const int32_t near = round % 3 == 0 ? 200 : 4000;  // small triangles are cut by one bisector more often
+    const int32_t far = round % 7 == 0 ? 20000 : 600;  // beyond 32 bits, too
+    ThreeCellLanes lanes;
+    SplitTriangle by_definition[ThreeCellLanes::kLanes];
+    lanes.count = 1 + round % ThreeCellLanes::kLanes;
+    for (int i = 0; i < lanes.count; ++i) {
+      SplitTriangle& t = by_definition[i];
+      t.area2 = 1 + int64_t(random_bits(6, drawn++) % 1000000);
+      lanes.area2[i] = uint32_t(t.area2);
+      for (int k = 0; k < 3; ++k) {
+        t.p[k] = {draw(near), draw(near), draw(near)};
+        t.s[k] = {t.p[k].x + draw(far), t.p[k].y + draw(far), t.p[k].z + draw(far)};
+        lanes.corner[k].set(i, t.p[k]);
+        lanes.seed[k].set(i, t.s[k]);
+        lanes.cell[k][i] = uint32_t(k);
+        lanes.has_all[k][i] = k == i % 3 ? 1 : 0;
+      }
+    }
+    lanes.split();
+    for (int i = 0; i < lanes.count; ++i) {
+      PieceSum pieces[3]{};
+      by_definition[i].three_cells([&](int k, const PieceSum& piece) { pieces[k] = piece; });
+      pieces[i % 3] = pieces[i % 3] - by_definition[i].total();
+      for (int k = 0; k < 3; ++k) {
+        const PieceSum off = lanes.gained(k, i) - pieces[lanes.cell[k][i]];
+        CHECK((off.mass == 0 && off.first_x == 0 && off.first_y == 0 && off.first_z == 0 && off.second == 0));
+      }
+    }
+  }
 }
 
 TEST_CASE("cells: lanes measure what the definition says", "[cells][stage]") {
