@@ -1,6 +1,7 @@
 #include "cpu/handle_cutter.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace isoshell {
 namespace {
@@ -39,6 +40,17 @@ int count_parts(uint32_t among, uint32_t starts, Widen widen) {
   return count;
 }
 
+/// Four voxels as they lie, the first one lowest, and what has a one for each of the first three or four.
+uint64_t word_of(const uint16_t* cells) {
+  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the first one is the lowest");
+  uint64_t word;
+  std::memcpy(&word, cells, sizeof word);
+  return word;
+}
+constexpr uint64_t kThree = 0x000100010001, kFour = 0x0001000100010001;
+
+constexpr size_t kAhead = 8;  ///< voxels that wait between asking for memory and using it
+
 }  // namespace
 
 VoxelContacts contacts_of(uint32_t solid) {
@@ -49,60 +61,75 @@ VoxelContacts contacts_of(uint32_t solid) {
 
 HandleCutter::HandleCutter(const int32_t extent_vox[3])
     : extent_{extent_vox[0], extent_vox[1], extent_vox[2]},
-      flags_(size_t(extent_[0] * extent_[1] * extent_[2])),
-      rank_(flags_.size()),
+      cells_((size_t(extent_[0] * extent_[1] * extent_[2]) / 4 + 1) * 4),  // words are read beyond the last
       waiting_(kRanks) {}
 
 void HandleCutter::add(int64_t voxel, int rank) {
-  flags_[size_t(voxel)] |= kSolid;
-  rank_[size_t(voxel)] = uint8_t(rank);
+  cells_[size_t(voxel)] = uint16_t(rank << kRankShift | (cells_[size_t(voxel)] & 0xff) | kSolid);
+}
+
+/// Three voxels along z around a voxel, and one more: nine rows, 3 (x + 1) + y + 1.
+const uint16_t* HandleCutter::row(int64_t voxel, int number) const {
+  return &cells_[size_t(voxel + ((number / 3 - 1) * extent_[1] + number % 3 - 1) * extent_[2] - 1)];
 }
 
 template <class Visit>
-void HandleCutter::for_each_around(int64_t voxel, Visit visit) const {
-  for (int64_t dx = -1; dx <= 1; ++dx)
-    for (int64_t dy = -1; dy <= 1; ++dy)
-      for (int64_t dz = -1; dz <= 1; ++dz)
-        if (dx || dy || dz) visit(voxel + (dx * extent_[1] + dy) * extent_[2] + dz);
+void HandleCutter::for_each_around(int64_t voxel, int flags, int of, Visit visit) const {
+  for (int n = 0; n < 9; ++n) {
+    const uint16_t* three = row(voxel, n);
+    const uint64_t differs = (word_of(three) & kThree * uint64_t(of)) ^ kThree * uint64_t(flags);
+    uint64_t fits = ~(differs + kThree * 0x7fff) & kThree << 15;
+    if (n == 4) fits &= ~(uint64_t(1) << 31);
+    for (; fits != 0; fits &= fits - 1) visit(three - cells_.data() + __builtin_ctzll(fits) / 16);
+  }
 }
 
 uint32_t HandleCutter::grown_around(int64_t voxel) const {
   uint32_t bits = 0;
-  int row = 0;
-  for (int64_t dx = -1; dx <= 1; ++dx)
-    for (int64_t dy = -1; dy <= 1; ++dy, row += 3) {
-      const uint8_t* flags = &flags_[size_t(voxel + (dx * extent_[1] + dy) * extent_[2] - 1)];
-      for (int z = 0; z < 3; ++z) bits |= uint32_t((flags[z] & kGrown) != 0) << (row + z);
-    }
+  for (int n = 0; n < 9; ++n) {
+    const uint64_t grown = word_of(row(voxel, n)) / kGrown & kThree;
+    bits |= uint32_t((grown | grown >> 15 | grown >> 30) & 7) << 3 * n;
+  }
   return bits;
 }
 
-/// Visits the component of a voxel; returns its first of the lowest rank.
+/// Asks early for the memory of what is around a voxel.
+void HandleCutter::expect(int64_t voxel) const {
+  for (int n = 0; n < 9; ++n) __builtin_prefetch(row(voxel, n));
+}
+
+/// Visits the component of a voxel, run by run along z; returns its first of the lowest rank.
 int64_t HandleCutter::visit_component(int64_t start) {
+  const auto is_left = [&](int64_t v) { return is(v, kSolid, kSolid | kVisited); };
   std::vector<int64_t> stack{start};
   int64_t lowest = start;
-  flags_[size_t(start)] |= kVisited;
   while (!stack.empty()) {
-    const int64_t v = stack.back();
+    int64_t first = stack.back(), last = first;
     stack.pop_back();
-    const int rank = rank_[size_t(v)], least = rank_[size_t(lowest)];
-    if (rank < least || (rank == least && v < lowest)) lowest = v;
-    for_each_around(v, [&](int64_t n) {
-      if (!is(n, kSolid, kSolid | kVisited)) return;
-      flags_[size_t(n)] |= kVisited;
-      stack.push_back(n);
-    });
+    if (!is_left(first)) continue;
+    while (is_left(first - 1)) --first;
+    while (is_left(last + 1)) ++last;
+    for (int64_t v = first; v <= last; ++v) {
+      set(v, kVisited);
+      const int rank = rank_of(v), least = rank_of(lowest);
+      if (rank < least || (rank == least && v < lowest)) lowest = v;
+    }
+    for (int n = 0; n < 9; ++n) {
+      const int64_t away = row(start, n) + 1 - &cells_[size_t(start)];
+      const int64_t begin = first + away - 1, end = last + away + 1;
+      for (int64_t v = begin; v <= end; ++v)
+        if (is_left(v) && (v == begin || !is_left(v - 1))) stack.push_back(v);
+    }
   }
   return lowest;
 }
 
 /// Whatever waited in vain around it gets another chance.
 void HandleCutter::add_grown(int64_t voxel) {
-  flags_[size_t(voxel)] |= kGrown;
-  for_each_around(voxel, [&](int64_t n) {
-    if (!is(n, kSolid, kSolid | kGrown | kWaiting)) return;
-    flags_[size_t(n)] |= kWaiting;
-    const int rank = rank_[size_t(n)];
+  set(voxel, kGrown);
+  for_each_around(voxel, kSolid, kSolid | kGrown | kWaiting, [&](int64_t n) {
+    set(n, kWaiting);
+    const int rank = rank_of(n);
     waiting_[size_t(rank)].voxels.push_back(n);
     lowest_waiting_ = std::min(lowest_waiting_, rank);
   });
@@ -119,17 +146,28 @@ void HandleCutter::grow_from(int64_t start, const std::function<void()>& check) 
       continue;
     }
     const int64_t v = queue.voxels[queue.first++];
+    if (queue.first + kAhead < queue.voxels.size()) expect(queue.voxels[queue.first + kAhead]);
     if (queue.first > kMostLeft && 2 * queue.first > queue.voxels.size()) queue.drop_left();
-    flags_[size_t(v)] &= uint8_t(~kWaiting);
+    clear(v, kWaiting);
     if (is_simple(grown_around(v))) add_grown(v);
     if ((++looked_at & 0xffff) == 0) check();
   }
 }
 
+/// Calls visit(index) for all voxels with kSolid and without the other flag, ascending; visits may set that.
+template <class Visit>
+void HandleCutter::for_each_solid_without(int flag, Visit visit) const {
+  for (size_t begin = 0; begin < cells_.size(); begin += 4) {
+    const uint64_t four = word_of(&cells_[begin]);
+    if ((four & ~(four / uint64_t(flag)) & kFour) == 0) continue;
+    for (size_t v = begin; v < begin + 4; ++v)
+      if (is(int64_t(v), kSolid, kSolid | flag)) visit(int64_t(v));
+  }
+}
+
 std::vector<int64_t> HandleCutter::cuts() const {
   std::vector<int64_t> out;
-  for (int64_t v = 0; v < int64_t(flags_.size()); ++v)
-    if (is(v, kSolid, kSolid | kGrown)) out.push_back(v);
+  for_each_solid_without(kGrown, [&](int64_t v) { out.push_back(v); });
   return out;
 }
 
@@ -137,16 +175,15 @@ std::vector<int64_t> HandleCutter::cuts() const {
 std::vector<HandleCutter::Cut> HandleCutter::list_cuts() {
   std::vector<Cut> found;
   const std::vector<int64_t> left_out = cuts();
-  for (const int64_t v : left_out) flags_[size_t(v)] |= kVisited;
+  for (const int64_t v : left_out) set(v, kVisited);
   for (const int64_t start : left_out) {
     if (!is(start, kVisited, kVisited)) continue;
     Cut cut{kRanks, {start}};
-    flags_[size_t(start)] &= uint8_t(~kVisited);
+    clear(start, kVisited);
     for (size_t i = 0; i < cut.voxels.size(); ++i) {
-      cut.rank = std::min(cut.rank, int(rank_[size_t(cut.voxels[i])]));
-      for_each_around(cut.voxels[i], [&](int64_t n) {
-        if (!is(n, kSolid | kVisited, kSolid | kGrown | kVisited)) return;
-        flags_[size_t(n)] &= uint8_t(~kVisited);
+      cut.rank = std::min(cut.rank, rank_of(cut.voxels[i]));
+      for_each_around(cut.voxels[i], kSolid | kVisited, kSolid | kGrown | kVisited, [&](int64_t n) {
+        clear(n, kVisited);
         cut.voxels.push_back(n);
       });
     }
@@ -156,7 +193,7 @@ std::vector<HandleCutter::Cut> HandleCutter::list_cuts() {
 }
 
 void HandleCutter::close(const Cut& cut) {
-  for (const int64_t v : cut.voxels) flags_[size_t(v)] |= kGrown;
+  for (const int64_t v : cut.voxels) set(v, kGrown);
 }
 
 void HandleCutter::close_cuts_below(int rank) {
@@ -165,8 +202,7 @@ void HandleCutter::close_cuts_below(int rank) {
 }
 
 void HandleCutter::grow(int64_t handles, const std::function<void()>& check) {
-  for (int64_t v = 0; v < int64_t(flags_.size()); ++v)
-    if (is(v, kSolid, kSolid | kVisited)) grow_from(visit_component(v), check);
+  for_each_solid_without(kVisited, [&](int64_t v) { grow_from(visit_component(v), check); });
   if (handles <= 0) return;
   std::vector<Cut> found = list_cuts();
   std::stable_sort(found.begin(), found.end(), [](const Cut& a, const Cut& b) { return a.rank < b.rank; });

@@ -41,7 +41,7 @@ class HandleCutter {
 
   /// Makes a voxel solid. Growing takes the lowest rank it can reach.
   void add(int64_t voxel, int rank);
-  bool is_solid(int64_t voxel) const { return flags_[size_t(voxel)] & kSolid; }
+  bool is_solid(int64_t voxel) const { return cells_[size_t(voxel)] & kSolid; }
 
   /// Grows every component from its lowest rank, then closes the cuts that reach the lowest ranks, one a handle.
   /// Result: what a queue a rank gives, first in, first out. `check` is called now and then and may throw.
@@ -50,12 +50,13 @@ class HandleCutter {
   /// Closes all cuts that reach a rank below this.
   void close_cuts_below(int rank);
 
-  bool is_grown(int64_t voxel) const { return flags_[size_t(voxel)] & kGrown; }
+  bool is_grown(int64_t voxel) const { return cells_[size_t(voxel)] & kGrown; }
   /// Solid voxels that were left out, ascending.
   std::vector<int64_t> cuts() const;
 
  private:
-  enum Flag : uint8_t { kSolid = 1, kGrown = 2, kWaiting = 4, kVisited = 8 };
+  enum Flag : uint16_t { kSolid = 1, kGrown = 2, kWaiting = 4, kVisited = 8 };
+  static constexpr int kRankShift = 8;
   struct Queue {
     std::vector<int64_t> voxels;
     size_t first = 0;  ///< those before it have left
@@ -67,10 +68,18 @@ class HandleCutter {
 
   static constexpr size_t kMostLeft = 1 << 12;
 
-  bool is(int64_t voxel, int flags, int of) const { return (flags_[size_t(voxel)] & of) == flags; }
+  bool is(int64_t voxel, int flags, int of) const { return (cells_[size_t(voxel)] & of) == flags; }
+  int rank_of(int64_t voxel) const { return cells_[size_t(voxel)] >> kRankShift; }
+  void set(int64_t voxel, int flags) { cells_[size_t(voxel)] |= uint16_t(flags); }
+  void clear(int64_t voxel, int flags) { cells_[size_t(voxel)] &= uint16_t(~flags); }
+  /// Calls visit(index) for the neighbours whose flags among `of` are these, ascending.
   template <class Visit>
-  void for_each_around(int64_t voxel, Visit visit) const;
+  void for_each_around(int64_t voxel, int flags, int of, Visit visit) const;
+  template <class Visit>
+  void for_each_solid_without(int flag, Visit visit) const;
   uint32_t grown_around(int64_t voxel) const;
+  const uint16_t* row(int64_t voxel, int number) const;
+  void expect(int64_t voxel) const;
   int64_t visit_component(int64_t start);
   void grow_from(int64_t start, const std::function<void()>& check);
   void add_grown(int64_t voxel);
@@ -82,8 +91,8 @@ class HandleCutter {
   void close(const Cut& cut);
 
   int64_t extent_[3];
-  std::vector<uint8_t> flags_, rank_;
-  std::vector<Queue> waiting_;  ///< per rank
+  std::vector<uint16_t> cells_;  ///< flags and rank of each voxel: who looks at one needs the other next
+  std::vector<Queue> waiting_;   ///< per rank
   int lowest_waiting_ = 0;
 };
 
