@@ -10,6 +10,7 @@ struct MeshQuality {
   double q_min = 0;  ///< Q = 6 / sqrt(3) * inradius / longest edge; 1 for the equilateral triangle
   double q_avg = 0;
   double theta_min_deg = 0;     ///< smallest angle of the mesh
+  int64_t theta_min_at = -1;    ///< the first triangle that has it
   double theta_avg_deg = 0;     ///< mean over the triangles of their smallest angle
   double theta_max_deg = 0;     ///< largest angle of the mesh
   double below_30_deg_pct = 0;  ///< triangles whose smallest angle is below 30 degrees

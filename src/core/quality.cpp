@@ -35,13 +35,13 @@ struct Moments {
 
 struct Part {
   double q_min = 1, q_sum = 0, theta_min = 180, theta_sum = 0, theta_max = 0;
-  int64_t below_30 = 0;
+  int64_t theta_min_at = -1, below_30 = 0;
   Moments edge, area;
 
   void add(const Part& other) {
     q_min = std::min(q_min, other.q_min);
     q_sum += other.q_sum;
-    theta_min = std::min(theta_min, other.theta_min);
+    if (other.theta_min < theta_min) theta_min = other.theta_min, theta_min_at = other.theta_min_at;
     theta_sum += other.theta_sum;
     theta_max = std::max(theta_max, other.theta_max);
     below_30 += other.below_30;
@@ -50,7 +50,7 @@ struct Part {
   }
 };
 
-void measure_triangle(WorldPoint a, WorldPoint b, WorldPoint c, Part& part) {
+void measure_triangle(int64_t number, WorldPoint a, WorldPoint b, WorldPoint c, Part& part) {
   const WorldPoint side[3] = {b - a, c - b, a - c};
   const double edge[3] = {length(side[0]), length(side[1]), length(side[2])};
   const double twice_area = length(cross(side[0], side[2]));
@@ -65,7 +65,7 @@ void measure_triangle(WorldPoint a, WorldPoint b, WorldPoint c, Part& part) {
   }
   part.q_min = std::min(part.q_min, q);
   part.q_sum += q;
-  part.theta_min = std::min(part.theta_min, smallest);
+  if (smallest < part.theta_min) part.theta_min = smallest, part.theta_min_at = number;
   part.theta_sum += smallest;
   part.below_30 += smallest < 30;
   part.area.add(twice_area / 2);
@@ -99,7 +99,7 @@ MeshQuality measure_quality(const TriangleMesh& mesh) {
     const int64_t end = std::min(count, int64_t(c + 1) * kChunk);
     for (int64_t i = int64_t(c) * kChunk; i < end; ++i) {
       const auto& t = mesh.triangles[size_t(i)];
-      measure_triangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], parts[c]);
+      measure_triangle(i, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], parts[c]);
     }
   });
   Part all;
@@ -110,6 +110,7 @@ MeshQuality measure_quality(const TriangleMesh& mesh) {
   quality.q_min = all.q_min;
   quality.q_avg = all.q_sum / n;
   quality.theta_min_deg = all.theta_min;
+  quality.theta_min_at = all.theta_min_at;
   quality.theta_avg_deg = all.theta_sum / n;
   quality.theta_max_deg = all.theta_max;
   quality.below_30_deg_pct = 100 * double(all.below_30) / n;

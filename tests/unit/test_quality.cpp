@@ -29,6 +29,7 @@ TEST_CASE("quality: one right triangle beside one needle", "[quality][unit]") {
                needle = std::atan(1.0 / 100) * 180 / 3.141592653589793;
   CHECK(2 * q.q_avg - q.q_min == Approx(right));
   CHECK(q.theta_min_deg == Approx(needle));
+  CHECK(q.theta_min_at == 1);
   CHECK(q.theta_avg_deg == Approx((smallest + needle) / 2));
   CHECK(q.theta_max_deg == Approx(90));
   CHECK(q.below_30_deg_pct == Approx(50));
@@ -38,6 +39,7 @@ TEST_CASE("quality: triangles without area count as worst, and none at all as ze
   const MeshQuality flat = measure_quality({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{{0, 1, 2}}}});
   CHECK(flat.q_min == 0);
   CHECK(flat.theta_min_deg == 0);
+  CHECK(flat.theta_min_at == 0);
   const MeshQuality point = measure_quality({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{{0, 1, 2}}}});
   CHECK(point.q_min == 0);
   CHECK(measure_quality({}).q_avg == 0);

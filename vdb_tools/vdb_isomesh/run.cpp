@@ -21,6 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
+constexpr double kPoorAngleDeg = 20;       // what the post lifts almost every triangle above by far
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -295,6 +296,20 @@ class Run {
     if (!record_.topology->is_closed_manifold() && record_.report.dual.failed_cells == 0)
       warn("the result is not a closed 2-manifold, which should not be: please report the input");
     record_.quality = measure_quality(mesh);
+    if (record_.quality->theta_min_deg < kPoorAngleDeg) warn_of_angle(mesh, *record_.quality);
+  }
+
+  void warn_of_angle(const TriangleMesh& mesh, const MeshQuality& quality) {
+    WorldPoint middle{0, 0, 0};
+    for (const uint32_t v : mesh.triangles[size_t(quality.theta_min_at)]) {
+      const WorldPoint& p = mesh.vertices[v];
+      middle = {middle.x + p.x / 3, middle.y + p.y / 3, middle.z + p.z / 3};
+    }
+    std::ostringstream text;
+    text << "an angle of " << quality.theta_min_deg << " degrees near " << middle.x << ' ' << middle.y << ' '
+         << middle.z
+         << ": the surface may be narrower there than edges are long; more --vertices make better triangles";
+    warn(text.str());
   }
 
   void warn(const std::string& text) {
