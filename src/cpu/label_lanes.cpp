@@ -103,11 +103,18 @@ class LeafSeeds {
   LeafSeeds(const label::Bounds& bounds, View<const Normal8> normal, int64_t penalty_q16)
       : bounds_(bounds), size_(local(bounds.hi, bounds.lo)), normal_(normal), penalty_q16_(penalty_q16) {}
 
-  /// False where costs may not fit 32 bits: forms stay below 3 * 2^28 + 2 * 3 * 2^27, and the penalty below 2^28.
+  /// False where distances may not fit 32 bits: forms stay below 3 * 2^28 + 2 * 3 * 2^27, the penalty below 2^28.
   bool fit(const NearSeeds& seeds) const {
     constexpr int32_t kLargest = 1 << 13;
-    return size_.x < kLargest && size_.y < kLargest && size_.z < kLargest && penalty_q16_ < 1 << 28 &&
-           are_within(1 << 14, seeds);
+    return size_.x < kLargest && size_.y < kLargest && size_.z < kLargest && are_within(1 << 14, seeds);
+  }
+  /// Takes off from the penalty what does not fit. False where a seed that pays it may win, given that no label costs
+  /// more than the limit.
+  bool cut_penalty(int64_t limit) {
+    constexpr int64_t kMostPenalty = (1 << 28) - 1;
+    if (penalty_q16_ > kMostPenalty && limit >= kMostPenalty) return false;
+    penalty_q16_ = std::min(penalty_q16_, kMostPenalty);
+    return true;
   }
   /// False when they are too many.
   bool take(const NearSeeds& seeds) {
@@ -126,24 +133,26 @@ class LeafSeeds {
   /// The one nearest to the middle.
   uint32_t middle() const { return middle_; }
 
-  void label(const label::LabelLeaf<>& plain, int64_t begin, int count) const {
+  /// Labels vertex_at(0) to vertex_at(count - 1).
+  template <class VerticesAt>
+  void label(const label::LabelLeaf<>& plain, VerticesAt vertex_at, int count) const {
     bool normals_matter = false;
     for (int s = 0; s < count_; ++s) normals_matter |= form_[s].penalty != 0;
     VertexLanes v;
     for (int i = 0; i < count; ++i) {
-      const Local p = local(plain.position[begin + i], bounds_.lo);
+      const Local p = local(plain.position[vertex_at(i)], bounds_.lo);
       v.x[i] = p.x, v.y[i] = p.y, v.z[i] = p.z;
     }
     if (normals_matter)
       for (int i = 0; i < count; ++i) {
-        const Normal8 n = plain.normal[begin + i];
+        const Normal8 n = plain.normal[vertex_at(i)];
         v.normal_x[i] = n.x, v.normal_y[i] = n.y, v.normal_z[i] = n.z;
       }
     for (int i = count; i % kWidth != 0; ++i)
       v.x[i] = v.y[i] = v.z[i] = v.normal_x[i] = v.normal_y[i] = v.normal_z[i] = 0;
     alignas(32) int32_t cheapest[kLeafVoxels];
     find_cheapest(v, count, form_, count_, cheapest);
-    for (int i = 0; i < count; ++i) plain.out[begin + i] = id_[cheapest[i]];
+    for (int i = 0; i < count; ++i) plain.out[vertex_at(i)] = id_[cheapest[i]];
   }
 
  private:
@@ -173,7 +182,7 @@ class LeafSeeds {
   const label::Bounds& bounds_;
   const Local size_;
   const View<const Normal8> normal_;
-  const int64_t penalty_q16_;
+  int64_t penalty_q16_;
   uint32_t middle_ = kNone;
   int count_ = 0;
   SeedForm form_[label::kMaxCandidates];
@@ -193,6 +202,13 @@ struct FindBounds {
   }
 };
 
+/// 0 to 5: the axis that a normal goes along most, and which way.
+int side_of(Normal8 n) {
+  const int x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  if (x >= y && x >= z) return n.x < 0;
+  return y >= z ? 2 + (n.y < 0) : 4 + (n.z < 0);
+}
+
 struct LabelLeafInLanes {
   label::LabelLeaf<> plain;
   View<const label::Bounds> leaf_bounds;
@@ -205,15 +221,43 @@ struct LabelLeafInLanes {
     NearSeeds near;
     const int64_t limit =
         middle[leaf] == kNone ? gather_first(bounds, begin, near) : gather_as_far_as(middle[leaf], bounds, near);
-    if (near.count > NearSeeds::kMost) return plain.label_directly(limit, begin, end);
     LeafSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
-    if (!seeds.fit(near)) return plain(leaf);
-    if (!seeds.take(near)) return plain.label_directly(limit, begin, end);
+    const bool are_few = near.count <= NearSeeds::kMost, fit = are_few && seeds.fit(near) && seeds.cut_penalty(limit);
+    if (!fit || !seeds.take(near)) {
+      if (limit >= plain.spacing.penalty_q16) return label_by_sides(begin, end);
+      return are_few && !fit ? plain(leaf) : plain.label_directly(limit, begin, end);
+    }
     middle[leaf] = seeds.middle();
-    seeds.label(plain, begin, int(end - begin));
+    seeds.label(
+        plain, [begin](int i) { return begin + i; }, int(end - begin));
   }
 
  private:
+  /// Where a leaf holds both sides of walls, seeds of either may win far beyond the wall, so many can. For one side at
+  /// a time they are few, also where walls lie close together.
+  void label_by_sides(int64_t begin, int64_t end) const {
+    for (int side = 0; side < 6; ++side) {
+      label::Bounds bounds = label::empty_bounds();
+      int64_t member[kLeafVoxels];
+      int count = 0;
+      for (int64_t v = begin; v < end; ++v)
+        if (side_of(plain.normal[v]) == side) {
+          label::include(bounds, plain.position[v], plain.normal[v]);
+          member[count++] = v;
+        }
+      if (count > 0) label_side(bounds, member, count);
+    }
+  }
+  void label_side(const label::Bounds& bounds, const int64_t* member, int count) const {
+    NearSeeds near;
+    const int64_t limit = gather_first(bounds, member[0], near);
+    LeafSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
+    if (near.count <= NearSeeds::kMost && seeds.fit(near) && seeds.cut_penalty(limit) && seeds.take(near))
+      return seeds.label(
+          plain, [member](int i) { return member[i]; }, count);
+    for (int i = 0; i < count; ++i) plain.label_directly(limit, member[i], member[i] + 1);
+  }
+
   // Both return a limit that no label's cost exceeds.
 
   int64_t gather_first(const label::Bounds& bounds, int64_t begin, NearSeeds& near) const {

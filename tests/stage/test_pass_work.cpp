@@ -4,6 +4,7 @@
 #include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
+#include "support/shapes.h"
 #include "support/test_context.h"
 #include "voxel/random.h"
 
@@ -78,6 +79,18 @@ TEST_CASE("labels: lanes find what brute force finds where seeds are far or crow
   const Sheet torus = torus_sheet(), plate = plate_sheet();
   check_labels(torus, seeds_on(torus, 4));
   check_labels(plate, crowded_seeds(plate));
+  for (const int64_t count : {10, 20, 60}) check_labels(plate, seeds_on(plate, count));
+}
+
+TEST_CASE("labels: lanes find what brute force finds where many walls lie close together", "[labels][stage]") {
+  TriangleSoup stack;
+  for (int k = 0; k < 8; ++k) stack = shapes::together(stack, shapes::box({-1, -1, .07 * k}, {1, 1, .07 * k + .035}));
+  TestContext context;
+  const LatticeFrame frame = LatticeFrame::around({-1, -1, 0}, {1, 1, .525}, 100);
+  const LatticeSurface surface = snap_surface(stack, frame, context);
+  const SiteSet sites = voxelize(surface, context);
+  const Sheet sheet = build_sheet(surface, sites, sample_sites(surface, sites, context), {}, context);
+  for (const int64_t count : {100, 1000, 4000}) check_labels(sheet, seeds_on(sheet, count));
 }
 
 TEST_CASE("cells: triangles between three cells are split in lanes as by their definition", "[cells][stage]") {
