@@ -19,6 +19,9 @@ constexpr double kAreaFactor = 0.5235987755982988;  // pi / 6: a disk of that ra
 constexpr double kLayerCell = 2;                    // spacings: side of a cell that is seen along a direction
 constexpr double kLayerGap = 10;                    // spacings between two layers, more than a slope makes in a cell
 constexpr double kMostLayered = 0.1;  // of the cells of a scan from one side, at its steps; of a closed surface, most
+constexpr size_t kTried = 20000;      // given normals, at most, that are held against planes of neighbours
+// Mean cosine with those: .5 for any directions, .65 where noise is two spacings, else .8 and more.
+constexpr double kLeastCosine = 0.55;
 constexpr double kMostDisagreeing = 0.05;  // of all pairs of neighbours; beyond it normals are not trusted
 
 WorldPoint normalised(const WorldPoint& a) {
@@ -67,6 +70,22 @@ WorldPoint plane_normal(const std::vector<WorldPoint>& position, const std::vect
     m[0] += x * x, m[1] += x * y, m[2] += x * z, m[3] += y * y, m[4] += y * z, m[5] += z * z;
   }
   return smallest_direction(m);
+}
+
+/// Whether given normals have to do with the points: they stand on the planes of their neighbours, on average over some
+/// of them. Any would have a cosine of a half with those.
+bool stand_on_surface(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal,
+                      const PointTree& tree) {
+  const size_t stride = (position.size() + kTried - 1) / kTried;
+  std::vector<double> cosine((position.size() + stride - 1) / stride);
+  tbb::parallel_for(size_t(0), cosine.size(), [&](size_t i) {
+    std::vector<PointTree::Near> near;
+    tree.nearest(position[i * stride], std::min(kFitNeighbours + 1, position.size()), near);
+    cosine[i] = std::abs(dot(normalised(normal[i * stride]), plane_normal(position, near)));
+  });
+  double sum = 0;
+  for (const double c : cosine) sum += c;
+  return sum >= kLeastCosine * double(cosine.size());
 }
 
 /// A pair of neighbours that the tree may join: flattest first.
@@ -205,7 +224,8 @@ class Orientation {
 OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<WorldPoint> normal, const PointTree& tree) {
   const size_t count = position.size();
   OrientedPoints points;
-  const bool given = !normal.empty();
+  points.ignored = !normal.empty() && !stand_on_surface(position, normal, tree);
+  const bool given = !normal.empty() && !points.ignored;
   points.normal = given ? std::move(normal) : std::vector<WorldPoint>(count);
   points.area.resize(count);
   const size_t degree = std::min(kGraphNeighbours, count - 1);

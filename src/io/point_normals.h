@@ -13,6 +13,7 @@ struct OrientedPoints {
   std::vector<double> area;                  ///< of the surface that a point stands for
   double spacing = 0;                        ///< median distance of neighbours
   bool turned = false;                       ///< normals disagreed and were turned along a spanning tree
+  bool ignored = false;                      ///< given normals had nothing to do with the points; found anew
 };
 
 /// `normal` is empty or has one a position. Positions are different from one another.

@@ -236,6 +236,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
     throw Error(ErrorCode::nothing_to_mesh, "points", "all points lie on a line; a surface needs some beside it");
   info.spacing_world = points.spacing;
   info.normals_turned = points.turned;
+  info.normals_ignored = points.ignored;
   int64_t most = kMaxGrid;
   if (memory_limit_bytes > 0) most = std::min(most, memory_limit_bytes / 2 / kBytesPerVoxel);
   if (most < 1 << 15)

@@ -173,6 +173,23 @@ TEST_CASE("points: normals that point anywhere, or all inwards, are turned", "[p
   }
 }
 
+TEST_CASE("points: normals at random, all the same or zero are not used", "[points][unit]") {
+  for (const int kind : {0, 1, 2}) {
+    PointCloud cloud = ball(3000, -2, 0, true);
+    for (size_t i = 0; i < cloud.normal.size(); ++i) {
+      const auto at = [&](uint64_t axis) { return double(random_bits(9, 3 * i + axis) % 2001) / 1000. - 1; };
+      cloud.normal[i] = kind == 0 ? WorldPoint{at(0), at(1), at(2)} : WorldPoint{0, 0, double(kind - 1)};
+    }
+    PointSurfaceInfo info;
+    const TriangleSoup soup = surface_of_points(cloud, 0, info);
+    CHECK(info.normals_ignored);
+    CHECK(volume(soup) == Approx(4.0 / 3 * 3.14159265 * 27).epsilon(0.02));
+  }
+  PointSurfaceInfo info;
+  surface_of_points(ball(3000, -2, 0, true), 0, info);
+  CHECK_FALSE(info.normals_ignored);
+}
+
 TEST_CASE("points: five in a hundred far from all others are left out, sparse parts are not", "[points][unit]") {
   PointCloud cloud = ball(3000, -2, 0, true);
   const std::vector<WorldPoint> on_ball = cloud.position;

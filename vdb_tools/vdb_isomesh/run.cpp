@@ -175,8 +175,11 @@ class Run {
     std::ostringstream text;
     text << input_name() << ": " << counted(points.points, "point") << ", spacing " << points.spacing_world
          << ", surface from voxels of " << points.voxel_size_world << ", normals "
-         << (points.normals_given ? "given" : "estimated") << (points.normals_turned ? " and turned" : "");
+         << (points.normals_given && !points.normals_ignored ? "given" : "estimated")
+         << (points.normals_turned ? " and turned" : "");
     console_.detail(text.str());
+    if (points.normals_ignored)
+      warn(input_name() + ": its normals have nothing to do with its points; others were estimated");
     if (points.outliers > 0)
       warn(input_name() + ": " + counted(points.outliers, "point") + " left out, far from all others");
     if (points.open_part < kNotableOpenPart) return;
