@@ -1,5 +1,6 @@
-// improve_mesh (see stages.h): valence flips, shape-matching smoothing with momentum, a fit to the surface and searches
-// around the worst triangles. Every step is a Jacobi step or an independent set, so the order of the work cannot show.
+// improve_mesh (see stages.h): valence flips, shape-matching smoothing with momentum, a fit to the surface, searches
+// around the worst triangles, and vertices for what is far from the mesh. Every step is a Jacobi step or an independent
+// set, so the order of the work cannot show.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "stages/post_flips.h"
 #include "stages/post_guard.h"
 #include "stages/post_intersections.h"
+#include "stages/post_relocate.h"
 #include "stages/post_search.h"
 #include "stages/post_smooth.h"
 
@@ -208,6 +210,38 @@ class Improvement {
     return flip_edges(exec_, ChordKey{view(), mesh_.position.view(), gaps}, claim_.view(), 1);
   }
 
+  /// Takes vertices from flat places to triangles that the samples of the last step of the fit are far from. Returns
+  /// how many.
+  int64_t relocate() {
+    const int64_t triangles = mesh_.triangles.size();
+    Buffer<uint32_t> distance = exec_.template make<uint32_t>(triangles);
+    Buffer<uint64_t> offset = exec_.template make<uint64_t>(triangles);
+    exec_.fill(distance.view(), 0u);
+    exec_.fill(offset.view(), uint64_t(0));
+    exec_.fill(claim_.view(), uint64_t(0));
+    const FarSamples far_samples{distance.view(), offset.view()};
+    exec_.for_each("find distances", sample_.size(), FindDistances{sample_.view(), rest_sq_.view(), far_samples});
+    exec_.for_each("find farthest", sample_.size(),
+                   FindFarthest{view(), mesh_.position.view(), sample_.view(), rest_sq_.view(),
+                                kFarPlace * size_.edge_q8, far_samples});
+    const FarPlace places{view(), mesh_.position.view(), seeds_.home.view(), size_, far_samples};
+    const Buffer<uint64_t> far = choose_apart(exec_, places, triangles, claim_.view());
+    if (far.empty()) return 0;
+    const int64_t most = std::min(far.size(), 1 + vertices_ / kVerticesPerMove);
+    exec_.fill(claim_.view(), uint64_t(0));
+    exec_.for_each("block far places", most, BlockPlaces{places, far.view(), claim_.view()});
+    const SpareEdge edges{{view(), mesh_.position.view(), seeds_.home.view(), size_.lengths}, distance.view(), size_};
+    const Buffer<uint64_t> spare = choose_apart(exec_, edges, half_edges_, claim_.view());
+    const int64_t moves = std::min(most, spare.size());
+    Buffer<uint32_t> heir = exec_.template make<uint32_t>(triangles);
+    exec_.fill(heir.view(), kNone);
+    exec_.for_each("relocate vertices", moves,
+                   RelocateVertex{places, walk_, far.view(), spare.view(), mesh_.position.view(), on_sheet_.view(),
+                                  begin_.view(), seeds_.home.view(), heir.view()});
+    exec_.for_each("inherit samples", sample_.size(), InheritSamples{heir.view(), sample_.view()});
+    return moves;
+  }
+
   /// Most of the memory, which the test for intersections needs.
   void drop_samples() {
     sample_ = {};
@@ -351,6 +385,11 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     work.search(options.search_rounds, 0, !balanced);
     if (balanced) {
       work.fit(3, 0.6, kGoodMerit);
+      if (!options.uniform_area && work.relocate() > 0) {
+        work.fit(5, 0.6, kPoorMerit);
+        work.search(5 * options.search_rounds, 0, false);
+        work.fit(3, 0.6, kGoodMerit);
+      }
       work.drop_samples();
     }
     work.undo_intersections(report);

@@ -69,35 +69,32 @@ struct WinsItsVertices {
 template <class Key>
 WinsItsVertices(Key, View<uint64_t>) -> WinsItsVertices<Key>;
 /// (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c).
+ISOSHELL_HD inline void flip_edge(const MeshView& mesh, uint32_t h) {
+  const uint32_t g = mesh.twin[h];
+  const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
+  const uint32_t bc = mesh.twin[next_half_edge(h)], ca = mesh.twin[previous_half_edge(h)];
+  const uint32_t ad = mesh.twin[next_half_edge(g)], db = mesh.twin[previous_half_edge(g)];
+  const uint32_t s = h / 3 * 3, t = g / 3 * 3;
+  mesh.triangles[h / 3] = {a, d, c};
+  mesh.triangles[g / 3] = {d, b, c};
+  mesh.join(s, ad);
+  mesh.join(s + 1, t + 2);
+  mesh.join(s + 2, ca);
+  mesh.join(t, db);
+  mesh.join(t + 1, bc);
+  mesh.outgoing[a] = s;
+  mesh.outgoing[d] = s + 1;
+  mesh.outgoing[c] = s + 2;
+  mesh.outgoing[b] = t + 1;
+  --mesh.valence[a];
+  --mesh.valence[b];
+  ++mesh.valence[c];
+  ++mesh.valence[d];
+}
 struct Flip {
   MeshView mesh;
   View<const uint32_t> winners;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    const uint32_t h = winners[i], g = mesh.twin[h];
-    const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
-    const uint32_t bc = mesh.twin[next_half_edge(h)], ca = mesh.twin[previous_half_edge(h)];
-    const uint32_t ad = mesh.twin[next_half_edge(g)], db = mesh.twin[previous_half_edge(g)];
-    const uint32_t s = h / 3 * 3, t = g / 3 * 3;
-    mesh.triangles[h / 3] = {a, d, c};
-    mesh.triangles[g / 3] = {d, b, c};
-    join(s, ad);
-    join(s + 1, t + 2);
-    join(s + 2, ca);
-    join(t, db);
-    join(t + 1, bc);
-    mesh.outgoing[a] = s;
-    mesh.outgoing[d] = s + 1;
-    mesh.outgoing[c] = s + 2;
-    mesh.outgoing[b] = t + 1;
-    --mesh.valence[a];
-    --mesh.valence[b];
-    ++mesh.valence[c];
-    ++mesh.valence[d];
-  }
-  ISOSHELL_HD void join(uint32_t g, uint32_t h) const {
-    mesh.twin[g] = h;
-    mesh.twin[h] = g;
-  }
+  ISOSHELL_HD void operator()(int64_t i) const { flip_edge(mesh, winners[i]); }
 };
 
 /// Flips in independent sets until none is left or `rounds` are done: of flips that share a vertex, the one with the

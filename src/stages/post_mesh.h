@@ -22,6 +22,11 @@ struct MeshView {
   ISOSHELL_HD uint32_t from(uint32_t h) const { return corner(triangles[h / 3], int(h % 3)); }
   ISOSHELL_HD uint32_t to(uint32_t h) const { return from(next_half_edge(h)); }
   ISOSHELL_HD uint32_t opposite(uint32_t h) const { return from(previous_half_edge(h)); }
+  /// Makes twins of two half-edges.
+  ISOSHELL_HD void join(uint32_t g, uint32_t h) const {
+    twin[g] = h;
+    twin[h] = g;
+  }
   ISOSHELL_HD bool are_neighbours(uint32_t u, uint32_t v) const {
     const uint32_t start = outgoing[u];
     uint32_t h = start;
@@ -54,9 +59,7 @@ struct PairTwins {
   View<const DirectedEdge> edges;
   MeshView mesh;
   ISOSHELL_HD void operator()(int64_t pair) const {
-    const uint32_t g = edges[2 * pair].half_edge, h = edges[2 * pair + 1].half_edge;
-    mesh.twin[g] = h;
-    mesh.twin[h] = g;
+    mesh.join(edges[2 * pair].half_edge, edges[2 * pair + 1].half_edge);
   }
 };
 struct CountValence {
