@@ -51,7 +51,7 @@ class Preparation {
     } else {
       close_leaks(p);
     }
-    if (!p.surface.topology.closed && is_thinner_than(p, 1)) keep_sides_apart(p);
+    if (!p.surface.topology.closed && is_thinner_than(p, std::max(1.0, edge_vox(p) / 2))) keep_sides_apart(p);
     return p;
   }
 

@@ -203,6 +203,15 @@ TEST_CASE("prepare: a limit that the faces alone exceed ends it before they are 
   CHECK_FALSE(report.mend.changed_anything());
 }
 
+TEST_CASE("prepare: where closing fills open surfaces to less than half an edge, walls are grown", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 2000;
+  const Run run = prepare_with(shapes::random_soup(60, 2, .7, 11), options);
+  CHECK(run.report.grown_vox > 0);
+  options.vertices = 100;  // edges as long as the faces: solid
+  CHECK(volume_in_balls(prepare_with(slotted_ball(.05), options)) > .9);
+}
+
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
   RemeshOptions options;
   options.vertices = 500;
