@@ -22,6 +22,7 @@ constexpr double kMostLayered = 0.1;  // of the cells of a scan from one side, a
 constexpr size_t kTried = 20000;      // given normals, at most, that are held against planes of neighbours
 // Mean cosine with those: .5 for any directions, .65 where noise is two spacings, else .8 and more.
 constexpr double kLeastCosine = 0.55;
+constexpr double kTrustedCosine = 0.9;     // of normals that disagree with one another, too
 constexpr double kMostDisagreeing = 0.05;  // of all pairs of neighbours; beyond it normals are not trusted
 
 WorldPoint normalised(const WorldPoint& a) {
@@ -72,10 +73,9 @@ WorldPoint plane_normal(const std::vector<WorldPoint>& position, const std::vect
   return smallest_direction(m);
 }
 
-/// Whether given normals have to do with the points: they stand on the planes of their neighbours, on average over some
-/// of them. Any would have a cosine of a half with those.
-bool stand_on_surface(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal,
-                      const PointTree& tree) {
+/// Mean cosine, without signs, of given normals with the planes of their neighbours, over some of them.
+double cosine_with_planes(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal,
+                          const PointTree& tree) {
   const size_t stride = (position.size() + kTried - 1) / kTried;
   std::vector<double> cosine((position.size() + stride - 1) / stride);
   tbb::parallel_for(size_t(0), cosine.size(), [&](size_t i) {
@@ -85,7 +85,7 @@ bool stand_on_surface(const std::vector<WorldPoint>& position, const std::vector
   });
   double sum = 0;
   for (const double c : cosine) sum += c;
-  return sum >= kLeastCosine * double(cosine.size());
+  return sum / double(cosine.size());
 }
 
 /// A pair of neighbours that the tree may join: flattest first.
@@ -102,15 +102,7 @@ class Orientation {
   Orientation(OrientedPoints& points, const std::vector<uint32_t>& neighbours, size_t degree)
       : p_(points), neighbours_(neighbours), degree_(degree), part_(points.position.size(), 0) {}
 
-  void run(bool given) {
-    p_.turned = given && disagreeing() > kMostDisagreeing;
-    if ((!given || p_.turned) && !turn_to_viewer()) turn_along_trees();
-    point_outward();
-  }
-
- private:
-  uint32_t neighbour(uint32_t i, size_t k) const { return neighbours_[i * degree_ + k]; }
-
+  /// Part of all pairs of neighbours whose normals disagree.
   double disagreeing() const {
     int64_t pairs = 0, against = 0;
     for (uint32_t i = 0; i < p_.position.size(); ++i)
@@ -121,6 +113,15 @@ class Orientation {
       }
     return pairs ? double(against) / double(pairs) : 1;
   }
+
+  void run(bool given) {
+    p_.turned = given && disagreeing() > kMostDisagreeing;
+    if ((!given || p_.turned) && !turn_to_viewer()) turn_along_trees();
+    point_outward();
+  }
+
+ private:
+  uint32_t neighbour(uint32_t i, size_t k) const { return neighbours_[i * degree_ + k]; }
 
   /// What was scanned from one direction has one height along it almost everywhere, and every normal faces it. Tries
   /// the axes and the direction that most normals have.
@@ -219,12 +220,22 @@ class Orientation {
   std::vector<uint32_t> part_;  // of the spanning forest, from 1; all 0 where there is none
 };
 
+void find_normals(OrientedPoints& points, const PointTree& tree) {
+  const size_t near_count = std::min(kFitNeighbours + 1, points.position.size());
+  tbb::parallel_for(size_t(0), points.position.size(), [&](size_t i) {
+    std::vector<PointTree::Near> near;
+    tree.nearest(points.position[i], near_count, near);
+    points.normal[i] = plane_normal(points.position, near);
+  });
+}
+
 }  // namespace
 
 OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<WorldPoint> normal, const PointTree& tree) {
   const size_t count = position.size();
   OrientedPoints points;
-  points.ignored = !normal.empty() && !stand_on_surface(position, normal, tree);
+  const double cosine = normal.empty() ? 0 : cosine_with_planes(position, normal, tree);
+  points.ignored = !normal.empty() && cosine < kLeastCosine;
   const bool given = !normal.empty() && !points.ignored;
   points.normal = given ? std::move(normal) : std::vector<WorldPoint>(count);
   points.area.resize(count);
@@ -245,7 +256,12 @@ OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<World
   std::nth_element(spacing.begin(), spacing.begin() + int64_t(count / 2), spacing.end());
   points.spacing = spacing[count / 2];
   points.position = std::move(position);
-  Orientation(points, neighbours, degree).run(given);
+  Orientation orientation(points, neighbours, degree);
+  if (given && cosine < kTrustedCosine && orientation.disagreeing() > kMostDisagreeing) {
+    find_normals(points, tree);
+    points.ignored = true;
+  }
+  orientation.run(given && !points.ignored);
   return points;
 }
 

@@ -173,12 +173,16 @@ TEST_CASE("points: normals that point anywhere, or all inwards, are turned", "[p
   }
 }
 
-TEST_CASE("points: normals at random, all the same or zero are not used", "[points][unit]") {
-  for (const int kind : {0, 1, 2}) {
+TEST_CASE("points: normals at random, all the same, zero or far from right are not used", "[points][unit]") {
+  for (const int kind : {0, 1, 2, 3}) {
     PointCloud cloud = ball(3000, -2, 0, true);
     for (size_t i = 0; i < cloud.normal.size(); ++i) {
       const auto at = [&](uint64_t axis) { return double(random_bits(9, 3 * i + axis) % 2001) / 1000. - 1; };
-      cloud.normal[i] = kind == 0 ? WorldPoint{at(0), at(1), at(2)} : WorldPoint{0, 0, double(kind - 1)};
+      const WorldPoint& n = cloud.normal[i];
+      if (kind == 3)
+        cloud.normal[i] = {n.x + .8 * at(0), n.y + .8 * at(1), n.z + .8 * at(2)};
+      else
+        cloud.normal[i] = kind == 0 ? WorldPoint{at(0), at(1), at(2)} : WorldPoint{0, 0, double(kind - 1)};
     }
     PointSurfaceInfo info;
     const TriangleSoup soup = surface_of_points(cloud, 0, info);
