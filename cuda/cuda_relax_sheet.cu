@@ -47,8 +47,7 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
   Buffer<PassState> state = exec.make<PassState>(1);
   Buffer<PassProgress> progress = exec.make<PassProgress>(1);
 
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk = walk_onto(sheet);
   const relax_sheet::MovingSeeds moving = relax_sheet::moving_seeds(walk, seeds, last.view(), spacing, options);
   SheetPass pass{patches.view(),
                  {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},

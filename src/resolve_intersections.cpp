@@ -31,7 +31,7 @@ void resolve_intersections(const Prepared& prepared, const PostOptions& options,
     seeds = std::move(moved);
     mesh = std::move(improved);
     report.post = post;
-    report.seeds_against_crossing = found.inserted_seeds;
+    report.seeds_against_intersections = found.inserted_seeds;
   }
 }
 

@@ -63,8 +63,8 @@ struct RemeshReport {
   bool topology_agrees = false;    ///< components and genus of the sheet equal the input's
   RelaxReport relax;
   DualReport dual;
-  PostReport post;                     ///< of the final mesh, when post_done
-  int64_t seeds_against_crossing = 0;  ///< put in where triangles intersected; others were taken out for them
+  PostReport post;                          ///< of the final mesh, when post_done
+  int64_t seeds_against_intersections = 0;  ///< put in where triangles intersected; others were taken out for them
   SizingReport sizing;
   GapReport gaps;
   bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections

@@ -38,8 +38,7 @@ template <class Exec>
 void attach_to_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, int halvings) {
   PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, attach_seeds::kCellVox, sheet.vertex_count());
   fill_point_grid(exec, grid, sheet.position.view());
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk = walk_onto(sheet);
   exec.for_each("attach seeds", seeds.size(),
                 attach_seeds::AttachSeed{grid.view(), walk, halvings, seeds.position.view(), seeds.normal.view(),
                                          seeds.home.view()});

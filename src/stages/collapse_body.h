@@ -219,8 +219,7 @@ template <class Exec>
 void collapse_edges_body(Exec& exec, const Sheet& sheet, const collapse::CollapseOptions& options, SeedSet& seeds,
                          DualMesh& mesh) {
   using namespace collapse;
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk = walk_onto(sheet);
   Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
   exec.fill(blocked.view(), uint8_t(0));
   for (bool any = true; any && seeds.size() > options.target;) {

@@ -106,8 +106,7 @@ class Improvement {
         vertices_(mesh.position.size()),
         half_edges_(3 * mesh.triangles.size()),
         spacing_(seed_spacing(exec, sheet, vertices_)),
-        walk_{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-              sheet.vertex_triangles.view()},
+        walk_(walk_onto(sheet)),
         connections_(exec, mesh) {
     claim_ = exec.template make<uint64_t>(vertices_);
     moved_ = exec.template make<PointQ8>(vertices_);

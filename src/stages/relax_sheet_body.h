@@ -386,8 +386,7 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   exec.copy(View<const PointQ8>(seeds.position.view()), last.view());
   exec.for_each("start passes", 1, StartPasses{state.view()});
 
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk = walk_onto(sheet);
   const MovingSeeds moving = moving_seeds(walk, seeds, last.view(), spacing, options);
   const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
 

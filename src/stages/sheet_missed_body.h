@@ -52,8 +52,7 @@ void find_missed(Exec& exec, const LatticeSurface& surface, Sheet& sheet) {
   using namespace sheet_steps;
   PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, kMissedCellVox, sheet.vertex_count());
   fill_point_grid(exec, grid, View<const PointQ8>(sheet.position.view()));
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk = walk_onto(sheet);
   Buffer<uint32_t> near = exec.template make<uint32_t>(surface.points.size());
   exec.for_each("find missed points", surface.points.size(),
                 FindMissed{grid.view(), walk, surface.points.view(), near.view()});

@@ -46,6 +46,11 @@ struct WalkOntoSheet {
   }
 };
 
+inline WalkOntoSheet walk_onto(const Sheet& sheet) {
+  return {sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
+          sheet.vertex_triangles.view()};
+}
+
 /// Runs a step whose element i walks from vertex home[i].
 template <class Exec, class Step>
 void for_each_walk(Exec& exec, const char* name, const WalkOntoSheet&, View<const uint32_t> home, Step step) {

@@ -139,8 +139,7 @@ SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mes
   out.position = exec.template make<PointQ8>(target);
   out.normal = exec.template make<Normal8>(target);
   out.home = exec.template make<uint32_t>(target);
-  const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                           sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+  const WalkOntoSheet walk = walk_onto(sheet);
   const NewSeeds put{walk, out.position.view(), out.normal.view(), out.home.view()};
   exec.for_each("keep seeds", old, KeepSeed{seeds.position.view(), seeds.normal.view(), seeds.home.view(), put});
 

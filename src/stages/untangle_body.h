@@ -47,8 +47,7 @@ int64_t untangle_sheet_body(Exec& exec, Sheet& sheet, SeedSet& seeds) {
     const int64_t pairs = post::find_intersections(exec, {sheet.triangles.view(), sheet.position.view()},
                                                    sheet.corners.block_dims, 1, marked.view());
     if (pairs == 0 || round == kRounds) {
-      const WalkOntoSheet walk{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(),
-                               sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+      const WalkOntoSheet walk = walk_onto(sheet);
       exec.for_each("follow the sheet", seeds.size(), FollowSheet{walk, seeds.home.view(), seeds.position.view()});
       return pairs;
     }

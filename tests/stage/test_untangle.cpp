@@ -184,6 +184,6 @@ TEST_CASE("untangle: a thin wavy plate with few vertices becomes a mesh without 
     const RemeshResult result = remesh(wavy_plate(60, 0.07), options, context.plain());
     CHECK(result.report.post.self_intersections == 0);
     CHECK(result.mesh.vertices.size() == 200);
-    CHECK(result.report.seeds_against_crossing > 0);
+    CHECK(result.report.seeds_against_intersections > 0);
   }
 }

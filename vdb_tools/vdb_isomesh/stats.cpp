@@ -115,7 +115,7 @@ Json topology_json(const RunRecord& r) {
             {"agrees_with_input", r.report.topology_compared ? Json(r.report.topology_agrees) : Json()},
             {"failed_cells", r.report.dual.failed_cells},
             {"inserted_seeds", r.report.dual.inserted_seeds},
-            {"seeds_against_intersections", r.report.seeds_against_crossing}};
+            {"seeds_against_intersections", r.report.seeds_against_intersections}};
   if (!r.topology) return j;
   const MeshTopology& t = *r.topology;
   j["components"] = t.components;
