@@ -90,19 +90,27 @@ struct LayOntoSheet {
   void operator()(int64_t v) const { step.lay_onto_sheet(v); }
 };
 
+/// Some groups, whose vertices may walk.
 struct FitVertices {
   FitVertex step;
   VertexGroup vertices;
+  WalkAhead ahead;
 
-  void operator()(int64_t group) const {
+  static constexpr int64_t kGroups = 8;
+  int64_t runs() const { return (vertices.groups() + kGroups - 1) / kGroups; }
+
+  void operator()(int64_t run) const {
+    const int64_t end = std::min(vertices.groups(), (run + 1) * kGroups);
+    for (int64_t group = run * kGroups; group < end; ++group) fit(group, std::min(step.to.size, end * vertices.kLanes));
+  }
+
+ private:
+  void fit(int64_t group, int64_t end) const {
     const int64_t begin = group * VertexLanes::kLanes;
     const int count = vertices.count_of(group);
     VertexLanes lanes;
     lanes.clear();
-    for (int i = 0; i < count; ++i) {
-      __builtin_prefetch(step.walk.position.data + step.home[begin + i]);
-      lanes.radius_q8[i] = step.radius_q8(begin + i);
-    }
+    for (int i = 0; i < count; ++i) lanes.radius_q8[i] = step.radius_q8(begin + i);
     vertices.sum(
         group, lanes,
         [&](VertexLanes& l, int i, uint32_t h) {
@@ -110,7 +118,10 @@ struct FitVertices {
           l.weight[i] = double(asked.weight[h % 3]), l.pull[i] = double(asked.pull[h % 3]);
         },
         [&](VertexLanes& l) { l.add_with_pulls(step.options.smooth.evenness); });
-    for (int i = 0; i < count; ++i) step.to[begin + i] = step.place(begin + i, lanes.sums(i));
+    for (int i = 0; i < count; ++i) {
+      ahead.before(begin + i, end);
+      step.to[begin + i] = step.place(begin + i, lanes.sums(i));
+    }
   }
 };
 
@@ -217,7 +228,8 @@ void CpuStepWork::pull(TbbExecutor& exec, const PullCorners& step) {
 
 void CpuStepWork::fit(TbbExecutor& exec, const FitVertex& step) {
   const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
-  exec.for_each("fit", vertices.groups(), FitVertices{step, vertices});
+  const FitVertices work{step, vertices, WalkAhead(step.walk, step.home)};
+  exec.for_each("fit", work.runs(), work);
 }
 
 }  // namespace isoshell
