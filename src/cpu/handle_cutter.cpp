@@ -49,6 +49,7 @@ uint64_t word_of(const uint16_t* cells) {
 }
 constexpr uint64_t kThree = 0x000100010001, kFour = 0x0001000100010001;
 
+constexpr int kKnownBits = 14;
 constexpr size_t kAhead = 8;  ///< voxels that wait between asking for memory and using it
 
 }  // namespace
@@ -62,7 +63,8 @@ VoxelContacts contacts_of(uint32_t solid) {
 HandleCutter::HandleCutter(const int32_t extent_vox[3])
     : extent_{extent_vox[0], extent_vox[1], extent_vox[2]},
       cells_((size_t(extent_[0] * extent_[1] * extent_[2]) / 4 + 1) * 4),  // words are read beyond the last
-      waiting_(kRanks) {}
+      waiting_(kRanks),
+      known_(size_t(1) << kKnownBits) {}
 
 void HandleCutter::add(int64_t voxel, int rank) {
   cells_[size_t(voxel)] = uint16_t(rank << kRankShift | (cells_[size_t(voxel)] & 0xff) | kSolid);
@@ -91,6 +93,14 @@ uint32_t HandleCutter::grown_around(int64_t voxel) const {
     bits |= uint32_t((grown | grown >> 15 | grown >> 30) & 7) << 3 * n;
   }
   return bits;
+}
+
+/// Whether a voxel is simple. Fronts meet few kinds of neighbourhoods, again and again.
+bool HandleCutter::may_grow(int64_t voxel) {
+  const uint32_t around = grown_around(voxel);
+  uint32_t& known = known_[around * 2654435761u >> (32 - kKnownBits)];
+  if (known >> 1 != around) known = around << 1 | (is_simple(around) ? 1 : 0);
+  return known & 1;
 }
 
 /// Asks early for the memory of what is around a voxel.
@@ -149,7 +159,7 @@ void HandleCutter::grow_from(int64_t start, const std::function<void()>& check) 
     if (queue.first + kAhead < queue.voxels.size()) expect(queue.voxels[queue.first + kAhead]);
     if (queue.first > kMostLeft && 2 * queue.first > queue.voxels.size()) queue.drop_left();
     clear(v, kWaiting);
-    if (is_simple(grown_around(v))) add_grown(v);
+    if (may_grow(v)) add_grown(v);
     if ((++looked_at & 0xffff) == 0) check();
   }
 }

@@ -78,6 +78,7 @@ class HandleCutter {
   template <class Visit>
   void for_each_solid_without(int flag, Visit visit) const;
   uint32_t grown_around(int64_t voxel) const;
+  bool may_grow(int64_t voxel);
   const uint16_t* row(int64_t voxel, int number) const;
   void expect(int64_t voxel) const;
   int64_t visit_component(int64_t start);
@@ -93,6 +94,7 @@ class HandleCutter {
   int64_t extent_[3];
   std::vector<uint16_t> cells_;  ///< flags and rank of each voxel: who looks at one needs the other next
   std::vector<Queue> waiting_;   ///< per rank
+  std::vector<uint32_t> known_;  ///< neighbourhoods met lately, times two, plus one where the voxel is simple
   int lowest_waiting_ = 0;
 };
 
