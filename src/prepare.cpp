@@ -51,7 +51,7 @@ class Preparation {
     } else {
       close_leaks(p);
     }
-    if (!p.surface.topology.closed && is_thinner_than(p, std::max(1.0, edge_vox(p) / 2))) keep_sides_apart(p);
+    if (!p.surface.topology.closed && is_crust(p)) keep_sides_apart(p);
     return p;
   }
 
@@ -84,10 +84,19 @@ class Preparation {
     return usual_edge_length(options_, p.surface.topology.area_world) / p.surface.frame.voxel_size;
   }
 
-  /// Whether what the sheet bounds is a crust, on average so thin.
-  bool is_thinner_than(const Prepared& p, double thickness_vox) const {
-    const double voxel = p.sheet.frame.voxel_size, area_vox = sheet_area_world(p.sheet) / (voxel * voxel);
-    return double(six_volume_vox(p.sheet, context_)) / 3 < thickness_vox * area_vox;
+  /// Of what the sheet bounds, on average.
+  double thickness_vox(const Sheet& sheet) const {
+    const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
+    return double(six_volume_vox(sheet, context_)) / 3 / area_vox;
+  }
+
+  /// Whether the outside reaches both sides of the surface. Closing fills parts of a crust, but makes it no solid: that
+  /// is several times as thick as without closing.
+  bool is_crust(const Prepared& p) {
+    const double here = thickness_vox(p.sheet);
+    if (here < 1) return true;
+    if (here >= std::min(edge_vox(p) / 2, 2. * p.closing_vox + 1)) return false;
+    return here < 2 * thickness_vox(sheet(p, 0));
   }
 
   /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not
@@ -96,7 +105,7 @@ class Preparation {
     int32_t grown = growth_for_edge(std::sqrt(2) * edge_vox(p));  // both sides share the vertices
     for (;; grown /= 2) {
       grow(p, grown);
-      if (grown == 1 || is_thinner_than(p, 2 * grown + 3)) return;
+      if (grown == 1 || thickness_vox(p.sheet) < 2 * grown + 3) return;
     }
   }
 
@@ -187,7 +196,11 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
   const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
                            std::to_string(estimate.bytes >> 20) + " MiB, more than the limit of " +
                            std::to_string(context.memory_limit_bytes >> 20) + " MiB";
-  if (!refining) throw Error(ErrorCode::out_of_memory, "memory", what + "; lower --resolution or raise --max-memory");
+  if (!refining) {
+    const char* remedy = estimate.resolution > kCoarsestGrid ? "; lower --resolution or raise --max-memory"
+                                                             : ", which its faces take; raise --max-memory";
+    throw Error(ErrorCode::out_of_memory, "memory", what + remedy);
+  }
   report.warnings.push_back("the grid was not refined further: " + what);
   return false;
 }

@@ -212,6 +212,33 @@ TEST_CASE("prepare: where closing fills open surfaces to less than half an edge,
   CHECK(volume_in_balls(prepare_with(slotted_ball(.05), options)) > .9);
 }
 
+TEST_CASE("prepare: an open plate that closing makes solid stays as thin as it is", "[prepare]") {
+  constexpr uint32_t kCells = 25;
+  TriangleSoup plate = shapes::box({0, 0, 0}, {kCells, kCells, .5});
+  const auto is_on_top = [&](const std::array<uint32_t, 3>& t) {
+    return plate.vertices[t[0]].z > 0 && plate.vertices[t[1]].z > 0 && plate.vertices[t[2]].z > 0;
+  };
+  plate.triangles.erase(std::remove_if(plate.triangles.begin(), plate.triangles.end(), is_on_top),
+                        plate.triangles.end());
+  const uint32_t first = uint32_t(plate.vertices.size());
+  for (uint32_t i = 0; i <= kCells; ++i)
+    for (uint32_t j = 0; j <= kCells; ++j) plate.vertices.push_back({double(i), double(j), .5});
+  for (uint32_t i = 0; i < kCells; ++i)
+    for (uint32_t j = 0; j < kCells; ++j) {
+      const uint32_t a = first + i * (kCells + 1) + j, c = a + kCells + 2;
+      if (i != 12 || j != 12) shapes::add_triangle(plate, a, a + kCells + 1, c);
+      shapes::add_triangle(plate, a, c, a + 1);
+    }
+  RemeshOptions options;
+  options.vertices = 1000;
+  options.resolution = 200;  // four voxels thick, less than half an edge
+  options.closing_vox = 6;
+  const Run run = prepare_with(plate, options);
+  CHECK(run.report.grown_vox == 0);
+  TestContext context;
+  CHECK(double(six_volume_vox(run.prepared.sheet, context)) / 6 == Approx(200. * 200 * 4).epsilon(.1));
+}
+
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
   RemeshOptions options;
   options.vertices = 500;
