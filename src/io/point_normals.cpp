@@ -22,7 +22,8 @@ constexpr double kMostLayered = 0.1;  // of the cells of a scan from one side, a
 constexpr size_t kTried = 20000;      // given normals, at most, that are held against planes of neighbours
 // Mean cosine with those: .5 for any directions, .65 where noise is two spacings, else .8 and more.
 constexpr double kLeastCosine = 0.55;
-constexpr double kTrustedCosine = 0.9;     // of normals that disagree with one another, too
+constexpr double kFlat = 0.02;  // part of the scatter of neighbours that is off their plane; a ball's sixteen have .003
+constexpr double kLeastFlatCosine = 0.9;   // mean over flat planes
 constexpr double kMostDisagreeing = 0.05;  // of all pairs of neighbours; beyond it normals are not trusted
 
 WorldPoint normalised(const WorldPoint& a) {
@@ -61,7 +62,12 @@ WorldPoint smallest_direction(const double m[6]) {
   return normalised({v[0][least], v[1][least], v[2][least]});
 }
 
-WorldPoint plane_normal(const std::vector<WorldPoint>& position, const std::vector<PointTree::Near>& near) {
+/// A plane through points: its normal, and the part of their scatter that is off the plane.
+struct Plane {
+  WorldPoint normal;
+  double off;
+};
+Plane plane_through(const std::vector<WorldPoint>& position, const std::vector<PointTree::Near>& near) {
   WorldPoint mean{0, 0, 0};
   for (const auto& [d, i] : near) mean = {mean.x + position[i].x, mean.y + position[i].y, mean.z + position[i].z};
   mean = (1 / double(near.size())) * mean;
@@ -70,22 +76,30 @@ WorldPoint plane_normal(const std::vector<WorldPoint>& position, const std::vect
     const double x = position[i].x - mean.x, y = position[i].y - mean.y, z = position[i].z - mean.z;
     m[0] += x * x, m[1] += x * y, m[2] += x * z, m[3] += y * y, m[4] += y * z, m[5] += z * z;
   }
-  return smallest_direction(m);
+  const WorldPoint n = smallest_direction(m);
+  const double off = dot(n, {m[0] * n.x + m[1] * n.y + m[2] * n.z, m[1] * n.x + m[3] * n.y + m[4] * n.z,
+                             m[2] * n.x + m[4] * n.y + m[5] * n.z});
+  return {n, off / (m[0] + m[3] + m[5])};
 }
 
-/// Mean cosine, without signs, of given normals with the planes of their neighbours, over some of them.
-double cosine_with_planes(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal,
-                          const PointTree& tree) {
+/// Whether given normals stand on the planes of their neighbours, as far as those tell: on all planes better than any
+/// directions would, on flat ones well. Thin walls and wires have no flat ones, whatever their normals.
+bool fit_planes(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal, const PointTree& tree) {
   const size_t stride = (position.size() + kTried - 1) / kTried;
-  std::vector<double> cosine((position.size() + stride - 1) / stride);
+  std::vector<double> cosine((position.size() + stride - 1) / stride), off(cosine.size());
   tbb::parallel_for(size_t(0), cosine.size(), [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i * stride], std::min(kFitNeighbours + 1, position.size()), near);
-    cosine[i] = std::abs(dot(normalised(normal[i * stride]), plane_normal(position, near)));
+    const Plane plane = plane_through(position, near);
+    cosine[i] = std::abs(dot(normalised(normal[i * stride]), plane.normal));
+    off[i] = plane.off;
   });
-  double sum = 0;
-  for (const double c : cosine) sum += c;
-  return sum / double(cosine.size());
+  double sum = 0, flat_sum = 0, flat = 0;
+  for (size_t i = 0; i < cosine.size(); ++i) {
+    sum += cosine[i];
+    if (off[i] < kFlat) flat_sum += cosine[i], ++flat;
+  }
+  return sum >= kLeastCosine * double(cosine.size()) && flat_sum >= kLeastFlatCosine * flat;
 }
 
 /// A pair of neighbours that the tree may join: flattest first.
@@ -102,6 +116,15 @@ class Orientation {
   Orientation(OrientedPoints& points, const std::vector<uint32_t>& neighbours, size_t degree)
       : p_(points), neighbours_(neighbours), degree_(degree), part_(points.position.size(), 0) {}
 
+  void run(bool given) {
+    p_.turned = given && disagreeing() > kMostDisagreeing;
+    if ((!given || p_.turned) && !turn_to_viewer()) turn_along_trees();
+    point_outward();
+  }
+
+ private:
+  uint32_t neighbour(uint32_t i, size_t k) const { return neighbours_[i * degree_ + k]; }
+
   /// Part of all pairs of neighbours whose normals disagree.
   double disagreeing() const {
     int64_t pairs = 0, against = 0;
@@ -113,15 +136,6 @@ class Orientation {
       }
     return pairs ? double(against) / double(pairs) : 1;
   }
-
-  void run(bool given) {
-    p_.turned = given && disagreeing() > kMostDisagreeing;
-    if ((!given || p_.turned) && !turn_to_viewer()) turn_along_trees();
-    point_outward();
-  }
-
- private:
-  uint32_t neighbour(uint32_t i, size_t k) const { return neighbours_[i * degree_ + k]; }
 
   /// What was scanned from one direction has one height along it almost everywhere, and every normal faces it. Tries
   /// the axes and the direction that most normals have.
@@ -220,22 +234,12 @@ class Orientation {
   std::vector<uint32_t> part_;  // of the spanning forest, from 1; all 0 where there is none
 };
 
-void find_normals(OrientedPoints& points, const PointTree& tree) {
-  const size_t near_count = std::min(kFitNeighbours + 1, points.position.size());
-  tbb::parallel_for(size_t(0), points.position.size(), [&](size_t i) {
-    std::vector<PointTree::Near> near;
-    tree.nearest(points.position[i], near_count, near);
-    points.normal[i] = plane_normal(points.position, near);
-  });
-}
-
 }  // namespace
 
 OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<WorldPoint> normal, const PointTree& tree) {
   const size_t count = position.size();
   OrientedPoints points;
-  const double cosine = normal.empty() ? 0 : cosine_with_planes(position, normal, tree);
-  points.ignored = !normal.empty() && cosine < kLeastCosine;
+  points.ignored = !normal.empty() && !fit_planes(position, normal, tree);
   const bool given = !normal.empty() && !points.ignored;
   points.normal = given ? std::move(normal) : std::vector<WorldPoint>(count);
   points.area.resize(count);
@@ -245,7 +249,7 @@ OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<World
   tbb::parallel_for(size_t(0), count, [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i], std::min(kFitNeighbours + 1, count), near);
-    points.normal[i] = given ? normalised(points.normal[i]) : plane_normal(position, near);
+    points.normal[i] = given ? normalised(points.normal[i]) : plane_through(position, near).normal;
     const double reach_sq = near[std::min(kSpacingNeighbour, count - 1)].first;
     spacing[i] = std::sqrt(reach_sq) * kSpacingFactor;
     points.area[i] = reach_sq * kAreaFactor;
@@ -256,12 +260,7 @@ OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<World
   std::nth_element(spacing.begin(), spacing.begin() + int64_t(count / 2), spacing.end());
   points.spacing = spacing[count / 2];
   points.position = std::move(position);
-  Orientation orientation(points, neighbours, degree);
-  if (given && cosine < kTrustedCosine && orientation.disagreeing() > kMostDisagreeing) {
-    find_normals(points, tree);
-    points.ignored = true;
-  }
-  orientation.run(given && !points.ignored);
+  Orientation(points, neighbours, degree).run(given);
   return points;
 }
 

@@ -194,6 +194,20 @@ TEST_CASE("points: normals at random, all the same, zero or far from right are n
   CHECK_FALSE(info.normals_ignored);
 }
 
+TEST_CASE("points: right normals of a ring as thin as points are apart are kept", "[points][unit]") {
+  PointCloud cloud;
+  for (uint64_t i = 0; i < 800; ++i) {
+    const double turn = 6.283185307179586 * double(i) / 800,
+                 around = 6.283185307179586 * double(random_bits(5, i) % 1000) / 1000;
+    const WorldPoint n = {std::cos(turn) * std::cos(around), std::sin(turn) * std::cos(around), std::sin(around)};
+    cloud.position.push_back({std::cos(turn) + .05 * n.x, std::sin(turn) + .05 * n.y, .05 * n.z});
+    cloud.normal.push_back(n);
+  }
+  PointSurfaceInfo info;
+  surface_of_points(cloud, 0, info);
+  CHECK_FALSE(info.normals_ignored);
+}
+
 TEST_CASE("points: five in a hundred far from all others are left out, sparse parts are not", "[points][unit]") {
   PointCloud cloud = ball(3000, -2, 0, true);
   const std::vector<WorldPoint> on_ball = cloud.position;
