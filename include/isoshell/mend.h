@@ -34,7 +34,7 @@ struct MendReport {
   int64_t open_loops = 0;     ///< too large to be holes, or tangled; left open
   double cap_area_world = 0;  ///< square world units
   double widest_cap_world =
-      0;  ///< four areas over the length of the loop: the diameter of a round hole, twice a slit's width
+      0;  ///< but for tubes: four areas over the length of the loop: the diameter of a round hole, twice a slit's width
 
   bool changed_anything() const {
     return joined_vertices + repeated_faces + fins + islands + turned_faces + capped_loops > 0;
@@ -50,11 +50,12 @@ struct MendReport {
 /// whose cap has at most kLargestCrack of its area. An island is an open patch that shares no vertex with another and
 /// has less than a hundredth of the area. Two holes that are rims of one tube, an arm that was cut through, are joined
 /// instead: each looks towards the other, the surface at them runs along the way between them, the radii of circles of
-/// their areas are within 2.5 of each other, and they are no farther apart than five times both together; then neither
-/// is part of an island. Fins stay when all of them have more than a tenth together, islands more than
-/// a twentieth: then they are the surface. Closed patches in which faces disagreed are turned outward. The set of
-/// positions and triangles does not depend on the order of the soup's. Cost: sorts of vertices, faces and edges; n^3
-/// steps for a hole of n edges up to 128, n^2 beyond.
+/// their areas are within 2.5 of each other, and either is the other's nearest. They belong to one patch and are no
+/// farther apart than three times their radii together, or to two, of which one has at most a fifth of the other's
+/// area, and are no farther apart than their radii together; then neither is part of an island. Fins stay when all of
+/// them have more than a tenth together, islands more than a twentieth: then they are the surface. Closed patches in
+/// which faces disagreed are turned outward. The set of positions and triangles does not depend on the order of the
+/// soup's. Cost: sorts of vertices, faces and edges; n^3 steps for a hole of n edges up to 128, n^2 beyond.
 TriangleSoup mend(const TriangleSoup& soup, const MendOptions& options, MendReport& report);
 
 }  // namespace isoshell

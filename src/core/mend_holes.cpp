@@ -137,11 +137,10 @@ class Capper {
   static uint64_t key_of(uint32_t u, uint32_t v) { return uint64_t(std::min(u, v)) << 32 | std::max(u, v); }
 
   void add_tube(Cap tube) {
-    double area = 0, around = 0;
+    double area = 0;
     for (const Corners& c : tube.face)
       area += area_of({mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]}, {{0, 1, 2}});
-    for (uint32_t h : tube.loop) around += length(mesh_.position[mesh_.to(h)] - mesh_.position[mesh_.from(h)]);
-    count_width(area, around);
+    report_.cap_area_world += area;
     ++report_.tubes;
     add(std::move(tube), 2);
   }

@@ -13,6 +13,7 @@ constexpr double kFacing = .8;          // cosine between the way and where a ri
 constexpr double kRunsAlong = .4;       // mean cosine, without sign, between where rims look and the faces at them
 constexpr double kWidthsApart = 2.5;    // between their radii
 constexpr double kFarthest = 3;         // in sums of their radii
+constexpr double kFarthestApart = 1;    // of different surfaces: a bottle's cap lies farther from it
 constexpr double kLargestEnd = .2;      // of the area of the surface that it was cut off
 constexpr size_t kMostRungs = 4 << 20;  // tried
 constexpr size_t kMostRims = 20000;     // more are no holes in a surface
@@ -68,7 +69,8 @@ double gap_between(const Rim& p, const Rim& q) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const WorldPoint way = q.middle - p.middle;
   const double gap = length(way), wide = p.radius + q.radius;
-  if (!may_be_one_body(p, q) || !(gap > 0) || gap > kFarthest * wide ||
+  const double farthest = p.patch == q.patch ? kFarthest : kFarthestApart;
+  if (!may_be_one_body(p, q) || !(gap > 0) || gap > farthest * wide ||
       std::max(p.radius, q.radius) > kWidthsApart * std::min(p.radius, q.radius))
     return kNone;
   const bool face = dot(way, p.looks) >= kFacing * gap && dot(way, q.looks) <= -kFacing * gap;
@@ -101,7 +103,7 @@ class Strip {
     start_at_shortest_rung();
   }
 
-  /// None where a rung is an edge already.
+  /// None where a rung is an edge already, or the rims meet.
   std::vector<Corners> faces() const {
     const size_t n = p_.size(), m = q_.size(), row = m + 1;
     std::vector<double> cost((n + 1) * row, 0);
@@ -115,7 +117,7 @@ class Strip {
     std::vector<Corners> faces;
     for (size_t i = n, j = m; i + j > 0;) {
       const uint32_t p = p_[i % n], q = q_[j % m];
-      if (mesh_.has_edge(p, q)) return {};
+      if (p == q || mesh_.has_edge(p, q)) return {};
       const bool along_p = j == 0 || (i > 0 && cost[(i - 1) * row + j] <= cost[i * row + j - 1]);
       if (along_p)
         faces.push_back({p_[--i], p, q});

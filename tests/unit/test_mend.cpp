@@ -284,6 +284,9 @@ TEST_CASE("mend: ends of a pipe, and holes that face each other across a gap, ar
   const Mended pipes = mended(without(pipe, [](WorldPoint p) { return std::abs(p.z) < 2; }));
   CHECK(pipes.report.tubes == 0);
   CHECK(pipes.topology.components == 2);
+  const Mended capped = mended(without(pipe, [](WorldPoint p) { return p.z > 1 && p.z < 4.3; }));
+  CHECK(capped.report.tubes == 0);
+  CHECK(capped.topology.components == 2);
 }
 
 TEST_CASE("mend: turned faces are turned back, whole surfaces that look inward stay", "[mend]") {
