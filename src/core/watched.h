@@ -1,7 +1,10 @@
 // What all work obeys, in the backend or beside it: the context's thread limit, and its wish to stop.
 #pragma once
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
 
 #include "isoshell/backend.h"
 #include "isoshell/error.h"
@@ -13,11 +16,11 @@ inline void check_cancel(const Context& context, const char* stage) {
   if (context.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage, "interrupted");
 }
 
-/// Runs `work` with at most context.threads threads.
+/// Runs `work` with at most context.threads threads, and no more than there are: TBB complains on standard error then.
 template <class Work>
 auto run_with_threads(const Context& context, Work work) {
   if (context.threads <= 0) return work();
-  tbb::task_arena arena(context.threads);
+  tbb::task_arena arena(std::min(context.threads, tbb::info::default_concurrency()));
   return arena.execute(work);
 }
 

@@ -176,7 +176,7 @@ TEST_CASE("run: dirt is counted in one line a kind, and quiet says nothing", "[c
   CHECK(contains(r.err, "warning: dirty.off: 1 faces without area"));
   CHECK(contains(r.err, "1 repeated faces"));
   CHECK(contains(r.err, "1 vertices that no face uses"));
-  CHECK(folder.run("dirty.off quiet.ply -q" + kQuick).err.empty());
+  CHECK(folder.run("dirty.off quiet.ply -q --threads 4096" + kQuick).err.empty());
 }
 
 TEST_CASE("run: an angle that is poor is said with its place", "[cli]") {
