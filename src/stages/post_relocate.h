@@ -148,9 +148,10 @@ struct SpareEdge {
 
   /// By half-edge; 0 where the mesh or the surface would suffer.
   ISOSHELL_HD uint64_t operator()(uint32_t h) const {
-    const int64_t c = cost(h);
-    if (c >= int64_t(0xffffffff) || !is_flat(cost.mesh.from(h)) || !is_flat(cost.mesh.to(h))) return 0;
-    return (0xffffffffu - uint64_t(c)) << 32 | (0xffffffffu - h);
+    const int64_t c = cost(h), most = 0xfffffffe;  // longer edges are as good as each other
+    if (c <= 0 || c == collapse::CollapseCost::kNever) return 0;
+    if (!is_flat(cost.mesh.from(h)) || !is_flat(cost.mesh.to(h))) return 0;
+    return (0xffffffffu - uint64_t(c < most ? c : most)) << 32 | (0xffffffffu - h);
   }
   /// The neighbours of both ends, which are neighbours.
   template <class Visit>
