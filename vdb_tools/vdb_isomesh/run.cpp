@@ -178,8 +178,7 @@ class Run {
          << (points.normals_given && !points.normals_ignored ? "given" : "estimated")
          << (points.normals_turned ? " and turned" : "");
     console_.detail(text.str());
-    if (points.normals_ignored)
-      warn(input_name() + ": its normals do not fit its points; others were estimated");
+    if (points.normals_ignored) warn(input_name() + ": its normals do not fit its points; others were estimated");
     if (points.outliers > 0)
       warn(input_name() + ": " + counted(points.outliers, "point") + " left out, far from all others");
     if (points.open_part < kNotableOpenPart) return;
