@@ -5,6 +5,7 @@
 #include "core/mend_holes.h"
 #include "core/mend_patches.h"
 #include "core/mend_tubes.h"
+#include "core/world_vector.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {
@@ -47,12 +48,9 @@ class Bodies {
   void add(Body& b, const Corners& c) {
     if (!b.has_origin) b.origin = mesh_.position[c[0]];
     b.has_origin = true;
-    const auto from_origin = [&](uint32_t v) {
-      const WorldPoint& p = mesh_.position[v];
-      return WorldPoint{p.x - b.origin.x, p.y - b.origin.y, p.z - b.origin.z};
-    };
-    const WorldPoint p = from_origin(c[0]), q = from_origin(c[1]), r = from_origin(c[2]);
-    b.six_volume += p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
+    const WorldPoint p = mesh_.position[c[0]] - b.origin, q = mesh_.position[c[1]] - b.origin,
+                     r = mesh_.position[c[2]] - b.origin;
+    b.six_volume += dot(p, cross(q, r));
   }
 
   const MendMesh& mesh_;

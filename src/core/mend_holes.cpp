@@ -137,10 +137,8 @@ class Capper {
   static uint64_t key_of(uint32_t u, uint32_t v) { return uint64_t(std::min(u, v)) << 32 | std::max(u, v); }
 
   void add_tube(Cap tube) {
-    double area = 0;
     for (const Corners& c : tube.face)
-      area += area_of({mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]}, {{0, 1, 2}});
-    report_.cap_area_world += area;
+      report_.cap_area_world += triangle_area(mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]);
     ++report_.tubes;
     add(std::move(tube), 2);
   }
