@@ -18,6 +18,7 @@ const BackendTable* cuda_backend() {
       cuda_coarsen_sites,
       cuda_build_outline,
       cuda_set_edge_lengths,
+      cuda_smooth_edge_lengths,
       cuda_seed_shares,
       cuda_copy_edge_lengths,
       cuda_measure_curvature,

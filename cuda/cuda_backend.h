@@ -18,6 +18,7 @@ SeedSet cuda_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const Seed
 SiteSet cuda_coarsen_sites(const SiteSet&, Context&);
 Sheet cuda_build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
 void cuda_set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&);
+void cuda_smooth_edge_lengths(Sheet&, int32_t rounds, Context&);
 int64_t cuda_seed_shares(const Sheet&, Context&);
 void cuda_copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context&);
 Buffer<uint32_t> cuda_measure_curvature(const Sheet&, int32_t rounds, Context&);

@@ -10,6 +10,11 @@ void cuda_set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16
   set_edge_lengths_body(exec, on_device(exec, sheet), exec.to_device(raw), slope_q16);
 }
 
+void cuda_smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context) {
+  CudaExecutor exec(context, "lengths");
+  smooth_edge_lengths_body(exec, on_device(exec, sheet), rounds);
+}
+
 int64_t cuda_seed_shares(const Sheet& sheet, Context& context) {
   CudaExecutor exec(context, "lengths");
   return seed_shares_body(exec, *OnDevice<Sheet>(exec, sheet));

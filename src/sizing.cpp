@@ -15,7 +15,8 @@ constexpr double kCellOfEdge =
 constexpr double kFewestCellVox = 3.5;  // narrower cells are no disks of sheet triangles
 constexpr double kMostRatio = 16;       // of lengths: what EdgeLengthsView::mass has room for
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
-constexpr int64_t kMostSmoothing = 32;
+constexpr int64_t kMostSmoothing = 32;  // of normals
+constexpr int64_t kMostLengthSmoothing = 128;
 constexpr double kLeastDensity = 1.0 / 16;  // of vertices where nothing is curved, over the mean
 
 /// Whether the field says how many vertices there are.
@@ -115,6 +116,14 @@ int64_t vertices_of_lengths(const Sheet& sheet, Context& context) {
   return std::max<int64_t>(4, std::llround(vertices));
 }
 
+/// Spreads lengths over six tenths of a mean edge: where limits bend them sharply, cells can only fit by irregular
+/// vertices. Not those of a field alone, which the user has drawn.
+void smooth_lengths(int64_t vertices, Sheet& sheet, Context& context) {
+  const double edge_vox = std::sqrt(sheet_area_world(sheet) / double(vertices)) / kCellOfEdge / sheet.frame.voxel_size;
+  const int64_t rounds = std::llround(0.7 * edge_vox * edge_vox);
+  smooth_edge_lengths(sheet, int32_t(std::min(rounds, kMostLengthSmoothing)), context);
+}
+
 }  // namespace
 
 bool wants_lengths(const RemeshOptions& options) { return options.sizing || options.adaptivity > 0; }
@@ -154,6 +163,7 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
     cell = now;
     if (settled) break;
   }
+  if (options.adaptivity > 0) smooth_lengths(asked > 0 ? asked : vertices_of_lengths(sheet, context), sheet, context);
   if (asked == 0) p.vertices = vertices_of_lengths(sheet, context);
 }
 

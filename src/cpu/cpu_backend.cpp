@@ -17,6 +17,7 @@ const BackendTable& cpu_backend() {
       cpu_coarsen_sites,
       cpu_build_outline,
       cpu_set_edge_lengths,
+      cpu_smooth_edge_lengths,
       cpu_seed_shares,
       cpu_copy_edge_lengths,
       cpu_measure_curvature,

@@ -17,6 +17,7 @@ SiteSet cpu_cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus,
 SiteSet cpu_coarsen_sites(const SiteSet&, Context&);
 Sheet cpu_build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
 void cpu_set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&);
+void cpu_smooth_edge_lengths(Sheet&, int32_t rounds, Context&);
 int64_t cpu_seed_shares(const Sheet&, Context&);
 void cpu_copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context&);
 Buffer<uint32_t> cpu_measure_curvature(const Sheet&, int32_t rounds, Context&);

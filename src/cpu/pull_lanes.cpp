@@ -12,9 +12,9 @@ ISOSHELL_INLINE Vector way(const PullLanes::Points& from, const PullLanes::Point
 }
 
 // foot_on_triangle, weight_of and add, where none of their other ways is taken: conditions become ones and zeros.
-ISOSHELL_VECTOR_VERSIONS void find_in_lanes(PullLanes& s, double rms_q8, double far_q8) {
-  const bool weighs = rms_q8 > 0;
-  const double rms = weighs ? rms_q8 : 1, far_sq = far_q8 * far_q8;
+ISOSHELL_VECTOR_VERSIONS void find_in_lanes(PullLanes& s, const PullOptions& options) {
+  const bool weighs = options.rms_q8 > 0;
+  const double rms = weighs ? options.rms_q8 : 1, far_sq = options.far_q8 * options.far_q8, tail = options.tail_of_rms;
   for (int i = 0; i < PullLanes::kLanes; ++i) {
     const Vector ab = way(s.a, s.b, i), ac = way(s.a, s.c, i), aq = way(s.a, s.sample, i), bq = way(s.b, s.sample, i),
                  cq = way(s.c, s.sample, i);
@@ -36,10 +36,10 @@ ISOSHELL_VECTOR_VERSIONS void find_in_lanes(PullLanes& s, double rms_q8, double 
     s.is_inside[i] = inside & !at_corner & !on_edge & !beyond ? 1 : 0;
     s.distance_sq[i] = distance_sq;
     const double part = rounded_sqrt(distance_sq) / rms;
-    const double near = part * kFarOfRms > 1 ? 1 / part : kFarOfRms;
-    const double in_units = part / kFarOfRms, steep = 1 / kFarOfRms * (in_units * in_units);
-    const double tail = steep < kLargestWeight ? steep : kLargestWeight;
-    const double by_residual = part <= kFarOfRms ? near : tail, all = weighs ? by_residual : 1;
+    const double near = part * kNearWeight > 1 ? 1 / part : kNearWeight;
+    const double beyond_tail = part / tail, rising = 1 / tail * (beyond_tail * beyond_tail);
+    const double far = rising < kLargestWeight ? rising : kLargestWeight;
+    const double by_residual = part <= tail ? near : far, all = weighs ? by_residual : 1;
     s.weight[0][i] = all * u, s.weight[1][i] = all * v, s.weight[2][i] = all * w;
     for (int k = 0; k < 3; ++k) {
       s.pull[k][i] = s.weight[k][i] * along * kPullScale;
@@ -50,6 +50,6 @@ ISOSHELL_VECTOR_VERSIONS void find_in_lanes(PullLanes& s, double rms_q8, double 
 
 }  // namespace
 
-void PullLanes::find(const PullOptions& options) { find_in_lanes(*this, options.rms_q8, options.far_q8); }
+void PullLanes::find(const PullOptions& options) { find_in_lanes(*this, options); }
 
 }  // namespace isoshell

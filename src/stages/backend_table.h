@@ -23,6 +23,7 @@ struct BackendTable {
   SiteSet (*coarsen_sites)(const SiteSet&, Context&);
   Sheet (*build_outline)(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&);
   void (*set_edge_lengths)(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&);
+  void (*smooth_edge_lengths)(Sheet&, int32_t rounds, Context&);
   int64_t (*seed_shares)(const Sheet&, Context&);
   void (*copy_edge_lengths)(const Sheet& from, int halvings, Sheet& to, Context&);
   Buffer<uint32_t> (*measure_curvature)(const Sheet&, int32_t rounds, Context&);

@@ -16,6 +16,10 @@ void set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Con
   backend_for(context).set_edge_lengths(sheet, std::move(raw), slope_q16, context);
 }
 
+void smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context) {
+  backend_for(context).smooth_edge_lengths(sheet, rounds, context);
+}
+
 int64_t seed_shares_q16(const Sheet& sheet, Context& context) {
   return backend_for(context).seed_shares(sheet, context);
 }

@@ -140,16 +140,38 @@ struct TurnOfNormal {
     out[v] = way_sq > 0 ? uint32_t(isqrt(turn_sq * kScale / way_sq)) : 0;
   }
 };
-struct MeanTurn {
+struct MeanValue {
   SheetGraph graph;
   View<const uint32_t> from;
   View<uint32_t> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     uint64_t sum = from[v], count = 1;
     graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) { sum += from[u], ++count; });
-    to[v] = uint32_t(sum / count);
+    to[v] = uint32_t((sum + count / 2) / count);
   }
 };
+
+/// Takes the lengths to the sheet.
+template <class Exec>
+void keep_lengths(Exec& exec, Buffer<uint32_t> at, Sheet& sheet) {
+  Buffer<uint32_t> range = exec.template make<uint32_t>(2);
+  exec.fill(range.view().part(0, 1), UINT32_MAX);
+  exec.fill(range.view().part(1, 1), 0u);
+  exec.for_each("range of lengths", at.size(), FindRange{at.view(), range.view()});
+  sheet.lengths.least = exec.value(View<const uint32_t>(range.view()), 0);
+  sheet.lengths.largest = exec.value(View<const uint32_t>(range.view()), 1);
+  sheet.lengths.at = std::move(at);
+}
+
+/// The means, so many times.
+template <class Exec>
+void smooth_values(Exec& exec, const SheetGraph& graph, int32_t rounds, Buffer<uint32_t>& values) {
+  Buffer<uint32_t> smooth = exec.template make<uint32_t>(values.size());
+  for (int32_t r = 0; r < rounds; ++r) {
+    exec.for_each("mean values", values.size(), MeanValue{graph, values.view(), smooth.view()});
+    std::swap(values, smooth);
+  }
+}
 
 }  // namespace lengths
 
@@ -170,13 +192,15 @@ void set_edge_lengths_body(Exec& exec, Sheet& sheet, Buffer<uint32_t> raw, int64
     std::swap(raw, next);
     std::swap(awake, wake);
   } while (exec.sum(leaves, IsAwake{awake.view()}) > 0);
-  Buffer<uint32_t> range = exec.template make<uint32_t>(2);
-  exec.fill(range.view().part(0, 1), UINT32_MAX);
-  exec.fill(range.view().part(1, 1), 0u);
-  exec.for_each("range of lengths", vertices, FindRange{raw.view(), range.view()});
-  sheet.lengths.least = exec.value(View<const uint32_t>(range.view()), 0);
-  sheet.lengths.largest = exec.value(View<const uint32_t>(range.view()), 1);
-  sheet.lengths.at = std::move(raw);
+  keep_lengths(exec, std::move(raw), sheet);
+}
+
+template <class Exec>
+void smooth_edge_lengths_body(Exec& exec, Sheet& sheet, int32_t rounds) {
+  using namespace lengths;
+  Buffer<uint32_t> at = std::move(sheet.lengths.at);
+  smooth_values(exec, graph_of(sheet), rounds, at);
+  keep_lengths(exec, std::move(at), sheet);
 }
 
 template <class Exec>
@@ -210,12 +234,9 @@ Buffer<uint32_t> measure_curvature_body(Exec& exec, const Sheet& sheet, int32_t 
     std::swap(normal, mean);
   }
   exec.for_each("unit normals", vertices, UnitNormal{normal.view()});
-  Buffer<uint32_t> turn = exec.template make<uint32_t>(vertices), smooth = exec.template make<uint32_t>(vertices);
+  Buffer<uint32_t> turn = exec.template make<uint32_t>(vertices);
   exec.for_each("turn of normals", vertices, TurnOfNormal{graph, sheet.position.view(), normal.view(), turn.view()});
-  for (int32_t r = 0; r < rounds * 2 / 3; ++r) {
-    exec.for_each("mean turns", vertices, MeanTurn{graph, turn.view(), smooth.view()});
-    std::swap(turn, smooth);
-  }
+  smooth_values(exec, graph, rounds * 2 / 3, turn);
   return turn;
 }
 

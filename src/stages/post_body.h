@@ -30,7 +30,7 @@ constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
 // smoothed after them.
 constexpr double kFlippedMerit = 0.7, kPoorMerit = 0.8, kFairMerit = 0.9, kGoodMerit = 1;
 // Weight of the size to aim at against a triangle's own. Shapes are best with none.
-constexpr double kEvenness = 0, kSizedEvenness = 0.05, kUniformEvenness = 6;
+constexpr double kEvenness = 0, kUniformEvenness = 6;
 
 /// Seeds go where the vertices are: position, home and normal.
 struct UpdateSeed {
@@ -100,7 +100,7 @@ class Improvement {
   Improvement(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh)
       : exec_(exec),
         sheet_(sheet),
-        evenness_(options.uniform_area ? kUniformEvenness : (sheet.lengths.at.empty() ? kEvenness : kSizedEvenness)),
+        evenness_(options.uniform_area ? kUniformEvenness : kEvenness),
         seeds_(seeds),
         mesh_(mesh),
         vertices_(mesh.position.size()),
@@ -176,7 +176,7 @@ class Improvement {
       exec_.fill(vertex_pull_.view(), VertexPull{});
       work_.pull(exec_, {view(),
                          mesh_.position.view(),
-                         {rms_q8_, 0.1 * size_.edge_q8},
+                         {rms_q8_, 0.1 * size_.edge_q8, size_.lengths.vary() ? kSizedTailOfRms : kTailOfRms},
                          sample_.view(),
                          triangle_pull_.view(),
                          vertex_pull_.view(),

@@ -91,12 +91,16 @@ struct VertexPull {
 };
 constexpr double kPullScale = 1024;
 constexpr double kLargestWeight = 64;
-constexpr double kFarOfRms = 4;      ///< residuals beyond this many root mean squares are tails
-constexpr double kMissedWeight = 4;  ///< of missed points where tails begin; other samples have 1 / kFarOfRms there
+constexpr double kNearWeight = 4;    ///< of samples that are nearest to the mesh, in those at the root mean square
+constexpr double kMissedWeight = 4;  ///< of missed points where tails begin; other samples have 1 / tail_of_rms there
+// Where the tails begin. With vertices in proportion to curvature residuals are alike everywhere: then the largest are
+// no tips that vertices are missing for, but samples that those around them outweigh.
+constexpr double kTailOfRms = 4, kSizedTailOfRms = 2;
 
 struct PullOptions {
   double rms_q8 = 0;  ///< of the residuals; 0: all samples weigh the same, and missed points nothing
   double far_q8 = 0;  ///< samples farther than this look around, and those twice as far weigh ever more
+  double tail_of_rms = kTailOfRms;
 };
 
 /// Lets a sample slide to a closer triangle near its own, and adds what it asks for.
@@ -164,13 +168,13 @@ struct PullCorners {
   ISOSHELL_HD double weight_of(const FitSample& s, double distance_sq) const {
     if (!(options.rms_q8 > 0)) return s.is_missed ? 0 : 1;
     const double part = rounded_sqrt(distance_sq) / options.rms_q8;
-    if (part <= kFarOfRms) {
+    if (part <= options.tail_of_rms) {
       if (s.is_missed) return 0;
-      return part * kFarOfRms > 1 ? 1 / part : kFarOfRms;
+      return part * kNearWeight > 1 ? 1 / part : kNearWeight;
     }
-    const double beyond = part / kFarOfRms, far = distance_sq / (4 * options.far_q8 * options.far_q8);
+    const double beyond = part / options.tail_of_rms, far = distance_sq / (4 * options.far_q8 * options.far_q8);
     const double steep = far > 1 ? far * far * far : 1;
-    const double w = (s.is_missed ? kMissedWeight : 1 / kFarOfRms) * (beyond * beyond) * steep;
+    const double w = (s.is_missed ? kMissedWeight : 1 / options.tail_of_rms) * (beyond * beyond) * steep;
     return w < kLargestWeight ? w : kLargestWeight;
   }
   ISOSHELL_HD static int64_t scaled(double x) { return int64_t(x * kPullScale); }

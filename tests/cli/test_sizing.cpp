@@ -151,6 +151,23 @@ TEST_CASE("sizing: adaptivity puts the same number of vertices where the surface
   CHECK(s["topology"]["genus"] == 1);
 }
 
+TEST_CASE("sizing: adaptivity brings the mesh nearer to a surface of uneven curvature", "[sizing][cli]") {
+  Folder folder;
+  TriangleSoup egg = shapes::sphere({0, 0, 0}, 1, 120);
+  for (WorldPoint& p : egg.vertices) p.x *= 4;
+  folder.write_off("egg.off", egg);
+  double largest[2];
+  for (const int adaptivity : {0, 1}) {
+    const std::string asked = " --vertices 700 -q --device cpu --stats s.json --force --adaptivity ";
+    REQUIRE(folder.run("egg.off o.ply" + asked + std::to_string(adaptivity)).status == 0);
+    const Json s = Json::parse(folder.content("s.json"));
+    largest[adaptivity] = s["distance"]["hausdorff"];
+    CHECK(s["quality"]["q_avg"] > 0.93);
+    CHECK(s["topology"]["self_intersections"] == 0);
+  }
+  CHECK(largest[1] < 0.5 * largest[0]);
+}
+
 TEST_CASE("sizing: lengths that the grid or the density does not carry are bounded with a warning", "[sizing][cli]") {
   Folder folder;
   write_ball(folder);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
+#include <set>
 
 #include "isoshell/error.h"
 #include "isoshell/remesh.h"
@@ -116,4 +117,26 @@ TEST_CASE("lengths: the curvature of a ball is one over its radius, of a flat wa
     CHECK(flat[v] < 200);  // 3 / 1000 a voxel
   }
   CHECK(inner > 500);
+}
+
+TEST_CASE("lengths: smoothing gives every vertex the mean of its own and its neighbours' length", "[lengths][stage]") {
+  TestContext context;
+  Sheet sheet = torus_sheet();
+  set_edge_lengths(sheet, random_lengths(sheet, 100000), kMostLengthSlopeQ16, context);
+  const Buffer<uint32_t> before = sheet.lengths.at.to_host();
+  std::vector<std::set<uint32_t>> around(size_t(before.size()));
+  for (const TriangleIndices& t : torus_sheet().triangles)
+    for (const auto& [u, v] : {std::pair{t.a, t.b}, {t.b, t.c}, {t.c, t.a}})
+      around[u].insert({u, v}), around[v].insert(u);
+  std::vector<uint32_t> expected;
+  for (const std::set<uint32_t>& ring : around) {
+    uint64_t sum = ring.size() / 2;
+    for (const uint32_t u : ring) sum += before[u];
+    expected.push_back(uint32_t(sum / ring.size()));
+  }
+  smooth_edge_lengths(sheet, 1, context);
+  const Buffer<uint32_t> after = sheet.lengths.at.to_host();
+  CHECK(std::equal(after.begin(), after.end(), expected.begin(), expected.end()));
+  CHECK(sheet.lengths.least == *std::min_element(expected.begin(), expected.end()));
+  CHECK(sheet.lengths.largest == *std::max_element(expected.begin(), expected.end()));
 }
