@@ -15,6 +15,12 @@ struct SeedSearch {
   BucketTable table;
   const SeedRecord* seed;
   int64_t penalty_q16;
+
+  /// Of a seed at offset `away` from a vertex.
+  __device__ int64_t cost(Local away, uint32_t packed_normal, uint32_t other_normal) const {
+    const bool pays = __dp4a(int(packed_normal), int(other_normal), 0) < label::kOpposite;
+    return square(away) + (pays ? penalty_q16 : 0);
+  }
 };
 
 /// Where a candidate is, from the patch's origin.
@@ -70,7 +76,7 @@ class PatchSearch {
     set_reach(reach);
     if (cells_ > kFewCells) return false;
     collect<true>(0);
-    if (next_ < cells_ || __any_sync(~0u, has_spilt_)) return false;
+    if (next_ < cells_ || !add_spilt(reach)) return false;
     const BoxCosts<uint32_t> costs(box_, search_.penalty_q16);
     if (total_ > 32) drop_far(reach);
     if (total_ > 2 * 32) return false;
@@ -113,6 +119,29 @@ class PatchSearch {
     result.narrow = !__any_sync(~0u, may_oppose);
     sort(out, result);
     return true;
+  }
+
+  /// Collects all seeds within reach of the box, for `cheapest`. False when there is no room for them.
+  __device__ bool gather(int32_t reach) {
+    set_reach(reach);
+    if (cells_ > kFewCells) return false;
+    collect<true>(0);
+    return next_ >= cells_ && add_spilt(reach);
+  }
+
+  /// The collected seed that costs a vertex least, the first of several: the vertex's place is from the patch's origin.
+  __device__ uint32_t cheapest(Local v, uint32_t packed_normal) const {
+    int64_t least = INT64_MAX;
+    uint32_t best = kNone;
+    for (int i = lane_; i < total_; i += 32) {
+      const uint32_t id = scratch_.id[i];
+      const SeedRecord s = search_.seed[id];
+      const Local away = {v.x - (s.x - box_.origin.x), v.y - (s.y - box_.origin.y), v.z - (s.z - box_.origin.z)};
+      const int64_t cost = search_.cost(away, s.packed_normal, packed_normal);
+      if (cost < least || (cost == least && id < best)) least = cost, best = id;
+    }
+    const int64_t least_of_all = warp_min(least);
+    return warp_min(least == least_of_all ? best : kNone);
   }
 
   /// Again with a limit that is known to hold. Returns the number of candidates; writes their ids to `ids` as far as
@@ -331,6 +360,27 @@ class PatchSearch {
     return true;
   }
 
+  __device__ bool is_near(uint32_t id, int32_t reach) const {
+    return uint64_t(square(box_.outside(search_.seed[id]))) <= uint64_t(int64_t(reach) * reach);
+  }
+
+  /// Adds the seeds within reach of the box that buckets had no room for, where it has such a bucket; false when there
+  /// is no room for them.
+  __device__ bool add_spilt(int32_t reach) {
+    if (!__any_sync(~0u, has_spilt_)) return true;
+    const int spilt = int(search_.table.spill[0]);
+    for (int base = 0; base < spilt; base += 32) {
+      const uint32_t id = base + lane_ < spilt ? search_.table.spill[1 + base + lane_] : kNone;
+      const bool near = id != kNone && is_near(id, reach);
+      const unsigned lanes = __ballot_sync(~0u, near);
+      if (total_ + __popc(lanes) > 32 * kBucketSeeds) return false;
+      if (near) scratch_.id[total_ + lanes_before(lanes)] = id;
+      total_ += __popc(lanes);
+    }
+    __syncwarp();
+    return true;
+  }
+
   /// Leaves those of the collected seeds that are within reach of the box.
   __device__ void drop_far(int32_t reach) {
     int kept = 0;
@@ -338,8 +388,7 @@ class PatchSearch {
     for (int base = 0; base < total_; base += 32) {
       const bool in = base + lane_ < total_;
       const uint32_t id = in ? scratch_.id[base + lane_] : 0;
-      const Local away = box_.outside(search_.seed[id]);
-      const bool near = in && uint64_t(square(away)) <= uint64_t(int64_t(reach) * reach);
+      const bool near = in && is_near(id, reach);
       const unsigned lanes = __ballot_sync(~0u, near);
       __syncwarp();  // all have read
       if (near) scratch_.id[kept + lanes_before(lanes)] = id;

@@ -8,6 +8,7 @@
 #include "cuda/group_walk.cuh"
 #include "cuda/patch_queue.cuh"
 #include "cuda/patch_sums.cuh"
+#include "cuda/paying_vertices.cuh"
 
 namespace isoshell::cuda_relax {
 
@@ -36,10 +37,22 @@ __device__ inline int label_patch(const Labelling& at, int32_t& reach, PatchWinn
     }
     if (found.count > kMaxWinners) {
       found = label_from_many(at, found);
-      reach = reach_of(found.limit);
-      return found.count > kMaxWinners ? found.count : write_labels(at, ~0u >> (32 - found.count), out);
+      if (found.count > kMaxWinners) {
+        reach = reach_of(found.limit);
+        return found.count;
+      }
+      reach /= 2;  // most likely for vertices that pay: in some passes the short search does for the others
+      return write_labels(at, ~0u >> (32 - found.count), out);
     }
     const Labelled labelled = label_vertices(at, found);
+    const int64_t penalty = at.pass.search.penalty_q16;
+    if (penalty > 0 && labelled.most >= penalty && labelled.most > reach_sq) {
+      const Labelled paying = label_paying(at, found.count, found.reach);
+      if (paying.most >= 0) {
+        reach = reach_of(paying.most);
+        return write_labels(at, paying.used, out);
+      }
+    }
     reach = reach_of(labelled.most);
     if (labelled.most <= reach_sq) return write_labels(at, labelled.used, out);
   }

@@ -113,6 +113,19 @@ TEST_CASE("relax on both: all seeds in one bucket", "[relax][cuda]") {
   same_after({1, 2, 20}, seeds, 0, on_sheet(sheet));
 }
 
+TEST_CASE("relax on both: few vertices that all seeds around face away from", "[relax][cuda]") {
+  Sheet sheet = torus_sheet();
+  for (int64_t v = 0; v < sheet.vertex_count(); v += 499) {
+    Normal8& n = sheet.normal[v];
+    n = {int8_t(-n.x), int8_t(-n.y), int8_t(-n.z)};
+  }
+  for (const int64_t count : {30, 400, 1500}) {
+    const SeedSet seeds = seeds_on(sheet, count);
+    same_after({1, 2, 20}, seeds, 0, on_sheet(sheet));
+    label_both(sheet, seeds);
+  }
+}
+
 TEST_CASE("relax on both: seeds far from most of the sheet, and coming closer", "[relax][cuda]") {
   // A pass looks no farther than labels reached in the one before: here most have farther seeds, then nearer ones.
   const Sheet sheet = torus_sheet();
