@@ -21,18 +21,13 @@ void resolve_intersections(const Prepared& prepared, const PostOptions& options,
   collapse_edges(sheet, asked, start, dual, context);  // the count goes before what is left
   if (start.size() != asked) return;
   PostOptions again = options;
-  for (const int32_t flip_rounds : {options.flip_rounds, 0}) {
-    if (report.post.self_intersections == 0) return;
-    again.flip_rounds = flip_rounds;
-    SeedSet moved = host_copy(start);
-    DualMesh improved = host_copy(dual);
-    const PostReport post = improve_mesh(sheet, again, moved, improved, context);
-    if (post.self_intersections >= report.post.self_intersections) continue;
-    seeds = std::move(moved);
-    mesh = std::move(improved);
-    report.post = post;
-    report.seeds_against_intersections = found.inserted_seeds;
-  }
+  again.keep_apart = true;
+  const PostReport post = improve_mesh(sheet, again, start, dual, context);
+  if (post.self_intersections >= report.post.self_intersections) return;
+  seeds = std::move(start);
+  mesh = std::move(dual);
+  report.post = post;
+  report.seeds_against_intersections = found.inserted_seeds;
 }
 
 }  // namespace isoshell

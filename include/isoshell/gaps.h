@@ -27,6 +27,9 @@ void measure_bridges(const Sheet& sheet, const std::vector<uint8_t>& bridges, Ga
 /// Per vertex of the sheet 1 where it bridges or lies on a face that closes a hole; empty when none does.
 std::vector<uint8_t> find_gaps(const LatticeSurface& surface, const Sheet& sheet, const std::vector<uint8_t>& bridges);
 
+/// The voxels around the corners of the vertices that bridge, each once, sorted.
+std::vector<Voxel> bridging_voxels(const Sheet& sheet, const std::vector<uint8_t>& bridges);
+
 /// Area of the sheet's triangles whose three vertices lie in gaps.
 double gap_area_world(const Sheet& sheet, const std::vector<uint8_t>& gaps);
 

@@ -183,6 +183,7 @@ struct PostOptions {
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
   bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
+  bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began
 };
 struct PostReport {
   int64_t flips = 0;

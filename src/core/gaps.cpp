@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <queue>
@@ -121,6 +122,20 @@ std::vector<uint8_t> find_gaps(const LatticeSurface& of, const Sheet& on, const 
         source == kNone || surface->source_face[source] >= of.first_cap || (!bridges.empty() && bridges[size_t(v)]);
   }
   return gaps;
+}
+
+std::vector<Voxel> bridging_voxels(const Sheet& on, const std::vector<uint8_t>& bridges) {
+  const OnHost<Sheet> sheet(on);
+  std::vector<Voxel> voxels;
+  for_each_corner(*sheet, [&](int64_t v, Voxel c) {
+    for (int o = 0; o < 8 && bridges[size_t(v)]; ++o)
+      voxels.push_back({c.x - (o >> 2), c.y - (o >> 1 & 1), c.z - (o & 1)});
+  });
+  const auto key = [](Voxel v) { return std::tuple(v.x, v.y, v.z); };
+  std::sort(voxels.begin(), voxels.end(), [&](Voxel a, Voxel b) { return key(a) < key(b); });
+  voxels.erase(std::unique(voxels.begin(), voxels.end(), [&](Voxel a, Voxel b) { return key(a) == key(b); }),
+               voxels.end());
+  return voxels;
 }
 
 double gap_area_world(const Sheet& of, const std::vector<uint8_t>& gaps) {

@@ -106,6 +106,22 @@ class StageWriter {
     });
   }
 
+  /// 1 in voxels whose closest site has the flag, and in `more`, which the shell need not hold. No grid without any.
+  void flags(const char* name, const Shell& shell, const std::vector<uint8_t>& flag, std::vector<Voxel> more) {
+    if (more.empty() && std::find(flag.begin(), flag.end(), 1) == flag.end()) return;
+    makers_.push_back([this, name, &shell, &flag, more = std::move(more)]() -> openvdb::GridBase::Ptr {
+      const auto flag_at = [&flag, site = shell.closest_site.view()](int64_t, int, int64_t i) {
+        return float(flag[site[i]]);
+      };
+      auto grid = make_voxel_grid<VdbFloatGrid>(name, 0.f, shell.voxels, flag_at);
+      auto values = grid->getAccessor();
+      for (const Voxel v : more) values.setValueOn({v.x, v.y, v.z}, 1.f);
+      grid->setTransform(lattice_transform(frame_));
+      describe(*grid);
+      return grid;
+    });
+  }
+
   template <class GridT, class T>
   void table(const char* name, View<const T> elements) {
     makers_.push_back([this, name, elements]() -> openvdb::GridBase::Ptr {
@@ -171,15 +187,8 @@ std::vector<uint8_t> sites_on_caps(const LatticeSurface& surface, const SiteSamp
   return gap;
 }
 
-void add_flags(StageWriter& file, const char* name, const Shell& shell, const std::vector<uint8_t>& flag) {
-  if (std::find(flag.begin(), flag.end(), 1) == flag.end()) return;
-  file.voxels<VdbFloatGrid>(
-      name, shell.voxels, 0.f,
-      [&flag, site = shell.closest_site.view()](int64_t, int, int64_t i) { return float(flag[site[i]]); });
-}
-
 void add_shell(StageWriter& file, const LatticeSurface& surface, const SiteSamples& samples, const Shell& shell,
-               ShellScratch& scratch, bool view_grids) {
+               ShellScratch& scratch, const StageWriteOptions& options) {
   const LatticeFrame& frame = surface.frame;
   const SiteSet site_set = sites_of_shell(shell, frame);
   check_fits(samples.sample.size(), site_set.voxels.voxel_count(), "SiteSamples::sample");
@@ -187,7 +196,7 @@ void add_shell(StageWriter& file, const LatticeSurface& surface, const SiteSampl
   file.digest_of("sites", site_set);
   file.digest_of("shell", shell);
   const VoxelSet& set = shell.voxels;
-  if (view_grids) {
+  if (options.view_grids) {
     scratch.sites = list_voxels(site_set.voxels);
     const auto distance = [distance_sq = shell.distance_sq_vox.view(), size = frame.voxel_size](
                               int64_t, int, int64_t i) { return float(std::sqrt(double(distance_sq[i])) * size); };
@@ -197,9 +206,9 @@ void add_shell(StageWriter& file, const LatticeSurface& surface, const SiteSampl
                                             shell.closest_site.view(), frame.voxel_size / kOneVoxelQ8},
                               openvdb::GRID_UNKNOWN, openvdb::VEC_CONTRAVARIANT_RELATIVE);
     scratch.gap = sites_on_caps(surface, samples);
-    add_flags(file, "gap", shell, scratch.gap);
+    file.flags("gap", shell, scratch.gap, options.bridges);
     scratch.risk = find_risks(surface, samples);
-    add_flags(file, "risk", shell, scratch.risk);
+    file.flags("risk", shell, scratch.risk, {});
   }
   file.voxels<VdbIntGrid>(kClosestSite, set, -1,
                           [site = shell.closest_site.view()](int64_t, int, int64_t i) { return int32_t(site[i]); });
@@ -227,7 +236,7 @@ void write_shell(const std::string& path, const LatticeSurface& surface, const S
   initialize_openvdb();
   StageWriter file(surface.frame, "shell", options);
   ShellScratch scratch;
-  add_shell(file, surface, samples, shell, scratch, options.view_grids);
+  add_shell(file, surface, samples, shell, scratch, options);
   add_surface(file, surface);
   file.write(path, options.overwrite);
 }
@@ -246,7 +255,7 @@ void write_voronoi(const std::string& path, const LatticeSurface& surface, const
   file.voxels<VdbIntGrid>(kSeedId, shell.voxels, -1,
                           [seed = labels.voxel_seed.view()](int64_t, int, int64_t i) { return int32_t(seed[i]); });
   ShellScratch scratch;
-  add_shell(file, surface, samples, shell, scratch, options.view_grids);
+  add_shell(file, surface, samples, shell, scratch, options);
   add_surface(file, surface);
   Buffer<PointQ8> normals(seeds.size());
   for (int64_t i = 0; i < seeds.size(); ++i) normals[i] = {seeds.normal[i].x, seeds.normal[i].y, seeds.normal[i].z};

@@ -22,6 +22,7 @@ namespace post {
 constexpr int kStepsOffSheet = 8;
 constexpr int kUndoRounds = 3;           ///< back to the sheet
 constexpr int kUndoRoundsInAll = 12;     ///< the others back to where vertices began
+constexpr int kBlockedFlips = 8;         ///< tries to flip fewer edges before none is flipped
 constexpr int kSamplesPerTriangle = 12;  ///< fewer miss tips, more change little
 constexpr double kStiffness = 0.5;       ///< less is nearer to the surface, more has better triangles
 constexpr double kFitMomentum = 0.7;
@@ -70,6 +71,12 @@ struct IsMarked {
   ISOSHELL_HD int64_t operator()(int64_t v) const { return marked[v]; }
 };
 
+struct BlockMarked {
+  View<const uint32_t> marked;
+  View<uint32_t> blocked;
+  ISOSHELL_HD void operator()(int64_t v) const { blocked[v] |= marked[v]; }
+};
+
 struct RotateTriangle {
   View<TriangleIndices> triangles;
   ISOSHELL_HD void operator()(int64_t i) const { triangles[i] = smallest_first(triangles[i]); }
@@ -107,7 +114,8 @@ class Improvement {
         half_edges_(3 * mesh.triangles.size()),
         spacing_(seed_spacing(exec, sheet, vertices_)),
         walk_(walk_onto(sheet)),
-        connections_(exec, mesh) {
+        connections_(exec, mesh),
+        keep_apart_(options.keep_apart) {
     claim_ = exec.template make<uint64_t>(vertices_);
     moved_ = exec.template make<PointQ8>(vertices_);
     previous_ = exec.template make<PointQ8>(vertices_);
@@ -121,7 +129,7 @@ class Improvement {
 
   /// Flips until none is left or `rounds` are done. Returns how many were made.
   int64_t flip(int rounds, double least_merit) {
-    return flip_edges(exec_, FlipKey{view(), mesh_.position.view(), least_merit}, claim_.view(), rounds);
+    return flip_by([&] { return FlipKey{view(), mesh_.position.view(), least_merit}; }, rounds);
   }
 
   /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where eight
@@ -206,7 +214,7 @@ class Improvement {
                    MeasureSamples{view(), mesh_.position.view(), sample_.view(), far.view(), gaps});
     exec_.for_each("measure middles", half_edges_,
                    MeasureMiddles{view(), walk_, mesh_.position.view(), seeds_.home.view(), gaps});
-    return flip_edges(exec_, ChordKey{view(), mesh_.position.view(), gaps}, claim_.view(), 1);
+    return flip_by([&] { return ChordKey{view(), mesh_.position.view(), gaps}; }, 1);
   }
 
   /// Takes vertices from flat places to triangles that the samples of the last step of the fit are far from. Returns
@@ -262,10 +270,8 @@ class Improvement {
     Buffer<uint32_t> spread = exec_.template make<uint32_t>(vertices_);
     Buffer<PointQ8> best = exec_.template make<PointQ8>(vertices_);
     int64_t fewest = INT64_MAX;
-    const int64_t spacing_vox = int64_t(size_.edge_q8) / kOneVoxelQ8 + 1;
     for (int round = 0;; ++round) {
-      report.self_intersections = find_intersections(exec_, {mesh_.triangles.view(), mesh_.position.view()},
-                                                     sheet_.corners.block_dims, spacing_vox, harmed_.view());
+      report.self_intersections = intersections_at(mesh_.position);
       if (report.self_intersections == 0) return;
       if (report.self_intersections < fewest) {
         fewest = report.self_intersections;
@@ -293,6 +299,31 @@ class Improvement {
 
  private:
   MeshView view() { return connections_.view(mesh_); }
+
+  /// Of flips that would keep vertices from going back to where they began, none is made that is near to one.
+  template <class MakeKey>
+  int64_t flip_by(MakeKey make_key, int rounds) {
+    if (!keep_apart_) return flip_edges(exec_, make_key(), claim_.view(), rounds);
+    Buffer<TriangleIndices> before = exec_.template make<TriangleIndices>(mesh_.triangles.size());
+    exec_.copy(View<const TriangleIndices>(mesh_.triangles.view()), before.view());
+    Buffer<uint32_t> blocked = exec_.template make<uint32_t>(vertices_);
+    exec_.fill(blocked.view(), 0u);
+    const int64_t pairs = intersections_at(begin_);
+    for (int tries = kBlockedFlips;; --tries) {
+      const int64_t flips = flip_edges(exec_, UnblockedFlip{make_key(), blocked.view()}, claim_.view(), rounds);
+      if (flips == 0 || intersections_at(begin_) <= pairs) return flips;
+      exec_.copy(View<const TriangleIndices>(before.view()), mesh_.triangles.view());
+      connections_ = Connections(exec_, mesh_);
+      if (tries == 0) return 0;
+      exec_.for_each("block flips", vertices_, BlockMarked{harmed_.view(), blocked.view()});
+    }
+  }
+
+  /// Pairs of triangles; their corners are marked as harmed.
+  int64_t intersections_at(const Buffer<PointQ8>& position) {
+    return find_intersections(exec_, {mesh_.triangles.view(), position.view()}, sheet_.corners.block_dims,
+                              int64_t(size_.edge_q8) / kOneVoxelQ8 + 1, harmed_.view());
+  }
 
   SmoothOptions smooth_options(double most_edges) const {
     SmoothOptions options;
@@ -341,6 +372,7 @@ class Improvement {
   SeedSpacing spacing_;
   WalkOntoSheet walk_;
   Connections connections_;
+  bool keep_apart_;
   Work work_;
   EdgeSize size_;
   double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest
@@ -384,7 +416,7 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     work.search(options.search_rounds, 0, !balanced);
     if (balanced) {
       work.fit(3, 0.6, kGoodMerit);
-      if (!options.uniform_area && work.relocate() > 0) {
+      if (!options.uniform_area && !options.keep_apart && work.relocate() > 0) {
         work.fit(5, 0.6, kPoorMerit);
         work.search(5 * options.search_rounds, 0, false);
         work.fit(3, 0.6, kGoodMerit);

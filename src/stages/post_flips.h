@@ -37,6 +37,22 @@ struct FlipKey {
   }
   ISOSHELL_HD static double smaller(double a, double b) { return a < b ? a : b; }
 };
+/// Another key's flips but those that have a blocked vertex.
+template <class Key>
+struct UnblockedFlip {
+  UnblockedFlip(const Key& of, View<const uint32_t> blocked_vertices)
+      : mesh(of.mesh), key(of), blocked(blocked_vertices) {}
+  MeshView mesh;
+  Key key;
+  View<const uint32_t> blocked;
+  ISOSHELL_HD uint64_t operator()(uint32_t h) const {
+    const uint32_t g = mesh.twin[h];
+    if (blocked[mesh.from(h)] || blocked[mesh.to(h)] || blocked[mesh.opposite(h)] || blocked[mesh.opposite(g)])
+      return 0;
+    return key(h);
+  }
+};
+
 template <class Key>
 struct ClaimVertices {
   Key key;

@@ -32,5 +32,15 @@ counts = {name: grid.activeVoxelCount() for name, grid in grids.items()}
 assert len(set(counts.values())) == 1 and counts["density"] > 0, counts
 for value in grids["seed_rand"].citerOnValues():
     assert 0 < value.value <= 1, value.value
+
+shell = sys.argv[1].replace("a.preview", "b.shell")
+gap, band = (pyopenvdb.read(shell, name) for name in ("gap", "shell_distance"))
+assert gap.activeVoxelCount() == band.activeVoxelCount() + 2
+assert [v.min for v in gap.citerOnValues() if v.value == 1] == [(1000, 1000, 1000), (1001, 1000, 1000)]
+try:
+    pyopenvdb.read(shell.replace("b.shell", "a.shell"), "gap")
+    raise AssertionError("a surface without gaps has a grid of them")
+except KeyError:
+    pass
 PYTHON
 echo "opened by vdb_print and pyopenvdb"

@@ -17,6 +17,9 @@ int main(int argc, char* argv[]) {
   const SeedSet seeds = place_seeds(sites, samples, {100, 0}, context);
   const VoronoiLabels labels = flood_shell(shell, seeds, context);
   save_shell(folder + "/a.shell.vdb", surface, samples, shell);
+  StageWriteOptions bridged;
+  bridged.bridges = {{1000, 1000, 1000}, {1001, 1000, 1000}};
+  save_shell(folder + "/b.shell.vdb", surface, samples, shell, bridged);
   save_voronoi(folder + "/a.voronoi.vdb", surface, samples, shell, seeds, labels);
   save_preview(folder + "/a.preview.vdb", frame, shell, labels);
 }

@@ -7,6 +7,7 @@
 #include "support/shapes.h"
 #include "support/solid_soup.h"
 #include "support/test_context.h"
+#include "voxel/leaf.h"
 
 using namespace isoshell;
 
@@ -311,7 +312,11 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
       if (asked_vox == width_vox) {
         CHECK(volume_in_balls(run) > .9);
         GapReport gaps;
-        measure_bridges(run.prepared.sheet, find_bridges(run.prepared.sites, run.prepared.sheet), gaps);
+        const std::vector<uint8_t> bridges = find_bridges(run.prepared.sites, run.prepared.sheet);
+        measure_bridges(run.prepared.sheet, bridges, gaps);
+        const std::vector<Voxel> voxels = bridging_voxels(run.prepared.sheet, bridges);
+        CHECK(voxels.empty() == (std::count(bridges.begin(), bridges.end(), 1) == 0));
+        for (const Voxel v : voxels) CHECK(find_voxel(run.prepared.sites.voxels.view(), v) < 0);
         if (width_vox >= 4) CHECK(gaps.bridges == 1);
         if (width_vox >= 4) CHECK(gaps.widest_bridge_world / voxel == Approx(width_vox).margin(1.2 + .08 * width_vox));
       }

@@ -175,6 +175,26 @@ TEST_CASE("collapse: an edge whose loss would make triangles intersect stays", "
   }
 }
 
+TEST_CASE("post: flips that would make triangles intersect where vertices began are not made", "[post][stage]") {
+  TestContext context;
+  const Sheet sheet = thin_sheet(context);
+  for (const bool keep_apart : {false, true}) {
+    Meshed m = meshed(sheet, kFewSeeds, kAnyNumber, context);
+    REQUIRE(count_intersections(sheet, m.mesh.triangles, m.mesh.position) == 0);
+    PostOptions options;
+    options.keep_apart = keep_apart;
+    options.smoothing_steps = 0;
+    CHECK(improve_mesh(sheet, options, m.seeds, m.mesh, context).flips > 0);
+    m.mesh = to_host(m.mesh);
+    const int64_t pairs = count_intersections(sheet, m.mesh.triangles, m.mesh.position);
+    CHECK(check_mesh(m.mesh.triangles.view(), m.mesh.position.size()).is_closed_manifold());
+    if (keep_apart)
+      CHECK(pairs == 0);
+    else
+      CHECK(pairs > 0);
+  }
+}
+
 TEST_CASE("untangle: a thin wavy plate with few vertices becomes a mesh without intersections", "[dual][stage]") {
   RemeshOptions options;
   options.vertices = 200;

@@ -268,6 +268,8 @@ class Run {
     options.options_json = options_json(options_);
     options.closing_vox = prepared.closing_vox;
     options.overwrite = a_.force;
+    if (prepared.closing_vox > 0 && prepared.grown_vox == 0)
+      options.bridges = bridging_voxels(prepared.sheet, find_bridges(prepared.sites, prepared.sheet));
     return options;
   }
 

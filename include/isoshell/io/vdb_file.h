@@ -16,10 +16,11 @@ namespace isoshell {
 
 /// What the caller wants to be written beside the products.
 struct StageWriteOptions {
-  std::string options_json;  ///< options of the run, kept as given; at most 256 KiB
-  int32_t closing_vox = -1;  ///< closing radius r of the run; -1 when not chosen yet
-  bool overwrite = false;    ///< replace an existing file
-  bool view_grids = true;    ///< also write the grids that are only there to be looked at
+  std::string options_json;         ///< options of the run, kept as given; at most 256 KiB
+  int32_t closing_vox = -1;         ///< closing radius r of the run; -1 when not chosen yet
+  bool overwrite = false;           ///< replace an existing file
+  bool view_grids = true;           ///< also write the grids that are only there to be looked at
+  std::vector<Voxel> bridges = {};  ///< see bridging_voxels: 1 in the grid "gap", too
 };
 
 /// What a stage file says about itself.
