@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <sstream>
 
 #include "io/iso_surface.h"
@@ -62,14 +63,25 @@ void check_map(const ScalarField& field) {
                 field.title() + " has a transform that is not finite or has no inverse");
 }
 
+/// Grids of the same name, and without one, get numbers as OpenVDB's own tools show them: density[0], density[1].
+std::vector<VolumeGrid> with_names_apart(std::vector<VolumeGrid> grids) {
+  std::map<std::string, std::vector<VolumeGrid*>> by_name;
+  for (VolumeGrid& grid : grids) by_name[grid.name].push_back(&grid);
+  for (const auto& [name, same] : by_name)
+    for (size_t i = 0; i < same.size() && (same.size() > 1 || (name.empty() && grids.size() > 1)); ++i)
+      same[i]->name = name + "[" + std::to_string(i) + "]";
+  return grids;
+}
+
 }  // namespace
 
 std::string VolumeGrid::text() const { return "\"" + name + "\" (" + type + ", " + grid_class + ")"; }
 
-size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& grids, const VolumeReadOptions& options) {
+size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named, const VolumeReadOptions& options) {
+  const std::vector<VolumeGrid> grids = with_names_apart(named);
   std::vector<size_t> fit, level_sets;
   for (size_t i = 0; i < grids.size(); ++i) {
-    if (!options.grid.empty() && grids[i].name != options.grid) continue;
+    if (!options.grid.empty() && grids[i].name != options.grid && named[i].name != options.grid) continue;
     if (!options.grid.empty() && !grids[i].flaw.empty())
       throw Error(ErrorCode::nothing_to_mesh, "read", path + ": grid " + grids[i].text() + " " + grids[i].flaw);
     if (!grids[i].flaw.empty()) continue;

@@ -158,6 +158,25 @@ TEST_CASE("volume: a fog volume needs an iso value and a file of several grids a
   CHECK(error_of(read(file.path)) < 0.0136);  // the only level set
 }
 
+TEST_CASE("volume: grids of the same name, or of none, are told apart by number", "[volume][stage]") {
+  const TemporaryFile file("same.vdb");
+  const auto plain = ball(), thick = ball(5);
+  openvdb::tools::sdfToFogVolume(*thick);
+  for (const std::string name : {"d", ""}) {
+    plain->setName(name);
+    thick->setName(name);
+    write(file.path, {plain, plain->deepCopy(), thick});
+    const Refusal several = refusal(file.path, {name, {}, 0});
+    CHECK(several.code == ErrorCode::usage);
+    CHECK(says(several, file.path + ":" + name + "[0]"));
+    CHECK(says(several, "\"" + name + "[2]\" (float, fog volume)"));
+    CHECK(error_of(read(file.path, {name + "[1]", {}, 0})) < .01);
+    CHECK(is_closed(read(file.path, {name + "[2]", .5f, 0})));
+    CHECK(refusal(file.path, {name + "[3]", {}, 0}).code == ErrorCode::usage);
+    CHECK(refusal(file.path, {name + "[2]", {}, 0}).code == ErrorCode::usage);
+  }
+}
+
 TEST_CASE("volume: a grid over the memory limit is refused before it is read", "[volume][stage]") {
   const TemporaryFile file("large.vdb");
   write(file.path, {ball()});

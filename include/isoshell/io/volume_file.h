@@ -10,7 +10,8 @@
 namespace isoshell {
 
 struct VolumeReadOptions {
-  std::string grid;           ///< name of the grid; empty takes the only level set, or the only grid that can be meshed
+  std::string grid;           ///< name of the grid, NAME[1] for the second one of that name; empty takes the only level
+                              ///< set, or the only grid that can be meshed
   std::optional<double> iso;  ///< value of the surface; without it 0 in a level set, and an error in a fog volume
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
 };
