@@ -87,7 +87,11 @@ struct SmoothVertices {
 
 struct LayOntoSheet {
   SmoothVertex step;
-  void operator()(int64_t v) const { step.lay_onto_sheet(v); }
+  bool aims(int64_t v, PointQ8& target) const {
+    target = step.to[v];
+    return true;
+  }
+  void arrives(int64_t v, uint32_t vertex, PointQ8 p) const { step.home[v] = vertex, step.to[v] = p; }
 };
 
 /// Some groups, whose vertices may walk.
@@ -208,7 +212,7 @@ void CpuStepWork::begin(TbbExecutor& exec, const MeshView& mesh) {
 void CpuStepWork::smooth(TbbExecutor& exec, const SmoothVertex& step) {
   const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
   exec.for_each("smooth", vertices.groups(), SmoothVertices{step, vertices});
-  if (step.options.onto_sheet) for_each_walk(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
+  if (step.options.onto_sheet) walk_to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
 }
 
 void CpuStepWork::sort(TbbExecutor&, int64_t triangles, View<FitSample> samples) {

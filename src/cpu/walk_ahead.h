@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cpu/executor_tbb.h"
+#include "cpu/foot_lanes.h"
 #include "stages/sheet_walk.h"
 
 namespace isoshell {
@@ -42,6 +43,84 @@ void for_each_walk(TbbExecutor& exec, const char* name, const WalkOntoSheet& wal
     for (int64_t i = run * kRun; i < end; ++i) {
       ahead.before(i, end);
       step(i);
+    }
+  });
+}
+
+/// Walks to the targets of elements one after the other; the triangles at their ends are taken in lanes.
+template <class Step>
+class WalksInLanes {
+ public:
+  WalksInLanes(const WalkOntoSheet& walk, View<uint32_t> home, const Step& step)
+      : walk_(walk), home_(home), step_(step) {}
+  ~WalksInLanes() { arrive(); }
+
+  void add(int64_t i, PointQ8 target) {
+    if (feet_ + kMostAround > FootLanes::kLanes) arrive();
+    const uint32_t vertex = walk_to(home_[i], target);
+    if (walk_.vertex_first[vertex + 1] - walk_.vertex_first[vertex] > kMostAround)
+      return step_.arrives(i, vertex, walk_.closest_around(vertex, target));
+    element_[walks_] = i, vertex_[walks_] = vertex, first_[walks_] = feet_;
+    ++walks_;
+    feet_ += around_;
+  }
+
+ private:
+  static constexpr int kMostAround = 24;  ///< triangles around a vertex, where it goes in lanes
+
+  /// walk.nearest_vertex, which leaves what it saw last in the lanes from feet_ on.
+  uint32_t walk_to(uint32_t from, PointQ8 p) {
+    int64_t best = distance_sq_q16(walk_.position[from], p);
+    for (;;) {
+      uint32_t next = from;
+      around_ = 0;
+      for (int64_t n = walk_.vertex_first[from]; n < walk_.vertex_first[from + 1]; ++n) {
+        const TriangleIndices t = walk_.triangles[walk_.vertex_triangles[n]];
+        const PointQ8 a = walk_.position[t.a], b = walk_.position[t.b], c = walk_.position[t.c];
+        const int at = feet_ + (around_ < kMostAround ? around_++ : 0);
+        lanes_.p.set(at, p), lanes_.a.set(at, a), lanes_.b.set(at, b), lanes_.c.set(at, c);
+        const uint32_t v = t.a == from ? t.b : (t.b == from ? t.c : t.a);
+        const PointQ8 q = t.a == from ? b : (t.b == from ? c : a);
+        const int64_t d = distance_sq_q16(q, p);
+        const bool nearer = (d < best) | ((d == best) & (v < next));
+        best = nearer ? d : best, next = nearer ? v : next;
+      }
+      if (next == from) return from;
+      from = next;
+    }
+  }
+  void arrive() {
+    lanes_.find(feet_);
+    first_[walks_] = feet_;
+    for (int w = 0; w < walks_; ++w) {
+      int best = first_[w];
+      for (int k = best + 1; k < first_[w + 1]; ++k) best = lanes_.distance_sq[k] < lanes_.distance_sq[best] ? k : best;
+      step_.arrives(element_[w], vertex_[w], lanes_.foot.at(best));
+    }
+    walks_ = feet_ = 0;
+  }
+
+  const WalkOntoSheet walk_;
+  const View<uint32_t> home_;
+  const Step& step_;
+  FootLanes lanes_;
+  int walks_ = 0, feet_ = 0, around_ = 0;
+  int64_t element_[FootLanes::kLanes];
+  uint32_t vertex_[FootLanes::kLanes];
+  int first_[FootLanes::kLanes + 1];
+};
+
+/// Taken instead of the template of stages/sheet_walk.h.
+template <class Step>
+void walk_to_targets(TbbExecutor& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
+  constexpr int64_t kRun = 128;
+  exec.for_each(name, (home.size + kRun - 1) / kRun, [walk, step, home, ahead = WalkAhead(walk, home)](int64_t run) {
+    const int64_t end = std::min(home.size, (run + 1) * kRun);
+    WalksInLanes<Step> walks(walk, home, step);
+    for (int64_t i = run * kRun; i < end; ++i) {
+      ahead.before(i, end);
+      PointQ8 target;
+      if (step.aims(i, target)) walks.add(i, target);
     }
   });
 }

@@ -237,11 +237,11 @@ struct MovingSeeds {
     }
     return {from.x + int32_t(step.x), from.y + int32_t(step.y), from.z + int32_t(step.z)};
   }
-  ISOSHELL_HD PointQ8 settle(int64_t s, PointQ8 target) const {
-    const uint32_t vertex = walk.nearest_vertex(home[s], target);
-    home[s] = vertex;
-    normal[s] = walk.normal[vertex];
-    return walk.closest_around(vertex, target);
+  /// Seed i is on the sheet again, nearest to the vertex.
+  ISOSHELL_HD void arrives(int64_t i, uint32_t vertex, PointQ8 p) const {
+    home[i] = vertex;
+    normal[i] = walk.normal[vertex];
+    here[i] = p;
   }
 };
 
@@ -278,23 +278,27 @@ ISOSHELL_HD inline PointQ8 point_past_centre(const MovingSeeds& seeds, const Cel
 struct LookAhead {
   MovingSeeds seeds;
   View<const PassState> state;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    if (state[0].converged) return;
+  ISOSHELL_HD bool aims(int64_t i, PointQ8& target) const {
+    if (state[0].converged) return false;
     const int64_t beta_q15 = state[0].beta_q15;
     const PointQ8 s = seeds.here[i];
-    if (beta_q15 != 0) seeds.here[i] = seeds.settle(i, point_ahead(seeds, s, beta_q15, i));
+    target = point_ahead(seeds, s, beta_q15, i);
     seeds.last[i] = s;
+    return beta_q15 != 0;
   }
+  ISOSHELL_HD void arrives(int64_t i, uint32_t vertex, PointQ8 p) const { seeds.arrives(i, vertex, p); }
 };
 
 struct MovePastCentre {
   MovingSeeds seeds;
   View<const CellSum> cell;
   View<const PassState> state;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    if (state[0].converged || cell[i].mass <= 0) return;
-    seeds.here[i] = seeds.settle(i, point_past_centre(seeds, cell[i], i));
+  ISOSHELL_HD bool aims(int64_t i, PointQ8& target) const {
+    if (state[0].converged || cell[i].mass <= 0) return false;
+    target = point_past_centre(seeds, cell[i], i);
+    return true;
   }
+  ISOSHELL_HD void arrives(int64_t i, uint32_t vertex, PointQ8 p) const { seeds.arrives(i, vertex, p); }
 };
 
 /// Nesterov's momentum factors, capped: the one for the next pass. One square root a pass.
@@ -391,11 +395,11 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
 
   return run_passes(exec, state.view(), options.max_passes, [&] {
-    for_each_walk(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
+    walk_to_targets(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
     exec.fill(cells.view(), CellSum{0, 0, 0, 0});
     pass.measure(exec, seeds, cells.view(), leaf_energy.view(), state.view());
-    for_each_walk(exec, "move past centre", walk, seeds.home.view(),
-                  MovePastCentre{moving, cells.view(), state.view()});
+    walk_to_targets(exec, "move past centre", walk, seeds.home.view(),
+                    MovePastCentre{moving, cells.view(), state.view()});
     sum_split_into(exec, energy.view(), leaf_energy.view());
     exec.for_each("finish pass", 1, finish);
   });

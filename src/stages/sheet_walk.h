@@ -57,4 +57,23 @@ void for_each_walk(Exec& exec, const char* name, const WalkOntoSheet&, View<cons
   exec.for_each(name, home.size, step);
 }
 
+/// Takes element i, where step.aims(i, target) says so, from vertex home[i] to the target, and tells the step the
+/// vertex and the point on the sheet where it arrives.
+template <class Step>
+struct WalkToTarget {
+  WalkOntoSheet walk;
+  View<const uint32_t> home;
+  Step step;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    PointQ8 target;
+    if (!step.aims(i, target)) return;
+    const uint32_t vertex = walk.nearest_vertex(home[i], target);
+    step.arrives(i, vertex, walk.closest_around(vertex, target));
+  }
+};
+template <class Exec, class Step>
+void walk_to_targets(Exec& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
+  exec.for_each(name, home.size, WalkToTarget<Step>{walk, home, step});
+}
+
 }  // namespace isoshell
