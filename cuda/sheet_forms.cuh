@@ -225,9 +225,9 @@ struct BlockForm<sheet_steps::SmoothCorners> : leaf_forms::LeafForm<leaf_forms::
     const int64_t first = step.corners.first[i];
     for (int k = lane; k < count; k += 32) {
       const uint8_t edges = step.edges[first + k];
-      Vec64 sum = {0, 0, 0};
+      PointQ8 sum = {0, 0, 0};
       for (int f = 0; f < 6; ++f)
-        if (edges >> f & 1) sum = sum + sheet_steps::to_vec64(step.from[shared.vertex_through(f, shared.offset[k])]);
+        if (edges >> f & 1) sum = sheet_steps::sum_of(sum, step.from[shared.vertex_through(f, shared.offset[k])]);
       step.to[first + k] = sheet_steps::mean_of(sum, __popc(edges));
     }
   }

@@ -15,19 +15,45 @@ constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther fr
 
 namespace sheet_steps {
 
-/// Calls visit(neighbour) for the vertices that lattice edges of the boundary join to the corner at `offset` of `leaf`.
-template <class Visit>
-ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, Voxel l, int offset, uint8_t edges,
-                                           Visit visit) {
-  const Voxel c = voxel_at(l, offset);
-  for (int f = 0; f < 6; ++f)
-    if (edges >> f & 1) visit(uint32_t(find_voxel(corners, step_through(c, f))));
+/// Whether the neighbour of the corner at `offset` through a face lies in its leaf.
+ISOSHELL_HD inline bool stays_in_leaf(int offset, int face) {
+  const int along = offset >> (face < 2 ? 6 : face < 4 ? 3 : 0) & 7;
+  return along != (face & 1 ? 7 : 0);
+}
+/// How many vertices later it comes then; both are active.
+ISOSHELL_HD inline int vertices_later(const LeafMask& mask, int offset, int face) {
+  const int x = offset >> 6, bit = offset & 63;
+  const uint64_t before = (uint64_t(1) << bit) - 1;
+  if (face == 0) return -popcount64(mask.word[x - 1] & ~before) - popcount64(mask.word[x] & before);
+  if (face == 1) return popcount64(mask.word[x] & ~before) + popcount64(mask.word[x + 1] & before);
+  if (face == 2) return -popcount64(mask.word[x] >> (bit - 8) & 255);
+  if (face == 3) return popcount64(mask.word[x] >> bit & 255);
+  return face == 4 ? -1 : 1;
 }
 
-ISOSHELL_HD inline PointQ8 mean_of(Vec64 sum, int64_t count) {
-  return {int32_t(round_div(sum.x, count)), int32_t(round_div(sum.y, count)), int32_t(round_div(sum.z, count))};
+/// Calls visit(neighbour) for the vertices that lattice edges of the boundary join to v, the corner at `offset` of a
+/// leaf.
+template <class Visit>
+ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, int64_t leaf, int offset, int64_t v,
+                                           uint8_t edges, Visit visit) {
+  for (int f = 0; f < 6; ++f) {
+    if (!(edges >> f & 1)) continue;
+    if (stays_in_leaf(offset, f))
+      visit(uint32_t(v + vertices_later(corners.mask[leaf], offset, f)));
+    else
+      visit(uint32_t(find_voxel(corners, step_through(voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset), f))));
+  }
 }
-ISOSHELL_HD inline Vec64 to_vec64(PointQ8 p) { return {p.x, p.y, p.z}; }
+
+/// Six coordinates fit 32 bits, twice; so does what rounding needs.
+ISOSHELL_HD inline int32_t rounded_mean(int32_t sum, int32_t count) {
+  const int32_t n = 2 * sum + count, d = 2 * count;
+  return n / d - (n % d < 0);
+}
+ISOSHELL_HD inline PointQ8 mean_of(PointQ8 sum, int32_t count) {
+  return {rounded_mean(sum.x, count), rounded_mean(sum.y, count), rounded_mean(sum.z, count)};
+}
+ISOSHELL_HD inline PointQ8 sum_of(PointQ8 a, PointQ8 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
 /// One umbrella step: every vertex goes to the mean of its neighbours.
 struct SmoothCorners {
@@ -36,14 +62,13 @@ struct SmoothCorners {
   View<const PointQ8> from;
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t leaf) const {
-    const Voxel l = leaf_of_key(corners.leaf_key[leaf]);
-    for_each_active(corners, leaf, [&](int offset, int64_t v) { smooth(l, offset, v); });
+    for_each_active(corners, leaf, [&](int offset, int64_t v) { smooth(leaf, offset, v); });
   }
-  ISOSHELL_HD void smooth(Voxel leaf, int offset, int64_t v) const {
-    Vec64 sum = {0, 0, 0};
-    int64_t count = 0;
-    for_each_neighbour(corners, leaf, offset, edges[v], [&](uint32_t n) {
-      sum = sum + to_vec64(from[n]);
+  ISOSHELL_HD void smooth(int64_t leaf, int offset, int64_t v) const {
+    PointQ8 sum = {0, 0, 0};
+    int32_t count = 0;
+    for_each_neighbour(corners, leaf, offset, v, edges[v], [&](uint32_t n) {
+      sum = sum_of(sum, from[n]);
       ++count;
     });
     to[v] = mean_of(sum, count);
@@ -95,11 +120,10 @@ struct ListBridgeNeighbours {
       const int64_t middle = (lo + hi) / 2;
       (corners.first[middle] <= int64_t(bridges[i]) ? lo : hi) = middle;
     }
-    const Voxel l = leaf_of_key(corners.leaf_key[lo]);
     int count = 0;
     for_each_active(corners, lo, [&](int offset, int64_t v) {
       if (v != int64_t(bridges[i])) return;
-      for_each_neighbour(corners, l, offset, edges[v], [&](uint32_t n) { neighbours[6 * i + count++] = n; });
+      for_each_neighbour(corners, lo, offset, v, edges[v], [&](uint32_t n) { neighbours[6 * i + count++] = n; });
     });
     while (count < 6) neighbours[6 * i + count++] = kNone;
   }
@@ -110,10 +134,10 @@ struct SmoothBridge {
   View<const PointQ8> position;
   View<PointQ8> moved;  ///< per bridging vertex
   ISOSHELL_HD void operator()(int64_t i) const {
-    Vec64 sum = {0, 0, 0};
-    int64_t count = 0;
+    PointQ8 sum = {0, 0, 0};
+    int32_t count = 0;
     for (; count < 6 && neighbours[6 * i + count] != kNone; ++count)
-      sum = sum + to_vec64(position[neighbours[6 * i + count]]);
+      sum = sum_of(sum, position[neighbours[6 * i + count]]);
     moved[i] = mean_of(sum, count);
   }
 };
