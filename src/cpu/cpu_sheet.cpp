@@ -2,6 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/project_lanes.h"
 #include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
 #include "stages/sheet_volume_body.h"

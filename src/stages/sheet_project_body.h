@@ -202,6 +202,11 @@ LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
 }
 
 template <class Exec>
+void project_vertices(Exec& exec, const sheet_steps::ProjectVertex& step) {
+  exec.for_each("project", step.position.size, step);
+}
+
+template <class Exec>
 LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
   using namespace sheet_steps;
   LaidMesh laid;
@@ -210,9 +215,8 @@ LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& su
   laid.position = exec.template make<PointQ8>(vertices);
   laid.source_triangle = exec.template make<uint32_t>(vertices);
   smooth_corners(exec, mesh, kSheetSmoothingSteps, laid.smooth, laid.position);
-  exec.for_each(
-      "project", vertices,
-      ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
+  project_vertices(
+      exec, ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
   smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
   return laid;
 }

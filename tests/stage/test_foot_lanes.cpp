@@ -1,4 +1,5 @@
 // What is closest on triangles, taken many at a time on the CPU, against the definitions.
+#include "cpu/project_lanes.h"
 #include "cpu/walk_ahead.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
@@ -29,6 +30,34 @@ struct NoteArrivals {
   }
   void arrives(int64_t i, uint32_t v, PointQ8 p) const { vertex[i] = v, point[i] = p; }
 };
+
+/// Counts the vertices that lanes put elsewhere than the step does.
+int64_t projected_elsewhere(const TriangleSoup& soup, int32_t resolution, int32_t off_q8, bool may_bridge) {
+  TestContext context;
+  TbbExecutor exec(context, "test");
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
+  const SiteSet sites = voxelize(surface, context);
+  const SiteSamples samples = sample_sites(surface, sites, context);
+  uint64_t drawn = 0;
+  const int64_t count = samples.sample.size();
+  Buffer<PointQ8> smooth(count), point[2] = {Buffer<PointQ8>(count), Buffer<PointQ8>(count)};
+  Buffer<uint32_t> triangle[2] = {Buffer<uint32_t>(count), Buffer<uint32_t>(count)};
+  for (int64_t i = 0; i < count; ++i)
+    smooth[i] = draw_near(drawn, voxel_centre(voxel_of_index(sites.voxels.view(), i)), off_q8);
+  const SitedSurfaceView view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
+                                 samples.first.view(), samples.triangles.view()};
+  const auto step = [&](int k) {
+    return sheet_steps::ProjectVertex{view, may_bridge, smooth.view(), point[k].view(), triangle[k].view()};
+  };
+  project_vertices(exec, step(0));
+  exec.for_each("project", count, step(1));
+  int64_t elsewhere = 0;
+  for (int64_t i = 0; i < count; ++i)
+    elsewhere += point[0][i] != point[1][i] || triangle[0][i] != triangle[1][i] ? 1 : 0;
+  return elsewhere;
+}
 
 }  // namespace
 
@@ -73,4 +102,13 @@ TEST_CASE("walks: those in lanes arrive where one after the other do", "[walk][s
     exec.for_each("walk", count, WalkToTarget<NoteArrivals>{walk_onto(sheet), home.view(), step(1)});
     for (int64_t i = 0; i < count; ++i) CHECK((vertex[0][i] == vertex[1][i] && point[0][i] == point[1][i]));
   }
+}
+
+TEST_CASE("sheet: vertices are put in lanes where each would go alone", "[sheet][stage]") {
+  const TriangleSoup torus = shapes::torus(2, 0.7, 160, 70), soup = shapes::random_soup(60, 0.5, 1, 3);
+  for (const bool may_bridge : {false, true})
+    for (const int32_t off_q8 : {100, 300, 700, 2000}) {
+      CHECK(projected_elsewhere(torus, 100, off_q8, may_bridge) == 0);  // many small triangles a voxel
+      CHECK(projected_elsewhere(soup, 60, off_q8, may_bridge) == 0);
+    }
 }

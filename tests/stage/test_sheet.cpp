@@ -5,6 +5,7 @@
 
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/project_lanes.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"

@@ -1,0 +1,12 @@
+// Projection of the sheet's vertices on the CPU: sheet_steps::ProjectVertex, with triangles taken in lanes.
+#pragma once
+
+#include "cpu/executor_tbb.h"
+#include "stages/sheet_project_body.h"
+
+namespace isoshell {
+
+/// Taken instead of the template of stages/sheet_project_body.h.
+void project_vertices(TbbExecutor& exec, const sheet_steps::ProjectVertex& step);
+
+}  // namespace isoshell
