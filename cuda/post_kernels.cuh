@@ -104,7 +104,7 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
     grid.sync();
     for_each_of_grid(search.mesh.triangles.size, MarkPoor{search.mesh.triangles, search.position, least_merit, poor});
     grid.sync();
-    search.odd = round % 2 == 1;
+    search.round = round;
     const MayMove may_move{search.mesh, poor, uint64_t(round)};
     const int64_t warps = (poor.size + 31) / 32;
     for_each_of_grid(32 * warps, [&](int64_t v) {
@@ -161,7 +161,7 @@ inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles,
 inline void search_places(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk,
                           const SearchOptions& options, View<PointQ8> position, View<uint32_t> home,
                           View<uint32_t> poor) {
-  const SearchVertex search{mesh, walk, {}, options.edge, options.hold, false, options.onto_sheet, position, home};
+  const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};
   device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
                                 options.least_merit, options.rounds);
   exec.check("search places");

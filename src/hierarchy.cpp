@@ -22,6 +22,9 @@ constexpr int64_t kFewestVerticesPerSeed = 24;  // of an outline: cells are near
 constexpr int32_t kCoarsePasses = 60;
 constexpr int32_t kCoarseTolerancePpb = 30000;
 constexpr int32_t kCoarseSmoothingSteps = 40;
+// Small levels, which cost little, relax again after their flips.
+constexpr int64_t kMostSeedsTwice = 3000;
+constexpr int32_t kPassesAgain = 30;
 // Of the finest level after a coarser one. It ends early: post-processing does the rest better than more passes.
 constexpr int32_t kFinestPasses = 40;
 constexpr int32_t kFinestTolerancePpb = 500000;
@@ -45,9 +48,11 @@ std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
   return counts;
 }
 
-/// Dual of a coarse level with as many vertices as it had seeds, flipped and smoothed, so that the cells of the seeds
-/// that it is split into meet as its triangles do; null triangles when the level is too coarse for the shape.
-DualMesh coarse_dual(const Sheet& sheet, SeedSet& seeds, Context& context) {
+/// Relaxes a coarse level. Returns its dual with as many vertices as it had seeds, flipped and smoothed, so that the
+/// cells of the seeds that it is split into meet as its triangles do, and moves the seeds there; null triangles when
+/// the level is too coarse for the shape.
+DualMesh relax_coarse(const Sheet& sheet, const RelaxOptions& relax, SeedSet& seeds, Context& context) {
+  relax_on_sheet(sheet, seeds, relax, context);
   const int64_t asked = seeds.size();
   DualReport report;
   DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
@@ -134,8 +139,9 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
     const Sheet& sheet = outlines.sheet(level);
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
-    relax_on_sheet(sheet, seeds, coarse, context);
-    const DualMesh dual = coarse_dual(sheet, seeds, context);
+    DualMesh dual = relax_coarse(sheet, coarse, seeds, context);
+    if (!dual.triangles.empty() && seeds.size() <= kMostSeedsTwice)
+      dual = relax_coarse(sheet, {kPassesAgain, coarse.tolerance_ppb, coarse.max_step_q8}, seeds, context);
     seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
     if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);

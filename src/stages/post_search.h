@@ -46,8 +46,8 @@ struct SearchVertex {
   WalkOntoSheet walk;
   View<const uint32_t> chosen;
   EdgeSize edge;
-  double hold;  ///< how much places are held to the planes of the triangles
-  bool odd;     ///< turns the compass by half a point
+  double hold;    ///< how much places are held to the planes of the triangles
+  int32_t round;  ///< odd ones turn the compass by half a point, every fourth one sets it upright
   bool onto_sheet;
   View<PointQ8> position;
   View<uint32_t> home;
@@ -95,7 +95,8 @@ struct SearchVertex {
     const Vector axis = ax <= ay && ax <= az ? Vector{1, 0, 0} : (ay <= az ? Vector{0, 1, 0} : Vector{0, 0, 1});
     const Vector east = unit(cross(axis, normal));
     const Symmetric holding = planes.holding(hold);
-    return {holding.solve(east), holding.solve(cross(normal, east)), 0.16 * edge.at(home[v])};
+    const Vector north = round % 4 == 3 ? normal : cross(normal, east);
+    return {holding.solve(east), holding.solve(north), 0.16 * edge.at(home[v])};
   }
   /// The nearer ones come later.
   ISOSHELL_HD PointQ8 place_at(PointQ8 p, const Compass& compass, int number) const {
@@ -126,6 +127,7 @@ struct SearchVertex {
  private:
   /// Eight directions at 45 degrees from one another.
   ISOSHELL_HD Vector direction(int point, Vector east, Vector north) const {
+    const bool odd = round % 2 == 1;
     const double major = odd ? 0.9238795325112867 : 1, minor = odd ? 0.3826834323650898 : 0;
     const Vector first = major * east + minor * north, second = major * north - minor * east;
     const Vector diagonal = 0.7071067811865476 * (first + second), other = 0.7071067811865476 * (second - first);
@@ -152,9 +154,9 @@ void search_places(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, 
     exec.for_each("mark poor", mesh.triangles.size, MarkPoor{mesh.triangles, position, options.least_merit, poor});
     const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
     if (chosen.empty()) return;
-    exec.for_each("search", chosen.size(),
-                  SearchVertex{mesh, walk, chosen.view(), options.edge, options.hold, r % 2 == 1, options.onto_sheet,
-                               position, home});
+    exec.for_each(
+        "search", chosen.size(),
+        SearchVertex{mesh, walk, chosen.view(), options.edge, options.hold, r, options.onto_sheet, position, home});
   }
 }
 
