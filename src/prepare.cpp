@@ -24,6 +24,7 @@ namespace {
 
 constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kCoarsestGrid = 8;
+constexpr double kSidesOfCrust = 0.75;  ///< of the area of both sides; a solid shows half of it
 
 /// Sites, samples and sheet of a surface, with the closing that is asked for or found.
 class Preparation {
@@ -91,12 +92,14 @@ class Preparation {
   }
 
   /// Whether the outside reaches both sides of the surface. Closing fills parts of a crust, but makes it no solid: that
-  /// is several times as thick as without closing.
+  /// would hide one of the two sides.
   bool is_crust(const Prepared& p) {
     const double here = thickness_vox(p.sheet);
     if (here < 1) return true;
     if (here >= std::min(edge_vox(p) / 2, 2. * p.closing_vox + 1)) return false;
-    return here < 2 * thickness_vox(sheet(p, 0));
+    const Sheet open = sheet(p, 0);
+    if (here < 2 * thickness_vox(open)) return true;
+    return sheet_area_world(p.sheet) > kSidesOfCrust * sheet_area_world(open);
   }
 
   /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not

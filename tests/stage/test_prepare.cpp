@@ -240,6 +240,28 @@ TEST_CASE("prepare: an open plate that closing makes solid stays as thin as it i
   CHECK(double(six_volume_vox(run.prepared.sheet, context)) / 6 == Approx(200. * 200 * 4).epsilon(.1));
 }
 
+TEST_CASE("prepare: an open sheet of which closing fills a fold grows walls", "[prepare]") {
+  TriangleSoup sheet;
+  const auto row = [&](double x, double z) {
+    for (const double y : {0., 1.}) sheet.vertices.push_back({x, y, z});
+  };
+  row(0, 0);
+  row(.47, 0);
+  row(.47, .24);
+  row(.53, .24);  // six voxels wide
+  row(.53, 0);
+  row(1, 0);
+  for (uint32_t a = 0; a + 3 < sheet.vertices.size(); a += 2) {
+    shapes::add_triangle(sheet, a, a + 2, a + 3);
+    shapes::add_triangle(sheet, a, a + 3, a + 1);
+  }
+  RemeshOptions options;
+  options.vertices = 300;
+  options.resolution = 100;
+  options.closing_vox = 4;
+  CHECK(prepare_with(sheet, options).report.grown_vox > 0);
+}
+
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
   RemeshOptions options;
   options.vertices = 500;
