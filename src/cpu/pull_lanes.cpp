@@ -37,7 +37,8 @@ ISOSHELL_VECTOR_VERSIONS void find_in_lanes(PullLanes& s, const PullOptions& opt
     s.distance_sq[i] = distance_sq;
     const double part = rounded_sqrt(distance_sq) / rms;
     const double near = part * kNearWeight > 1 ? 1 / part : kNearWeight;
-    const double beyond_tail = part / tail, rising = 1 / tail * (beyond_tail * beyond_tail);
+    const double beyond_tail = part / tail, square = beyond_tail * beyond_tail;
+    const double rising = 1 / tail * (options.steep_tails ? square * square : square);
     const double far = rising < kLargestWeight ? rising : kLargestWeight;
     const double by_residual = part <= tail ? near : far, all = weighs ? by_residual : 1;
     s.weight[0][i] = all * u, s.weight[1][i] = all * v, s.weight[2][i] = all * w;

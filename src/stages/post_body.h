@@ -184,7 +184,8 @@ class Improvement {
       exec_.fill(vertex_pull_.view(), VertexPull{});
       work_.pull(exec_, {view(),
                          mesh_.position.view(),
-                         {rms_q8_, 0.1 * size_.edge_q8, size_.lengths.vary() ? kSizedTailOfRms : kTailOfRms},
+                         {rms_q8_, 0.1 * size_.edge_q8, size_.lengths.vary() ? kSizedTailOfRms : kTailOfRms,
+                          size_.lengths.vary()},
                          sample_.view(),
                          triangle_pull_.view(),
                          vertex_pull_.view(),

@@ -95,12 +95,13 @@ constexpr double kNearWeight = 4;    ///< of samples that are nearest to the mes
 constexpr double kMissedWeight = 4;  ///< of missed points where tails begin; other samples have 1 / tail_of_rms there
 // Where the tails begin. With vertices in proportion to curvature residuals are alike everywhere: then the largest are
 // no tips that vertices are missing for, but samples that those around them outweigh.
-constexpr double kTailOfRms = 4, kSizedTailOfRms = 2;
+constexpr double kTailOfRms = 4, kSizedTailOfRms = 2.5;
 
 struct PullOptions {
   double rms_q8 = 0;  ///< of the residuals; 0: all samples weigh the same, and missed points nothing
   double far_q8 = 0;  ///< samples farther than this look around, and those twice as far weigh ever more
   double tail_of_rms = kTailOfRms;
+  bool steep_tails = false;  ///< weights rise there by the fourth power instead of the square
 };
 
 /// Lets a sample slide to a closer triangle near its own, and adds what it asks for.
@@ -172,9 +173,11 @@ struct PullCorners {
       if (s.is_missed) return 0;
       return part * kNearWeight > 1 ? 1 / part : kNearWeight;
     }
-    const double beyond = part / options.tail_of_rms, far = distance_sq / (4 * options.far_q8 * options.far_q8);
+    const double beyond = part / options.tail_of_rms, square = beyond * beyond,
+                 far = distance_sq / (4 * options.far_q8 * options.far_q8);
     const double steep = far > 1 ? far * far * far : 1;
-    const double w = (s.is_missed ? kMissedWeight : 1 / options.tail_of_rms) * (beyond * beyond) * steep;
+    const double w = (s.is_missed ? kMissedWeight : 1 / options.tail_of_rms) *
+                     (options.steep_tails ? square * square : square) * steep;
     return w < kLargestWeight ? w : kLargestWeight;
   }
   ISOSHELL_HD static int64_t scaled(double x) { return int64_t(x * kPullScale); }
