@@ -218,9 +218,9 @@ class Improvement {
     return flip_by([&] { return ChordKey{view(), mesh_.position.view(), gaps}; }, 1);
   }
 
-  /// Takes vertices from flat places to triangles that the samples of the last step of the fit are far from. Returns
-  /// how many.
-  int64_t relocate() {
+  /// Takes vertices from flat places to triangles that the samples of the last step of the fit are far from, by edges.
+  /// Returns how many.
+  int64_t relocate(double least_edges) {
     const int64_t triangles = mesh_.triangles.size();
     Buffer<uint32_t> distance = exec_.template make<uint32_t>(triangles);
     Buffer<uint64_t> offset = exec_.template make<uint64_t>(triangles);
@@ -231,8 +231,8 @@ class Improvement {
     exec_.for_each("find distances", sample_.size(), FindDistances{sample_.view(), rest_sq_.view(), far_samples});
     exec_.for_each("find farthest", sample_.size(),
                    FindFarthest{view(), mesh_.position.view(), sample_.view(), rest_sq_.view(),
-                                kFarPlace * size_.edge_q8, far_samples});
-    const FarPlace places{view(), mesh_.position.view(), seeds_.home.view(), size_, far_samples};
+                                least_edges * size_.edge_q8, far_samples});
+    const FarPlace places{view(), mesh_.position.view(), seeds_.home.view(), size_, far_samples, least_edges};
     const Buffer<uint64_t> far = choose_apart(exec_, places, triangles, claim_.view());
     if (far.empty()) return 0;
     const int64_t most = std::min(far.size(), 1 + vertices_ / kVerticesPerMove);
@@ -417,8 +417,9 @@ PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& 
     work.search(options.search_rounds, 0, !balanced);
     if (balanced) {
       work.fit(3, 0.6, kGoodMerit);
-      if (!options.uniform_area && !options.keep_apart && work.relocate() > 0) {
+      if (!options.uniform_area && !options.keep_apart && work.relocate(kFarPlace) > 0) {
         work.fit(5, 0.6, kPoorMerit);
+        if (work.relocate(kVeryFarPlace) > 0) work.fit(5, 0.6, kPoorMerit);
         work.search(5 * options.search_rounds, 0, false);
         work.fit(3, 0.6, kGoodMerit);
       }

@@ -11,13 +11,15 @@
 
 namespace isoshell::post {
 
-constexpr double kFarPlace = 0.3;         ///< edges from the mesh; nearer places get no vertex
-constexpr double kFlatPlace = 0.1;        ///< edges; a place whose samples are all as near loses one
-constexpr double kFlatNormal = 0.98;      ///< least length of the mean of the unit normals there
-constexpr double kStarMerit = 0.7;        ///< least of a star's triangles: the fit and search that follow repair them
-constexpr double kSmallStarMerit = 0.95;  ///< of a star of three or four, which only slopes keep from being poor
-constexpr double kStarSlope = 0.1;        ///< least cosine between a star's triangles and the one it replaces
-constexpr int kStarPlaces = 3;            ///< tried: at the sample, and a fifth of its distance nearer each
+constexpr double kFarPlace = 0.3;       ///< edges from the mesh; nearer places get no vertex
+constexpr double kVeryFarPlace = 0.35;  ///< the same in a second round, for what the first did not reach
+constexpr double kFlatPlace = 0.1;      ///< edges; a place whose samples are all as near loses one
+constexpr double kFlatNormal = 0.98;    ///< least length of the mean of the unit normals there
+constexpr double kStarMerit = 0.7;      ///< least of a star's triangles: the fit and search that follow repair them
+constexpr double kStarOf4Merit = 0.9;   ///< of a star of four, which only slopes keep from being poor
+constexpr double kStarOf3Merit = 0.95;  ///< and of one of three
+constexpr double kStarSlope = 0.1;      ///< least cosine between a star's triangles and the two at the old edge
+constexpr int kStarPlaces = 3;          ///< tried: at the sample, and a fifth of its distance nearer each
 constexpr uint32_t kLeastValence = 5, kMostValence = 8;  ///< of vertices whose edges are flipped for a star
 constexpr int64_t kVerticesPerMove = 100;
 
@@ -79,11 +81,12 @@ struct FarPlace {
   View<const uint32_t> home;
   EdgeSize size;
   FarSamples far;
+  double least_edges;  ///< kFarPlace or more
 
   /// By triangle; 0 where nothing is far, or where a vertex would harm the mesh.
   ISOSHELL_HD uint64_t operator()(uint32_t t) const {
     const uint32_t distance = far.distance_q8[t];
-    if (far.offset[t] == 0 || !(double(distance) > kFarPlace * size.at(home[mesh.triangles[t].a]))) return 0;
+    if (far.offset[t] == 0 || !(double(distance) > least_edges * size.at(home[mesh.triangles[t].a]))) return 0;
     return best_star(t).merit > 0 ? uint64_t(distance) << 32 | (0xffffffffu - t) : 0;
   }
   /// The corners, and those opposite of the edges.
@@ -116,27 +119,30 @@ struct FarPlace {
     const TriangleIndices i = mesh.triangles[t];
     const Vector up = unit(normal_of(position[i.a], position[i.b], position[i.c]));
     double least = 2;
-    const auto add = [&](uint32_t a, uint32_t b) {
+    const auto add = [&](uint32_t a, uint32_t b, Vector facing) {
       const double merit = merit_of(position[a], position[b], place);
       if (merit < least) least = merit;
-      if (!(dot(up, unit(normal_of(position[a], position[b], place))) > kStarSlope)) least = 0;
+      if (!(dot(facing, unit(normal_of(position[a], position[b], place))) > kStarSlope)) least = 0;
     };
     uint32_t flips = 0;
     for (uint32_t k = 0; k < 3; ++k) {
       const uint32_t h = 3 * t + k, a = mesh.from(h), b = mesh.to(h), d = mesh.opposite(mesh.twin[h]);
+      // A star beyond an edge leans over to the triangle there.
+      const Vector facing = unit(up + unit(normal_of(position[b], position[a], position[d])));
       if ((flipped >> k & 1) == 0) {
-        add(a, b);
+        add(a, b, facing);
         continue;
       }
       ++flips;
-      add(a, d);
-      add(d, b);
+      add(a, d, facing);
+      add(d, b, facing);
       // The corner gains an edge, and loses one to each flip beside it.
       const uint32_t before = flipped >> ((k + 2) % 3) & 1, after = flipped >> ((k + 1) % 3) & 1;
       if (mesh.valence[a] < kLeastValence + before || mesh.valence[b] < kLeastValence + after) return 0;
       if (mesh.valence[d] >= kMostValence) return 0;
     }
-    return least >= (flips < 2 ? kSmallStarMerit : kStarMerit) ? least : 0;
+    const double needed = flips == 0 ? kStarOf3Merit : (flips == 1 ? kStarOf4Merit : kStarMerit);
+    return least >= needed ? least : 0;
   }
 };
 

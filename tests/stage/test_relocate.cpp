@@ -69,9 +69,15 @@ struct Tube {
     const TriangleIndices i = mesh.triangles[t];
     const PointQ8 a = mesh.position[i.a], b = mesh.position[i.b], c = mesh.position[i.c];
     const PointQ8 middle{(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
-    sample[0] = {
-        post::moved_by(middle, edges_above * size.edge_q8 * post::unit(post::normal_of(a, b, c))), {0, 0, 0}, false, t};
-    rest_sq[0] = distance_sq_q16(middle, sample[0].position);
+    return find(t, post::moved_by(middle, edges_above * size.edge_q8 * post::unit(post::normal_of(a, b, c))));
+  }
+  /// The same with the sample at some place.
+  Found find(uint32_t t, PointQ8 place, double least_edges = post::kFarPlace) {
+    const TriangleIndices i = mesh.triangles[t];
+    sample[0] = {place, {0, 0, 0}, false, t};
+    const post::Vector rest =
+        post::foot_on_triangle(place, mesh.position[i.a], mesh.position[i.b], mesh.position[i.c]).rest;
+    rest_sq[0] = int64_t(post::dot(rest, rest));
     Found f;
     f.sample = sample[0].position;
     f.distance = Buffer<uint32_t>(mesh.triangles.size());
@@ -84,8 +90,8 @@ struct Tube {
     exec.for_each("distances", 1, post::FindDistances{sample.view(), rest_sq.view(), far});
     exec.for_each("farthest", 1,
                   post::FindFarthest{view(), mesh.position.view(), sample.view(), rest_sq.view(),
-                                     post::kFarPlace * size.edge_q8, far});
-    f.places = {view(), mesh.position.view(), home.view(), size, far};
+                                     least_edges * size.edge_q8, far});
+    f.places = {view(), mesh.position.view(), home.view(), size, far, least_edges};
     f.far = post::choose_apart(exec, f.places, mesh.triangles.size(), f.claim.view());
     exec.fill(f.claim.view(), uint64_t(0));
     exec.for_each("block", f.far.size(), post::BlockPlaces{f.places, f.far.view(), f.claim.view()});
@@ -161,6 +167,33 @@ TEST_CASE("relocate: places that are near, or that no good star reaches, get no 
   CHECK(tube.find(300, 0.9 * post::kFarPlace).far.empty());
   CHECK(tube.find(300, 1.1 * post::kFarPlace).far.size() == 1);
   CHECK(tube.find(300, 4).far.empty());
+  const PointQ8 place = tube.find(300, 1.1 * post::kFarPlace).sample;
+  CHECK(tube.find(300, place, 1.2 * post::kFarPlace).far.empty());
+}
+
+TEST_CASE("relocate: a star beyond an edge leans over to the other side of a fold", "[post]") {
+  Tube tube;
+  constexpr uint32_t kFar = 300;
+  const post::MeshView mesh = tube.view();
+  const TriangleIndices t = mesh.triangles[kFar];
+  const View<PointQ8> p = tube.mesh.position.view();
+  const PointQ8 a = p[t.a], b = p[t.b];
+  const post::Vector up = post::unit(post::normal_of(a, b, p[t.c])), along = post::from_to(a, b);
+  const double edge_q8 = tube.length(t.a, t.b);
+  const post::Vector over = edge_q8 * post::unit(post::cross(along, up));
+  // The top of a column: an equilateral triangle, the neighbours straight down from its edges.
+  const PointQ8 middle = post::moved_by(a, 0.5 * along);
+  p[t.c] = post::moved_by(middle, -0.87 * over);
+  for (uint32_t h = 3 * kFar; h < 3 * kFar + 3; ++h)
+    p[mesh.opposite(mesh.twin[h])] =
+        post::moved_by(p[mesh.from(h)], 0.5 * post::from_to(p[mesh.from(h)], p[mesh.to(h)]) - 0.87 * edge_q8 * up);
+  const PointQ8 place = post::moved_by(middle, 0.1 * over + 0.75 * edge_q8 * up);
+  const Tube::Found f = tube.find(kFar, place);
+  REQUIRE(f.far.size() == 1);
+  const post::Star star = f.places.best_star(kFar);
+  CHECK(star.flipped == 0);
+  CHECK(star.place == place);
+  CHECK(post::dot(up, post::normal_of(a, b, place)) < 0);
 }
 
 TEST_CASE("relocate: no edge is taken near a far place, or where the surface is curved", "[post]") {
