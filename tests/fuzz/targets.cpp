@@ -18,6 +18,7 @@ namespace isoshell::fuzz {
 namespace {
 
 constexpr int64_t kMemory = 8 << 20;
+constexpr int64_t kVolumeMemory = 1 << 20;  // a surface that fills more takes seconds a run
 
 template <TriangleSoup (*read)(const MeshSource&)>
 void run_mesh(View<const char> bytes) {
@@ -35,7 +36,7 @@ void run_points(View<const char> bytes) {
 
 void run_volume(View<const char> bytes) {
   VolumeInfo info;
-  const TriangleSoup soup = read_volume(MeshSource("fuzz", bytes), {"", 0.25, kMemory}, info);
+  const TriangleSoup soup = read_volume(MeshSource("fuzz", bytes), {"", 0.25, kVolumeMemory}, info);
   for (const auto& t : soup.triangles)
     for (const uint32_t corner : t)
       if (corner >= soup.vertices.size()) std::abort();
