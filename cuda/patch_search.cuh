@@ -30,7 +30,7 @@ struct alignas(16) WinnerPlace {
   __device__ operator Local() const { return {x, y, z}; }
 };
 
-/// Candidates of one patch, by ascending id.
+/// Candidates of one patch, by ascending id; those that label_paying adds come last.
 struct Winners {
   int4 form[kMaxWinners];  ///< |s|^2 - 2 s.v, s and v from the patch's origin: constant, then per x, y and z
   WinnerPlace place[kMaxWinners];

@@ -117,11 +117,12 @@ int64_t vertices_of_lengths(const Sheet& sheet, Context& context) {
 }
 
 /// Spreads lengths over six tenths of a mean edge: where limits bend them sharply, cells can only fit by irregular
-/// vertices. Not those of a field alone, which the user has drawn.
-void smooth_lengths(int64_t vertices, Sheet& sheet, Context& context) {
+/// vertices. The limit on their growth still holds. Not those of a field alone, which the user has drawn.
+void smooth_lengths(int64_t vertices, int64_t slope_q16, Sheet& sheet, Context& context) {
   const double edge_vox = std::sqrt(sheet_area_world(sheet) / double(vertices)) / kCellOfEdge / sheet.frame.voxel_size;
   const int64_t rounds = std::llround(0.7 * edge_vox * edge_vox);
   smooth_edge_lengths(sheet, int32_t(std::min(rounds, kMostLengthSmoothing)), context);
+  set_edge_lengths(sheet, sheet.lengths.at.to_host(), slope_q16, context);
 }
 
 }  // namespace
@@ -153,17 +154,20 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
     set_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
     cell = cell_of_length(sheet, asked, context);
   }
+  int64_t slope_q16 = 0;
   for (int round = 0; round < kRounds; ++round) {
     const Bounded bounded(wanted, voxel_size, cell);
-    const double slope = (options.gradation - 1) * kCellOfEdge / cell * 65536;
-    set_edge_lengths(sheet, bounded.raw(), std::min(std::llround(slope), (long long)kMostLengthSlopeQ16), context);
+    slope_q16 =
+        std::min<int64_t>(std::llround((options.gradation - 1) * kCellOfEdge / cell * 65536), kMostLengthSlopeQ16);
+    set_edge_lengths(sheet, bounded.raw(), slope_q16, context);
     const double now = asked > 0 ? cell_of_length(sheet, asked, context) : cell;
     const bool settled = std::abs(now / cell - 1) < 0.01;
     if (settled || round + 1 == kRounds) bounded.warn(wanted, sheet, cell / kCellOfEdge, report);
     cell = now;
     if (settled) break;
   }
-  if (options.adaptivity > 0) smooth_lengths(asked > 0 ? asked : vertices_of_lengths(sheet, context), sheet, context);
+  if (options.adaptivity > 0)
+    smooth_lengths(asked > 0 ? asked : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
   if (asked == 0) p.vertices = vertices_of_lengths(sheet, context);
 }
 

@@ -71,7 +71,7 @@ constexpr int64_t kMostLengthSlopeQ16 = int64_t(1) << 24;
 /// Gives a sheet edge lengths to aim at: the largest that are nowhere above `raw`, one a vertex in 1/256 voxel, and
 /// grow by at most slope_q16 / 65536 of every edge's length. They are unique. Throws: usage.
 void set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Context& context);
-/// So many rounds in which every length becomes the mean of its own and its neighbours', rounded.
+/// So many rounds in which every length becomes the mean of its own and its neighbours', rounded. Throws: usage.
 void smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context);
 /// Doubled area of the sheet, that of each triangle over the square of its length, the least length being 1; q16.
 int64_t seed_shares_q16(const Sheet& sheet, Context& context);
@@ -183,7 +183,7 @@ struct PostOptions {
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
   bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
-  bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began
+  bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began, and no relocation
 };
 struct PostReport {
   int64_t flips = 0;

@@ -1,6 +1,10 @@
 #include "cpu/project_lanes.h"
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "cpu/foot_lanes.h"
+#include "voxel/exact_int.h"
 
 namespace isoshell {
 namespace {

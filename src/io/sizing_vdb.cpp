@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "io/grid_names.h"
 #include "io/vdb_cursor.h"
 #include "io/vdb_grids.h"
 #include "io/vdb_layout.h"
@@ -33,6 +34,14 @@ Source parse_source(const std::string& text) {
 
 bool holds_floats(const VdbGridSpan& span) {
   return span.type == kFloatType || span.type == std::string(kFloatType) + "_HalfFloat";
+}
+
+std::vector<VdbGridSpan> with_names_apart(std::vector<VdbGridSpan> grids) {
+  std::vector<std::string> names;
+  for (const VdbGridSpan& span : grids) names.push_back(span.name);
+  names = names_apart(std::move(names));
+  for (size_t i = 0; i < grids.size(); ++i) grids[i].name = names[i];
+  return grids;
 }
 
 std::string list_of(const std::vector<VdbGridSpan>& grids) {
@@ -73,8 +82,9 @@ VdbFloatGrid::ConstPtr load(const Source& source, int64_t max_bytes) {
     initialize_openvdb();
     const Buffer<char> bytes = read_file_start(source.path, std::numeric_limits<int64_t>::max());
     const VdbLayout layout = read_vdb_layout(source.path, bytes.view());
-    const VdbGridSpan& span = choose_grid(source, layout.grids);
-    return std::static_pointer_cast<const VdbFloatGrid>(read_vdb_grid(source.path, bytes.view(), span));
+    const std::vector<VdbGridSpan> grids = with_names_apart(layout.grids);
+    return std::static_pointer_cast<const VdbFloatGrid>(
+        read_vdb_grid(source.path, bytes.view(), choose_grid(source, grids)));
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::out_of_memory, "read", source.path + ": out of memory; coarsen the field");
   }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <sstream>
 
+#include "io/grid_names.h"
 #include "io/iso_surface.h"
 #include "io/volume_readers.h"
 #include "isoshell/error.h"
@@ -63,13 +63,11 @@ void check_map(const ScalarField& field) {
                 field.title() + " has a transform that is not finite or has no inverse");
 }
 
-/// Grids of the same name, and without one, get numbers as OpenVDB's own tools show them: density[0], density[1].
 std::vector<VolumeGrid> with_names_apart(std::vector<VolumeGrid> grids) {
-  std::map<std::string, std::vector<VolumeGrid*>> by_name;
-  for (VolumeGrid& grid : grids) by_name[grid.name].push_back(&grid);
-  for (const auto& [name, same] : by_name)
-    for (size_t i = 0; i < same.size() && (same.size() > 1 || (name.empty() && grids.size() > 1)); ++i)
-      same[i]->name = name + "[" + std::to_string(i) + "]";
+  std::vector<std::string> names;
+  for (const VolumeGrid& grid : grids) names.push_back(grid.name);
+  names = names_apart(std::move(names));
+  for (size_t i = 0; i < grids.size(); ++i) grids[i].name = names[i];
   return grids;
 }
 

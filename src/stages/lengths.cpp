@@ -17,6 +17,10 @@ void set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Con
 }
 
 void smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context) {
+  if (sheet.lengths.at.empty() || rounds < 0)
+    throw Error(ErrorCode::usage, "lengths",
+                sheet.lengths.at.empty() ? "the sheet has no lengths to smooth; set_edge_lengths gives it some"
+                                         : std::to_string(rounds) + " rounds of smoothing; use 0 or more");
   backend_for(context).smooth_edge_lengths(sheet, rounds, context);
 }
 

@@ -30,8 +30,7 @@ constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
 // No step may make a triangle below its bound worse; bounds rise to where the search begins. What flips make poor is
 // smoothed after them.
 constexpr double kFlippedMerit = 0.7, kPoorMerit = 0.8, kFairMerit = 0.9, kGoodMerit = 1;
-// Weight of the size to aim at against a triangle's own. Shapes are best with none.
-constexpr double kEvenness = 0, kUniformEvenness = 6;
+constexpr double kUniformEvenness = 6;  ///< weight of the size to aim at against a triangle's own: shapes want none
 
 /// Seeds go where the vertices are: position, home and normal.
 struct UpdateSeed {
@@ -107,7 +106,7 @@ class Improvement {
   Improvement(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh)
       : exec_(exec),
         sheet_(sheet),
-        evenness_(options.uniform_area ? kUniformEvenness : kEvenness),
+        evenness_(options.uniform_area ? kUniformEvenness : 0),
         seeds_(seeds),
         mesh_(mesh),
         vertices_(mesh.position.size()),

@@ -86,6 +86,9 @@ TEST_CASE("sizing: files that are no sizing fields are refused with what is wron
   CHECK(complaint(two + ":c").empty());
   CHECK(contains(complaint(two + ":d"), "\"a\""));
   CHECK(contains(complaint(two + ":b"), "Tree_int32_5_4_3"));
+  const std::string same = file("same.vdb", {constant("a", 0.1), constant("a", 0.2)});
+  CHECK(complaint(same + ":a[1]").empty());
+  CHECK(contains(complaint(same + ":a"), "\"a[0]\""));
   CHECK(contains(complaint((folder / "none.vdb").string()), "none.vdb"));
   folder.write("text.vdb", "no grid at all");
   CHECK(!complaint((folder / "text.vdb").string()).empty());
