@@ -338,7 +338,8 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
         measure_bridges(run.prepared.sheet, bridges, gaps);
         const std::vector<Voxel> voxels = bridging_voxels(run.prepared.sheet, bridges);
         CHECK(voxels.empty() == (std::count(bridges.begin(), bridges.end(), 1) == 0));
-        for (const Voxel v : voxels) CHECK(find_voxel(run.prepared.sites.voxels.view(), v) < 0);
+        const SiteSet sites = to_host(run.prepared.sites);
+        for (const Voxel v : voxels) CHECK(find_voxel(sites.voxels.view(), v) < 0);
         if (width_vox >= 4) CHECK(gaps.bridges == 1);
         if (width_vox >= 4) CHECK(gaps.widest_bridge_world / voxel == Approx(width_vox).margin(1.2 + .08 * width_vox));
       }
