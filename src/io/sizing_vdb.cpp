@@ -36,14 +36,6 @@ bool holds_floats(const VdbGridSpan& span) {
   return span.type == kFloatType || span.type == std::string(kFloatType) + "_HalfFloat";
 }
 
-std::vector<VdbGridSpan> with_names_apart(std::vector<VdbGridSpan> grids) {
-  std::vector<std::string> names;
-  for (const VdbGridSpan& span : grids) names.push_back(span.name);
-  names = names_apart(std::move(names));
-  for (size_t i = 0; i < grids.size(); ++i) grids[i].name = names[i];
-  return grids;
-}
-
 std::string list_of(const std::vector<VdbGridSpan>& grids) {
   std::string text;
   for (const VdbGridSpan& span : grids) text += (text.empty() ? "\"" : ", \"") + span.name + "\" (" + span.type + ")";

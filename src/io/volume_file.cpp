@@ -63,14 +63,6 @@ void check_map(const ScalarField& field) {
                 field.title() + " has a transform that is not finite or has no inverse");
 }
 
-std::vector<VolumeGrid> with_names_apart(std::vector<VolumeGrid> grids) {
-  std::vector<std::string> names;
-  for (const VolumeGrid& grid : grids) names.push_back(grid.name);
-  names = names_apart(std::move(names));
-  for (size_t i = 0; i < grids.size(); ++i) grids[i].name = names[i];
-  return grids;
-}
-
 }  // namespace
 
 std::string VolumeGrid::text() const { return "\"" + name + "\" (" + type + ", " + grid_class + ")"; }
