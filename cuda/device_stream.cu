@@ -1,4 +1,5 @@
 // Streams and device memory.
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <string>
@@ -70,6 +71,7 @@ DeviceStream* take_stream(int device) {
     if (!pool.idle.empty()) {
       DeviceStream* taken = pool.idle.back();
       pool.idle.pop_back();
+      taken->start_counting();
       return taken;
     }
   }
@@ -90,7 +92,9 @@ __global__ void probe() {}
 /// The build may hold machine code for other chips only.
 void require_code(int device) {
   cudaFuncAttributes attributes;
-  if (cudaFuncGetAttributes(&attributes, probe) == cudaSuccess) return;
+  const cudaError_t status = cudaFuncGetAttributes(&attributes, probe);
+  if (status != cudaErrorNoKernelImageForDevice && status != cudaErrorInvalidDeviceFunction)
+    return require_success(status, "cudaFuncGetAttributes");
   cudaGetLastError();
   throw Error(ErrorCode::no_device, "device",
               "this build has no machine code for CUDA device " + std::to_string(device) +
@@ -116,11 +120,18 @@ int64_t rounded(int64_t bytes) {
 
 }  // namespace
 
+std::string describe_error(cudaError_t status) {
+  const std::string what = cudaGetErrorString(status);
+  cudaGetLastError();  // said here; the next check is about what comes next
+  if (cudaFree(nullptr) == cudaSuccess) return what;
+  cudaGetLastError();  // a kernel's fault, of this context or another one, stays with every call of the process
+  return what + "; a kernel of this process failed, and no context of it can use the device any more: start it again";
+}
+
 void require_success(cudaError_t status, const char* call) {
   if (status == cudaSuccess) return;
-  cudaGetLastError();  // said here; the next check is about what comes next
   throw Error(status == cudaErrorMemoryAllocation ? ErrorCode::out_of_memory : ErrorCode::internal, "cuda",
-              std::string(call) + " failed: " + cudaGetErrorString(status));
+              std::string(call) + " failed: " + describe_error(status));
 }
 
 DeviceStream& DeviceStream::of(Context& context) {
@@ -132,7 +143,7 @@ DeviceStream& DeviceStream::of(Context& context) {
   }
   DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());
   require_success(cudaSetDevice(stream.device()), "cudaSetDevice");
-  stream.set_limit(context.memory_limit_bytes);
+  stream.limit_ = context.memory_limit_bytes;
   return stream;
 }
 
@@ -176,16 +187,18 @@ void DeviceStream::release_kept() noexcept {
 
 void* DeviceStream::allocate(int64_t bytes) {
   if (bytes <= 0) return nullptr;
-  const bool allowed = limit_ <= 0 || pool_.held_bytes + bytes <= limit_;
+  const int64_t own = std::max<int64_t>(held_bytes_ - held_before_, 0);
+  const bool allowed = limit_ <= 0 || own + bytes <= limit_;
   void* data = allowed ? take(rounded(bytes)) : nullptr;
   if (!data) {
     throw Error(ErrorCode::out_of_memory, "memory",
                 "out of device memory: " + std::to_string(bytes >> 20) + " MiB more than the " +
-                    std::to_string(pool_.held_bytes >> 20) + " MiB in use were refused" +
+                    std::to_string(own >> 20) + " MiB in use were refused" +
                     (allowed ? "; lower the resolution or use --device cpu"
                              : " by the limit of " + std::to_string(limit_ >> 20) +
                                    " MiB; lower the resolution, raise --max-memory or use --device cpu"));
   }
+  held_bytes_ += bytes;
   const int64_t held = pool_.held_bytes += bytes;
   int64_t peak = pool_.peak_bytes.load();
   while (held > peak && !pool_.peak_bytes.compare_exchange_weak(peak, held)) {
@@ -194,6 +207,7 @@ void* DeviceStream::allocate(int64_t bytes) {
 }
 
 void DeviceStream::free(void* data, int64_t bytes) noexcept {
+  held_bytes_ -= bytes;
   pool_.held_bytes -= bytes;
   if (rounded(bytes) > kLargestKept) {
     cudaFreeAsync(data, stream_);

@@ -3,8 +3,10 @@
 
 #include <cuda_runtime_api.h>
 
+#include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -13,6 +15,8 @@
 
 namespace isoshell {
 
+/// What to say of an error, which is cleared. After a kernel's fault it says that the device is lost to the process.
+std::string describe_error(cudaError_t status);
 /// Throws Error{internal} that names the call when `status` is an error.
 void require_success(cudaError_t status, const char* call);
 
@@ -53,8 +57,8 @@ class DeviceStream final : public Memory {
   /// A few words of pinned host memory for read-backs.
   static constexpr int64_t kPinnedBytes = 4096;
   void* pinned() const { return pinned_; }
-  /// Allocations beyond this many bytes at one time throw out_of_memory; 0 means no limit.
-  void set_limit(int64_t bytes) { limit_ = bytes; }
+  /// What is allocated from now on counts towards the context's limit; what the stream holds already is another's.
+  void start_counting() { held_before_ = held_bytes_; }
 
  private:
   void* take(int64_t bytes);
@@ -65,7 +69,9 @@ class DeviceStream final : public Memory {
   cudaStream_t stream_;
   cudaEvent_t event_;  ///< for others to wait for
   void* pinned_;
-  int64_t limit_ = 0;
+  int64_t limit_ = 0;  ///< of the context that uses the stream, in bytes; 0 means none
+  std::atomic<int64_t> held_bytes_{0};
+  int64_t held_before_ = 0;                               ///< bytes, by contexts that used the stream before
   std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread
   std::unordered_map<int64_t, std::vector<void*>> kept_;  ///< by their sizes
 };

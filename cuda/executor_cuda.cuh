@@ -70,7 +70,7 @@ class CudaExecutor {
   void check(const char* name) {
     if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
       throw Error(ErrorCode::internal, stage_,
-                  std::string(name) + " failed on the device: " + cudaGetErrorString(status));
+                  std::string(name) + " failed on the device: " + describe_error(status));
     if (context_.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage_, "interrupted");
   }
 
