@@ -2,13 +2,13 @@
 // return a value to the host wait for the stream, all others only enqueue.
 #pragma once
 
-#include <cub/device/device_merge_sort.cuh>
 #include <functional>
 #include <string>
 #include <type_traits>
 
 #include "core/copy_product.h"
 #include "cuda/block_form.cuh"
+#include "cuda/cub.cuh"
 #include "cuda/device_stream.h"
 #include "cuda/primitives.h"
 #include "cuda/small_words.cuh"
@@ -69,8 +69,7 @@ class CudaExecutor {
   /// Throws what went wrong with the launches so far, and Error{interrupted} when the context was cancelled.
   void check(const char* name) {
     if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
-      throw Error(ErrorCode::internal, stage_,
-                  std::string(name) + " failed on the device: " + describe_error(status));
+      throw Error(ErrorCode::internal, stage_, std::string(name) + " failed on the device: " + describe_error(status));
     if (context_.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage_, "interrupted");
   }
 

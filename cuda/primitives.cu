@@ -1,9 +1,8 @@
 // Scans, sorts and compaction.
 #include <climits>
-#include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_scan.cuh>
 #include <string>
 
+#include "cuda/cub.cuh"
 #include "cuda/primitives.h"
 #include "isoshell/error.h"
 
