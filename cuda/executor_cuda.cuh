@@ -9,6 +9,7 @@
 #include "core/copy_product.h"
 #include "cuda/block_form.cuh"
 #include "cuda/cub.cuh"
+#include "cuda/cuda_kernels.h"
 #include "cuda/device_stream.h"
 #include "cuda/primitives.h"
 #include "cuda/small_words.cuh"
@@ -56,6 +57,8 @@ __global__ void sum_terms(int64_t count, Term term, int64_t* total) {
 /// One per stage call.
 class CudaExecutor {
  public:
+  using Kernels = CudaKernels;
+
   CudaExecutor(Context& context, const char* stage)
       : context_(context), stage_(stage), stream_(DeviceStream::of(context)) {}
 

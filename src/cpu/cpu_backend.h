@@ -1,6 +1,7 @@
 // What the CPU backend provides; one file cpu_<stage>.cpp instantiates each body.
 #pragma once
 
+#include "cpu/executor_tbb.h"
 #include "stages/backend_table.h"
 
 namespace isoshell {
@@ -36,7 +37,6 @@ SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 
 /// What a body that needs a shell on its way calls.
-class TbbExecutor;
-Shell build_shell_by(TbbExecutor&, const SiteSet&, const ShellOptions&);
+Shell build_shell_by(CpuExecutor&, const SiteSet&, const ShellOptions&);
 
 }  // namespace isoshell

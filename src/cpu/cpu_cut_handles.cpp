@@ -120,7 +120,7 @@ class SolidEntry {
 };
 
 /// The sites less the cuts, with the solid that surrounds those: a wall again.
-SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& box, const SiteSet& of) {
+SiteSet walls_around(CpuExecutor& exec, const HandleCutter& cutter, const Box& box, const SiteSet& of) {
   const VoxelSetView sites = of.voxels.view();
   std::map<uint64_t, LeafMask> leaves;
   for (int64_t l = 0; l < sites.leaf_key.size; ++l) leaves.emplace_hint(leaves.end(), sites.leaf_key[l], sites.mask[l]);
@@ -151,7 +151,7 @@ SiteSet walls_around(TbbExecutor& exec, const HandleCutter& cutter, const Box& b
 }  // namespace
 
 SiteSet cpu_cut_false_handles(const SiteSet& sites, const SiteSamples& samples, int64_t genus, Context& context) {
-  TbbExecutor exec(context, "cut handles");
+  CpuExecutor exec(context, "cut handles");
   return run_with_threads(context, [&]() -> SiteSet {
     const OnHost<SiteSet> here(sites);
     const VoxelSetView site_view = here->voxels.view();

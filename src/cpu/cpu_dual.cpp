@@ -9,7 +9,7 @@ namespace isoshell {
 
 DualMesh cpu_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
                               Context& context) {
-  TbbExecutor exec(context, "dual");
+  CpuExecutor exec(context, "dual");
   return run_with_threads(context,
                           [&] { return triangulate_dual_body(exec, *OnHost(sheet), on_host(seeds), options, report); });
 }

@@ -7,7 +7,7 @@
 namespace isoshell {
 
 VoronoiLabels cpu_flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) {
-  TbbExecutor exec(context, "flood");
+  CpuExecutor exec(context, "flood");
   return run_with_threads(context, [&] { return flood_shell_body(exec, *OnHost(shell), *OnHost(seeds)); });
 }
 

@@ -11,9 +11,9 @@ namespace isoshell {
 
 PostReport cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
                             Context& context) {
-  TbbExecutor exec(context, "post");
+  CpuExecutor exec(context, "post");
   return run_with_threads(context, [&] {
-    return improve_mesh_body<TbbExecutor, CpuStepWork>(exec, *OnHost(sheet), options, on_host(seeds), on_host(mesh));
+    return improve_mesh_body<CpuExecutor, CpuStepWork>(exec, *OnHost(sheet), options, on_host(seeds), on_host(mesh));
   });
 }
 

@@ -7,7 +7,7 @@
 namespace isoshell {
 
 SiteSamples cpu_sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) {
-  TbbExecutor exec(context, "samples");
+  CpuExecutor exec(context, "samples");
   return run_with_threads(context, [&] { return sample_sites_body(exec, *OnHost(surface), *OnHost(sites)); });
 }
 

@@ -8,7 +8,7 @@
 namespace isoshell {
 
 Shell cpu_build_shell(const SiteSet& sites, const ShellOptions& options, Context& context) {
-  TbbExecutor exec(context, "shell");
+  CpuExecutor exec(context, "shell");
   return run_with_threads(context, [&] { return build_shell_body<LeafLanes>(exec, *OnHost(sites), options); });
 }
 

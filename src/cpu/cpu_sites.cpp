@@ -7,7 +7,7 @@
 namespace isoshell {
 
 SiteSet cpu_voxelize(const LatticeSurface& surface, Context& context) {
-  TbbExecutor exec(context, "sites");
+  CpuExecutor exec(context, "sites");
   return run_with_threads(context, [&] { return voxelize_body(exec, *OnHost(surface)); });
 }
 

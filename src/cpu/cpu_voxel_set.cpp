@@ -7,7 +7,7 @@ namespace isoshell {
 
 void index_host_leaves(VoxelSet& set, const int32_t extent_vox[3]) {
   Context context;
-  TbbExecutor exec(context, "index");
+  CpuExecutor exec(context, "index");
   index_leaves(exec, set, extent_vox);
 }
 

@@ -1,4 +1,4 @@
-// The CPU executor: exec/executor.h over TBB.
+// The CPU executors: exec/executor.h over TBB, and the set of kernels that bodies call.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -9,15 +9,14 @@
 #include <functional>
 
 #include "core/watched.h"
+#include "cpu/cpu_kernels.h"
 #include "isoshell/buffer.h"
 
 namespace isoshell {
 
-/// Runs under the context's thread limit. One executor per stage call.
+/// What both executors of the CPU have in common. Runs under the context's thread limit.
 class TbbExecutor {
  public:
-  explicit TbbExecutor(Context& context, const char* stage) : context_(context), stage_(stage) {}
-
   /// Passes of a loop that are enqueued before its state is read: no read costs anything here.
   static constexpr int kPassBatch = 1;
 
@@ -112,6 +111,9 @@ class TbbExecutor {
     return out;
   }
 
+ protected:
+  TbbExecutor(Context& context, const char* stage) : context_(context), stage_(stage) {}
+
  private:
   // Enough pieces for balance, few enough that small steps are not all overhead.
   static int64_t grain(int64_t count) { return std::clamp<int64_t>(count / 64, 1, 1024); }
@@ -119,5 +121,16 @@ class TbbExecutor {
   Context& context_;
   const char* stage_;
 };
+
+/// One executor per stage call. Its set is part of its type, and so of the type of every body that runs on it.
+template <class Set>
+class TbbExecutorWith : public TbbExecutor {
+ public:
+  using Kernels = Set;
+  TbbExecutorWith(Context& context, const char* stage) : TbbExecutor(context, stage) {}
+};
+
+using CpuExecutor = TbbExecutorWith<CpuKernels>;
+using PlainExecutor = TbbExecutorWith<PlainKernels>;
 
 }  // namespace isoshell

@@ -286,14 +286,14 @@ struct LabelLeafInLanes {
 
 }  // namespace
 
-LabelLanes::LabelLanes(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
+LabelLanes::LabelLanes(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
     : sheet_(sheet), spacing_(spacing), bounds_(sheet.corners.leaf_count()), middle_(sheet.corners.leaf_count()) {
   exec.fill(middle_.view(), kNone);
   exec.for_each("bounds of leaves", bounds_.size(),
                 FindBounds{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), bounds_.view()});
 }
 
-void LabelLanes::label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) {
+void LabelLanes::label(CpuExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) {
   const PointGrid grid = grid_of_seeds(exec, sheet_, seeds, spacing_);
   exec.for_each("label sheet vertices", sheet_.corners.leaf_count(),
                 LabelLeafInLanes{{sheet_.corners.view(), sheet_.position.view(), sheet_.normal.view(), grid.view(),
@@ -301,11 +301,6 @@ void LabelLanes::label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> l
                                  bounds_.view(),
                                  seeds.position.view(),
                                  middle_.view()});
-}
-
-void label_sheet(TbbExecutor& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
-                 View<uint32_t> labels) {
-  LabelLanes(exec, sheet, spacing).label(exec, seeds, labels);
 }
 
 }  // namespace isoshell

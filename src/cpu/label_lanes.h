@@ -10,9 +10,15 @@ namespace isoshell {
 /// how far to look the next time.
 class LabelLanes {
  public:
-  LabelLanes(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
+  LabelLanes(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
 
-  void label(TbbExecutor& exec, const SeedSet& seeds, View<uint32_t> labels);
+  void label(CpuExecutor& exec, const SeedSet& seeds, View<uint32_t> labels);
+
+  /// Once, for CpuKernels.
+  static void run(CpuExecutor& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+                  View<uint32_t> labels) {
+    LabelLanes(exec, sheet, spacing).label(exec, seeds, labels);
+  }
 
  private:
   const Sheet& sheet_;
@@ -20,9 +26,5 @@ class LabelLanes {
   Buffer<label::Bounds> bounds_;  ///< of every leaf's vertices
   Buffer<uint32_t> middle_;       ///< the seed that was nearest to the middle of the bounds, kNone at first
 };
-
-/// Taken instead of the template of stages/label_body.h.
-void label_sheet(TbbExecutor& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
-                 View<uint32_t> labels);
 
 }  // namespace isoshell

@@ -184,7 +184,7 @@ struct SumLeafInLanes {
 
 }  // namespace
 
-CpuPassWork::CpuPassWork(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
+CpuPassWork::CpuPassWork(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
     : sheet_(sheet), labels_(exec, sheet, spacing), label_(sheet.vertex_count()) {
   const int64_t leaves = sheet.corners.leaf_count();
   const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
@@ -199,7 +199,7 @@ CpuPassWork::CpuPassWork(TbbExecutor& exec, const Sheet& sheet, const SeedSpacin
                               patches_.triangles.view(), patches_.of_vertex.view()});
 }
 
-void CpuPassWork::measure(TbbExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
+void CpuPassWork::measure(CpuExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
                           View<const PassState> state) {
   labels_.label(exec, seeds, label_.view());
   exec.for_each(

@@ -21,9 +21,9 @@ struct LeafPatches {
 /// Taken instead of relax_sheet::PassWork.
 class CpuPassWork {
  public:
-  CpuPassWork(TbbExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
+  CpuPassWork(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
 
-  void measure(TbbExecutor& exec, const SeedSet& seeds, View<relax_sheet::CellSum> cells, View<SplitSum> leaf_energy,
+  void measure(CpuExecutor& exec, const SeedSet& seeds, View<relax_sheet::CellSum> cells, View<SplitSum> leaf_energy,
                View<const PassState> state);
 
  private:

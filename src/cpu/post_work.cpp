@@ -199,7 +199,7 @@ struct PullSamples {
 
 }  // namespace
 
-void CpuStepWork::begin(TbbExecutor& exec, const MeshView& mesh) {
+void CpuStepWork::begin(CpuExecutor& exec, const MeshView& mesh) {
   const int64_t vertices = mesh.outgoing.size;
   around_ = {Buffer<uint32_t>(vertices + 1), Buffer<TrianglesAround::Triangle>(mesh.twin.size)};
   around_.first[vertices] = 0;
@@ -209,13 +209,13 @@ void CpuStepWork::begin(TbbExecutor& exec, const MeshView& mesh) {
                 ListTrianglesAround{mesh, around_.first.view(), around_.triangles.view()});
 }
 
-void CpuStepWork::smooth(TbbExecutor& exec, const SmoothVertex& step) {
+void CpuStepWork::smooth(CpuExecutor& exec, const SmoothVertex& step) {
   const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
   exec.for_each("smooth", vertices.groups(), SmoothVertices{step, vertices});
   if (step.options.onto_sheet) walk_to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
 }
 
-void CpuStepWork::sort(TbbExecutor&, int64_t triangles, View<FitSample> samples) {
+void CpuStepWork::sort(CpuExecutor&, int64_t triangles, View<FitSample> samples) {
   const auto place = [&](const FitSample& s) { return s.triangle == kNone ? size_t(triangles) : size_t(s.triangle); };
   std::vector<uint32_t> end(size_t(triangles) + 1);
   for (const FitSample& s : samples) ++end[place(s)];
@@ -225,12 +225,12 @@ void CpuStepWork::sort(TbbExecutor&, int64_t triangles, View<FitSample> samples)
   std::copy(sorted.begin(), sorted.end(), samples.begin());
 }
 
-void CpuStepWork::pull(TbbExecutor& exec, const PullCorners& step) {
+void CpuStepWork::pull(CpuExecutor& exec, const PullCorners& step) {
   const PullSamples samples{step};
   exec.for_each("pull corners", samples.runs(), samples);
 }
 
-void CpuStepWork::fit(TbbExecutor& exec, const FitVertex& step) {
+void CpuStepWork::fit(CpuExecutor& exec, const FitVertex& step) {
   const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
   const FitVertices work{step, vertices, WalkAhead(step.walk, step.home)};
   exec.for_each("fit", work.runs(), work);

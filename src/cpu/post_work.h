@@ -19,12 +19,12 @@ struct TrianglesAround {
 /// Taken instead of post::StepWork.
 class CpuStepWork {
  public:
-  void begin(TbbExecutor& exec, const post::MeshView& mesh);
-  void smooth(TbbExecutor& exec, const post::SmoothVertex& step);
+  void begin(CpuExecutor& exec, const post::MeshView& mesh);
+  void smooth(CpuExecutor& exec, const post::SmoothVertex& step);
   /// By triangle.
-  void sort(TbbExecutor& exec, int64_t triangles, View<post::FitSample> samples);
-  void pull(TbbExecutor& exec, const post::PullCorners& step);
-  void fit(TbbExecutor& exec, const post::FitVertex& step);
+  void sort(CpuExecutor& exec, int64_t triangles, View<post::FitSample> samples);
+  void pull(CpuExecutor& exec, const post::PullCorners& step);
+  void fit(CpuExecutor& exec, const post::FitVertex& step);
 
  private:
   TrianglesAround around_;

@@ -7,6 +7,6 @@
 namespace isoshell {
 
 /// Taken instead of the template of stages/sheet_project_body.h.
-void project_vertices(TbbExecutor& exec, const sheet_steps::ProjectVertex& step);
+void project_vertices(CpuExecutor& exec, const sheet_steps::ProjectVertex& step);
 
 }  // namespace isoshell

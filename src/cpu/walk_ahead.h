@@ -35,7 +35,7 @@ class WalkAhead {
 
 /// Taken instead of the template of stages/sheet_walk.h.
 template <class Step>
-void for_each_walk(TbbExecutor& exec, const char* name, const WalkOntoSheet& walk, View<const uint32_t> home,
+void for_each_walk(CpuExecutor& exec, const char* name, const WalkOntoSheet& walk, View<const uint32_t> home,
                    Step step) {
   constexpr int64_t kRun = 128;
   exec.for_each(name, (home.size + kRun - 1) / kRun, [step, home, ahead = WalkAhead(walk, home)](int64_t run) {
@@ -112,7 +112,7 @@ class WalksInLanes {
 
 /// Taken instead of the template of stages/sheet_walk.h.
 template <class Step>
-void walk_to_targets(TbbExecutor& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
+void walk_to_targets(CpuExecutor& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
   constexpr int64_t kRun = 128;
   exec.for_each(name, (home.size + kRun - 1) / kRun, [walk, step, home, ahead = WalkAhead(walk, home)](int64_t run) {
     const int64_t end = std::min(home.size, (run + 1) * kRun);

@@ -1,5 +1,6 @@
 // What an executor must offer. Stage bodies are templates over one; they see nothing else of the machine.
 //
+//   using Kernels = ...;                                             // what bodies call: stages/plain_kernels.h
 //   Context& context();                                              // of the run: options, progress, cancellation
 //   template <class T> Buffer<T> make(int64_t count);               // not initialised
 //   template <class T> void fill(View<T> out, T value);

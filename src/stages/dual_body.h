@@ -43,7 +43,7 @@ class Partition {
         spacing_(seed_spacing(exec, sheet, seeds.size())),
         label_(exec.template make<uint32_t>(sheet.vertex_count())) {
     report_ = {};
-    label_sheet(exec_, sheet_, seeds_, spacing_, label_.view());
+    Exec::Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label_.view());
     grow(exec_, cells_, seeds_.size());
   }
 

@@ -343,13 +343,15 @@ PointGrid grid_of_seeds(Exec& exec, const Sheet& sheet, const SeedSet& seeds, co
 }
 
 /// Labels of all sheet vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
-template <class Exec>
-void label_sheet(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
-                 View<uint32_t> labels) {
-  const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
-  exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
-                label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
-                                   seeds.normal.view(), spacing, labels});
-}
+struct PlainLabelSheet {
+  template <class Exec>
+  static void run(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+                  View<uint32_t> labels) {
+    const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
+    exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
+                  label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
+                                     seeds.normal.view(), spacing, labels});
+  }
+};
 
 }  // namespace isoshell

@@ -155,7 +155,7 @@ class Improvement {
   void attach_samples() {
     update_seeds();
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
-    label_sheet(exec_, sheet_, seeds_, spacing_, label.view());
+    Exec::Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label.view());
     const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
     samples_of_sheet_ = std::min(sheet_.vertex_count(), kSamplesPerTriangle * smallest);
     const int64_t count = samples_of_sheet_ + sheet_.missed.size();

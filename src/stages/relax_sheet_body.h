@@ -361,7 +361,7 @@ class PassWork {
   /// have converged.
   void measure(Exec& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
                View<const PassState> state) {
-    label_sheet(exec, sheet_, seeds, spacing_, labels_.view());
+    Exec::Kernels::LabelSheet::run(exec, sheet_, seeds, spacing_, labels_.view());
     exec.for_each("sum cells", sheet_.corners.leaf_count(),
                   SumLeaf<>{sheet_.corners.leaf_key.view(), patches_.first.view(), patches_.triangles.view(),
                             sheet_.position.view(), labels_.view(), seeds.position.view(), cells, leaf_energy, state});

@@ -14,6 +14,6 @@ Buffer<T> to_executor(TbbExecutor&, Buffer<T> values) {
 
 namespace isoshell::parity {
 
-std::unique_ptr<ExecutorWords> tbb_words(Context& context) { return std::make_unique<WordsOf<TbbExecutor>>(context); }
+std::unique_ptr<ExecutorWords> tbb_words(Context& context) { return std::make_unique<WordsOf<PlainExecutor>>(context); }
 
 }  // namespace isoshell::parity

@@ -1,5 +1,5 @@
 // The dual on sheets with few and badly placed seeds: every run must give the sheet's own topology.
-#include "cpu/executor_tbb.h"
+#include "cpu/label_lanes.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/stages.h"
@@ -75,13 +75,14 @@ struct Labelled {
   std::vector<std::array<uint32_t, 3>> faces;
   DualReport report;
 };
+/// By the body as the CPU runs it.
 Labelled partition(const Sheet& sheet, SeedSet& seeds, int32_t max_rounds) {
   TestContext context;
   context.threads = kThreads;
-  TbbExecutor exec(context, "dual");
+  CpuExecutor exec(context, "dual");
   return run_with_threads(context, [&] {
     Labelled out;
-    dual::Partition<TbbExecutor> cells(exec, sheet, seeds, {max_rounds}, out.report);
+    dual::Partition<CpuExecutor> cells(exec, sheet, seeds, {max_rounds}, out.report);
     for (const TriangleIndices& f : cells.repair()) out.faces.push_back({f.a, f.b, f.c});
     std::sort(out.faces.begin(), out.faces.end());
     out.label.assign(cells.label().begin(), cells.label().end());

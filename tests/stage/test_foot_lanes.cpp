@@ -34,7 +34,7 @@ struct NoteArrivals {
 /// Counts the vertices that lanes put elsewhere than the step does.
 int64_t projected_elsewhere(const TriangleSoup& soup, int32_t resolution, int32_t off_q8, bool may_bridge) {
   TestContext context;
-  TbbExecutor exec(context, "test");
+  CpuExecutor exec(context, "test");
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
   const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
@@ -86,7 +86,7 @@ TEST_CASE("closest points: lanes find those of the definition, on needles and po
 
 TEST_CASE("walks: those in lanes arrive where one after the other do", "[walk][stage]") {
   TestContext context;
-  TbbExecutor exec(context, "test");
+  CpuExecutor exec(context, "test");
   for (const Sheet& sheet : {torus_sheet(), plate_sheet()}) {
     const int64_t count = 5000;
     uint64_t drawn = 0;

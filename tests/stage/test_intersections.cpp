@@ -214,7 +214,7 @@ namespace {
 std::pair<int64_t, std::vector<uint32_t>> found_in(const std::vector<TriangleIndices>& triangles,
                                                    const std::vector<PointQ8>& position, int64_t spacing_vox,
                                                    Context& context) {
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   const Buffer<TriangleIndices> t = to_buffer(triangles);
   const Buffer<PointQ8> p = to_buffer(position);
   Buffer<uint32_t> marked(p.size());
@@ -311,7 +311,7 @@ TEST_CASE("intersections: every pair of a mesh is found, with any number of thre
       for (int threads : {1, 2}) {
         Context context;
         context.threads = threads;
-        TbbExecutor exec(context, "test");
+        PlainExecutor exec(context, "test");
         const Buffer<TriangleIndices> t = to_buffer(triangles);
         const Buffer<PointQ8> p = to_buffer(position);
         Buffer<uint32_t> marked(p.size());

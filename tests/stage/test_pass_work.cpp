@@ -33,7 +33,7 @@ SeedSet crowded_seeds(const Sheet& sheet) {
 void check_labels(const Sheet& sheet, SeedSet seeds) {
   CAPTURE(seeds.size());
   TestContext context;
-  TbbExecutor exec(context, "test");
+  CpuExecutor exec(context, "test");
   const SeedSpacing spacing = seed_spacing(exec, sheet, seeds.size());
   LabelLanes lanes(exec, sheet, spacing);
   Buffer<uint32_t> labels(sheet.vertex_count());
@@ -45,9 +45,9 @@ void check_labels(const Sheet& sheet, SeedSet seeds) {
 }
 
 /// What a pass measures: the cells, and the energy of every leaf.
-template <class Work>
+template <class Exec, class Work>
 std::vector<int64_t> measured(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
-  TbbExecutor exec(context, "test");
+  Exec exec(context, "test");
   Work work(exec, sheet, seed_spacing(exec, sheet, seeds.size()));
   Buffer<relax_sheet::CellSum> cells(seeds.size());
   Buffer<SplitSum> energy(sheet.corners.leaf_count());
@@ -64,8 +64,8 @@ std::vector<int64_t> measured(const Sheet& sheet, const SeedSet& seeds, TestCont
 void check_cells(const Sheet& sheet, const SeedSet& seeds) {
   CAPTURE(seeds.size());
   TestContext context;
-  CHECK(measured<CpuPassWork>(sheet, seeds, context) ==
-        measured<relax_sheet::PassWork<TbbExecutor>>(sheet, seeds, context));
+  CHECK(measured<CpuExecutor, CpuPassWork>(sheet, seeds, context) ==
+        measured<PlainExecutor, relax_sheet::PassWork<PlainExecutor>>(sheet, seeds, context));
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST_CASE("post: the CPU's own ways of steps give what their definitions give", 
       SeedSet seeds = copy_of(s.seeds), seeds_by_definition = copy_of(s.seeds);
       DualMesh mesh = copy_of(s.mesh), mesh_by_definition = copy_of(s.mesh);
       improve_mesh(s.sheet, options, seeds, mesh, context);
-      TbbExecutor exec(context, "test");
+      PlainExecutor exec(context, "test");
       improve_mesh_body(exec, s.sheet, options, seeds_by_definition, mesh_by_definition);
       CHECK(same(mesh, mesh_by_definition));
     }
@@ -265,7 +265,7 @@ TEST_CASE("post: points that the sheet misses draw the mesh towards them", "[pos
 
 TEST_CASE("post: an edge far from the surface is flipped where that brings it nearer", "[post]") {
   TestContext context;
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   constexpr uint32_t kAround = 4;  // vertices around the tube
   const TriangleSoup soup = shapes::torus(3000, 1500, 16, kAround);
   // An edge along the outside of the tube, and the corners opposite of it, above and below.

@@ -20,7 +20,7 @@ namespace {
 template <int kCapacity>
 std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
                                            TestContext& context) {
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   std::vector<uint32_t> labels(size_t(sheet.vertex_count()));
   exec.for_each("label", sheet.corners.leaf_count(),
@@ -35,7 +35,7 @@ std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& se
 }
 
 SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   return seed_spacing(exec, sheet, seeds.size());
 }
 
@@ -99,12 +99,12 @@ TEST_CASE("lengths: equal ones change nothing in the placing of seeds", "[length
 
 TEST_CASE("lengths: relaxed cells have areas by the square of their lengths", "[lengths][relax]") {
   TestContext context;
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   const Sheet sheet = with_lengths(torus_sheet(), 4);
   SeedSet seeds = place_seeds(sheet, {500, 0}, context);
   relax_on_sheet(sheet, seeds, {60, 0, 0}, context);
   Buffer<uint32_t> label(sheet.vertex_count());
-  label_sheet(exec, sheet, seeds, spacing_of(sheet, seeds, context), label.view());
+  PlainKernels::LabelSheet::run(exec, sheet, seeds, spacing_of(sheet, seeds, context), label.view());
   std::vector<double> area(size_t(seeds.size()));
   const label::DoubledArea doubled{sheet.position.view(), sheet.triangles.view()};
   for (int64_t t = 0; t < sheet.triangles.size(); ++t) {
@@ -131,7 +131,7 @@ TEST_CASE("relax: the energy falls towards that of hexagons", "[relax][stage]") 
   CHECK(report.energy.back() < 0.93 * report.energy.front());
   // Second moment over (area^2 / k): 5 / (18 sqrt 3) = 0.1604 for regular hexagons. The report's unit: doubled area,
   // twelve times the moment, shifted down by 8 and 4 bits.
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   const double area = double(doubled_area_q16(exec, sheet)) / 2;
   const double normalised = report.energy.back() * 256 * 16 / 2 / 12 / (area * area / 400);
   CHECK(normalised > 0.160);
@@ -140,12 +140,12 @@ TEST_CASE("relax: the energy falls towards that of hexagons", "[relax][stage]") 
 
 TEST_CASE("relax: full tables of local sums change nothing, and the cells add up to the sheet", "[relax][stage]") {
   TestContext context;
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   const Sheet sheet = torus_sheet();
   const SeedSet seeds = place_seeds(sheet, {1500, 0}, context);
   const relax_sheet::Patches patches = relax_sheet::make_patches(exec, sheet);
   Buffer<uint32_t> labels(sheet.vertex_count());
-  label_sheet(exec, sheet, seeds, spacing_of(sheet, seeds, context), labels.view());
+  PlainKernels::LabelSheet::run(exec, sheet, seeds, spacing_of(sheet, seeds, context), labels.view());
   const auto sums = [&](auto like) {
     Buffer<relax_sheet::CellSum> cells(seeds.size());
     Buffer<SplitSum> energy(sheet.corners.leaf_count());

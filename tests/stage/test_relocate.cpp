@@ -24,7 +24,7 @@ const TriangleSoup& tube() {
 /// A torus, itself as a mesh of its sheet.
 struct Tube {
   TestContext context;
-  TbbExecutor exec{context, "test"};
+  PlainExecutor exec{context, "test"};
   Sheet sheet = sheet_of_soup(tube(), 256, 1, 1);
   DualMesh mesh{Buffer<PointQ8>(int64_t(tube().vertices.size())),
                 Buffer<TriangleIndices>(int64_t(tube().triangles.size()))};

@@ -188,7 +188,7 @@ double signed_volume(const Sheet& sheet) {
 TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel", "[sheet][stage]") {
   TestContext context;
   context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
-  TbbExecutor exec(context, "sheet");
+  CpuExecutor exec(context, "sheet");
   for (const Named& blob : all_blobs())
     for (const int32_t r : {0, 1, 2, 5}) {
       INFO(blob.name << ", r = " << r);
@@ -210,7 +210,7 @@ TEST_CASE("sheet: the closed solid is the one of the definition, voxel by voxel"
 TEST_CASE("sheet: hollows open the solid as far as the closing leaves them empty", "[sheet][stage]") {
   TestContext context;
   context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
-  TbbExecutor exec(context, "sheet");
+  CpuExecutor exec(context, "sheet");
   const auto cube = [](int x, int y, int z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
   std::vector<Named> blobs = {noise(20, 20)};
   for (const int hollow : {1, 3})
@@ -238,7 +238,7 @@ TEST_CASE("sheet: hollows open the solid as far as the closing leaves them empty
 TEST_CASE("sheet: holes close as wide as the closing reaches", "[sheet][stage]") {
   TestContext context;
   context.backend = Backend::cpu;  // where these parts run, and what lies in their products is looked at
-  TbbExecutor exec(context, "sheet");
+  CpuExecutor exec(context, "sheet");
   for (const int width : {1, 3, 5, 7})
     for (const int32_t r : {0, 1, 2, 3, 4}) {
       Solid solid = close_sites(exec, site_set_of(holed_sphere(width)), r);
@@ -291,7 +291,7 @@ TEST_CASE("sheet: vertices lie on the nearest triangle of the surface", "[sheet]
   const Pipeline p = sites_of(soup, 72, context);
   const Sheet sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
   check_sheet(sheet);
-  TbbExecutor exec(context, "sheet");
+  CpuExecutor exec(context, "sheet");
   Solid solid = close_sites(exec, p.sites, 0);
   if (make_well_composed(exec, solid) > 0) fill_cavities(exec, solid);
   QuadMesh mesh = list_boundary(exec, solid);

@@ -19,7 +19,7 @@ namespace {
 int64_t count_intersections(const Sheet& sheet, const Buffer<TriangleIndices>& triangles,
                             const Buffer<PointQ8>& position) {
   Context context;
-  TbbExecutor exec(context, "test");
+  PlainExecutor exec(context, "test");
   Buffer<uint32_t> marked(position.size());
   return run_with_threads(context, [&] {
     return post::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, 4,
