@@ -34,8 +34,10 @@ void cuda_collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, b
 int64_t cuda_untangle_sheet(Sheet&, SeedSet&, Context&);
 PostReport cuda_improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&);
 
-/// What a body that needs a shell on its way calls.
+/// The stage, for a body that needs a shell on its way.
 class CudaExecutor;
-Shell build_shell_by(CudaExecutor&, const SiteSet&, const ShellOptions&);
+struct CudaBuildShell {
+  static Shell run(CudaExecutor&, const SiteSet&, const ShellOptions&);
+};
 
 }  // namespace isoshell

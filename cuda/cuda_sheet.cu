@@ -10,7 +10,7 @@
 
 namespace isoshell {
 
-Shell build_shell_by(CudaExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
+Shell CudaBuildShell::run(CudaExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
   return cuda_build_shell(sites, options, exec.context());
 }
 

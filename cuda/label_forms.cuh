@@ -1,4 +1,4 @@
-// Form of label_sheet: a warp a leaf. Lanes gather the seeds near the leaf, then label its vertices.
+// Form of the step that labels a sheet: a warp a leaf. Lanes gather the seeds near the leaf, then label its vertices.
 #pragma once
 
 #include "cuda/block_form.cuh"

@@ -42,7 +42,7 @@ __device__ inline void for_each_of_grid(int64_t count, Each each) {
   for (int64_t i = int64_t(blockIdx.x) * kThreads + threadIdx.x; i < count; i += int64_t(gridDim.x) * kThreads) each(i);
 }
 
-/// The whole of undo_harm. Three words of `some`, one a round: was a vertex restored?
+/// The whole of PlainUndoHarm. Three words of `some`, one a round: was a vertex restored?
 __global__ void __launch_bounds__(kThreads, kBlocks)
     undo_in_rounds(MarkHarmed mark, RestoreHarmed restore, uint32_t* some) {
   const auto grid = cooperative_groups::this_grid();
@@ -94,7 +94,7 @@ __device__ inline void search_together(const SearchVertex& search, uint32_t v) {
   if (lane == 0) search.move_onto_sheet(v, landing.vertex, landing.point, here);
 }
 
-/// The whole of search_places.
+/// The whole of PlainSearchPlaces.
 __global__ void __launch_bounds__(kThreads, kBlocks)
     search_in_rounds(SearchVertex search, View<uint32_t> poor, double least_merit, int rounds) {
   const auto grid = cooperative_groups::this_grid();
@@ -127,44 +127,49 @@ void launch_together(CudaExecutor& exec, void (*kernel)(Parameters...), int64_t 
 
 }  // namespace device_steps
 
-template <class Key>
-int64_t flip_edges(CudaExecutor& exec, const Key& key, View<uint64_t> claim, int rounds) {
-  using namespace device_steps;
-  const int64_t half_edges = key.mesh.twin.size, most = claim.size / 4 + 1;  // a flip holds four vertices
-  Buffer<uint32_t> winners = exec.make<uint32_t>(most), count = exec.make<uint32_t>(kRoundsPerLook);
-  int64_t flips = 0;
-  for (int left = rounds; left > 0; left -= kRoundsPerLook) {
-    const int now = left < kRoundsPerLook ? left : kRoundsPerLook;
-    exec.fill(count.view(), 0u);
-    for (int r = 0; r < now; ++r) {
-      const View<uint32_t> count_of_round = count.view().part(r, 1);
-      exec.fill(claim, uint64_t(0));
-      exec.for_each("claim flips", half_edges, ClaimVertices<Key>{key, claim});
-      exec.for_each("list flips", half_edges, ListWinners<Key>{{key, claim}, winners.view(), count_of_round});
-      exec.for_each("flip edges", most, FlipWinners{{key.mesh, winners.view()}, count_of_round});
+struct FlipEdgesInBatches {
+  template <class Key>
+  static int64_t run(CudaExecutor& exec, const Key& key, View<uint64_t> claim, int rounds) {
+    using namespace device_steps;
+    const int64_t half_edges = key.mesh.twin.size, most = claim.size / 4 + 1;  // a flip holds four vertices
+    Buffer<uint32_t> winners = exec.make<uint32_t>(most), count = exec.make<uint32_t>(kRoundsPerLook);
+    int64_t flips = 0;
+    for (int left = rounds; left > 0; left -= kRoundsPerLook) {
+      const int now = left < kRoundsPerLook ? left : kRoundsPerLook;
+      exec.fill(count.view(), 0u);
+      for (int r = 0; r < now; ++r) {
+        const View<uint32_t> count_of_round = count.view().part(r, 1);
+        exec.fill(claim, uint64_t(0));
+        exec.for_each("claim flips", half_edges, ClaimVertices<Key>{key, claim});
+        exec.for_each("list flips", half_edges, ListWinners<Key>{{key, claim}, winners.view(), count_of_round});
+        exec.for_each("flip edges", most, FlipWinners{{key.mesh, winners.view()}, count_of_round});
+      }
+      const Buffer<uint32_t> found = count.to_host();
+      for (const uint32_t n : found) flips += n;
+      if (found[now - 1] == 0) break;
     }
-    const Buffer<uint32_t> found = count.to_host();
-    for (const uint32_t n : found) flips += n;
-    if (found[now - 1] == 0) break;
+    return flips;
   }
-  return flips;
-}
+};
 
-inline void undo_harm(CudaExecutor& exec, View<const TriangleIndices> triangles, double least_merit,
-                      const RestoreHarmed& restore) {
-  const MarkHarmed mark{triangles, restore.before, restore.after, least_merit, restore.harmed};
-  Buffer<uint32_t> some = exec.make<uint32_t>(3);
-  device_steps::launch_together(exec, device_steps::undo_in_rounds, triangles.size, mark, restore, some.data());
-  exec.check("undo harm");
-}
+struct UndoHarmInOneLaunch {
+  static void run(CudaExecutor& exec, View<const TriangleIndices> triangles, double least_merit,
+                  const RestoreHarmed& restore) {
+    const MarkHarmed mark{triangles, restore.before, restore.after, least_merit, restore.harmed};
+    Buffer<uint32_t> some = exec.make<uint32_t>(3);
+    device_steps::launch_together(exec, device_steps::undo_in_rounds, triangles.size, mark, restore, some.data());
+    exec.check("undo harm");
+  }
+};
 
-inline void search_places(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk,
-                          const SearchOptions& options, View<PointQ8> position, View<uint32_t> home,
-                          View<uint32_t> poor) {
-  const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};
-  device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
-                                options.least_merit, options.rounds);
-  exec.check("search places");
-}
+struct SearchPlacesInOneLaunch {
+  static void run(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
+                  View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
+    const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};
+    device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
+                                  options.least_merit, options.rounds);
+    exec.check("search places");
+  }
+};
 
 }  // namespace isoshell::post

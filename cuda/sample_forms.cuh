@@ -122,17 +122,19 @@ struct BlockForm<SampleSites> : leaf_forms::LeafForm<leaf_forms::Offsets> {
 };
 
 /// The lists of sample_sites_body by way of one mask a leaf and triangle: each pair is tested once, by its own thread.
-inline void list_site_triangles(CudaExecutor& exec, const SurfaceView& surface, const VoxelSetView& sites,
-                                const LeafTriangles& lists, SiteSamples& out) {
-  using namespace sample_forms;
-  Buffer<LeafMask> met = exec.make<LeafMask>(lists.triangle.size());
-  exec.for_each("mark voxels met", met.size(),
-                MarkMet{surface, sites.leaf_key, lists.first.view(), lists.triangle.view(), met.view()});
-  const SitesOfLeaf of{sites, lists.first.view(), met.view()};
-  exec.for_each("count site triangles", sites.leaf_key.size, CountMet{of, out.first.view()});
-  out.triangles = exec.make<uint32_t>(exec.exclusive_scan(out.first.view()));
-  exec.for_each("fill site triangles", sites.leaf_key.size,
-                FillMet{of, lists.triangle.view(), out.first.view(), out.triangles.view()});
-}
+struct ListSiteTrianglesByMasks {
+  static void run(CudaExecutor& exec, const SurfaceView& surface, const VoxelSetView& sites, const LeafTriangles& lists,
+                  SiteSamples& out) {
+    using namespace sample_forms;
+    Buffer<LeafMask> met = exec.make<LeafMask>(lists.triangle.size());
+    exec.for_each("mark voxels met", met.size(),
+                  MarkMet{surface, sites.leaf_key, lists.first.view(), lists.triangle.view(), met.view()});
+    const SitesOfLeaf of{sites, lists.first.view(), met.view()};
+    exec.for_each("count site triangles", sites.leaf_key.size, CountMet{of, out.first.view()});
+    out.triangles = exec.make<uint32_t>(exec.exclusive_scan(out.first.view()));
+    exec.for_each("fill site triangles", sites.leaf_key.size,
+                  FillMet{of, lists.triangle.view(), out.first.view(), out.triangles.view()});
+  }
+};
 
 }  // namespace isoshell

@@ -80,10 +80,12 @@ struct BlockForm<component_steps::JoinAcrossLeaves> : leaf_forms::LeafForm<leaf_
   }
 };
 
-inline void join_components(CudaExecutor& exec, const QuadMesh& mesh, View<uint32_t> parent) {
-  const component_steps::LeafEdges of{mesh.corners.view(), mesh.edges.view(), parent};
-  exec.for_each("join inside leaves", mesh.corners.leaf_count(), component_steps::JoinInsideLeaf{of});
-  exec.for_each("join across leaves", mesh.corners.leaf_count(), component_steps::JoinAcrossLeaves{of});
-}
+struct JoinComponentsByLeaves {
+  static void run(CudaExecutor& exec, const QuadMesh& mesh, View<uint32_t> parent) {
+    const component_steps::LeafEdges of{mesh.corners.view(), mesh.edges.view(), parent};
+    exec.for_each("join inside leaves", mesh.corners.leaf_count(), component_steps::JoinInsideLeaf{of});
+    exec.for_each("join across leaves", mesh.corners.leaf_count(), component_steps::JoinAcrossLeaves{of});
+  }
+};
 
 }  // namespace isoshell

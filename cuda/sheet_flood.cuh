@@ -1,5 +1,5 @@
-// find_outside (see stages/sheet_flood_body.h) on the device: a block of threads a block of leaves, eight lanes a leaf,
-// and several rounds between two looks of the host. The fixed point does not depend on who spreads it.
+// PlainFindOutside (see stages/sheet_flood_body.h) on the device: a block of threads a block of leaves, eight lanes a
+// leaf, and several rounds between two looks of the host. The fixed point does not depend on who spreads it.
 #pragma once
 
 #include <algorithm>
@@ -167,7 +167,7 @@ struct Queue {
   Worklist of(int round) const { return {node[round & 1].view(), left.data() + round}; }
 };
 
-/// What find_outside starts from: nothing reached, nothing listed.
+/// What the flood starts from: nothing reached, nothing listed.
 struct Start {
   sheet_steps::FloodState state;
   View<uint32_t> left[2];
@@ -202,41 +202,44 @@ __global__ void turn_queues(Start start, int64_t* listed) {
 
 }  // namespace flood_kernels
 
-inline Outside find_outside(CudaExecutor& exec, const VoxelSetView& blocked, View<const Voxel> hollows) {
-  using namespace flood_kernels;
-  Outside outside;
-  outside.blocked = blocked;
-  outside.leaf = exec.make<LeafMask>(blocked.leaf_key.size);
-  outside.empty = exec.make<BlockMask>(blocked.blocks.size);
-  outside.block = exec.make<uint32_t>(blocked.block_table.size);
-  Buffer<BlockMask> passed_on = exec.make<BlockMask>(blocked.blocks.size);
-  const int64_t entries = blocked.block_table.size;
-  Queue leaves(exec, blocked.leaf_key.size), blocks(exec, entries);
-  sheet_steps::FloodState state = {outside.view(), passed_on.view(), leaves.list_of(0), blocks.list_of(0), 1};
-  const Start start = {state, {leaves.left.view(), blocks.left.view()}, {leaves.capacity, blocks.capacity}};
-  const auto resident = [&](int64_t needed) { return exec.device().resident_blocks(needed, kBlocks); };
-  const int64_t words = std::max(outside.leaf.size() * 8, passed_on.size() * 64);
-  start_flood<<<resident(blocks_for(words, kThreads)), kThreads, 0, exec.stream()>>>(start);
-  exec.check("start flood");
-  enter_from_border<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
-  exec.check("enter from the border");
-  exec.for_each("enter hollows", hollows.size, sheet_steps::EnterHollow{state, hollows});
-  int64_t* const listed = static_cast<int64_t*>(exec.device().pinned());
-  do {
-    for (int round = 0; round < kRoundsPerLook; ++round) {
-      state.leaves = leaves.list_of(round + 1);
-      state.blocks = blocks.list_of(round + 1);
-      ++state.next_round;
-      flood_blocks<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, blocks.of(round));
-      exec.check("flood blocks");
-      flood_leaves<<<resident(blocks_for(leaves.capacity, 32)), kThreads, 0, exec.stream()>>>(state, leaves.of(round));
-      exec.check("flood leaves");
-    }
-    turn_queues<<<1, 1, 0, exec.stream()>>>(start, listed);
-    exec.check("turn queues");
-    exec.device().synchronize();
-  } while (*listed > 0);
-  return outside;
-}
+struct FindOutsideByBlocks {
+  static Outside run(CudaExecutor& exec, const VoxelSetView& blocked, View<const Voxel> hollows) {
+    using namespace flood_kernels;
+    Outside outside;
+    outside.blocked = blocked;
+    outside.leaf = exec.make<LeafMask>(blocked.leaf_key.size);
+    outside.empty = exec.make<BlockMask>(blocked.blocks.size);
+    outside.block = exec.make<uint32_t>(blocked.block_table.size);
+    Buffer<BlockMask> passed_on = exec.make<BlockMask>(blocked.blocks.size);
+    const int64_t entries = blocked.block_table.size;
+    Queue leaves(exec, blocked.leaf_key.size), blocks(exec, entries);
+    sheet_steps::FloodState state = {outside.view(), passed_on.view(), leaves.list_of(0), blocks.list_of(0), 1};
+    const Start start = {state, {leaves.left.view(), blocks.left.view()}, {leaves.capacity, blocks.capacity}};
+    const auto resident = [&](int64_t needed) { return exec.device().resident_blocks(needed, kBlocks); };
+    const int64_t words = std::max(outside.leaf.size() * 8, passed_on.size() * 64);
+    start_flood<<<resident(blocks_for(words, kThreads)), kThreads, 0, exec.stream()>>>(start);
+    exec.check("start flood");
+    enter_from_border<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, entries);
+    exec.check("enter from the border");
+    exec.for_each("enter hollows", hollows.size, sheet_steps::EnterHollow{state, hollows});
+    int64_t* const listed = static_cast<int64_t*>(exec.device().pinned());
+    do {
+      for (int round = 0; round < kRoundsPerLook; ++round) {
+        state.leaves = leaves.list_of(round + 1);
+        state.blocks = blocks.list_of(round + 1);
+        ++state.next_round;
+        flood_blocks<<<resident(entries), kBlockThreads, 0, exec.stream()>>>(state, blocks.of(round));
+        exec.check("flood blocks");
+        flood_leaves<<<resident(blocks_for(leaves.capacity, 32)), kThreads, 0, exec.stream()>>>(state,
+                                                                                                leaves.of(round));
+        exec.check("flood leaves");
+      }
+      turn_queues<<<1, 1, 0, exec.stream()>>>(start, listed);
+      exec.check("turn queues");
+      exec.device().synchronize();
+    } while (*listed > 0);
+    return outside;
+  }
+};
 
 }  // namespace isoshell

@@ -1,5 +1,6 @@
-// split_cells (see stages/dual_split_body.h) on the device: a block of threads a cell. Levels of the breadth-first
-// searches are swept in step; within a level every vertex looks at its neighbours, so nothing depends on an order.
+// dual::PlainSplitCells (see stages/dual_split_body.h) on the device: a block of threads a cell. Levels of the
+// breadth-first searches are swept in step; within a level every vertex looks at its neighbours, so nothing depends on
+// an order.
 #pragma once
 
 #include "cuda/block_form.cuh"
@@ -226,22 +227,24 @@ __global__ void __launch_bounds__(kThreads) apply_in_blocks(int64_t count, Apply
 
 }  // namespace split_kernels
 
-inline void split_cells(CudaExecutor& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
-  using namespace split_kernels;
-  const int64_t members = split.queue.size, vertices = split.label.size;
-  Buffer<uint32_t> place_of = exec.make<uint32_t>(vertices), split_of = exec.make<uint32_t>(split.cells.size.size),
-                   cursor = exec.make<uint32_t>(count), neighbour = exec.make<uint32_t>(members * kSlots),
-                   from_old = exec.make<uint32_t>(members), from_new = exec.make<uint32_t>(members);
-  const Scratch scratch = {place_of.view(),  split_of.view(), cursor.view(),
-                           neighbour.view(), from_old.view(), from_new.view()};
-  exec.for_each("number splits", count, NumberSplits{split.cell, split_of.view(), cursor.view()});
-  exec.for_each("list members", vertices, ListMembers{split, scratch});
-  exec.for_each("list neighbours", members, ListNeighbours{split, scratch});
-  const unsigned blocks = unsigned(count < 65536 ? count : 65536);
-  split_in_blocks<<<blocks, kThreads, 0, exec.stream()>>>(count, split, scratch);
-  exec.check("split cells");
-  apply_in_blocks<<<blocks, kThreads, 0, exec.stream()>>>(count, apply, scratch);
-  exec.check("apply splits");
-}
+struct SplitCellsByBlocks {
+  static void run(CudaExecutor& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
+    using namespace split_kernels;
+    const int64_t members = split.queue.size, vertices = split.label.size;
+    Buffer<uint32_t> place_of = exec.make<uint32_t>(vertices), split_of = exec.make<uint32_t>(split.cells.size.size),
+                     cursor = exec.make<uint32_t>(count), neighbour = exec.make<uint32_t>(members * kSlots),
+                     from_old = exec.make<uint32_t>(members), from_new = exec.make<uint32_t>(members);
+    const Scratch scratch = {place_of.view(),  split_of.view(), cursor.view(),
+                             neighbour.view(), from_old.view(), from_new.view()};
+    exec.for_each("number splits", count, NumberSplits{split.cell, split_of.view(), cursor.view()});
+    exec.for_each("list members", vertices, ListMembers{split, scratch});
+    exec.for_each("list neighbours", members, ListNeighbours{split, scratch});
+    const unsigned blocks = unsigned(count < 65536 ? count : 65536);
+    split_in_blocks<<<blocks, kThreads, 0, exec.stream()>>>(count, split, scratch);
+    exec.check("split cells");
+    apply_in_blocks<<<blocks, kThreads, 0, exec.stream()>>>(count, apply, scratch);
+    exec.check("apply splits");
+  }
+};
 
 }  // namespace isoshell::dual

@@ -36,7 +36,11 @@ int64_t cpu_untangle_sheet(Sheet&, SeedSet&, Context&);
 SeedSet cpu_place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&);
 SeedSet cpu_place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&);
 
-/// What a body that needs a shell on its way calls.
-Shell build_shell_by(CpuExecutor&, const SiteSet&, const ShellOptions&);
+/// The stage, for a body that needs a shell on its way.
+struct CpuBuildShell {
+  static Shell run(CpuExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
+    return cpu_build_shell(sites, options, exec.context());
+  }
+};
 
 }  // namespace isoshell

@@ -1,15 +1,44 @@
-// The kernels of the CPU: what it does in its own way and why that is faster. See stages/plain_kernels.h.
+// The kernels of the CPU: what it does in its own way, and why that is faster. See stages/plain_kernels.h. Beside these
+// it has one stage of its own: cut_false_handles (cpu_cut_handles.cpp), which is sequential by nature and which CUDA
+// takes over.
 #pragma once
 
 #include "stages/plain_kernels.h"
 
 namespace isoshell {
 
+class CpuPassWork;
+class CpuStepWork;
 class LabelLanes;
+class WalksAhead;
+struct CpuBuildShell;
+struct LeafLanes;
+struct ProjectLanes;
 
 struct CpuKernels {
-  /// label_lanes.h: all vertices of a leaf are compared with one seed after the other, in lanes of vectors.
+  /// leaf_lanes.h: separable passes over rows of eight voxels, a row a vector, instead of all sites for each voxel.
+  using LeafPasses = LeafLanes;
+  /// cpu_backend.h: the stage itself, which is instantiated once.
+  using BuildShell = CpuBuildShell;
+  /// project_lanes.h: runs of vertices share the triangles that they meet, which are taken in lanes.
+  using ProjectVertices = ProjectLanes;
+  /// label_lanes.h: all vertices of a leaf are compared with one seed after the other, in lanes.
   using LabelSheet = LabelLanes;
+  /// walk_ahead.h: memory is asked for some walks ahead, and the triangles where walks end are taken in lanes.
+  using Walks = WalksAhead;
+  /// pass_work.h: bounds, last labels and moments of triangles are kept from pass to pass; cells are cut in lanes.
+  using PassWork = CpuPassWork;
+  /// post_work.h: the triangles around each vertex are listed once, samples are sorted by triangle, sums go in lanes.
+  using StepWork = CpuStepWork;
+
+  // Plain: they take little of a run's time, or leave nothing to share between elements.
+  using ListSiteTriangles = PlainKernels::ListSiteTriangles;
+  using FindOutside = PlainKernels::FindOutside;
+  using JoinComponents = PlainKernels::JoinComponents;
+  using SplitCells = PlainKernels::SplitCells;
+  using FlipEdges = PlainKernels::FlipEdges;
+  using UndoHarm = PlainKernels::UndoHarm;
+  using SearchPlaces = PlainKernels::SearchPlaces;
 };
 
 }  // namespace isoshell

@@ -10,9 +10,7 @@ namespace isoshell {
 
 RelaxReport cpu_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
   CpuExecutor exec(context, "relax_sheet");
-  return run_with_threads(context, [&] {
-    return relax_on_sheet_body<CpuExecutor, CpuPassWork>(exec, *OnHost(sheet), on_host(seeds), options);
-  });
+  return run_with_threads(context, [&] { return relax_on_sheet_body(exec, *OnHost(sheet), on_host(seeds), options); });
 }
 
 }  // namespace isoshell

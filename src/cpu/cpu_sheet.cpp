@@ -9,10 +9,6 @@
 
 namespace isoshell {
 
-Shell build_shell_by(CpuExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
-  return cpu_build_shell(sites, options, exec.context());
-}
-
 Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
                       const SiteSamples& samples, const SheetOptions& options, Context& context) {
   CpuExecutor exec(context, "sheet");

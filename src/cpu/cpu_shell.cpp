@@ -9,7 +9,7 @@ namespace isoshell {
 
 Shell cpu_build_shell(const SiteSet& sites, const ShellOptions& options, Context& context) {
   CpuExecutor exec(context, "shell");
-  return run_with_threads(context, [&] { return build_shell_body<LeafLanes>(exec, *OnHost(sites), options); });
+  return run_with_threads(context, [&] { return build_shell_body(exec, *OnHost(sites), options); });
 }
 
 }  // namespace isoshell

@@ -5,7 +5,7 @@
 
 namespace isoshell {
 
-/// Leaf passes of build_shell_body for the CPU.
+/// shell_steps::PlainLeafPasses in lanes.
 struct LeafLanes {
   /// Which voxels of the leaf in the middle lie within the ball's radius of a site.
   static void reached(const Neighbourhood& around, const LeafMask* sites, const Ball& ball, LeafMask& out);

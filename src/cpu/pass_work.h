@@ -18,7 +18,7 @@ struct LeafPatches {
   Buffer<PieceSum> of_vertex;  ///< sum over the triangles whose smallest vertex it is
 };
 
-/// Taken instead of relax_sheet::PassWork.
+/// relax_sheet::PlainPassWork in lanes.
 class CpuPassWork {
  public:
   CpuPassWork(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);

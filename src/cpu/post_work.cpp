@@ -212,7 +212,7 @@ void CpuStepWork::begin(CpuExecutor& exec, const MeshView& mesh) {
 void CpuStepWork::smooth(CpuExecutor& exec, const SmoothVertex& step) {
   const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
   exec.for_each("smooth", vertices.groups(), SmoothVertices{step, vertices});
-  if (step.options.onto_sheet) walk_to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
+  if (step.options.onto_sheet) WalksAhead::to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
 }
 
 void CpuStepWork::sort(CpuExecutor&, int64_t triangles, View<FitSample> samples) {

@@ -16,7 +16,7 @@ struct TrianglesAround {
   Buffer<Triangle> triangles;
 };
 
-/// Taken instead of post::StepWork.
+/// post::PlainStepWork in lanes.
 class CpuStepWork {
  public:
   void begin(CpuExecutor& exec, const post::MeshView& mesh);

@@ -195,7 +195,7 @@ class ProjectRun {
 
 }  // namespace
 
-void project_vertices(CpuExecutor& exec, const sheet_steps::ProjectVertex& step) {
+void ProjectLanes::run(CpuExecutor& exec, const sheet_steps::ProjectVertex& step) {
   const int64_t vertices = step.position.size;
   exec.for_each("project", (vertices + ProjectRun::kVertices - 1) / ProjectRun::kVertices,
                 [&step, vertices](int64_t run) {

@@ -6,7 +6,8 @@
 
 namespace isoshell {
 
-/// Taken instead of the template of stages/sheet_project_body.h.
-void project_vertices(CpuExecutor& exec, const sheet_steps::ProjectVertex& step);
+struct ProjectLanes {
+  static void run(CpuExecutor& exec, const sheet_steps::ProjectVertex& step);
+};
 
 }  // namespace isoshell

@@ -33,20 +33,6 @@ class WalkAhead {
   const View<const uint32_t> home_;
 };
 
-/// Taken instead of the template of stages/sheet_walk.h.
-template <class Step>
-void for_each_walk(CpuExecutor& exec, const char* name, const WalkOntoSheet& walk, View<const uint32_t> home,
-                   Step step) {
-  constexpr int64_t kRun = 128;
-  exec.for_each(name, (home.size + kRun - 1) / kRun, [step, home, ahead = WalkAhead(walk, home)](int64_t run) {
-    const int64_t end = std::min(home.size, (run + 1) * kRun);
-    for (int64_t i = run * kRun; i < end; ++i) {
-      ahead.before(i, end);
-      step(i);
-    }
-  });
-}
-
 /// Walks to the targets of elements one after the other; the triangles at their ends are taken in lanes.
 template <class Step>
 class WalksInLanes {
@@ -110,19 +96,39 @@ class WalksInLanes {
   int first_[FootLanes::kLanes + 1];
 };
 
-/// Taken instead of the template of stages/sheet_walk.h.
-template <class Step>
-void walk_to_targets(CpuExecutor& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
-  constexpr int64_t kRun = 128;
-  exec.for_each(name, (home.size + kRun - 1) / kRun, [walk, step, home, ahead = WalkAhead(walk, home)](int64_t run) {
-    const int64_t end = std::min(home.size, (run + 1) * kRun);
-    WalksInLanes<Step> walks(walk, home, step);
-    for (int64_t i = run * kRun; i < end; ++i) {
-      ahead.before(i, end);
-      PointQ8 target;
-      if (step.aims(i, target)) walks.add(i, target);
-    }
-  });
-}
+/// PlainWalks of stages/sheet_walk.h, a run of elements after the other.
+class WalksAhead {
+ public:
+  template <class Step>
+  static void for_each(CpuExecutor& exec, const char* name, const WalkOntoSheet& walk, View<const uint32_t> home,
+                       Step step) {
+    exec.for_each(name, runs(home.size), [step, home, ahead = WalkAhead(walk, home)](int64_t run) {
+      const int64_t end = end_of(run, home.size);
+      for (int64_t i = run * kRun; i < end; ++i) {
+        ahead.before(i, end);
+        step(i);
+      }
+    });
+  }
+
+  template <class Step>
+  static void to_targets(CpuExecutor& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home,
+                         Step step) {
+    exec.for_each(name, runs(home.size), [walk, step, home, ahead = WalkAhead(walk, home)](int64_t run) {
+      const int64_t end = end_of(run, home.size);
+      WalksInLanes<Step> walks(walk, home, step);
+      for (int64_t i = run * kRun; i < end; ++i) {
+        ahead.before(i, end);
+        PointQ8 target;
+        if (step.aims(i, target)) walks.add(i, target);
+      }
+    });
+  }
+
+ private:
+  static constexpr int64_t kRun = 128;  ///< elements
+  static int64_t runs(int64_t count) { return (count + kRun - 1) / kRun; }
+  static int64_t end_of(int64_t run, int64_t count) { return std::min(count, (run + 1) * kRun); }
+};
 
 }  // namespace isoshell

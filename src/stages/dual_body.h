@@ -188,7 +188,7 @@ class Partition {
       exec_.fill(mark_.view(), uint8_t(SplitCell::kClear));
     }
     const Buffer<uint32_t> ids = new_ids(count, unused);
-    split_cells(
+    Exec::Kernels::SplitCells::run(
         exec_, count,
         SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(), sheet_.position.view(),
                   seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()},

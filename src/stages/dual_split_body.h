@@ -254,10 +254,13 @@ void add_new_faces(Exec& exec, NewFaces faces, View<const uint32_t> new_id, View
   face_triangle = std::move(all);
 }
 
-template <class Exec>
-void split_cells(Exec& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
-  exec.for_each("split cells", count, split);
-  exec.for_each("apply splits", count, apply);
-}
+/// Splits cells in two, a thread a cell.
+struct PlainSplitCells {
+  template <class Exec>
+  static void run(Exec& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
+    exec.for_each("split cells", count, split);
+    exec.for_each("apply splits", count, apply);
+  }
+};
 
 }  // namespace isoshell::dual

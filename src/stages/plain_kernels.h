@@ -1,17 +1,70 @@
-// The kernels of the stage bodies that a backend may do in its own way, and what each computes: one thread an element,
-// written once over an executor. It is the reference that every other set is compared with.
+// The kernels of the stage bodies that a backend may do in its own way, and what each computes. This set holds their
+// definitions: one thread an element, written once over an executor. Every other set gives the same results.
 //
 // A body asks for a kernel by Exec::Kernels::Name. The set is a type, so it is part of the executor's type and of every
 // body's: what a source file includes cannot change which kernel a body gets. Kernels are only declared here. A source
-// file that instantiates a body without the header of one of its kernels does not compile.
+// file that instantiates a body without the header of one of its kernels does not compile. There are no defaults: a new
+// kernel is listed in every set.
 #pragma once
 
 namespace isoshell {
 
+struct PlainBuildShell;
+struct PlainFindOutside;
 struct PlainLabelSheet;
+struct PlainListSiteTriangles;
+struct PlainProjectVertices;
+struct PlainWalks;
+namespace shell_steps {
+struct PlainLeafPasses;
+}
+namespace sheet_steps {
+struct PlainJoinComponents;
+}
+namespace relax_sheet {
+class PlainPassWork;
+}
+namespace dual {
+struct PlainSplitCells;
+}
+namespace post {
+struct PlainFlipEdges;
+struct PlainSearchPlaces;
+struct PlainStepWork;
+struct PlainUndoHarm;
+}  // namespace post
 
 struct PlainKernels {
-  using LabelSheet = PlainLabelSheet;  ///< label_body.h
+  // sample_sites
+  using ListSiteTriangles = PlainListSiteTriangles;  ///< the triangles that meet each site: samples_body.h
+
+  // build_shell
+  using LeafPasses = shell_steps::PlainLeafPasses;  ///< voxels within reach, closest sites of a leaf: shell_body.h
+
+  // build_sheet, build_outline
+  using BuildShell = PlainBuildShell;                       ///< the shell that closing needs: shell_body.h
+  using FindOutside = PlainFindOutside;                     ///< flood from the border: sheet_flood_body.h
+  using JoinComponents = sheet_steps::PlainJoinComponents;  ///< of the boundary: sheet_components_body.h
+  using ProjectVertices = PlainProjectVertices;             ///< onto the nearest triangles: sheet_project_body.h
+
+  // relax_on_sheet, triangulate_dual, improve_mesh
+  using LabelSheet = PlainLabelSheet;  ///< nearest seed of every vertex: label_body.h
+  using Walks = PlainWalks;            ///< along the sheet to what is nearest: sheet_walk.h
+
+  // relax_on_sheet
+  using PassWork = relax_sheet::PlainPassWork;  ///< labels, cells and energy of a pass: relax_sheet_body.h
+
+  // triangulate_dual
+  using SplitCells = dual::PlainSplitCells;  ///< dual_split_body.h
+
+  // improve_mesh
+  using StepWork = post::PlainStepWork;          ///< smoothing and fit: post_body.h
+  using FlipEdges = post::PlainFlipEdges;        ///< in independent sets: post_flips.h
+  using UndoHarm = post::PlainUndoHarm;          ///< of a step, to a fixed point: post_guard.h
+  using SearchPlaces = post::PlainSearchPlaces;  ///< for poor vertices: post_search.h
 };
+
+/// Stands in a set for a kernel that no body asks for, since the backend does the whole stage in its own way.
+struct WholeStage;
 
 }  // namespace isoshell

@@ -81,27 +81,36 @@ struct RotateTriangle {
   ISOSHELL_HD void operator()(int64_t i) const { triangles[i] = smallest_first(triangles[i]); }
 };
 
-/// The steps that take the time, for a backend to do in its own way.
-template <class Exec>
-class StepWork {
- public:
+/// The steps that take the time, each as it is defined.
+struct PlainStepWork {
   /// Before steps between which the triangles stay.
+  template <class Exec>
   void begin(Exec&, const MeshView&) {}
+  template <class Exec>
   void smooth(Exec& exec, const SmoothVertex& step) {
     if (step.options.onto_sheet)
-      for_each_walk(exec, "smooth", step.walk, step.home, step);
+      Exec::Kernels::Walks::for_each(exec, "smooth", step.walk, step.home, step);
     else
       exec.for_each("smooth", step.to.size, step);
   }
   /// Before they are pulled: samples may take another order.
+  template <class Exec>
   void sort(Exec&, int64_t /*triangles*/, View<FitSample>) {}
-  void pull(Exec& exec, const PullCorners& step) { exec.for_each("pull corners", step.sample.size, step); }
-  void fit(Exec& exec, const FitVertex& step) { for_each_walk(exec, "fit", step.walk, step.home, step); }
+  template <class Exec>
+  void pull(Exec& exec, const PullCorners& step) {
+    exec.for_each("pull corners", step.sample.size, step);
+  }
+  template <class Exec>
+  void fit(Exec& exec, const FitVertex& step) {
+    Exec::Kernels::Walks::for_each(exec, "fit", step.walk, step.home, step);
+  }
 };
 
 /// The mesh and its scratch while it is improved.
-template <class Exec, class Work>
+template <class Exec>
 class Improvement {
+  using Kernels = typename Exec::Kernels;
+
  public:
   Improvement(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh)
       : exec_(exec),
@@ -155,7 +164,7 @@ class Improvement {
   void attach_samples() {
     update_seeds();
     Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
-    Exec::Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label.view());
+    Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label.view());
     const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
     samples_of_sheet_ = std::min(sheet_.vertex_count(), kSamplesPerTriangle * smallest);
     const int64_t count = samples_of_sheet_ + sheet_.missed.size();
@@ -259,8 +268,8 @@ class Improvement {
 
   /// Looks for better places for the corners of triangles below kGoodMerit.
   void search(int rounds, double hold, bool onto_sheet) {
-    search_places(exec_, view(), walk_, {rounds, kGoodMerit, size_, hold, onto_sheet}, mesh_.position.view(),
-                  seeds_.home.view(), harmed_.view());
+    Kernels::SearchPlaces::run(exec_, view(), walk_, {rounds, kGoodMerit, size_, hold, onto_sheet},
+                               mesh_.position.view(), seeds_.home.view(), harmed_.view());
   }
 
   /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are
@@ -303,14 +312,15 @@ class Improvement {
   /// Of flips that would keep vertices from going back to where they began, none is made that is near to one.
   template <class MakeKey>
   int64_t flip_by(MakeKey make_key, int rounds) {
-    if (!keep_apart_) return flip_edges(exec_, make_key(), claim_.view(), rounds);
+    if (!keep_apart_) return Kernels::FlipEdges::run(exec_, make_key(), claim_.view(), rounds);
     Buffer<TriangleIndices> before = exec_.template make<TriangleIndices>(mesh_.triangles.size());
     exec_.copy(View<const TriangleIndices>(mesh_.triangles.view()), before.view());
     Buffer<uint32_t> blocked = exec_.template make<uint32_t>(vertices_);
     exec_.fill(blocked.view(), 0u);
     const int64_t pairs = intersections_at(begin_);
     for (int tries = kBlockedFlips;; --tries) {
-      const int64_t flips = flip_edges(exec_, UnblockedFlip{make_key(), blocked.view()}, claim_.view(), rounds);
+      const int64_t flips =
+          Kernels::FlipEdges::run(exec_, UnblockedFlip{make_key(), blocked.view()}, claim_.view(), rounds);
       if (flips == 0 || intersections_at(begin_) <= pairs) return flips;
       exec_.copy(View<const TriangleIndices>(before.view()), mesh_.triangles.view());
       connections_ = Connections(exec_, mesh_);
@@ -346,15 +356,16 @@ class Improvement {
   }
 
   void update_seeds() {
-    for_each_walk(
+    Kernels::Walks::for_each(
         exec_, "update seeds", walk_, seeds_.home.view(),
         UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(), seeds_.home.view()});
   }
 
   /// Where what was moved would harm, `before` takes its place.
   void restore_harmed(double least_merit, View<const PointQ8> before) {
-    undo_harm(exec_, mesh_.triangles.view(), least_merit,
-              RestoreHarmed{before, seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
+    Kernels::UndoHarm::run(
+        exec_, mesh_.triangles.view(), least_merit,
+        RestoreHarmed{before, seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
   }
 
   void take_step() {
@@ -373,7 +384,7 @@ class Improvement {
   WalkOntoSheet walk_;
   Connections connections_;
   bool keep_apart_;
-  Work work_;
+  typename Kernels::StepWork work_;
   EdgeSize size_;
   double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest
   double rms_q8_ = 0;        ///< of the samples' residuals, 0 before they were first looked at
@@ -389,12 +400,12 @@ class Improvement {
 
 }  // namespace post
 
-template <class Exec, class Work = post::StepWork<Exec>>
+template <class Exec>
 PostReport improve_mesh_body(Exec& exec, const Sheet& sheet, const PostOptions& options, SeedSet& seeds,
                              DualMesh& mesh) {
   using namespace post;
   if (mesh.triangles.empty()) return {};
-  Improvement<Exec, Work> work(exec, sheet, options, seeds, mesh);
+  Improvement<Exec> work(exec, sheet, options, seeds, mesh);
   PostReport report;
   const bool flips_only = options.smoothing_steps == 0;
   report.flips = work.flip(options.flip_rounds, kPoorMerit);

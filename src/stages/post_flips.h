@@ -115,19 +115,21 @@ struct Flip {
 
 /// Flips in independent sets until none is left or `rounds` are done: of flips that share a vertex, the one with the
 /// largest key. Returns how many were made.
-template <class Exec, class Key>
-int64_t flip_edges(Exec& exec, const Key& key, View<uint64_t> claim, int rounds) {
-  const int64_t half_edges = key.mesh.twin.size;
-  int64_t flips = 0;
-  for (int r = 0; r < rounds; ++r) {
-    exec.fill(claim, uint64_t(0));
-    exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
-    const Buffer<uint32_t> winners = exec.select(half_edges, WinsItsVertices{key, claim});
-    if (winners.empty()) break;
-    exec.for_each("flip edges", winners.size(), Flip{key.mesh, winners.view()});
-    flips += winners.size();
+struct PlainFlipEdges {
+  template <class Exec, class Key>
+  static int64_t run(Exec& exec, const Key& key, View<uint64_t> claim, int rounds) {
+    const int64_t half_edges = key.mesh.twin.size;
+    int64_t flips = 0;
+    for (int r = 0; r < rounds; ++r) {
+      exec.fill(claim, uint64_t(0));
+      exec.for_each("claim flips", half_edges, ClaimVertices{key, claim});
+      const Buffer<uint32_t> winners = exec.select(half_edges, WinsItsVertices{key, claim});
+      if (winners.empty()) break;
+      exec.for_each("flip edges", winners.size(), Flip{key.mesh, winners.view()});
+      flips += winners.size();
+    }
+    return flips;
   }
-  return flips;
-}
+};
 
 }  // namespace isoshell::post

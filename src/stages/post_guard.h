@@ -45,16 +45,18 @@ struct RestoreHarmed {
 
 /// Undoes the step where it would harm a triangle (ends: what is restored stays so); a restored vertex can harm
 /// another, so up to a fixed point.
-template <class Exec>
-void undo_harm(Exec& exec, View<const TriangleIndices> triangles, double least_merit, const RestoreHarmed& restore) {
-  const int64_t vertices = restore.harmed.size;
-  const MarkHarmed mark{triangles, restore.before, restore.after, least_merit, restore.harmed};
-  for (;;) {
-    exec.fill(restore.harmed, 0u);
-    exec.for_each("mark harmed", triangles.size, mark);
-    if (exec.sum(vertices, IsHarmed{restore.harmed}) == 0) return;
-    exec.for_each("restore harmed", vertices, restore);
+struct PlainUndoHarm {
+  template <class Exec>
+  static void run(Exec& exec, View<const TriangleIndices> triangles, double least_merit, const RestoreHarmed& restore) {
+    const int64_t vertices = restore.harmed.size;
+    const MarkHarmed mark{triangles, restore.before, restore.after, least_merit, restore.harmed};
+    for (;;) {
+      exec.fill(restore.harmed, 0u);
+      exec.for_each("mark harmed", triangles.size, mark);
+      if (exec.sum(vertices, IsHarmed{restore.harmed}) == 0) return;
+      exec.for_each("restore harmed", vertices, restore);
+    }
   }
-}
+};
 
 }  // namespace isoshell::post

@@ -146,18 +146,20 @@ struct SearchOptions {
 };
 
 /// Looks for better places for poor vertices, in rounds of independent ones.
-template <class Exec>
-void search_places(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
-                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
-  for (int r = 0; r < options.rounds; ++r) {
-    exec.fill(poor, 0u);
-    exec.for_each("mark poor", mesh.triangles.size, MarkPoor{mesh.triangles, position, options.least_merit, poor});
-    const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
-    if (chosen.empty()) return;
-    exec.for_each(
-        "search", chosen.size(),
-        SearchVertex{mesh, walk, chosen.view(), options.edge, options.hold, r, options.onto_sheet, position, home});
+struct PlainSearchPlaces {
+  template <class Exec>
+  static void run(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
+                  View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
+    for (int r = 0; r < options.rounds; ++r) {
+      exec.fill(poor, 0u);
+      exec.for_each("mark poor", mesh.triangles.size, MarkPoor{mesh.triangles, position, options.least_merit, poor});
+      const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
+      if (chosen.empty()) return;
+      exec.for_each(
+          "search", chosen.size(),
+          SearchVertex{mesh, walk, chosen.view(), options.edge, options.hold, r, options.onto_sheet, position, home});
+    }
   }
-}
+};
 
 }  // namespace isoshell::post

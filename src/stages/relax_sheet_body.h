@@ -347,11 +347,11 @@ struct FinishPass {
   }
 };
 
-/// What passes spend their time on, for a backend to do in its own way.
-template <class Exec>
-class PassWork {
+/// What passes spend their time on, as it is defined.
+class PlainPassWork {
  public:
-  PassWork(Exec& exec, const Sheet& sheet, const SeedSpacing& spacing)
+  template <class Exec>
+  PlainPassWork(Exec& exec, const Sheet& sheet, const SeedSpacing& spacing)
       : sheet_(sheet),
         spacing_(spacing),
         patches_(make_patches(exec, sheet)),
@@ -359,6 +359,7 @@ class PassWork {
 
   /// Labels the sheet, adds to the cells, and writes each leaf's part of the energy. Nothing counts once the passes
   /// have converged.
+  template <class Exec>
   void measure(Exec& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
                View<const PassState> state) {
     Exec::Kernels::LabelSheet::run(exec, sheet_, seeds, spacing_, labels_.view());
@@ -376,12 +377,13 @@ class PassWork {
 
 }  // namespace relax_sheet
 
-template <class Exec, class Work = relax_sheet::PassWork<Exec>>
+template <class Exec>
 RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options) {
   using namespace relax_sheet;
+  using Kernels = typename Exec::Kernels;
   const int64_t count = seeds.size();
   const SeedSpacing spacing = seed_spacing(exec, sheet, count);
-  Work pass(exec, sheet, spacing);
+  typename Kernels::PassWork pass(exec, sheet, spacing);
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
   Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(sheet.corners.leaf_count());
@@ -395,11 +397,11 @@ RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, 
   const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
 
   return run_passes(exec, state.view(), options.max_passes, [&] {
-    walk_to_targets(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
+    Kernels::Walks::to_targets(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
     exec.fill(cells.view(), CellSum{0, 0, 0, 0});
     pass.measure(exec, seeds, cells.view(), leaf_energy.view(), state.view());
-    walk_to_targets(exec, "move past centre", walk, seeds.home.view(),
-                    MovePastCentre{moving, cells.view(), state.view()});
+    Kernels::Walks::to_targets(exec, "move past centre", walk, seeds.home.view(),
+                               MovePastCentre{moving, cells.view(), state.view()});
     sum_split_into(exec, energy.view(), leaf_energy.view());
     exec.for_each("finish pass", 1, finish);
   });

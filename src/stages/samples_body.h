@@ -100,17 +100,19 @@ struct SampleSites {
 };
 
 /// Fills out.triangles; out.first holds zeros, then the offsets.
-template <class Exec>
-void list_site_triangles(Exec& exec, const SurfaceView& surface, const VoxelSetView& sites, const LeafTriangles& lists,
-                         SiteSamples& out) {
-  const int64_t leaves = sites.leaf_key.size;
-  exec.for_each("count site triangles", leaves,
-                CountSiteTriangles{surface, sites, lists.first.view(), lists.triangle.view(), out.first.view()});
-  out.triangles = exec.template make<uint32_t>(exec.exclusive_scan(out.first.view()));
-  exec.for_each("fill site triangles", leaves,
-                FillSiteTriangles{surface, sites, lists.first.view(), lists.triangle.view(), out.first.view(),
-                                  out.triangles.view()});
-}
+struct PlainListSiteTriangles {
+  template <class Exec>
+  static void run(Exec& exec, const SurfaceView& surface, const VoxelSetView& sites, const LeafTriangles& lists,
+                  SiteSamples& out) {
+    const int64_t leaves = sites.leaf_key.size;
+    exec.for_each("count site triangles", leaves,
+                  CountSiteTriangles{surface, sites, lists.first.view(), lists.triangle.view(), out.first.view()});
+    out.triangles = exec.template make<uint32_t>(exec.exclusive_scan(out.first.view()));
+    exec.for_each("fill site triangles", leaves,
+                  FillSiteTriangles{surface, sites, lists.first.view(), lists.triangle.view(), out.first.view(),
+                                    out.triangles.view()});
+  }
+};
 
 template <class Exec>
 SiteSamples sample_sites_body(Exec& exec, const LatticeSurface& surface, const SiteSet& sites) {
@@ -125,7 +127,7 @@ SiteSamples sample_sites_body(Exec& exec, const LatticeSurface& surface, const S
   SiteSamples out;
   out.first = exec.template make<int64_t>(count + 1);
   exec.fill(out.first.view(), int64_t(0));
-  list_site_triangles(exec, triangles, set, lists, out);
+  Exec::Kernels::ListSiteTriangles::run(exec, triangles, set, lists, out);
   out.sample = exec.template make<SiteSample>(count);
   Buffer<Normal8> normal = exec.template make<Normal8>(surface.triangles.size());
   exec.for_each("find normals", normal.size(), FindNormals{triangles, normal.view()});

@@ -117,7 +117,7 @@ struct WantInsideNeighbours {
 template <class Exec>
 Solid complement_of_outside(Exec& exec, const VoxelSetView& walls, View<const Voxel> hollows) {
   Solid solid;
-  solid.outside = find_outside(exec, walls, hollows);
+  solid.outside = Exec::Kernels::FindOutside::run(exec, walls, hollows);
   solid.set.leaf_key = exec.template make<uint64_t>(walls.leaf_key.size);
   solid.set.mask = exec.template make<LeafMask>(walls.leaf_key.size);
   exec.for_each("solid", walls.leaf_key.size,
@@ -155,8 +155,7 @@ Buffer<Voxel> empty_voxels(Exec& exec, const SolidView& solid, View<const Voxel>
 /// Result: with outside(r) the voxels that a path of face neighbours, all farther than r from every site (centre to
 /// centre), joins to the border or a hollow, the solid is every voxel farther than r from outside(r). r = 0: every
 /// voxel that is not outside. The solid holds all sites; holes up to 2 r voxels wide close. Sites keep 2 r + 1 voxels
-/// off the border. Cost: r > 0 builds two shells of thickness r by the executor's build_shell_by, so peak memory grows
-/// with r.
+/// off the border. Cost: r > 0 builds two shells of thickness r by the set's BuildShell, so peak memory grows with r.
 template <class Exec>
 Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   using namespace sheet_steps;
@@ -164,11 +163,11 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
   if (closing_vox == 0) return complement_of_outside(exec, site_view, sites.hollows.view());
   Solid solid;
   const ShellOptions band{closing_vox};
-  solid.blocked = build_shell_by(exec, sites, band).voxels;
-  solid.outside = find_outside(exec, solid.blocked.view(), sites.hollows.view());
+  solid.blocked = Exec::Kernels::BuildShell::run(exec, sites, band).voxels;
+  solid.outside = Exec::Kernels::FindOutside::run(exec, solid.blocked.view(), sites.hollows.view());
   // The voxel of the outside nearest to any other voxel is one of its rim: a step towards that voxel leaves the
   // outside.
-  solid.set = build_shell_by(exec, rim_of_outside(exec, solid.outside.view()), band).voxels;
+  solid.set = Exec::Kernels::BuildShell::run(exec, rim_of_outside(exec, solid.outside.view()), band).voxels;
   exec.for_each("remove the thickened outside", solid.set.leaf_count(),
                 RemoveThickenedOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
   index_leaves(exec, solid.set, BlockExtent(site_view).vox);

@@ -38,10 +38,12 @@ struct JoinCorners {
 };
 
 /// Joins what the boundary's quads connect; every parent is its own before.
-template <class Exec>
-void join_components(Exec& exec, const QuadMesh& mesh, View<uint32_t> parent) {
-  exec.for_each("join corners", mesh.quads.size(), JoinCorners{mesh.quads.view(), parent});
-}
+struct PlainJoinComponents {
+  template <class Exec>
+  static void run(Exec& exec, const QuadMesh& mesh, View<uint32_t> parent) {
+    exec.for_each("join corners", mesh.quads.size(), JoinCorners{mesh.quads.view(), parent});
+  }
+};
 
 struct IsRoot {
   View<const uint32_t> parent;
@@ -171,7 +173,7 @@ ComponentCount drop_small_components(Exec& exec, QuadMesh& mesh, LaidMesh& laid,
   const int64_t vertices = laid.position.size();
   Buffer<uint32_t> root = exec.template make<uint32_t>(vertices);
   exec.for_each("components", vertices, StartAlone{root.view()});
-  join_components(exec, mesh, root.view());
+  Exec::Kernels::JoinComponents::run(exec, mesh, root.view());
   exec.for_each("flatten components", vertices, PointAtRoot{root.view()});
   const Buffer<uint32_t> roots = exec.select(vertices, IsRoot{root.view()});
   if (min_area_q16 <= 0) return {roots.size(), 0};

@@ -234,33 +234,35 @@ struct FloodQueue {
 /// Result: outside are the voxels that are not in `blocked` and that a path of face neighbours which are not in
 /// `blocked` either joins to the border of the lattice or to one of `hollows`. Cost: each leaf is visited once per wave
 /// of new outside voxels.
-template <class Exec>
-Outside find_outside(Exec& exec, const VoxelSetView& blocked, View<const Voxel> hollows) {
-  using namespace sheet_steps;
-  Outside outside;
-  outside.blocked = blocked;
-  outside.leaf = exec.template make<LeafMask>(blocked.leaf_key.size);
-  outside.empty = exec.template make<BlockMask>(blocked.blocks.size);
-  outside.block = exec.template make<uint32_t>(blocked.block_table.size);
-  Buffer<BlockMask> passed_on = exec.template make<BlockMask>(blocked.blocks.size);
-  exec.fill(outside.leaf.view(), LeafMask{});
-  exec.fill(outside.empty.view(), BlockMask{});
-  exec.fill(passed_on.view(), BlockMask{});
-  exec.fill(outside.block.view(), 0u);
+struct PlainFindOutside {
+  template <class Exec>
+  static Outside run(Exec& exec, const VoxelSetView& blocked, View<const Voxel> hollows) {
+    using namespace sheet_steps;
+    Outside outside;
+    outside.blocked = blocked;
+    outside.leaf = exec.template make<LeafMask>(blocked.leaf_key.size);
+    outside.empty = exec.template make<BlockMask>(blocked.blocks.size);
+    outside.block = exec.template make<uint32_t>(blocked.block_table.size);
+    Buffer<BlockMask> passed_on = exec.template make<BlockMask>(blocked.blocks.size);
+    exec.fill(outside.leaf.view(), LeafMask{});
+    exec.fill(outside.empty.view(), BlockMask{});
+    exec.fill(passed_on.view(), BlockMask{});
+    exec.fill(outside.block.view(), 0u);
 
-  FloodQueue<Exec> leaves(exec, blocked.leaf_key.size), blocks(exec, blocked.block_table.size);
-  FloodState state = {outside.view(), passed_on.view(), leaves.next(), blocks.next(), 1};
-  exec.for_each("enter from the border", blocked.block_table.size, EnterFromBorder{state});
-  exec.for_each("enter hollows", hollows.size, EnterHollow{state, hollows});
-  for (;;) {
-    const View<const uint32_t> leaf_list = leaves.advance(exec), block_list = blocks.advance(exec);
-    if (leaf_list.empty() && block_list.empty()) return outside;
-    state.leaves = leaves.next();
-    state.blocks = blocks.next();
-    ++state.next_round;
-    exec.for_each("flood blocks", block_list.size, FloodBlock{state, block_list});
-    exec.for_each("flood leaves", leaf_list.size, FloodLeaf{state, leaf_list});
+    FloodQueue<Exec> leaves(exec, blocked.leaf_key.size), blocks(exec, blocked.block_table.size);
+    FloodState state = {outside.view(), passed_on.view(), leaves.next(), blocks.next(), 1};
+    exec.for_each("enter from the border", blocked.block_table.size, EnterFromBorder{state});
+    exec.for_each("enter hollows", hollows.size, EnterHollow{state, hollows});
+    for (;;) {
+      const View<const uint32_t> leaf_list = leaves.advance(exec), block_list = blocks.advance(exec);
+      if (leaf_list.empty() && block_list.empty()) return outside;
+      state.leaves = leaves.next();
+      state.blocks = blocks.next();
+      ++state.next_round;
+      exec.for_each("flood blocks", block_list.size, FloodBlock{state, block_list});
+      exec.for_each("flood leaves", leaf_list.size, FloodLeaf{state, leaf_list});
+    }
   }
-}
+};
 
 }  // namespace isoshell

@@ -201,10 +201,13 @@ LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
   return laid;
 }
 
-template <class Exec>
-void project_vertices(Exec& exec, const sheet_steps::ProjectVertex& step) {
-  exec.for_each("project", step.position.size, step);
-}
+/// Runs the step for all vertices.
+struct PlainProjectVertices {
+  template <class Exec>
+  static void run(Exec& exec, const sheet_steps::ProjectVertex& step) {
+    exec.for_each("project", step.position.size, step);
+  }
+};
 
 template <class Exec>
 LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
@@ -215,7 +218,7 @@ LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& su
   laid.position = exec.template make<PointQ8>(vertices);
   laid.source_triangle = exec.template make<uint32_t>(vertices);
   smooth_corners(exec, mesh, kSheetSmoothingSteps, laid.smooth, laid.position);
-  project_vertices(
+  Exec::Kernels::ProjectVertices::run(
       exec, ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
   smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
   return laid;

@@ -51,12 +51,6 @@ inline WalkOntoSheet walk_onto(const Sheet& sheet) {
           sheet.vertex_triangles.view()};
 }
 
-/// Runs a step whose element i walks from vertex home[i].
-template <class Exec, class Step>
-void for_each_walk(Exec& exec, const char* name, const WalkOntoSheet&, View<const uint32_t> home, Step step) {
-  exec.for_each(name, home.size, step);
-}
-
 /// Takes element i, where step.aims(i, target) says so, from vertex home[i] to the target, and tells the step the
 /// vertex and the point on the sheet where it arrives.
 template <class Step>
@@ -71,9 +65,18 @@ struct WalkToTarget {
     step.arrives(i, vertex, walk.closest_around(vertex, target));
   }
 };
-template <class Exec, class Step>
-void walk_to_targets(Exec& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
-  exec.for_each(name, home.size, WalkToTarget<Step>{walk, home, step});
-}
+
+struct PlainWalks {
+  /// Runs a step whose element i walks from vertex home[i].
+  template <class Exec, class Step>
+  static void for_each(Exec& exec, const char* name, const WalkOntoSheet&, View<const uint32_t> home, Step step) {
+    exec.for_each(name, home.size, step);
+  }
+  /// Takes every element that aims at a target there. See WalkToTarget.
+  template <class Exec, class Step>
+  static void to_targets(Exec& exec, const char* name, const WalkOntoSheet& walk, View<uint32_t> home, Step step) {
+    exec.for_each(name, home.size, WalkToTarget<Step>{walk, home, step});
+  }
+};
 
 }  // namespace isoshell

@@ -51,8 +51,8 @@ int64_t projected_elsewhere(const TriangleSoup& soup, int32_t resolution, int32_
   const auto step = [&](int k) {
     return sheet_steps::ProjectVertex{view, may_bridge, smooth.view(), point[k].view(), triangle[k].view()};
   };
-  project_vertices(exec, step(0));
-  exec.for_each("project", count, step(1));
+  CpuKernels::ProjectVertices::run(exec, step(0));
+  PlainKernels::ProjectVertices::run(exec, step(1));
   int64_t elsewhere = 0;
   for (int64_t i = 0; i < count; ++i)
     elsewhere += point[0][i] != point[1][i] || triangle[0][i] != triangle[1][i] ? 1 : 0;
@@ -98,8 +98,8 @@ TEST_CASE("walks: those in lanes arrive where one after the other do", "[walk][s
       for (int k = 0; k < 2; ++k) vertex[k][i] = kNone, point[k][i] = {0, 0, 0};
     }
     const auto step = [&](int k) { return NoteArrivals{target.view(), vertex[k].view(), point[k].view()}; };
-    walk_to_targets(exec, "walk", walk_onto(sheet), home.view(), step(0));
-    exec.for_each("walk", count, WalkToTarget<NoteArrivals>{walk_onto(sheet), home.view(), step(1)});
+    CpuKernels::Walks::to_targets(exec, "walk", walk_onto(sheet), home.view(), step(0));
+    PlainKernels::Walks::to_targets(exec, "walk", walk_onto(sheet), home.view(), step(1));
     for (int64_t i = 0; i < count; ++i) CHECK((vertex[0][i] == vertex[1][i] && point[0][i] == point[1][i]));
   }
 }

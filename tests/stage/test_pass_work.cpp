@@ -45,10 +45,10 @@ void check_labels(const Sheet& sheet, SeedSet seeds) {
 }
 
 /// What a pass measures: the cells, and the energy of every leaf.
-template <class Exec, class Work>
+template <class Exec>
 std::vector<int64_t> measured(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
   Exec exec(context, "test");
-  Work work(exec, sheet, seed_spacing(exec, sheet, seeds.size()));
+  typename Exec::Kernels::PassWork work(exec, sheet, seed_spacing(exec, sheet, seeds.size()));
   Buffer<relax_sheet::CellSum> cells(seeds.size());
   Buffer<SplitSum> energy(sheet.corners.leaf_count());
   Buffer<PassState> state(1);
@@ -64,8 +64,7 @@ std::vector<int64_t> measured(const Sheet& sheet, const SeedSet& seeds, TestCont
 void check_cells(const Sheet& sheet, const SeedSet& seeds) {
   CAPTURE(seeds.size());
   TestContext context;
-  CHECK(measured<CpuExecutor, CpuPassWork>(sheet, seeds, context) ==
-        measured<PlainExecutor, relax_sheet::PassWork<PlainExecutor>>(sheet, seeds, context));
+  CHECK(measured<CpuExecutor>(sheet, seeds, context) == measured<PlainExecutor>(sheet, seeds, context));
 }
 
 }  // namespace

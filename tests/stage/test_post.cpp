@@ -305,7 +305,8 @@ TEST_CASE("post: an edge far from the surface is flipped where that brings it ne
     const post::ChordGaps gaps{now.view(), flipped.view()};
     exec.for_each("measure", 1, post::MeasureSamples{view, mesh.position.view(), sample.view(), far.view(), gaps});
     Buffer<uint64_t> claim(mesh.position.size());
-    const int64_t flips = post::flip_edges(exec, post::ChordKey{view, mesh.position.view(), gaps}, claim.view(), 1);
+    const int64_t flips =
+        PlainKernels::FlipEdges::run(exec, post::ChordKey{view, mesh.position.view(), gaps}, claim.view(), 1);
     CHECK(view.are_neighbours(c, d) == (flips > 0));
     CHECK(view.are_neighbours(a, b) == (flips == 0));
     return flips;
