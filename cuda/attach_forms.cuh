@@ -24,9 +24,7 @@ __device__ inline NearestPoint nearest_point(const PointGridView& grid, PointQ8 
 }  // namespace attach_forms
 
 template <>
-struct BlockForm<attach_seeds::AttachSeed> {
-  static constexpr int kThreads = 32;
-  static constexpr int kElements = 4;
+struct BlockForm<attach_seeds::AttachSeed> : FormOf<attach_seeds::AttachSeed> {
   struct Shared {};
   static __device__ void run(const attach_seeds::AttachSeed& step, int64_t i, Shared&, int lane) {
     const PointQ8 p = step.where_from(i);

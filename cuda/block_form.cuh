@@ -1,23 +1,29 @@
-// Steps whose elements are too large for one thread: how several threads share one. A step without a form here runs on
-// one thread an element. A form computes what the step's operator() computes: same definition, same bytes.
+// Steps whose elements are too large for one thread: how several threads share one. CudaKernels::Forms lists them; a
+// step that is not there runs on one thread an element. A form computes what the step's operator() computes: same
+// definition, same bytes.
 #pragma once
 
 #include <cstdint>
 
+#include "cuda/cuda_kernels.h"
 #include "cuda/warp.cuh"
 #include "isoshell/buffer.h"
 
 namespace isoshell {
 
-/// Specialise it for a step:
-///   static constexpr int kThreads;    // an element: 32 or fewer (a power of two), or a whole block
-///   static constexpr int kElements;   // of a block: 1 where kThreads > 32
+/// Specialised for every step that is listed, from FormOf:
 ///   struct Shared;                    // of an element
 ///   static __device__ void run(const Step& step, int64_t i, Shared& shared, int lane);
-/// Threads of an element synchronise by sync_element<Form>().
+/// Threads of an element synchronise by sync_element<Form>(). A listed step does not compile without its form's header.
 template <class Step>
-struct BlockForm {
-  static constexpr int kThreads = 1;
+struct BlockForm;
+
+/// What a form begins with.
+template <class Step, int kThreadsOfElement = 32, int kElementsOfBlock = 4>
+struct FormOf {
+  static_assert(CudaKernels::Forms::has<Step>, "list the step in cuda/cuda_kernels.h: its form is not used else");
+  static constexpr int kThreads = kThreadsOfElement;  ///< 32 or fewer (a power of two), or a whole block
+  static constexpr int kElements = kElementsOfBlock;  ///< 1 where kThreads > 32
 };
 
 /// Lanes of the calling thread's group of `kThreads` within its warp.

@@ -9,6 +9,8 @@
 //   relax_in_shell (cuda_relax_shell.cu): two kernels a pass, none of which the host waits for.
 #pragma once
 
+#include <type_traits>
+
 #include "stages/plain_kernels.h"
 
 namespace isoshell {
@@ -25,6 +27,53 @@ struct FlipEdgesInBatches;
 struct SearchPlacesInOneLaunch;
 struct UndoHarmInOneLaunch;
 }  // namespace post
+
+// Steps with a form; see CudaKernels::Forms.
+struct SampleSites;
+struct SortLeafTriangles;
+namespace attach_seeds {
+struct AttachSeed;
+}
+namespace component_steps {
+struct JoinAcrossLeaves;
+struct JoinInsideLeaf;
+}  // namespace component_steps
+namespace dual {
+struct DecideStray;
+struct FoundCell;
+struct JoinStray;
+}  // namespace dual
+namespace flood {
+struct FindNeighbours;
+struct ListReached;
+struct Spread;
+}  // namespace flood
+namespace label {
+template <int kCapacity>
+struct LabelLeaf;
+}
+namespace sample_forms {
+struct CountMet;
+struct FillMet;
+}  // namespace sample_forms
+namespace sheet_steps {
+struct CountFaces;
+struct DescribeCorners;
+struct FindAdditions;
+struct ListFaces;
+struct MarkCorners;
+struct SmoothCorners;
+struct WantCornerLeaves;
+}  // namespace sheet_steps
+namespace topology_steps {
+struct AddAreas;
+}
+
+template <class... Steps>
+struct StepList {
+  template <class Step>
+  static constexpr bool has = (std::is_same_v<Step, Steps> || ...);
+};
 
 struct CudaKernels {
   /// sample_forms.cuh: a thread tests one leaf with one triangle, once; a leaf's sites read the masks that come out.
@@ -53,6 +102,27 @@ struct CudaKernels {
 
   // Of stages that are its own from end to end.
   using LeafPasses = WholeStage;
+
+  /// Steps whose elements are too large for one thread, or lie so that neighbouring threads would read far apart.
+  /// BlockForm (block_form.cuh) says how several threads share an element of each.
+  using Forms = StepList<
+      // attach_forms.cuh: a warp a seed, a lane a row of the grid's cells.
+      attach_seeds::AttachSeed,
+      // flood_forms.cuh: a warp a leaf; what it reads of its 26 neighbours lies in shared memory.
+      flood::FindNeighbours, flood::ListReached, flood::Spread,
+      // label_forms.cuh: a warp a leaf, which gathers the leaf's candidates together.
+      label::LabelLeaf<256>,
+      // sample_forms.cuh: a warp a leaf, a lane a site.
+      SortLeafTriangles, SampleSites, sample_forms::CountMet, sample_forms::FillMet,
+      // sheet_components.cuh: a warp a leaf, a lane a vertex.
+      component_steps::JoinInsideLeaf, component_steps::JoinAcrossLeaves,
+      // sheet_forms.cuh: a warp a leaf; the voxels around it lie in shared memory.
+      sheet_steps::FindAdditions, sheet_steps::WantCornerLeaves, sheet_steps::MarkCorners, sheet_steps::DescribeCorners,
+      sheet_steps::CountFaces, sheet_steps::ListFaces, sheet_steps::SmoothCorners,
+      // stray_forms.cuh: a warp a stray piece, a lane a vertex of it.
+      dual::DecideStray, dual::JoinStray, dual::FoundCell,
+      // surface_forms.cuh: a block a run of faces, whose areas one thread then adds in order.
+      topology_steps::AddAreas>;
 };
 
 }  // namespace isoshell

@@ -107,7 +107,7 @@ class CudaExecutor {
   template <class Step>
   void for_each(const char* name, int64_t count, Step step) {
     if (count <= 0) return;
-    if constexpr (BlockForm<Step>::kThreads > 1)
+    if constexpr (Kernels::Forms::has<Step>)
       launch_block_form(count, step, stream());
     else
       cuda_steps::run_step<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, step);

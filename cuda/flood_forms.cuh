@@ -21,7 +21,7 @@ struct Scratch {
 }  // namespace flood_forms
 
 template <>
-struct BlockForm<flood::FindNeighbours> : leaf_forms::LeafForm<flood_forms::NoShared> {
+struct BlockForm<flood::FindNeighbours> : leaf_forms::LeafForm<flood::FindNeighbours, flood_forms::NoShared> {
   static __device__ void run(const flood::FindNeighbours& step, int64_t leaf, Shared&, int n) {
     if (n >= 27) return;
     const Voxel at = leaf_of_key(step.voxels.leaf_key[leaf]);
@@ -30,7 +30,7 @@ struct BlockForm<flood::FindNeighbours> : leaf_forms::LeafForm<flood_forms::NoSh
 };
 
 template <>
-struct BlockForm<flood::ListReached> : leaf_forms::LeafForm<flood_forms::NoShared> {
+struct BlockForm<flood::ListReached> : leaf_forms::LeafForm<flood::ListReached, flood_forms::NoShared> {
   static __device__ void run(const flood::ListReached& step, int64_t i, Shared&, int n) {
     const uint32_t leaf = step.leaves[i];
     const flood::Front& front = step.state.front[step.round & 1];
@@ -42,7 +42,7 @@ struct BlockForm<flood::ListReached> : leaf_forms::LeafForm<flood_forms::NoShare
 };
 
 template <>
-struct BlockForm<flood::Spread> : leaf_forms::LeafForm<flood_forms::Scratch> {
+struct BlockForm<flood::Spread> : leaf_forms::LeafForm<flood::Spread, flood_forms::Scratch> {
   static __device__ void run(const flood::Spread& step, int64_t i, Shared& scratch, int lane) {
     const flood::State& state = step.state;
     const uint32_t leaf = step.leaves[i];

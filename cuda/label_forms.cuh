@@ -14,10 +14,9 @@ struct Candidates {
 };
 
 /// One leaf and the warp that labels it.
-template <class Step>
 class LeafLabeller {
  public:
-  __device__ LeafLabeller(const Step& step, int64_t leaf, Candidates& candidates, int lane)
+  __device__ LeafLabeller(const label::LabelLeaf<>& step, int64_t leaf, Candidates& candidates, int lane)
       : step_(step),
         candidates_(candidates),
         lane_(lane),
@@ -133,7 +132,7 @@ class LeafLabeller {
     return best;
   }
 
-  const Step& step_;
+  const label::LabelLeaf<>& step_;
   Candidates& candidates_;
   const int lane_;
   const int64_t begin_, end_;
@@ -142,13 +141,11 @@ class LeafLabeller {
 
 }  // namespace label_forms
 
-template <int kPlain>
-struct BlockForm<label::LabelLeaf<kPlain>> {
-  static constexpr int kThreads = 32;
-  static constexpr int kElements = 4;
+template <>
+struct BlockForm<label::LabelLeaf<>> : FormOf<label::LabelLeaf<>> {
   using Shared = label_forms::Candidates;
-  static __device__ void run(const label::LabelLeaf<kPlain>& step, int64_t leaf, Shared& candidates, int lane) {
-    label_forms::LeafLabeller<label::LabelLeaf<kPlain>>(step, leaf, candidates, lane).run();
+  static __device__ void run(const label::LabelLeaf<>& step, int64_t leaf, Shared& candidates, int lane) {
+    label_forms::LeafLabeller(step, leaf, candidates, lane).run();
   }
 };
 

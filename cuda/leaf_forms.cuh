@@ -6,10 +6,8 @@
 
 namespace isoshell::leaf_forms {
 
-template <class SharedOfLeaf>
-struct LeafForm {
-  static constexpr int kThreads = 32;
-  static constexpr int kElements = 4;
+template <class Step, class SharedOfLeaf>
+struct LeafForm : FormOf<Step> {
   using Shared = SharedOfLeaf;
 };
 

@@ -64,7 +64,7 @@ __device__ inline void for_each_site(const VoxelSetView& sites, int64_t leaf, le
 }  // namespace sample_forms
 
 template <>
-struct BlockForm<sample_forms::CountMet> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+struct BlockForm<sample_forms::CountMet> : leaf_forms::LeafForm<sample_forms::CountMet, leaf_forms::Offsets> {
   static __device__ void run(const sample_forms::CountMet& step, int64_t leaf, Shared& shared, int lane) {
     sample_forms::for_each_site(step.of.sites, leaf, shared, lane, [&](int offset, int64_t site) {
       int64_t seen = 0;
@@ -75,7 +75,7 @@ struct BlockForm<sample_forms::CountMet> : leaf_forms::LeafForm<leaf_forms::Offs
 };
 
 template <>
-struct BlockForm<sample_forms::FillMet> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+struct BlockForm<sample_forms::FillMet> : leaf_forms::LeafForm<sample_forms::FillMet, leaf_forms::Offsets> {
   static __device__ void run(const sample_forms::FillMet& step, int64_t leaf, Shared& shared, int lane) {
     sample_forms::for_each_site(step.of.sites, leaf, shared, lane, [&](int offset, int64_t site) {
       int64_t at = step.first[site];
@@ -86,9 +86,7 @@ struct BlockForm<sample_forms::FillMet> : leaf_forms::LeafForm<leaf_forms::Offse
 
 /// Sorts by counting the smaller ones; long lists by one lane in place.
 template <>
-struct BlockForm<SortLeafTriangles> {
-  static constexpr int kThreads = 32;
-  static constexpr int kElements = 4;
+struct BlockForm<SortLeafTriangles> : FormOf<SortLeafTriangles> {
   static constexpr int kMost = 512;
   struct Shared {
     uint32_t triangle[kMost];
@@ -112,7 +110,7 @@ struct BlockForm<SortLeafTriangles> {
 };
 
 template <>
-struct BlockForm<SampleSites> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+struct BlockForm<SampleSites> : leaf_forms::LeafForm<SampleSites, leaf_forms::Offsets> {
   static __device__ void run(const SampleSites& step, int64_t leaf, Shared& shared, int lane) {
     const Voxel at = leaf_of_key(step.sites.leaf_key[leaf]);
     sample_forms::for_each_site(step.sites, leaf, shared, lane, [&](int offset, int64_t site) {

@@ -38,7 +38,8 @@ __device__ inline void for_each_rising_edge(uint8_t edges, int offset, Visit vis
 }  // namespace component_steps
 
 template <>
-struct BlockForm<component_steps::JoinInsideLeaf> : leaf_forms::LeafForm<component_steps::LeafSets> {
+struct BlockForm<component_steps::JoinInsideLeaf>
+    : leaf_forms::LeafForm<component_steps::JoinInsideLeaf, component_steps::LeafSets> {
   static __device__ void run(const component_steps::JoinInsideLeaf& step, int64_t leaf, Shared& sets, int lane) {
     const component_steps::LeafEdges& of = step.of;
     const int count = leaf_forms::list_active(of.corners.mask[leaf], sets.offset, lane);
@@ -63,7 +64,8 @@ struct BlockForm<component_steps::JoinInsideLeaf> : leaf_forms::LeafForm<compone
 };
 
 template <>
-struct BlockForm<component_steps::JoinAcrossLeaves> : leaf_forms::LeafForm<leaf_forms::Offsets> {
+struct BlockForm<component_steps::JoinAcrossLeaves>
+    : leaf_forms::LeafForm<component_steps::JoinAcrossLeaves, leaf_forms::Offsets> {
   static __device__ void run(const component_steps::JoinAcrossLeaves& step, int64_t leaf, Shared& shared, int lane) {
     const component_steps::LeafEdges& of = step.of;
     const int count = leaf_forms::list_active(of.corners.mask[leaf], shared.offset, lane);

@@ -109,7 +109,8 @@ struct FaceNeighbours {
 }  // namespace leaf_forms
 
 template <>
-struct BlockForm<sheet_steps::FindAdditions> : leaf_forms::LeafForm<leaf_forms::WindowAndAdditions> {
+struct BlockForm<sheet_steps::FindAdditions>
+    : leaf_forms::LeafForm<sheet_steps::FindAdditions, leaf_forms::WindowAndAdditions> {
   static __device__ void run(const sheet_steps::FindAdditions& step, int64_t i, Shared& shared, int lane) {
     const Voxel l = leaf_of_key(step.solid.set.leaf_key[step.list[i]]);
     if (!leaf_forms::load_window(step.solid, l, shared.window, lane)) {
@@ -143,7 +144,8 @@ struct BlockForm<sheet_steps::FindAdditions> : leaf_forms::LeafForm<leaf_forms::
 };
 
 template <>
-struct BlockForm<sheet_steps::WantCornerLeaves> : leaf_forms::LeafForm<leaf_forms::WarpWindow> {
+struct BlockForm<sheet_steps::WantCornerLeaves>
+    : leaf_forms::LeafForm<sheet_steps::WantCornerLeaves, leaf_forms::WarpWindow> {
   static __device__ void run(const sheet_steps::WantCornerLeaves& step, int64_t i, Shared& shared, int lane) {
     const Voxel l = leaf_of_key(step.solid.set.leaf_key[i]);
     uint32_t want = 0;
@@ -160,7 +162,7 @@ struct BlockForm<sheet_steps::WantCornerLeaves> : leaf_forms::LeafForm<leaf_form
 };
 
 template <>
-struct BlockForm<sheet_steps::MarkCorners> : leaf_forms::LeafForm<leaf_forms::WarpWindow> {
+struct BlockForm<sheet_steps::MarkCorners> : leaf_forms::LeafForm<sheet_steps::MarkCorners, leaf_forms::WarpWindow> {
   static __device__ void run(const sheet_steps::MarkCorners& step, int64_t i, Shared& shared, int lane) {
     const Voxel l = leaf_of_key(step.solid.set.leaf_key[i]);
     const bool mixed = leaf_forms::load_window(step.solid, l, shared, lane);
@@ -173,7 +175,8 @@ struct BlockForm<sheet_steps::MarkCorners> : leaf_forms::LeafForm<leaf_forms::Wa
 };
 
 template <>
-struct BlockForm<sheet_steps::DescribeCorners> : leaf_forms::LeafForm<leaf_forms::WindowAndOffsets> {
+struct BlockForm<sheet_steps::DescribeCorners>
+    : leaf_forms::LeafForm<sheet_steps::DescribeCorners, leaf_forms::WindowAndOffsets> {
   static __device__ void run(const sheet_steps::DescribeCorners& step, int64_t i, Shared& shared, int lane) {
     const Voxel l = leaf_of_key(step.corners.leaf_key[i]);
     leaf_forms::load_window(step.solid, l, shared.window, lane);
@@ -184,7 +187,7 @@ struct BlockForm<sheet_steps::DescribeCorners> : leaf_forms::LeafForm<leaf_forms
 };
 
 template <>
-struct BlockForm<sheet_steps::CountFaces> : leaf_forms::LeafForm<leaf_forms::WarpWindow> {
+struct BlockForm<sheet_steps::CountFaces> : leaf_forms::LeafForm<sheet_steps::CountFaces, leaf_forms::WarpWindow> {
   static __device__ void run(const sheet_steps::CountFaces& step, int64_t i, Shared& shared, int lane) {
     int faces = 0;
     if (leaf_forms::load_window(step.solid, leaf_of_key(step.solid.set.leaf_key[i]), shared, lane))
@@ -200,7 +203,7 @@ struct BlockForm<sheet_steps::CountFaces> : leaf_forms::LeafForm<leaf_forms::War
 
 /// Lanes take the rows (x, y) in pairs, so that their quads follow each other in order.
 template <>
-struct BlockForm<sheet_steps::ListFaces> : leaf_forms::LeafForm<leaf_forms::WarpCornerLookup> {
+struct BlockForm<sheet_steps::ListFaces> : leaf_forms::LeafForm<sheet_steps::ListFaces, leaf_forms::WarpCornerLookup> {
   static __device__ void run(const sheet_steps::ListFaces& step, int64_t i, Shared& shared, int lane) {
     if (step.first[i + 1] == step.first[i]) return;
     const Voxel l = leaf_of_key(step.solid.set.leaf_key[i]);
@@ -218,7 +221,8 @@ struct BlockForm<sheet_steps::ListFaces> : leaf_forms::LeafForm<leaf_forms::Warp
 };
 
 template <>
-struct BlockForm<sheet_steps::SmoothCorners> : leaf_forms::LeafForm<leaf_forms::FaceNeighbours> {
+struct BlockForm<sheet_steps::SmoothCorners>
+    : leaf_forms::LeafForm<sheet_steps::SmoothCorners, leaf_forms::FaceNeighbours> {
   static __device__ void run(const sheet_steps::SmoothCorners& step, int64_t i, Shared& shared, int lane) {
     shared.load(step.corners, leaf_of_key(step.corners.leaf_key[i]), lane);
     const int count = leaf_forms::list_active(step.corners.mask[i], shared.offset, lane);

@@ -7,10 +7,10 @@
 namespace isoshell {
 namespace stray_forms {
 
-struct StrayForm {
-  static constexpr int kThreads = 32;
-  static constexpr int kElements = 4;
-  struct Shared {};
+struct NoShared {};
+template <class Step>
+struct StrayForm : FormOf<Step> {
+  using Shared = NoShared;
 };
 
 __device__ inline PointQ8 middle(const dual::StraysView& strays, int64_t s, View<const PointQ8> position, int lane) {
@@ -37,7 +37,7 @@ struct Nearest {
 }  // namespace stray_forms
 
 template <>
-struct BlockForm<dual::DecideStray> : stray_forms::StrayForm {
+struct BlockForm<dual::DecideStray> : stray_forms::StrayForm<dual::DecideStray> {
   static __device__ void run(const dual::DecideStray& step, int64_t i, Shared&, int lane) {
     const dual::StraysView& strays = step.strays;
     const int64_t s = step.waiting[i], size = strays.first[s + 1] - strays.first[s];
@@ -68,7 +68,7 @@ struct BlockForm<dual::DecideStray> : stray_forms::StrayForm {
 };
 
 template <>
-struct BlockForm<dual::JoinStray> : stray_forms::StrayForm {
+struct BlockForm<dual::JoinStray> : stray_forms::StrayForm<dual::JoinStray> {
   static __device__ void run(const dual::JoinStray& step, int64_t i, Shared&, int lane) {
     const int64_t s = step.waiting[step.index[i]], first = step.strays.first[s], end = step.strays.first[s + 1];
     const uint32_t owner = step.decision[step.index[i]], root = step.cells.root[owner];
@@ -81,7 +81,7 @@ struct BlockForm<dual::JoinStray> : stray_forms::StrayForm {
 };
 
 template <>
-struct BlockForm<dual::FoundCell> : stray_forms::StrayForm {
+struct BlockForm<dual::FoundCell> : stray_forms::StrayForm<dual::FoundCell> {
   static __device__ void run(const dual::FoundCell& step, int64_t i, Shared&, int lane) {
     const int64_t s = step.waiting[step.index[i]], first = step.strays.first[s], end = step.strays.first[s + 1];
     const PointQ8 middle = stray_forms::middle(step.strays, s, step.seeds.vertex_position, lane);

@@ -8,10 +8,8 @@ namespace isoshell {
 
 /// The threads measure the faces, one of them adds in order.
 template <>
-struct BlockForm<topology_steps::AddAreas> {
+struct BlockForm<topology_steps::AddAreas> : FormOf<topology_steps::AddAreas, 256, 1> {
   using Step = topology_steps::AddAreas;
-  static constexpr int kThreads = 256;
-  static constexpr int kElements = 1;
   struct Shared {
     double area[Step::kChunk];
   };
