@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-void cuda_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) {
+void CudaBackend::attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) const {
   CudaExecutor exec(context, "attach");
   attach_to_sheet_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), halvings);
 }

@@ -8,8 +8,8 @@
 
 namespace isoshell {
 
-DualMesh cuda_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
-                               Context& context) {
+DualMesh CudaBackend::triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options,
+                                       DualReport& report, Context& context) const {
   CudaExecutor exec(context, "dual");
   return triangulate_dual_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), options, report);
 }

@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-VoronoiLabels cuda_flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) {
+VoronoiLabels CudaBackend::flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) const {
   CudaExecutor exec(context, "flood");
   return flood_shell_body(exec, *OnDevice<Shell>(exec, shell), *OnDevice<SeedSet>(exec, seeds));
 }

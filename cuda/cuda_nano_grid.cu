@@ -239,8 +239,8 @@ Buffer<std::byte> build(CudaExecutor& exec, const VoxelSet& voxels, const Lattic
 
 }  // namespace
 
-Buffer<std::byte> cuda_nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name,
-                                       Context& context) {
+Buffer<std::byte> CudaBackend::nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name,
+                                               Context& context) const {
   CudaExecutor exec(context, "nano_shell");
   const OnDevice<VoxelSet> here(exec, voxels);
   return build(exec, *here, frame, name);

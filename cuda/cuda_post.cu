@@ -7,8 +7,8 @@
 
 namespace isoshell {
 
-PostReport cuda_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                             Context& context) {
+PostReport CudaBackend::improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                                     Context& context) const {
   CudaExecutor exec(context, "post");
   return improve_mesh_body(exec, *OnDevice<Sheet>(exec, sheet), options, on_device(exec, seeds), on_device(exec, mesh));
 }

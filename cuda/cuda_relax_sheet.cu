@@ -84,7 +84,8 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
 
 }  // namespace
 
-RelaxReport cuda_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
+RelaxReport CudaBackend::relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options,
+                                        Context& context) const {
   CudaExecutor exec(context, "relax_sheet");
   const OnDevice<Sheet> here(exec, sheet);
   on_device(exec, seeds);

@@ -56,8 +56,8 @@ RelaxReport relax_by_leaves(CudaExecutor& exec, const Shell& shell, const SiteSe
 
 }  // namespace
 
-RelaxReport cuda_relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
-                                const RelaxOptions& options, Context& context) {
+RelaxReport CudaBackend::relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
+                                        SeedSet& seeds, const RelaxOptions& options, Context& context) const {
   CudaExecutor exec(context, "relax_shell");
   return relax_by_leaves(exec, *OnDevice<Shell>(exec, shell), *OnDevice<SiteSet>(exec, sites),
                          *OnDevice<SiteSamples>(exec, samples), on_device(exec, seeds), options);

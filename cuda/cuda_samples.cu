@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-SiteSamples cuda_sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) {
+SiteSamples CudaBackend::sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) const {
   CudaExecutor exec(context, "samples");
   return sample_sites_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, sites));
 }

@@ -5,13 +5,13 @@
 
 namespace isoshell {
 
-SeedSet cuda_place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) {
+SeedSet CudaBackend::place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) const {
   CudaExecutor exec(context, "seeds");
   return place_seeds_body(exec, *OnDevice<Sheet>(exec, sheet), options);
 }
 
-SeedSet cuda_place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,
-                                  Context& context) {
+SeedSet CudaBackend::place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,
+                                          Context& context) const {
   CudaExecutor exec(context, "seeds");
   return place_seeds_body(exec, *OnDevice<SiteSet>(exec, sites), *OnDevice<SiteSamples>(exec, samples), options);
 }

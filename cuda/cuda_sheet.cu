@@ -11,28 +11,28 @@
 namespace isoshell {
 
 Shell CudaBuildShell::run(CudaExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
-  return cuda_build_shell(sites, options, exec.context());
+  return CudaBackend().build_shell(sites, options, exec.context());
 }
 
-Sheet cuda_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
-                       const SiteSamples& samples, const SheetOptions& options, Context& context) {
+Sheet CudaBackend::build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+                               const SiteSamples& samples, const SheetOptions& options, Context& context) const {
   CudaExecutor exec(context, "sheet");
   return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, walls),
                           *OnDevice<SiteSet>(exec, sites), *OnDevice<SiteSamples>(exec, samples), options);
 }
 
-SiteSet cuda_coarsen_sites(const SiteSet& sites, Context& context) {
+SiteSet CudaBackend::coarsen_sites(const SiteSet& sites, Context& context) const {
   CudaExecutor exec(context, "coarsen");
   return coarsen_sites_body(exec, *OnDevice<SiteSet>(exec, sites));
 }
 
-Sheet cuda_build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
-                         Context& context) {
+Sheet CudaBackend::build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                                 Context& context) const {
   CudaExecutor exec(context, "outline");
   return build_outline_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
 }
 
-int64_t cuda_six_volume_vox(const Sheet& sheet, Context& context) {
+int64_t CudaBackend::six_volume_vox(const Sheet& sheet, Context& context) const {
   CudaExecutor exec(context, "sheet");
   return six_volume_vox_body(exec, *OnDevice<Sheet>(exec, sheet));
 }

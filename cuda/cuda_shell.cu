@@ -183,7 +183,7 @@ void fill_shell(CudaExecutor& exec, const VoxelSetView& sites, Shell& shell) {
 
 }  // namespace
 
-Shell cuda_build_shell(const SiteSet& site_set, const ShellOptions& options, Context& context) {
+Shell CudaBackend::build_shell(const SiteSet& site_set, const ShellOptions& options, Context& context) const {
   CudaExecutor exec(context, "shell");
   const OnDevice<SiteSet> sites_here(exec, site_set);
   const VoxelSetView sites = sites_here->voxels.view();

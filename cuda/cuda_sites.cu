@@ -326,7 +326,7 @@ SiteSet voxelize_on_device(CudaExecutor& exec, const LatticeSurface& surface) {
 
 }  // namespace
 
-SiteSet cuda_voxelize(const LatticeSurface& surface, Context& context) {
+SiteSet CudaBackend::voxelize(const LatticeSurface& surface, Context& context) const {
   CudaExecutor exec(context, "sites");
   return voxelize_on_device(exec, *OnDevice<LatticeSurface>(exec, surface));
 }

@@ -6,15 +6,15 @@
 
 namespace isoshell {
 
-SeedSet cuda_subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
-                             Context& context) {
+SeedSet CudaBackend::subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+                                     Context& context) const {
   CudaExecutor exec(context, "subdivide");
   return subdivide_seeds_body(exec, *OnDevice<Sheet>(exec, sheet), *OnDevice<DualMesh>(exec, mesh),
                               *OnDevice<SeedSet>(exec, seeds), target);
 }
 
-void cuda_collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
-                         bool keep_apart) {
+void CudaBackend::collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
+                                 bool keep_apart) const {
   CudaExecutor exec(context, "collapse");
   collapse_edges_body(exec, *OnDevice<Sheet>(exec, sheet), {target, keep_apart}, on_device(exec, seeds),
                       on_device(exec, mesh));

@@ -26,12 +26,12 @@ struct DeviceSoup {
 
 }  // namespace
 
-InputTopology cuda_measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {
+InputTopology CudaBackend::measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) const {
   CudaExecutor exec(context, "surface");
   return measure_topology_body(exec, DeviceSoup(exec, soup).view(), dirt);
 }
 
-LatticeSurface cuda_snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
+LatticeSurface CudaBackend::snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) const {
   CudaExecutor exec(context, "surface");
   return snap_surface_body(exec, DeviceSoup(exec, soup).view(), frame);
 }

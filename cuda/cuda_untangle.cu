@@ -5,7 +5,7 @@
 
 namespace isoshell {
 
-int64_t cuda_untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context) {
+int64_t CudaBackend::untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context) const {
   CudaExecutor exec(context, "untangle");
   return untangle_sheet_body(exec, on_device(exec, sheet), on_device(exec, seeds));
 }

@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-void cpu_attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) {
+void CpuBackend::attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) const {
   CpuExecutor exec(context, "attach");
   run_with_threads(context, [&] { attach_to_sheet_body(exec, *OnHost(sheet), on_host(seeds), halvings); });
 }

@@ -150,7 +150,8 @@ SiteSet walls_around(CpuExecutor& exec, const HandleCutter& cutter, const Box& b
 
 }  // namespace
 
-SiteSet cpu_cut_false_handles(const SiteSet& sites, const SiteSamples& samples, int64_t genus, Context& context) {
+SiteSet CpuBackend::cut_false_handles(const SiteSet& sites, const SiteSamples& samples, int64_t genus,
+                                      Context& context) const {
   CpuExecutor exec(context, "cut handles");
   return run_with_threads(context, [&]() -> SiteSet {
     const OnHost<SiteSet> here(sites);

@@ -7,8 +7,8 @@
 
 namespace isoshell {
 
-DualMesh cpu_triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
-                              Context& context) {
+DualMesh CpuBackend::triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options,
+                                      DualReport& report, Context& context) const {
   CpuExecutor exec(context, "dual");
   return run_with_threads(context,
                           [&] { return triangulate_dual_body(exec, *OnHost(sheet), on_host(seeds), options, report); });

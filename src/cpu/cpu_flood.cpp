@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-VoronoiLabels cpu_flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) {
+VoronoiLabels CpuBackend::flood_shell(const Shell& shell, const SeedSet& seeds, Context& context) const {
   CpuExecutor exec(context, "flood");
   return run_with_threads(context, [&] { return flood_shell_body(exec, *OnHost(shell), *OnHost(seeds)); });
 }

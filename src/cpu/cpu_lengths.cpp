@@ -6,27 +6,27 @@
 
 namespace isoshell {
 
-void cpu_set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Context& context) {
+void CpuBackend::set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Context& context) const {
   CpuExecutor exec(context, "lengths");
   run_with_threads(context, [&] { set_edge_lengths_body(exec, on_host(sheet), raw.to_host(), slope_q16); });
 }
 
-void cpu_smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context) {
+void CpuBackend::smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context) const {
   CpuExecutor exec(context, "lengths");
   run_with_threads(context, [&] { smooth_edge_lengths_body(exec, on_host(sheet), rounds); });
 }
 
-int64_t cpu_seed_shares(const Sheet& sheet, Context& context) {
+int64_t CpuBackend::seed_shares(const Sheet& sheet, Context& context) const {
   CpuExecutor exec(context, "lengths");
   return run_with_threads(context, [&] { return seed_shares_body(exec, *OnHost(sheet)); });
 }
 
-void cpu_copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context) {
+void CpuBackend::copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context) const {
   CpuExecutor exec(context, "lengths");
   run_with_threads(context, [&] { copy_edge_lengths_body(exec, *OnHost(from), halvings, on_host(to)); });
 }
 
-Buffer<uint32_t> cpu_measure_curvature(const Sheet& sheet, int32_t rounds, Context& context) {
+Buffer<uint32_t> CpuBackend::measure_curvature(const Sheet& sheet, int32_t rounds, Context& context) const {
   CpuExecutor exec(context, "lengths");
   return run_with_threads(context, [&] { return measure_curvature_body(exec, *OnHost(sheet), rounds); });
 }

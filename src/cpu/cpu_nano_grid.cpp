@@ -4,8 +4,9 @@
 
 namespace isoshell {
 
-Buffer<std::byte> cpu_nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name, Context&) {
-  return nano_index_grid(*OnHost(voxels), frame, name);
+Buffer<std::byte> CpuBackend::nano_index_grid(const VoxelSet& voxels, const LatticeFrame& frame, const char* name,
+                                              Context&) const {
+  return isoshell::nano_index_grid(*OnHost(voxels), frame, name);
 }
 
 }  // namespace isoshell

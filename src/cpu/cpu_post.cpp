@@ -9,8 +9,8 @@
 
 namespace isoshell {
 
-PostReport cpu_improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                            Context& context) {
+PostReport CpuBackend::improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+                                    Context& context) const {
   CpuExecutor exec(context, "post");
   return run_with_threads(
       context, [&] { return improve_mesh_body(exec, *OnHost(sheet), options, on_host(seeds), on_host(mesh)); });

@@ -8,7 +8,8 @@
 
 namespace isoshell {
 
-RelaxReport cpu_relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
+RelaxReport CpuBackend::relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options,
+                                       Context& context) const {
   CpuExecutor exec(context, "relax_sheet");
   return run_with_threads(context, [&] { return relax_on_sheet_body(exec, *OnHost(sheet), on_host(seeds), options); });
 }

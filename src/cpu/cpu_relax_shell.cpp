@@ -6,8 +6,8 @@
 
 namespace isoshell {
 
-RelaxReport cpu_relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
-                               const RelaxOptions& options, Context& context) {
+RelaxReport CpuBackend::relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
+                                       SeedSet& seeds, const RelaxOptions& options, Context& context) const {
   CpuExecutor exec(context, "relax_shell");
   return run_with_threads(context, [&] {
     return relax_in_shell_body(exec, *OnHost(shell), *OnHost(sites), *OnHost(samples), on_host(seeds), options);

@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-SiteSamples cpu_sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) {
+SiteSamples CpuBackend::sample_sites(const LatticeSurface& surface, const SiteSet& sites, Context& context) const {
   CpuExecutor exec(context, "samples");
   return run_with_threads(context, [&] { return sample_sites_body(exec, *OnHost(surface), *OnHost(sites)); });
 }

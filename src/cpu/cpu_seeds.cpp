@@ -6,13 +6,13 @@
 
 namespace isoshell {
 
-SeedSet cpu_place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) {
+SeedSet CpuBackend::place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) const {
   CpuExecutor exec(context, "seeds");
   return run_with_threads(context, [&] { return place_seeds_body(exec, *OnHost(sheet), options); });
 }
 
-SeedSet cpu_place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,
-                                 Context& context) {
+SeedSet CpuBackend::place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,
+                                         Context& context) const {
   CpuExecutor exec(context, "seeds");
   return run_with_threads(context, [&] { return place_seeds_body(exec, *OnHost(sites), *OnHost(samples), options); });
 }

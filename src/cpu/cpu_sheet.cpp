@@ -9,26 +9,26 @@
 
 namespace isoshell {
 
-Sheet cpu_build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
-                      const SiteSamples& samples, const SheetOptions& options, Context& context) {
+Sheet CpuBackend::build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+                              const SiteSamples& samples, const SheetOptions& options, Context& context) const {
   CpuExecutor exec(context, "sheet");
   return run_with_threads(context, [&] {
     return build_sheet_body(exec, *OnHost(surface), *OnHost(walls), *OnHost(sites), *OnHost(samples), options);
   });
 }
 
-SiteSet cpu_coarsen_sites(const SiteSet& sites, Context& context) {
+SiteSet CpuBackend::coarsen_sites(const SiteSet& sites, Context& context) const {
   CpuExecutor exec(context, "coarsen");
   return run_with_threads(context, [&] { return coarsen_sites_body(exec, *OnHost(sites)); });
 }
 
-Sheet cpu_build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
-                        Context& context) {
+Sheet CpuBackend::build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                                Context& context) const {
   CpuExecutor exec(context, "outline");
   return run_with_threads(context, [&] { return build_outline_body(exec, *OnHost(sites), frame, options); });
 }
 
-int64_t cpu_six_volume_vox(const Sheet& sheet, Context& context) {
+int64_t CpuBackend::six_volume_vox(const Sheet& sheet, Context& context) const {
   CpuExecutor exec(context, "sheet");
   return run_with_threads(context, [&] { return six_volume_vox_body(exec, *OnHost(sheet)); });
 }

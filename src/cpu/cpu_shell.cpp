@@ -7,7 +7,7 @@
 
 namespace isoshell {
 
-Shell cpu_build_shell(const SiteSet& sites, const ShellOptions& options, Context& context) {
+Shell CpuBackend::build_shell(const SiteSet& sites, const ShellOptions& options, Context& context) const {
   CpuExecutor exec(context, "shell");
   return run_with_threads(context, [&] { return build_shell_body(exec, *OnHost(sites), options); });
 }

@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-SiteSet cpu_voxelize(const LatticeSurface& surface, Context& context) {
+SiteSet CpuBackend::voxelize(const LatticeSurface& surface, Context& context) const {
   CpuExecutor exec(context, "sites");
   return run_with_threads(context, [&] { return voxelize_body(exec, *OnHost(surface)); });
 }

@@ -6,12 +6,12 @@
 
 namespace isoshell {
 
-InputTopology cpu_measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {
+InputTopology CpuBackend::measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) const {
   CpuExecutor exec(context, "surface");
   return run_with_threads(context, [&] { return measure_topology_body(exec, view_of(soup), dirt); });
 }
 
-LatticeSurface cpu_snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
+LatticeSurface CpuBackend::snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) const {
   CpuExecutor exec(context, "surface");
   return run_with_threads(context, [&] { return snap_surface_body(exec, view_of(soup), frame); });
 }

@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-int64_t cpu_untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context) {
+int64_t CpuBackend::untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context) const {
   CpuExecutor exec(context, "untangle");
   return run_with_threads(context, [&] { return untangle_sheet_body(exec, on_host(sheet), on_host(seeds)); });
 }

@@ -17,7 +17,7 @@ const BackendTable& backend_for(const Context& context) {
 
 void finish_stages(Context& context) { backend_for(context).finish_stages(context); }
 
-const char* backend_name(const Context& context) { return backend_for(context).name; }
+const char* backend_name(const Context& context) { return backend_for(context).name(); }
 
 DeviceInfo device_info(const Context& context) {
   return &backend_for(context) == &cpu_backend() ? DeviceInfo() : cuda_device_info(context.device);
