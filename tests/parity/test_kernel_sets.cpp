@@ -1,14 +1,24 @@
-// Kernel sets: bodies run the kernels of the set that their executor names, and every set gives the same products.
+// Kernel sets: bodies run the kernels of the set that their executor names, and every set gives what the plain one
+// gives. What the stages run is CpuKernels, or with --cuda CudaKernels.
 #include <type_traits>
 
 #include "cpu/label_lanes.h"
 #include "isoshell/stages.h"
+#include "parity/product_hash.h"
 #include "stages/dual_body.h"
+#include "stages/post_body.h"
+#include "stages/relax_sheet_body.h"
+#include "stages/samples_body.h"
+#include "stages/sheet_body.h"
+#include "stages/shell_body.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
+#include "support/site_shapes.h"
+#include "support/solid_soup.h"
 #include "support/test_context.h"
 
 using namespace isoshell;
+using parity::hash_arrays;
 
 namespace {
 
@@ -34,6 +44,28 @@ std::vector<uint32_t> labels_of_partition(const Sheet& sheet, const SeedSet& see
   return {cells.label().begin(), cells.label().end()};
 }
 
+struct Lattice {
+  LatticeSurface surface;
+  SiteSet sites;
+  SiteSamples samples;
+};
+Lattice lattice_of(const TriangleSoup& soup, int32_t resolution, TestContext& context) {
+  WorldPoint lo, hi;
+  bounding_box(soup, lo, hi);
+  Lattice l;
+  l.surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
+  l.sites = voxelize(l.surface, context);
+  l.samples = sample_sites(l.surface, l.sites, context);
+  return l;
+}
+
+std::vector<shapes::NamedSoup> named_soups() {
+  return {{"torus", shapes::torus(2, 0.7, 80, 35)},
+          {"sieve", shapes::sieve(3, 4, 3, 3)},
+          {"two spheres", shapes::together(shapes::sphere({0, 0, 0}, 1, 32), shapes::sphere({0, 0, 3}, 0.4, 16))},
+          {"random soup", shapes::random_soup(150, 4, 3, 1)}};
+}
+
 }  // namespace
 
 // The kernels were once chosen by what a source file included: the same partition labelled in lanes in one of them and
@@ -50,4 +82,59 @@ TEST_CASE("kernels: bodies of different sets live side by side, each with its ow
   CHECK(labels_of_partition<CpuExecutor>(sheet, seeds, context) == counted);
   CHECK(labels_of_partition<PlainExecutor>(sheet, seeds, context) == counted);
   CHECK(CountingKernels::calls == 1);
+}
+
+TEST_CASE("kernels: samples and shells are those of the plain set", "[kernels][parity][cuda]") {
+  TestContext context;
+  PlainExecutor exec(context, "test");
+  for (const shapes::NamedSoup& shape : named_soups()) {
+    INFO(shape.name);
+    const Lattice l = lattice_of(shape.soup, 60, context);
+    CHECK(hash_arrays(l.samples) == hash_arrays(sample_sites_body(exec, l.surface, l.sites)));
+    for (const int32_t band_vox : {1, 3, 9})
+      CHECK(hash_arrays(build_shell(l.sites, {band_vox}, context)) ==
+            hash_arrays(build_shell_body(exec, l.sites, {band_vox})));
+  }
+}
+
+TEST_CASE("kernels: sheets are those of the plain set", "[kernels][parity][cuda]") {
+  TestContext context;
+  PlainExecutor exec(context, "test");
+  for (const shapes::NamedSoup& shape : named_soups())
+    for (const SheetOptions& options : {SheetOptions{0, 0}, SheetOptions{2, 0}, SheetOptions{0, 300 << 16}}) {
+      INFO(shape.name << ", closing " << options.closing_vox);
+      const Lattice l = lattice_of(shape.soup, 60, context);
+      const Sheet plain = build_sheet_body(exec, l.surface, l.sites, l.sites, l.samples, options);
+      CHECK(hash_arrays(build_sheet(l.surface, l.sites, l.samples, options, context)) == hash_arrays(plain));
+    }
+}
+
+TEST_CASE("kernels: relaxed seeds, duals and improved meshes are those of the plain set", "[kernels][parity][cuda]") {
+  TestContext context;
+  PlainExecutor exec(context, "test");
+  const Sheet even = torus_sheet(), varied = with_lengths(torus_sheet(), 4), plate = plate_sheet();
+  int64_t split = 0, flips = 0;
+  for (const Sheet* sheet : {&even, &varied, &plate})
+    for (const int64_t count : {4, 700}) {  // few seeds make cells that must be split
+      INFO(count << " seeds on a sheet of " << sheet->vertex_count() << " vertices");
+      SeedSet seeds = place_seeds(*sheet, {count, 3}, context), plain_seeds = to_host(seeds);
+      const RelaxReport report = relax_on_sheet(*sheet, seeds, {8, 0, 0}, context);
+      CHECK(report.energy == relax_on_sheet_body(exec, *sheet, plain_seeds, {8, 0, 0}).energy);
+      CHECK(hash_arrays(seeds) == hash_arrays(plain_seeds));
+
+      DualReport dual_report, plain_report;
+      DualMesh mesh = triangulate_dual(*sheet, seeds, {}, dual_report, context);
+      DualMesh plain_mesh = triangulate_dual_body(exec, *sheet, plain_seeds, {}, plain_report);
+      REQUIRE(dual_report.failed_cells == 0);
+      CHECK(dual_report.repair_rounds == plain_report.repair_rounds);
+      CHECK(hash_arrays(mesh) == hash_arrays(plain_mesh));
+      split += dual_report.inserted_seeds;
+
+      flips += improve_mesh(*sheet, {}, seeds, mesh, context).flips;
+      improve_mesh_body(exec, *sheet, {}, plain_seeds, plain_mesh);
+      CHECK(hash_arrays(mesh) == hash_arrays(plain_mesh));
+      CHECK(hash_arrays(seeds) == hash_arrays(plain_seeds));
+    }
+  CHECK(split > 0);
+  CHECK(flips > 0);
 }
