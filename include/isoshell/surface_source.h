@@ -20,6 +20,10 @@ struct DirtCounts {
   int64_t unreferenced_vertices = 0;
   int64_t nonmanifold_edges = 0;   ///< shared by more than two faces
   int64_t inconsistent_edges = 0;  ///< shared by two faces that disagree about the orientation
+  // What a PLY file holds beyond what its header declares; all of it is passed over.
+  int64_t long_rows = 0;      ///< text rows with values behind their last property, of elements that were read
+  int64_t surplus_rows = 0;   ///< text rows behind the last one
+  int64_t surplus_bytes = 0;  ///< bytes behind the last row of a binary file
 };
 
 /// Triangles in world units. Indices are in range; positions are finite for every referenced vertex.

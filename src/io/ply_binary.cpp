@@ -277,31 +277,27 @@ void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyEleme
 
 }  // namespace
 
-void read_ply_binary(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout,
-                     VertexTable& vertices, std::vector<FaceCollector>& faces) {
+void read_ply_binary(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body) {
   std::vector<BinaryRows> rows;
   int64_t offset = header.body;
   for (const PlyElement& element : header.elements) {
     rows.emplace_back(source, header, element, offset);
     offset = rows.back().end();
   }
-  const char* const left_over = std::find_if(source.begin() + offset, source.end(),
-                                             [](char c) { return c != '\0' && c != '\n' && !is_blank(c); });
-  if (left_over != source.end())
-    source.refuse_byte(left_over - source.begin(), std::to_string(source.size() - offset) +
-                                                       " bytes follow the last row that the header promises; "
-                                                       "a count is wrong, or the file is damaged");
+  const bool is_padding =
+      std::all_of(source.begin() + offset, source.end(), [](char c) { return c == '\0' || c == '\n' || is_blank(c); });
+  if (!is_padding) body.dirt.surplus_bytes = source.size() - offset;
 
   const auto rows_of = [&](const PlyElement* element) { return rows[size_t(element - header.elements.data())]; };
   if (layout.vertices) {
-    vertices = VertexTable(source, layout.vertices->count);
-    read_vertices(source, rows_of(layout.vertices), layout, vertices);
+    body.vertices = VertexTable(source, layout.vertices->count);
+    read_vertices(source, rows_of(layout.vertices), layout, body.vertices);
   }
   for (const PlyElement& element : header.elements) {
     if (&element != layout.faces && &element != layout.strips) continue;
     const bool is_strip = &element == layout.strips;
     const int list = is_strip ? layout.strip_corners : layout.face_corners;
-    if (element.count > 0) read_faces(source, rows_of(&element), element, list, is_strip, vertices, faces);
+    if (element.count > 0) read_faces(source, rows_of(&element), element, list, is_strip, body.vertices, body.faces);
   }
 }
 

@@ -15,11 +15,19 @@ struct PlyMeshLayout {
   int face_corners = -1, strip_corners = -1;  ///< list properties
 };
 
-/// Reads the body: positions into `vertices`, then faces and strips, in file order, into `faces` (made as needed).
-void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout,
-                   VertexTable& vertices, std::vector<FaceCollector>& faces);
-void read_ply_binary(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout,
-                     VertexTable& vertices, std::vector<FaceCollector>& faces);
+/// What was read. The collectors know where the vertices are: join them before it moves.
+struct PlyBody {
+  explicit PlyBody(const MeshSource& source) : vertices(source, 0) {}
+
+  VertexTable vertices;
+  std::vector<FaceCollector> faces;  ///< and strips, in the order of the file, made as needed
+  DirtCounts dirt;                   ///< what the header does not declare; nothing else is counted here
+};
+
+/// Either way. Throws: unreadable_input for fewer rows, or fewer values in a row, than the header promises.
+void read_ply_body(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body);
+void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body);
+void read_ply_binary(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body);
 
 /// Hands one row's corners over: as a face, or as strips between separators of -1.
 /// `refuse(what)` throws with the place of the row.

@@ -35,22 +35,40 @@ PlyMeshLayout find_layout(const MeshSource& source, const PlyHeader& header) {
   return layout;
 }
 
+// Values that no property declares shift the rows behind them, most of all in a binary file, and a wrong count gives
+// the rows of one element to the next. Either shows where corners are looked for: lists come out too short for a face.
+void refuse_shifted_rows(const MeshSource& source, const DirtCounts& dirt) {
+  if (dirt.short_faces == 0 || dirt.long_rows + dirt.surplus_rows + dirt.surplus_bytes == 0) return;
+  source.refuse("holds more than its header declares (" + std::to_string(dirt.long_rows) + " rows too long, " +
+                std::to_string(dirt.surplus_rows) + " rows and " + std::to_string(dirt.surplus_bytes) +
+                " bytes too many) and " + std::to_string(dirt.short_faces) +
+                " faces of fewer than three corners, as if rows were taken for others; correct the header");
+}
+
 }  // namespace
+
+void read_ply_body(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body) {
+  if (header.encoding == PlyEncoding::ascii)
+    read_ply_text(source, header, layout, body);
+  else
+    read_ply_binary(source, header, layout, body);
+}
 
 TriangleSoup read_ply(const MeshSource& source) {
   const PlyHeader header = read_ply_header(source);
   const PlyMeshLayout layout = find_layout(source, header);
-  VertexTable vertices(source, 0);
-  std::vector<FaceCollector> faces;
-  if (header.encoding == PlyEncoding::ascii)
-    read_ply_text(source, header, layout, vertices, faces);
-  else
-    read_ply_binary(source, header, layout, vertices, faces);
+  PlyBody body(source);
+  read_ply_body(source, header, layout, body);
   const bool has_faces = (layout.faces && layout.faces->count > 0) || (layout.strips && layout.strips->count > 0);
-  if (!has_faces && !vertices.points.empty())
-    source.nothing_to_mesh("holds " + std::to_string(vertices.points.size()) +
+  if (!has_faces && !body.vertices.points.empty())
+    source.nothing_to_mesh("holds " + std::to_string(body.vertices.points.size()) +
                            " points and no face; read it as a point cloud, or give a file with faces");
-  return join_soup(source, std::move(vertices), faces);
+  TriangleSoup soup = join_soup(source, std::move(body.vertices), body.faces);
+  soup.dirt.long_rows = body.dirt.long_rows;
+  soup.dirt.surplus_rows = body.dirt.surplus_rows;
+  soup.dirt.surplus_bytes = body.dirt.surplus_bytes;
+  refuse_shifted_rows(source, soup.dirt);
+  return soup;
 }
 
 }  // namespace isoshell

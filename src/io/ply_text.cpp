@@ -1,5 +1,6 @@
 // The body of a PLY file as text: a row a line, in parallel.
 #include <algorithm>
+#include <numeric>
 
 #include "io/ply_body.h"
 #include "io/text_scan.h"
@@ -7,11 +8,12 @@
 namespace isoshell {
 namespace {
 
-// One row of one element. Tokens are judged as they are passed.
+// One row of one element. Tokens are judged as they are passed; a row that goes on behind its last property is added to
+// `long_rows`.
 class RowReader {
  public:
-  RowReader(const Text& text, const PlyElement& element, const char* p, const char* end)
-      : text_(text), element_(element), p_(p), end_(end) {}
+  RowReader(const Text& text, const PlyElement& element, const char* p, const char* end, int64_t& long_rows)
+      : text_(text), element_(element), p_(p), end_(end), long_rows_(long_rows) {}
 
   double real() {
     double value = 0;
@@ -41,8 +43,7 @@ class RowReader {
     for (int64_t left = property.is_list ? list_length() : 1; left > 0; --left) skip_value();
   }
   const char* finish() {
-    if (const char* const token = next(); token < end_ && *token != '\n')
-      refuse(token, "the row goes on behind its last property with " + quoted_token(token, end_));
+    if (const char* const token = next(); token < end_ && *token != '\n') ++long_rows_;
     return p_;
   }
   [[noreturn]] void refuse(const char* at, const std::string& what) const {
@@ -55,6 +56,7 @@ class RowReader {
   const Text& text_;
   const PlyElement& element_;
   const char *p_, *end_;
+  int64_t& long_rows_;
 };
 
 const char* read_vertex(RowReader row, const PlyMeshLayout& layout, WorldPoint& point) {
@@ -84,34 +86,38 @@ const char* read_corners(RowReader row, const PlyElement& element, int list, std
 
 }  // namespace
 
-void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout,
-                   VertexTable& vertices, std::vector<FaceCollector>& faces) {
+void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body) {
   const Text text(source);
   const TextRows rows(text, text.end() - (source.size() - header.body), TextRows::kNoComment);
   const auto row_count = [](const PlyElement& e) { return e.properties.empty() ? 0 : e.count; };
   int64_t promised = 0;
   for (const PlyElement& element : header.elements) promised += row_count(element);
-  if (promised != rows.count())
-    text.refuse(rows.count() > promised ? rows.find(promised) : text.end(),
-                "the header promises " + std::to_string(promised) + " rows; the file holds " +
-                    std::to_string(rows.count()) + "; correct the counts or restore the file");
+  if (rows.count() < promised)
+    text.refuse(text.end(), "the header promises " + std::to_string(promised) + " rows; the file holds " +
+                                std::to_string(rows.count()) + "; correct the counts or restore the file");
+  body.dirt.surplus_rows = rows.count() - promised;
 
   int64_t first = 0;
+  std::vector<int64_t> long_rows(size_t(rows.chunk_count()), 0);
+  VertexTable& vertices = body.vertices;
   const auto read_vertices = [&](const PlyElement& element) {
     vertices = VertexTable(source, element.count);
-    rows.for_each(first, first + element.count, [&](int64_t row, const char* p, const char* end, int64_t) {
-      return read_vertex(RowReader(text, element, p, end), layout, vertices.points[size_t(row - first)]);
+    rows.for_each(first, first + element.count, [&](int64_t row, const char* p, const char* end, int64_t chunk) {
+      return read_vertex(RowReader(text, element, p, end, long_rows[size_t(chunk)]), layout,
+                         vertices.points[size_t(row - first)]);
     });
     vertices.count_nonfinite();
   };
   const auto read_faces = [&](const PlyElement& element, int list) {
+    std::vector<FaceCollector>& faces = body.faces;
     const size_t base = faces.size();
     faces.resize(base + size_t(rows.chunk_count()), FaceCollector(vertices));
     std::vector<std::vector<int64_t>> corners(size_t(rows.chunk_count()));
     std::vector<std::vector<uint32_t>> scratch(corners.size());
     const int64_t vertex_count = int64_t(vertices.points.size());
     rows.for_each(first, first + element.count, [&](int64_t, const char* p, const char* end, int64_t chunk) {
-      const char* const stop = read_corners(RowReader(text, element, p, end), element, list, corners[size_t(chunk)]);
+      const char* const stop = read_corners(RowReader(text, element, p, end, long_rows[size_t(chunk)]), element, list,
+                                            corners[size_t(chunk)]);
       add_ply_row(corners[size_t(chunk)], &element == layout.strips, vertex_count, scratch[size_t(chunk)],
                   faces[base + size_t(chunk)], [&](const std::string& what) { text.refuse(p, what); });
       return stop;
@@ -127,6 +133,7 @@ void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyM
       first += row_count(element);
     }
   }
+  body.dirt.long_rows = std::accumulate(long_rows.begin(), long_rows.end(), int64_t(0));
 }
 
 }  // namespace isoshell

@@ -18,20 +18,16 @@ constexpr int kMaxColumns = 16;
 constexpr double kUnitTolerance = 0.02;
 constexpr double kMostOdd = 0.02;  // rows without a unit vector among those of a column of normals
 
-std::vector<WorldPoint> ply_vectors(const MeshSource& source, const PlyHeader& header, const char* const names[3]) {
+PlyBody ply_vectors(const MeshSource& source, const PlyHeader& header, const char* const names[3]) {
+  PlyBody body(source);
   PlyMeshLayout layout;
   layout.vertices = header.find("vertex");
   for (int axis = 0; layout.vertices && axis < 3; ++axis) {
     layout.xyz[axis] = layout.vertices->find(names[axis]);
-    if (layout.xyz[axis] < 0 || layout.vertices->properties[size_t(layout.xyz[axis])].is_list) return {};
+    if (layout.xyz[axis] < 0 || layout.vertices->properties[size_t(layout.xyz[axis])].is_list) return body;
   }
-  VertexTable table(source, 0);
-  std::vector<FaceCollector> no_faces;
-  if (header.encoding == PlyEncoding::ascii)
-    read_ply_text(source, header, layout, table, no_faces);
-  else
-    read_ply_binary(source, header, layout, table, no_faces);
-  return std::move(table.points);
+  read_ply_body(source, header, layout, body);
+  return body;
 }
 
 /// Whether three columns from `first` on hold unit vectors.
@@ -62,7 +58,7 @@ void drop_nonfinite(PointCloud& cloud) {
     if (!cloud.normal.empty()) cloud.normal[kept] = is_finite(cloud.normal[i]) ? cloud.normal[i] : WorldPoint{0, 0, 0};
     cloud.position[kept++] = cloud.position[i];
   }
-  cloud.nonfinite = int64_t(cloud.position.size() - kept);
+  cloud.dirt.nonfinite_vertices = int64_t(cloud.position.size() - kept);
   cloud.position.resize(kept);
   if (!cloud.normal.empty()) cloud.normal.resize(kept);
 }
@@ -74,11 +70,13 @@ PointCloud read_ply_points(const MeshSource& source) {
   constexpr const char* kPosition[3] = {"x", "y", "z"};
   constexpr const char* kNormal[3] = {"nx", "ny", "nz"};
   PointCloud cloud;
-  cloud.position = ply_vectors(source, header, kPosition);
+  PlyBody body = ply_vectors(source, header, kPosition);
+  cloud.position = std::move(body.vertices.points);
+  cloud.dirt = body.dirt;
   const PlyElement* const vertices = header.find("vertex");
   if (cloud.position.empty() && vertices && vertices->count > 0)
     source.refuse_line_at(vertices->header_line, "element vertex has no numbers named x, y and z");
-  cloud.normal = ply_vectors(source, header, kNormal);
+  cloud.normal = std::move(ply_vectors(source, header, kNormal).vertices.points);
   return cloud;
 }
 

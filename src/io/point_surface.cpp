@@ -257,7 +257,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   const int64_t held = std::accumulate(supported.begin(), supported.end(), int64_t(0));
   info.open_part = 1 - double(held) / double(soup.vertices.size());
   soup.faces_in_file = 0;
-  soup.dirt.nonfinite_vertices = cloud.nonfinite;
+  soup.dirt = cloud.dirt;
   return soup;
 }
 

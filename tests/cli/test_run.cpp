@@ -179,6 +179,34 @@ TEST_CASE("run: dirt is counted in one line a kind, and quiet says nothing", "[c
   CHECK(folder.run("dirty.off quiet.ply -q --threads 4096" + kQuick).err.empty());
 }
 
+TEST_CASE("run: a PLY file that holds more than its header declares is read with a warning", "[cli]") {
+  Folder folder;
+  std::ostringstream mesh, points;
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 48);
+  for (std::ostringstream* file : {&mesh, &points})
+    *file << "ply\nformat ascii 1.0\nelement vertex " << ball.vertices.size()
+          << "\nproperty float x\nproperty float y\nproperty float z\n";
+  mesh << "element face " << ball.triangles.size() << "\nproperty list uchar int vertex_indices\n";
+  for (std::ostringstream* file : {&mesh, &points}) {
+    *file << "end_header\n";
+    for (const WorldPoint& p : ball.vertices) *file << p.x << " " << p.y << " " << p.z << " 255\n";
+  }
+  for (const auto& t : ball.triangles) mesh << "3 " << t[0] << " " << t[1] << " " << t[2] << " 0\n";
+  folder.write("mesh.ply", mesh.str() + "0 1\n");
+  folder.write("points.ply", points.str() + "1 2 3\n");
+  const auto said = [&](const std::string& input, size_t long_rows) {
+    const auto r = folder.run(input + " out.ply --force --stats out.json --require closed,manifold,genus=0" + kQuick);
+    const Json dropped = Json::parse(folder.content("out.json"))["input"]["dropped"];
+    return r.status == 0 && contains(r.err, "rows with values behind their last declared property") &&
+           contains(r.err, "1 rows left out behind the last") && dropped["long_rows"] == long_rows &&
+           dropped["surplus_rows"] == 1;
+  };
+  CHECK(said("mesh.ply", ball.vertices.size() + ball.triangles.size()));
+  CHECK(said("points.ply", ball.vertices.size()));
+  folder.write("few.ply", mesh.str().substr(0, mesh.str().size() - 20));
+  CHECK(folder.run("few.ply few_out.ply" + kQuick).status == 3);
+}
+
 TEST_CASE("run: an angle that is poor is said with its place", "[cli]") {
   Folder folder;
   folder.write_off("wire.off", shapes::torus(1, .02, 200, 12));

@@ -181,8 +181,6 @@ TEST_CASE("PLY text: what is wrong is named", "[mesh_file][unit]") {
   CHECK(says(refusal_of("ply", head + "0 0 0 0 0\n1 1 1 1 1\n2 2 2 2 2 2\n"), "promises 7 rows; the file holds 3"));
   CHECK(says(refusal_of("ply", head + "0 0\n0.0 0 0\n0 0 0\n0 0 0\n0\n0\n0\n"),
              "line 12: element vertex: a number is expected; found the end"));
-  CHECK(says(refusal_of("ply", head + "0 0 0 9\n0 0 0\n0 0 0\n0 0 0\n0\n0\n0\n"),
-             "goes on behind its last property with '9'"));
   const std::string face =
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0\n0\n0\n";
   CHECK(says(refusal_of("ply", kAsciiPly + face + "3 0 1 4\n"), "names vertex 4; the file holds vertices 0 to 3"));
@@ -199,6 +197,47 @@ TEST_CASE("PLY text: what is wrong is named", "[mesh_file][unit]") {
   CHECK(says(refusal_of("ply", "OFF\n"), "does not begin with ply"));
 }
 
+TEST_CASE("PLY text: values and rows that the header does not declare are passed over and counted",
+          "[mesh_file][unit]") {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  const TriangleSoup soup =
+      read_text_as("ply", head + "0 0 0 9\n1 0 0\n0 1 0 9 nine\n3 0 1 2 0.5\n3 2 1 0 \r\n3 0 1 1\nanything\n\n");
+  CHECK(soup.triangles == Triangles{{0, 1, 2}, {2, 1, 0}});
+  CHECK(same_bits(soup.vertices[2], {0, 1, 0}));
+  CHECK(soup.faces_in_file == 2);
+  CHECK(soup.dirt.long_rows == 3);
+  CHECK(soup.dirt.surplus_rows == 2);
+  const TriangleSoup clean = read_text_as("ply", head + "0 0 0 \n1 0 0\t\r\n0 1 0\n3 0 1 2\n3 2 1 0\n \n\n");
+  CHECK(clean.dirt.long_rows + clean.dirt.surplus_rows == 0);
+}
+
+TEST_CASE("PLY text: long rows are counted in every part of a long file", "[mesh_file][unit]") {
+  constexpr int kFaces = 20000;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+      std::to_string(kFaces) + "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  for (int i = 0; i < kFaces; ++i) text += i % 4 ? "3 0 1 2\n" : "3 2 1 0 255 255 255\n";
+  const TriangleSoup soup = read_text_as("ply", text);
+  CHECK(soup.triangles.size() == kFaces);
+  CHECK(soup.dirt.long_rows == kFaces / 4);
+}
+
+TEST_CASE("PLY: rows that were taken for others are refused: they leave faces too short and more than is declared",
+          "[mesh_file][unit]") {
+  const std::string counts_swapped =  // four vertices and one face, said to be three and two
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 1 1\n3 0 1 2\n";
+  CHECK(says(refusal_of("ply", counts_swapped), "1 faces of fewer than three corners"));
+  std::string shifted =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nelement face 2\nproperty list uchar uchar vertex_indices\nend_header\n" +
+      std::string("\0\0\0\1\0\0\0\1\0", 9);
+  for (int i = 0; i < 2; ++i) shifted += std::string("\3\0\1\2\0", 5);  // each with a byte that no property declares
+  CHECK(says(refusal_of("ply", shifted), "5 bytes too many"));
+}
+
 TEST_CASE("PLY binary: all scalar types in both byte orders, with extra properties and lists", "[mesh_file][unit]") {
   check_binary_ply<float, uint8_t, int32_t>("float", "uchar", "int");
   check_binary_ply<double, int8_t, uint32_t>("double", "char", "uint");
@@ -213,7 +252,6 @@ TEST_CASE("PLY binary: all scalar types in both byte orders, with extra properti
 TEST_CASE("PLY binary: what is wrong is named with its byte", "[mesh_file][unit]") {
   const std::string whole = binary_ply<float, uint8_t, int32_t>("float", "uchar", "int", false);
   CHECK(says(refusal_of("ply", whole.substr(0, whole.size() - 1)), "the file ends within element face"));
-  CHECK(says(refusal_of("ply", whole + "more"), "4 bytes follow the last row"));
   std::string bad_index = whole;
   bad_index[whole.size() - 17 - 20] = 3;  // the last corner of the first face
   CHECK(says(refusal_of("ply", bad_index), "names vertex"));
@@ -223,6 +261,18 @@ TEST_CASE("PLY binary: what is wrong is named with its byte", "[mesh_file][unit]
   std::string huge = whole;
   huge.replace(huge.find("face 2"), 6, "face 4000000000");
   CHECK(says(refusal_of("ply", huge), "element face promises 4000000000 rows of at least 9 bytes"));
+}
+
+TEST_CASE("PLY binary: bytes behind the last row are passed over and counted, padding is neither",
+          "[mesh_file][unit]") {
+  std::string whole = binary_ply<float, uint8_t, int32_t>("float", "uchar", "int", false);
+  whole[whole.find("face 2") + 5] = '1';  // its second face has two corners only
+  whole.resize(whole.size() - 17);
+  for (const auto& [tail, bytes] :
+       {std::pair<std::string, int64_t>{"more", 4}, {"\n\nmore", 6}, {"", 0}, {"\r\n \n", 0}})
+    CHECK(read_text_as("ply", whole + tail).dirt.surplus_bytes == bytes);
+  CHECK(read_text_as("ply", whole + std::string(64, '\0')).dirt.surplus_bytes == 0);
+  CHECK(read_text_as("ply", whole + "more").triangles == Triangles{{2, 1, 0}});
 }
 
 TEST_CASE("PLY: points without faces are nothing to mesh, and the message says so", "[mesh_file][unit]") {

@@ -98,6 +98,30 @@ TEST_CASE("points: a PLY without faces, with its normals", "[points][unit]") {
   CHECK(cloud.normal[0].y == 1);
 }
 
+TEST_CASE("points: a PLY with more values or rows than its header declares gives those that it declares",
+          "[points][unit]") {
+  const std::string head =
+      "element vertex 2\nproperty uchar nx\nproperty uchar ny\nproperty uchar nz\nproperty uchar x\n"
+      "property uchar y\nproperty uchar z\nend_header\n";
+  const PointCloud text =
+      parse("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6 7\n8 9\n", PointFormat::ply);
+  const PointCloud binary =
+      parse("ply\nformat binary_big_endian 1.0\n" + head + std::string("\0\0\1\1\2\3\0\0\1\5\6\7\x8\x9", 14),
+            PointFormat::ply);
+  for (const PointCloud* cloud : {&text, &binary}) {
+    REQUIRE(cloud->position.size() == 2);
+    CHECK(cloud->position[1].x == 5);
+    CHECK(cloud->normal[1].z == 1);
+  }
+  CHECK(text.dirt.long_rows == 1);
+  CHECK(text.dirt.surplus_rows == 1);
+  CHECK(binary.dirt.surplus_bytes == 2);
+  CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4 5 6 7\n", PointFormat::ply) ==
+        ErrorCode::unreadable_input);
+  CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6\n", PointFormat::ply) ==
+        ErrorCode::unreadable_input);
+}
+
 TEST_CASE("points: PCD as text, binary and packed", "[points][unit]") {
   const float rows[2][4] = {{1, 2, 3, 0}, {4, 5, 6, 0}}, columns[4][2] = {{1, 4}, {2, 5}, {3, 6}, {0, 0}};
   const std::string plain = raw(columns, sizeof columns);

@@ -326,6 +326,9 @@ class Run {
     const auto note = [&](int64_t count, const char* what) {
       if (count > 0) warn(input_name() + ": " + with_commas(count) + " " + what);
     };
+    note(d.long_rows, "rows with values behind their last declared property, which were left out");
+    note(d.surplus_rows, "rows left out behind the last that the header promises");
+    note(d.surplus_bytes, "bytes left out behind the last row that the header promises");
     note(d.nonfinite_vertices, "vertices that are not finite");
     note(d.dropped_faces_nonfinite, "faces dropped, they use vertices that are not finite");
     note(d.short_faces, "faces of fewer than three corners dropped");

@@ -25,7 +25,10 @@ Json dirt_json(const DirtCounts& d) {
           {"duplicate_faces", d.duplicate_faces},
           {"unreferenced_vertices", d.unreferenced_vertices},
           {"nonmanifold_edges", d.nonmanifold_edges},
-          {"inconsistent_edges", d.inconsistent_edges}};
+          {"inconsistent_edges", d.inconsistent_edges},
+          {"long_rows", d.long_rows},
+          {"surplus_rows", d.surplus_rows},
+          {"surplus_bytes", d.surplus_bytes}};
 }
 
 Json mend_json(const MendReport& m) {

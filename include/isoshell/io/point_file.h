@@ -13,7 +13,7 @@ enum class PointFormat { ply, xyz, pcd };
 /// Points in world units; `normal` is empty, or one a point, of any length.
 struct PointCloud {
   std::vector<WorldPoint> position, normal;
-  int64_t nonfinite = 0;  ///< points left out
+  DirtCounts dirt;  ///< what was left out
 };
 
 /// Reads points: PLY without faces, text rows of x y z and perhaps a normal (.xyz), and PCD as text, binary or packed.
