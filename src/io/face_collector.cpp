@@ -110,7 +110,7 @@ void FaceCollector::add_strip(const uint32_t* corners, int64_t count) {
   }
 }
 
-TriangleSoup join_soup(const MeshSource& source, VertexTable vertices, std::vector<FaceCollector>& parts) {
+TriangleSoup join_parts(VertexTable vertices, std::vector<FaceCollector>& parts) {
   TriangleSoup soup;
   std::vector<size_t> start(parts.size() + 1, 0);
   for (size_t i = 0; i < parts.size(); ++i) {
@@ -122,7 +122,6 @@ TriangleSoup join_soup(const MeshSource& source, VertexTable vertices, std::vect
     soup.dirt.dropped_faces_nonfinite += part.dirt_.dropped_faces_nonfinite;
   }
   soup.vertices = std::move(vertices.points);
-  if (start.back() == 0) source.nothing_to_mesh(nothing_left(soup));
   if (parts.size() == 1) {
     soup.triangles = std::move(parts[0].triangles_);
   } else {
@@ -134,6 +133,16 @@ TriangleSoup join_soup(const MeshSource& source, VertexTable vertices, std::vect
   }
   soup.dirt.nonfinite_vertices = vertices.nonfinite;
   soup.dirt.unreferenced_vertices = count_unreferenced(soup.vertices, soup.triangles) - vertices.nonfinite;
+  return soup;
+}
+
+void require_triangles(const MeshSource& source, const TriangleSoup& soup) {
+  if (soup.triangles.empty()) source.nothing_to_mesh(nothing_left(soup));
+}
+
+TriangleSoup join_soup(const MeshSource& source, VertexTable vertices, std::vector<FaceCollector>& parts) {
+  TriangleSoup soup = join_parts(std::move(vertices), parts);
+  require_triangles(source, soup);
   return soup;
 }
 

@@ -52,7 +52,7 @@ class FaceCollector {
   void reserve(int64_t triangles) { triangles_.reserve(size_t(triangles)); }
 
  private:
-  friend TriangleSoup join_soup(const MeshSource&, VertexTable, std::vector<FaceCollector>&);
+  friend TriangleSoup join_parts(VertexTable, std::vector<FaceCollector>&);
   bool finite(uint32_t i) const { return is_finite(vertices_->points[i]); }
 
   const VertexTable* vertices_;
@@ -64,7 +64,11 @@ class FaceCollector {
 };
 
 /// All triangles in the order of the collectors, and the sums of what they counted. An unreferenced vertex is finite
-/// and in no triangle that was kept. Throws: nothing_to_mesh when there is no triangle.
+/// and in no triangle that was kept.
+TriangleSoup join_parts(VertexTable vertices, std::vector<FaceCollector>& parts);
+/// Throws nothing_to_mesh, with what became of the faces, when there is no triangle.
+void require_triangles(const MeshSource& source, const TriangleSoup& soup);
+/// Both.
 TriangleSoup join_soup(const MeshSource& source, VertexTable vertices, std::vector<FaceCollector>& parts);
 
 }  // namespace isoshell

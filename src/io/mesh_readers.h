@@ -11,4 +11,7 @@ TriangleSoup read_off(const MeshSource& source);
 TriangleSoup read_ply(const MeshSource& source);
 TriangleSoup read_stl(const MeshSource& source);
 
+/// As read_ply, but vertices of which no face makes a triangle are a result.
+TriangleSoup read_ply_faces(const MeshSource& source);
+
 }  // namespace isoshell

@@ -54,20 +54,25 @@ void read_ply_body(const MeshSource& source, const PlyHeader& header, const PlyM
     read_ply_binary(source, header, layout, body);
 }
 
-TriangleSoup read_ply(const MeshSource& source) {
+TriangleSoup read_ply_faces(const MeshSource& source) {
   const PlyHeader header = read_ply_header(source);
   const PlyMeshLayout layout = find_layout(source, header);
   PlyBody body(source);
   read_ply_body(source, header, layout, body);
-  const bool has_faces = (layout.faces && layout.faces->count > 0) || (layout.strips && layout.strips->count > 0);
-  if (!has_faces && !body.vertices.points.empty())
-    source.nothing_to_mesh("holds " + std::to_string(body.vertices.points.size()) +
-                           " points and no face; read it as a point cloud, or give a file with faces");
-  TriangleSoup soup = join_soup(source, std::move(body.vertices), body.faces);
+  TriangleSoup soup = join_parts(std::move(body.vertices), body.faces);
   soup.dirt.long_rows = body.dirt.long_rows;
   soup.dirt.surplus_rows = body.dirt.surplus_rows;
   soup.dirt.surplus_bytes = body.dirt.surplus_bytes;
   refuse_shifted_rows(source, soup.dirt);
+  return soup;
+}
+
+TriangleSoup read_ply(const MeshSource& source) {
+  TriangleSoup soup = read_ply_faces(source);
+  if (soup.faces_in_file == 0 && !soup.vertices.empty())
+    source.nothing_to_mesh("holds " + std::to_string(soup.vertices.size()) +
+                           " points and no face; read it as a point cloud, or give a file with faces");
+  require_triangles(source, soup);
   return soup;
 }
 

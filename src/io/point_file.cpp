@@ -1,9 +1,11 @@
 // Which reader a point cloud gets, and what needs no file of its own: PLY without faces, and text rows.
 #include "isoshell/io/point_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 
+#include "core/world_vector.h"
 #include "io/face_collector.h"
 #include "io/mesh_readers.h"
 #include "io/ply_body.h"
@@ -131,6 +133,26 @@ bool holds_rows(const PlyHeader& header, const char* element) {
   return found && found->count > 0;
 }
 
+bool has_area(const TriangleSoup& soup) {
+  const std::vector<WorldPoint>& p = soup.vertices;
+  return std::any_of(soup.triangles.begin(), soup.triangles.end(), [&](const Triangle& t) {
+    const WorldPoint area = doubled_area(p[t[0]], p[t[1]], p[t[2]]);
+    return area.x != 0 || area.y != 0 || area.z != 0;
+  });
+}
+
+/// What became of the faces of a file whose points are its content: the soup's counts go to the cloud.
+void count_unusable(PlyContent& content) {
+  const DirtCounts& faces = content.mesh.dirt;
+  DirtCounts& dirt = content.points.dirt;
+  content.unusable_faces = content.mesh.faces_in_file;
+  dirt.short_faces = faces.short_faces;
+  dirt.dropped_faces_nonfinite = faces.dropped_faces_nonfinite;
+  dirt.degenerate_faces = faces.degenerate_faces + int64_t(content.mesh.triangles.size());
+  dirt.long_rows = faces.long_rows;  // of vertices and faces
+  content.mesh = {};
+}
+
 template <class Read>
 auto read_or_say_why(const MeshSource& source, const char* what, Read read) {
   if (source.size() == 0) source.nothing_to_mesh(std::string("is empty (0 bytes); give a file with ") + what);
@@ -153,12 +175,13 @@ PlyContent read_ply_content(const std::string& path) {
   const MeshSource source(path);
   return read_or_say_why(source, "faces or points", [&] {
     const PlyHeader header = read_ply_header(source);
+    if (!holds_rows(header, "vertex")) return PlyContent{false, read_ply(source), {}, 0};
     PlyContent content;
-    content.is_points = holds_rows(header, "vertex") && !holds_rows(header, "face") && !holds_rows(header, "tristrips");
-    if (content.is_points)
-      content.points = points_of(source, PointFormat::ply);
-    else
-      content.mesh = read_ply(source);
+    if (holds_rows(header, "face") || holds_rows(header, "tristrips")) content.mesh = read_ply_faces(source);
+    if (has_area(content.mesh)) return content;
+    content.is_points = true;
+    content.points = points_of(source, PointFormat::ply);
+    if (content.mesh.faces_in_file > 0) count_unusable(content);
     return content;
   });
 }

@@ -207,6 +207,26 @@ TEST_CASE("run: a PLY file that holds more than its header declares is read with
   CHECK(folder.run("few.ply few_out.ply" + kQuick).status == 3);
 }
 
+TEST_CASE("run: a PLY cloud with a face that is none is meshed as the cloud, with a warning", "[cli]") {
+  Folder folder;
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 48);
+  std::ostringstream rows;
+  for (const WorldPoint& p : ball.vertices) rows << p.x << " " << p.y << " " << p.z << "\n";
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(ball.vertices.size()) +
+                           "\nproperty float x\nproperty float y\nproperty float z\n";
+  folder.write("cloud.ply", head + "end_header\n" + rows.str());
+  folder.write("face.ply", head + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + rows.str() +
+                               "3 0 1 1\n");
+  REQUIRE(folder.run("cloud.ply cloud.off" + kQuick).status == 0);
+  const auto r = folder.run("face.ply face.off --stats -" + kQuick);
+  CHECK(r.status == 0);
+  CHECK(contains(r.err, "face.ply: none of its faces is usable (1); it is read as a point cloud"));
+  const Json input = Json::parse(r.out)["input"];
+  CHECK(input["kind"] == "points");
+  CHECK(input["dropped"]["degenerate_faces"] == 1);
+  CHECK(folder.content("face.off") == folder.content("cloud.off"));
+}
+
 TEST_CASE("run: an angle that is poor is said with its place", "[cli]") {
   Folder folder;
   folder.write_off("wire.off", shapes::torus(1, .02, 200, 12));

@@ -12,7 +12,9 @@
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/soup_volume.h"
+#include "support/source_folder.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
@@ -120,6 +122,32 @@ TEST_CASE("points: a PLY with more values or rows than its header declares gives
         ErrorCode::unreadable_input);
   CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6\n", PointFormat::ply) ==
         ErrorCode::unreadable_input);
+}
+
+TEST_CASE("points: a PLY of which no face has area is a cloud, one with a face that has is a mesh", "[points][unit]") {
+  const auto content_of = [](const std::string& faces, int count) {
+    const TemporaryFolder folder;
+    put_file(folder / "a.ply",
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+             "element face " +
+                 std::to_string(count) +
+                 "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n2 0 0\nnan 1 0\n" + faces);
+    return read_ply_content(folder / "a.ply");
+  };
+  const PlyContent cloud = content_of("3 0 1 1\n3 0 1 2\n2 0 1\n3 0 1 3\n", 4);
+  CHECK(cloud.is_points);
+  CHECK(cloud.mesh.vertices.empty());
+  CHECK(cloud.points.position.size() == 3);
+  CHECK(cloud.unusable_faces == 4);
+  CHECK(cloud.points.dirt.degenerate_faces == 2);
+  CHECK(cloud.points.dirt.short_faces == 1);
+  CHECK(cloud.points.dirt.dropped_faces_nonfinite == 1);
+  CHECK(cloud.points.dirt.nonfinite_vertices == 1);
+  CHECK_THROWS_AS(content_of("3 0 1 4\n", 1), Error);  // a face that lies is no cloud's
+  const PlyContent no_faces = content_of("", 0);
+  CHECK(no_faces.is_points);
+  CHECK(no_faces.unusable_faces == 0);
+  CHECK_FALSE(read_ply_content(source_folder() + "/tests/data/nefertiti.ply").is_points);
 }
 
 TEST_CASE("points: PCD as text, binary and packed", "[points][unit]") {

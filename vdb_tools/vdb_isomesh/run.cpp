@@ -160,6 +160,9 @@ class Run {
     PlyContent content = read_ply_content(a_.input);
     record_.input.kind = content.is_points ? InputKind::points : InputKind::mesh;
     if (content.is_points) {
+      if (content.unusable_faces > 0)
+        warn(input_name() + ": none of its faces is usable (" + with_commas(content.unusable_faces) +
+             "); it is read as a point cloud");
       make_surface(std::move(content.points), soup);
     } else {
       soup = std::move(content.mesh);

@@ -16,16 +16,17 @@ struct PointCloud {
   DirtCounts dirt;  ///< what was left out
 };
 
-/// Reads points: PLY without faces, text rows of x y z and perhaps a normal (.xyz), and PCD as text, binary or packed.
-/// Colours and other columns are passed over. `path` "-" reads standard input. Throws: unreadable_input,
+/// Reads points: PLY whatever its faces, text rows of x y z and perhaps a normal (.xyz), and PCD as text, binary or
+/// packed. Colours and other columns are passed over. `path` "-" reads standard input. Throws: unreadable_input,
 /// nothing_to_mesh when there is no point.
 PointCloud read_points(const std::string& path, PointFormat format);
 
-/// A PLY file holds a mesh, or vertices only.
+/// A PLY file holds a mesh, or points: vertices of which no face makes a triangle with area.
 struct PlyContent {
   bool is_points = false;
   TriangleSoup mesh;  ///< empty when it is points
   PointCloud points;
+  int64_t unusable_faces = 0;  ///< of points: the file's faces, all of them; `points.dirt` says why
 };
 
 /// Reads either, once, so that pipes and standard input ("-") do. Throws: as read_mesh and read_points.
