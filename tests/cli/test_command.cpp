@@ -113,4 +113,9 @@ TEST_CASE("command: a dry run says what it would take and writes nothing", "[cli
   CHECK(r.out.empty());
   CHECK(folder.file_count() == 1);
   CHECK(folder.run("ball.off --dry-run --max-memory 1M" + kQuick).status == 7);
+  folder.write("old.ply", "precious");
+  folder.write("old.json", "precious");
+  CHECK(folder.run("ball.off old.ply --stats old.json --dry-run" + kQuick).status == 0);
+  CHECK(folder.content("old.ply") == "precious");
+  CHECK(folder.content("old.json") == "precious");
 }

@@ -299,7 +299,7 @@ TEST_CASE("run: every file that a stage is kept in is looked at before any work"
   CHECK(folder.has("a.vdb.d/x.preview.vdb"));
 }
 
-TEST_CASE("run: options that a stage file has fixed are refused", "[cli][vdb]") {
+TEST_CASE("run: options that a stage file has fixed are refused where they differ", "[cli][vdb]") {
   Folder folder;
   write_ball(folder);
   REQUIRE(folder.run("ball.off shell.vdb --stop-after shell" + kQuick).status == 0);
@@ -313,6 +313,42 @@ TEST_CASE("run: options that a stage file has fixed are refused", "[cli][vdb]") 
   CHECK(contains(folder.run("paper.vdb out3.ply --adaptivity 1").err, "--method sheet"));
   folder.write("fake.vdb", folder.content("shell.vdb").substr(0, 3000));
   CHECK(folder.run("fake.vdb out3.ply").status == 3);
+  for (const char* differs :
+       {"--vertices 200", "--edge-length 1", "--adaptivity 1", "--gradation 1.5", "--method shell", "--iterations 3",
+        "--tolerance 0.1", "--step 1", "--seed 1", "--resolution 64", "--voxel-size 0.3", "--band 3",
+        "--close-gaps 4vox", "--close-gaps 1e300", "--close-gaps auto", "--outer-only"}) {
+    const auto r = folder.run(std::string("voronoi.vdb no.ply ") + differs);
+    INFO(differs << ": " << r.err);
+    CHECK(r.status == 2);
+    CHECK(contains(r.err, "is fixed by the voronoi stage file: it was "));
+  }
+  CHECK(contains(folder.run("voronoi.vdb no.ply --vertices 200").err, "it was 300; leave it out"));
+  CHECK(contains(folder.run("voronoi.vdb no.ply --edge-length 1").err, "it was not given; leave it out"));
+  CHECK(contains(folder.run("shell.vdb no.ply --close-gaps 4vox").err, "it was 0vox; leave it out"));
+  CHECK_FALSE(folder.has("no.ply"));
+}
+
+TEST_CASE("run: options that a stage file has fixed may be given as they were", "[cli][vdb]") {
+  Folder folder;
+  write_ball(folder);
+  const std::string made =
+      " --vertices 300 --voxel-size 0.21 --close-gaps 1 --band 3 --outer-only --gradation 1.3 --iterations 9 ";
+  REQUIRE(
+      folder.run("ball.off once.ply --save-shell s.vdb --save-voronoi v.vdb --seed 7 --step 2 --tolerance 0.001" + made)
+          .status == 0);
+  CHECK(folder.run("s.vdb shell.ply" + made).status == 0);
+  CHECK(
+      folder.run("v.vdb voronoi.ply --method sheet --adaptivity 0 --seed 7 --step 2 --tolerance 0.001" + made).status ==
+      0);
+  CHECK(folder.content("once.ply") == folder.content("shell.ply"));
+  CHECK(folder.content("once.ply") == folder.content("voronoi.ply"));
+  REQUIRE(folder.run("ball.off e.vdb --stop-after voronoi --resolution 48 --edge-length 1.5").status == 0);
+  const auto count = folder.run("e.vdb e.ply --edge-length 1.5 --resolution 48");
+  CHECK(count.status == 0);
+  const int64_t vertices = int64_t(read_mesh((folder / "e.ply").string()).vertices.size());
+  CHECK(folder.run("e.vdb again.ply --vertices " + std::to_string(vertices)).status == 0);
+  CHECK(folder.content("e.ply") == folder.content("again.ply"));
+  CHECK(folder.run("e.vdb usual.ply --vertices 10000").status == 2);
 }
 #endif
 

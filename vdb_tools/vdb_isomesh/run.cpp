@@ -13,6 +13,7 @@
 #include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
 #include "vdb_isomesh/output.h"
+#include "vdb_isomesh/stage_options.h"
 #include "vdb_isomesh/stats.h"
 
 namespace isoshell::tool {
@@ -36,7 +37,7 @@ struct Source {
 class Run {
  public:
   Run(const Arguments& a, Context& context, Console& console)
-      : a_(a), options_(a.remesh), context_(context), console_(console) {
+      : a_(a), options_(a.remesh), sizing_(a.sizing), context_(context), console_(console) {
     choose_device();
     options_.want_shell = keeps_shell();
     options_.want_digests = !a.stats.empty();
@@ -53,7 +54,7 @@ class Run {
 
  private:
   int steps() {
-    check_outputs(a_);
+    if (!a_.dry_run) check_outputs(a_);
     Source source = step("read", [&] { return read(); });
     read_sizing_field();
     if (a_.dry_run) {
@@ -219,33 +220,19 @@ class Run {
   }
 
   void read_stage_file(Source& source) {
-    refuse_given({"resolution", "voxel-size", "close-gaps", "band"}, "is fixed by a stage file");
     source.stage = isoshell::read_stage(a_.input);
-    if (source.stage->seeds)
-      refuse_given({"vertices", "edge-length", "sizing", "adaptivity", "gradation", "method", "iterations", "tolerance",
-                    "step", "seed"},
-                   "is fixed by a Voronoi stage file");
-    record_.kept_sizing = adopt_options(source.stage->info.options_json, a_.input, a_, options_);
-    check_method(options_, a_.was_given("sizing") ? a_.sizing : record_.kept_sizing);
-    options_.band_vox = source.stage->shell.band_vox;
+    sizing_ = adopt_options(*source.stage, a_, options_);
+    check_method(options_, sizing_);
     if (source.stage->seeds && a_.stop_after == StopAfter::shell)
       throw Error(ErrorCode::usage, "command line", "INPUT is past the shell already; leave out --stop-after shell");
     console_.detail(a_.input + ": stage " + source.stage->info.stage + ", " +
                     counted(source.stage->shell.voxels.voxel_count(), "active voxel"));
   }
 
-  /// The one that was asked for, or that the stage file's run had.
   void read_sizing_field() {
-    const std::string& from = a_.was_given("sizing") ? a_.sizing : record_.kept_sizing;
-    if (from.empty()) return;
-    options_.sizing = step("sizing", [&] { return read_sizing(from, context_.memory_limit_bytes); });
-    console_.detail("sizing: " + from);
-  }
-
-  void refuse_given(std::initializer_list<const char*> options, const char* why) {
-    for (const char* option : options)
-      if (a_.was_given(option))
-        throw Error(ErrorCode::usage, "command line", std::string("--") + option + " " + why + "; leave it out");
+    if (sizing_.empty()) return;
+    options_.sizing = step("sizing", [&] { return read_sizing(sizing_, context_.memory_limit_bytes); });
+    console_.detail("sizing: " + sizing_);
   }
 
   Prepared prepare_from(Source& source) {
@@ -463,6 +450,7 @@ class Run {
 
   const Arguments& a_;
   RemeshOptions options_;
+  std::string sizing_;  ///< where the field is that was asked for, or that the stage file's run had
   Context& context_;
   Console& console_;
   RunRecord record_;

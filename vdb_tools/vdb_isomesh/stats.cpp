@@ -1,11 +1,10 @@
-// JSON in and out.
+// Everything measured in a run, as JSON.
 #include "vdb_isomesh/stats.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "isoshell/error.h"
-#include "isoshell/option_range.h"
+#include "vdb_isomesh/stage_options.h"
 
 namespace isoshell::tool {
 namespace {
@@ -185,9 +184,6 @@ Json device_json(const DeviceInfo& d) {
           {"memory_bytes", d.memory_bytes}};
 }
 
-const char* method_name(Method method) { return method == Method::shell ? "shell" : "sheet"; }
-const char* fit_name(Fit fit) { return fit == Fit::surface ? "surface" : "balanced"; }
-
 }  // namespace
 
 std::string stats_json(const Arguments& a, const RunRecord& r) {
@@ -215,59 +211,6 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   j["digests"] = r.report.digests.empty() ? Json::object() : Json(r.report.digests);
   j["warnings"] = r.warnings.empty() ? Json::array() : Json(r.warnings);
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string options_json(const RemeshOptions& o) {
-  const Json j = {{"vertices", o.vertices},
-                  {"edge-length", o.edge_length_world},
-                  {"band", o.band_vox},
-                  {"method", method_name(o.method)},
-                  {"iterations", o.max_passes},
-                  {"tolerance", o.tolerance},
-                  {"step", o.max_step_vox},
-                  {"seed", o.seed},
-                  {"fit", fit_name(o.fit)},
-                  {"uniform-area", o.uniform_area},
-                  {"adaptivity", o.adaptivity},
-                  {"gradation", o.gradation},
-                  {"sizing", o.sizing ? o.sizing->source() : ""}};
-  return j.dump();
-}
-
-std::string adopt_options(const std::string& json, const std::string& path, const Arguments& a, RemeshOptions& o) {
-  try {
-    const Json j = Json::parse(json);
-    const auto adopt = [&](const char* name, auto& value) {
-      if (!a.was_given(name)) value = j.at(name).get<std::decay_t<decltype(value)>>();
-    };
-    /// `unset` stands for an option that was not given.
-    const auto adopt_within = [&](const char* name, auto& value, const OptionRange& range, double unset) {
-      const double kept = j.at(name).get<double>();
-      if (kept != unset && !range.holds(kept))
-        throw Error(ErrorCode::unreadable_input, "read",
-                    path + ": of the options that this stage file keeps, " + range.refusal(name, kept) +
-                        ": make the file again");
-      adopt(name, value);
-    };
-    const bool size_given = a.was_given("vertices") || a.was_given("edge-length") || a.was_given("sizing");
-    if (!size_given) {
-      adopt_within("vertices", o.vertices, option_range::vertices, 0);
-      adopt_within("edge-length", o.edge_length_world, option_range::length, 0);
-    }
-    adopt_within("iterations", o.max_passes, option_range::iterations, 0);
-    adopt_within("tolerance", o.tolerance, option_range::tolerance, -1);
-    adopt_within("step", o.max_step_vox, option_range::step, 0);
-    adopt("seed", o.seed);
-    adopt("uniform-area", o.uniform_area);
-    if (j.contains("adaptivity")) adopt_within("adaptivity", o.adaptivity, option_range::adaptivity, 0);
-    if (j.contains("gradation")) adopt_within("gradation", o.gradation, option_range::gradation, 1.2);
-    if (!a.was_given("fit")) o.fit = j.at("fit") == "surface" ? Fit::surface : Fit::balanced;
-    if (!a.was_given("method")) o.method = j.at("method") == "shell" ? Method::shell : Method::sheet;
-    return a.was_given("sizing") ? std::string() : j.value("sizing", "");
-  } catch (const Json::exception& e) {
-    throw Error(ErrorCode::unreadable_input, "read",
-                path + ": the options kept in this stage file cannot be read (" + e.what() + "); make the file again");
-  }
 }
 
 }  // namespace isoshell::tool

@@ -35,18 +35,9 @@ struct RunRecord {
   DeviceInfo device;
   int64_t host_peak_bytes = 0, device_peak_bytes = 0;
   std::vector<std::string> warnings;
-  std::string kept_sizing;  ///< the sizing field of the run that wrote the stage file
 };
 
 /// What was not measured is null.
 std::string stats_json(const Arguments& arguments, const RunRecord& record);
-
-/// The options that a resumed run must repeat, to be kept in a stage file.
-std::string options_json(const RemeshOptions& options);
-
-/// Takes from a stage file's options those that were not given on the command line; returns the sizing field's source.
-/// Throws: unreadable_input.
-std::string adopt_options(const std::string& json, const std::string& path, const Arguments& arguments,
-                          RemeshOptions& options);
 
 }  // namespace isoshell::tool
