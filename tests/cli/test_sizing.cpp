@@ -89,6 +89,10 @@ TEST_CASE("sizing: files that are no sizing fields are refused with what is wron
   const std::string same = file("same.vdb", {constant("a", 0.1), constant("a", 0.2)});
   CHECK(complaint(same + ":a[1]").empty());
   CHECK(contains(complaint(same + ":a"), "\"a[0]\""));
+  const std::string literal = file("literal.vdb", {constant("a", 0.1), constant("a[1]", 0.2), constant("a", 0.3)});
+  const std::vector<WorldPoint> middle = {{0, 0, 0}};
+  for (const auto& [grid, length] : {std::pair<const char*, double>{":a[0]", 0.1}, {":a[1]", 0.2}, {":a[2]", 0.3}})
+    CHECK(std::abs(read_sizing(literal + grid)->lengths_at(middle)[0] - length) < 1e-6);
   CHECK(contains(complaint((folder / "none.vdb").string()), "none.vdb"));
   folder.write("text.vdb", "no grid at all");
   CHECK(!complaint((folder / "text.vdb").string()).empty());
@@ -143,6 +147,10 @@ TEST_CASE("sizing: edges follow a field, alone and with a count, and a resumed r
   REQUIRE(folder.run("ball.off o.shell.vdb --sizing f.vdb --stop-after shell" + kGrid + "t.json").status == 0);
   REQUIRE(folder.run("o.shell.vdb r.ply -q --device cpu").status == 0);
   CHECK(folder.content("r.ply") == folder.content("o.ply"));
+  REQUIRE(folder.run("ball.off o.voronoi.vdb --sizing f.vdb --stop-after voronoi" + kGrid + "v.json").status == 0);
+  REQUIRE(folder.run("o.voronoi.vdb v.ply --sizing f.vdb -q --device cpu").status == 0);
+  CHECK(folder.content("v.ply") == folder.content("o.ply"));
+  CHECK(contains(folder.run("o.voronoi.vdb w.ply --sizing other.vdb").err, "it was f.vdb; leave it out"));
 }
 
 TEST_CASE("sizing: adaptivity puts the same number of vertices where the surface is curved", "[sizing][cli]") {

@@ -177,6 +177,30 @@ TEST_CASE("volume: grids of the same name, or of none, are told apart by number"
   }
 }
 
+TEST_CASE("volume: a grid that is called as another would be numbered keeps its name", "[volume][stage]") {
+  const TemporaryFile file("literal.vdb");
+  std::vector<openvdb::GridBase::Ptr> grids;
+  for (const char* name : {"d", "d[1]", "d", "d[3]", "d"}) {
+    auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(float(grids.size()) + 4, kCentre, 0.5f);
+    grid->setName(name);
+    grids.push_back(grid);
+  }
+  write(file.path, grids);
+  const auto radius_of = [&](const std::string& grid) {
+    WorldPoint lo, hi;
+    bounding_box(read(file.path, {grid, {}, 0}), lo, hi);
+    return std::lround((hi.x - lo.x) / 2);
+  };
+  CHECK(radius_of("d[0]") == 4);
+  CHECK(radius_of("d[1]") == 5);
+  CHECK(radius_of("d[2]") == 6);
+  CHECK(radius_of("d[3]") == 7);
+  CHECK(radius_of("d[4]") == 8);
+  const Refusal several = refusal(file.path, {"d", {}, 0});
+  CHECK(says(several, file.path + ":d[0]"));
+  for (const char* name : {"\"d[0]\"", "\"d[1]\"", "\"d[2]\"", "\"d[3]\"", "\"d[4]\""}) CHECK(says(several, name));
+}
+
 TEST_CASE("volume: a grid over the memory limit is refused before it is read", "[volume][stage]") {
   const TemporaryFile file("large.vdb");
   write(file.path, {ball()});

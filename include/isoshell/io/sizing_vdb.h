@@ -8,8 +8,9 @@
 
 namespace isoshell {
 
-/// Reads a FloatGrid of edge lengths in world units: "FIELD.vdb" with one float grid, or "FIELD.vdb:grid". Between the
-/// voxels of its active region lengths are interpolated; outside of it the background counts, if it is more than 0.
+/// Reads a FloatGrid of edge lengths in world units: "FIELD.vdb" with one float grid, or "FIELD.vdb:grid",
+/// which is named as in VolumeReadOptions. Between the voxels of its active region lengths are interpolated; outside of
+/// it the background counts, if it is more than 0.
 /// Throws: unreadable_input (names file, grid, value and remedy) also where an active value is no length; out_of_memory
 /// for a file larger than `max_bytes` (0: no limit).
 std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_t max_bytes = 0);
