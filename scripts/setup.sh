@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
 # Installs what the build needs and this machine lacks. Debian 12 and 13, Ubuntu 24.04 and newer.
 # Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
+# `setup.sh tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write.
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
           libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2)
+case "${1:-}" in
+  "") ;;
+  tests) packages+=(libopenvdb-tools python3-openvdb) ;;
+  *) echo "setup: unknown argument: $1 (tests)" >&2; exit 2 ;;
+esac
 
 # CUDA is not installed from here: which toolkit fits is the driver's and the administrator's to say.
 if ! command -v nvcc >/dev/null && [ ! -x /usr/local/cuda/bin/nvcc ]; then

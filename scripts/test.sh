@@ -3,6 +3,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-cpu}
-scripts/setup.sh
+scripts/setup.sh tests
 scripts/build.sh "$preset"
 ctest --preset "$preset"

@@ -3,9 +3,9 @@
 # Usage: test_vdb_tools.sh WRITER, which writes stage files and a preview into the folder that it is given.
 set -eu
 writer=$1
-python=${PYTHON:-/usr/bin/python3}
+python="${PYTHON:-/usr/bin/python3} -s"  # a user's own NumPy may not fit the system's module
 command -v vdb_print > /dev/null || { echo "skipped: vdb_print is not installed"; exit 77; }
-"$python" -c 'import pyopenvdb' 2> /dev/null || { echo "skipped: pyopenvdb is not installed"; exit 77; }
+$python -c 'import pyopenvdb' 2> /dev/null || { echo "skipped: pyopenvdb is not installed"; exit 77; }
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -24,7 +24,7 @@ expect a.shell.vdb closest_site distance_sq_vox shell_distance closest_offset su
 expect a.voronoi.vdb seed_id seed_points seed_normals seed_homes 'isoshell:stage: voronoi'
 expect a.preview.vdb density seed_rand color 'class: fog volume'
 
-"$python" - "$folder/a.preview.vdb" <<'PYTHON'
+$python - "$folder/a.preview.vdb" <<'PYTHON'
 import sys, pyopenvdb
 grids = {grid.name: grid for grid in pyopenvdb.readAll(sys.argv[1])[0]}
 assert sorted(grids) == ["color", "density", "seed_rand"], sorted(grids)
