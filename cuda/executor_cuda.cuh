@@ -69,11 +69,14 @@ class CudaExecutor {
   DeviceStream& device() { return stream_; }
   cudaStream_t stream() const { return stream_.stream(); }
 
+  void stop_if_cancelled() const {
+    if (context_.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage_, "interrupted");
+  }
   /// Throws what went wrong with the launches so far, and Error{interrupted} when the context was cancelled.
   void check(const char* name) {
     if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
       throw Error(ErrorCode::internal, stage_, std::string(name) + " failed on the device: " + describe_error(status));
-    if (context_.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage_, "interrupted");
+    stop_if_cancelled();
   }
 
   template <class T>
@@ -83,6 +86,7 @@ class CudaExecutor {
 
   template <class T>
   void fill(View<T> out, T value) {
+    stop_if_cancelled();
     if (out.empty()) return;
     cuda_steps::fill_values<<<cuda_steps::blocks_for(out.size), cuda_steps::kThreads, 0, stream()>>>(out, value);
     check("fill");
@@ -106,6 +110,7 @@ class CudaExecutor {
 
   template <class Step>
   void for_each(const char* name, int64_t count, Step step) {
+    stop_if_cancelled();
     if (count <= 0) return;
     if constexpr (Kernels::Forms::has<Step>)
       launch_block_form(count, step, stream());
@@ -116,6 +121,7 @@ class CudaExecutor {
 
   template <class T>
   T exclusive_scan(View<T> counts) {
+    stop_if_cancelled();
     if (counts.empty()) return 0;
     if (counts.size <= small_words::kMost) {
       T* const total = static_cast<T*>(stream_.pinned());
@@ -134,12 +140,14 @@ class CudaExecutor {
 
   template <class T>
   void inclusive_scan(View<T> counts) {
+    stop_if_cancelled();
     inclusive_scan_async(stream_, counts);
   }
 
   template <class T, class Less = std::less<T>>
   void sort(View<T> keys, Less less = {}) {
     static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
+    stop_if_cancelled();  // before some thirty launches
     if (keys.size < 2) return;
     if constexpr (std::is_same_v<T, uint64_t> && std::is_same_v<Less, std::less<T>>) {
       sort_keys_async(stream_, keys);
@@ -155,6 +163,7 @@ class CudaExecutor {
 
   template <class Keep>
   Buffer<uint32_t> select(int64_t count, Keep keep) {
+    stop_if_cancelled();
     if (count <= 0) return {};
     if (count <= small_words::kMost) return select_of_few(count, keep);
     Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32), rank = make<uint32_t>(words.size() + 1);
@@ -169,6 +178,7 @@ class CudaExecutor {
 
   template <class Term>
   int64_t sum(int64_t count, Term term) {
+    stop_if_cancelled();
     if (count <= 0) return 0;
     if (count <= small_words::kMost) {
       int64_t* const few = static_cast<int64_t*>(stream_.pinned());

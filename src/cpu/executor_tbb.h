@@ -54,6 +54,7 @@ class TbbExecutor {
 
   template <class T>
   T exclusive_scan(View<T> counts) {
+    check_cancel(context_, stage_);
     T total = 0;
     for (T& c : counts) {
       const T here = c;
@@ -65,6 +66,7 @@ class TbbExecutor {
 
   template <class T>
   void inclusive_scan(View<T> counts) {
+    check_cancel(context_, stage_);
     T total = 0;
     for (T& c : counts) c = total += c;
   }

@@ -187,7 +187,24 @@ TEST_CASE("words: arrays of more than two thousand million elements", "[parity][
 TEST_CASE("words: a cancelled context stops every backend", "[parity][words]") {
   Words words;
   words.context.cancel = true;
-  CHECK_THROWS_AS(words->for_each(1000), Error);
+  for (const int64_t n : {1, 1000, 100000}) {
+    CAPTURE(n);
+    int64_t total;
+    uint32_t small_total;
+    const std::vector<int64_t> counts(size_t(n), 1);
+    const std::vector<uint32_t> small_counts(size_t(n), 1);
+    CHECK_THROWS_AS(words->fill(n, 1), Error);
+    CHECK_THROWS_AS(words->for_each(n), Error);
+    CHECK_THROWS_AS(words->exclusive_scan(counts, total), Error);
+    CHECK_THROWS_AS(words->exclusive_scan(small_counts, small_total), Error);
+    CHECK_THROWS_AS(words->inclusive_scan(counts), Error);
+    CHECK_THROWS_AS(words->inclusive_scan(small_counts), Error);
+    CHECK_THROWS_AS(words->sort(std::vector<uint64_t>(size_t(n))), Error);
+    CHECK_THROWS_AS(words->sort(std::vector<OddKey>(size_t(n))), Error);
+    CHECK_THROWS_AS(words->select(n, 2), Error);
+    CHECK_THROWS_AS(words->sum(n), Error);
+    CHECK_THROWS_AS(words->sum_into(n), Error);
+  }
 }
 
 TEST_CASE("canary: floating point is that of IEEE 754, bit by bit", "[parity][canary]") {
