@@ -7,6 +7,7 @@
 #include "choose_grid.h"
 #include "core/copy_product.h"
 #include "core/seed_count.h"
+#include "isoshell/to_host.h"
 #include "thin_walls.h"
 #include "voxel/exact_int.h"
 
@@ -63,6 +64,17 @@ DualMesh relax_coarse(const Sheet& sheet, const RelaxOptions& relax, SeedSet& se
   post.for_seeds = true;
   improve_mesh(sheet, post, seeds, mesh, context);
   return mesh;
+}
+
+/// Relaxes a level again, from where its first round left it; that round stands if cells are no disks after this one.
+void relax_coarse_again(const Sheet& sheet, const RelaxOptions& relax, SeedSet& seeds, DualMesh& dual,
+                        Context& context) {
+  SeedSet first = to_host(seeds);
+  DualMesh again = relax_coarse(sheet, relax, seeds, context);
+  if (again.triangles.empty())
+    seeds = std::move(first);
+  else
+    dual = std::move(again);
 }
 
 /// How many cells of the smallest size would cover the sheet, over the number of its cells.
@@ -141,7 +153,7 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     DualMesh dual = relax_coarse(sheet, coarse, seeds, context);
     if (!dual.triangles.empty() && seeds.size() <= kMostSeedsTwice)
-      dual = relax_coarse(sheet, {kPassesAgain, coarse.tolerance_ppb, coarse.max_step_q8}, seeds, context);
+      relax_coarse_again(sheet, {kPassesAgain, coarse.tolerance_ppb, coarse.max_step_q8}, seeds, dual, context);
     seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
     const int halvings = outlines.halvings(level) - outlines.halvings(level + 1);
     if (seeds.size() > 0 && halvings > 0) attach_to_sheet(outlines.sheet(level + 1), seeds, context, halvings);
