@@ -33,7 +33,6 @@ class MendMesh {
   uint32_t from(uint32_t half_edge) const { return face[half_edge / 3][half_edge % 3]; }
   uint32_t to(uint32_t half_edge) const { return from(next_half_edge(half_edge)); }
   uint32_t edge_of(uint32_t half_edge) const { return edge_of_[half_edge]; }
-  int64_t edge_count() const { return int64_t(edge_first_.size()) - 1; }
   /// Number of live faces at an edge.
   uint32_t faces_at(uint32_t edge) const { return live_at_[edge]; }
   /// Counts a face without area at an edge, and no more.

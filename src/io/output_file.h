@@ -22,9 +22,6 @@ class OutputFile {
   /// Closes, and puts the file in its place.
   void commit();
 
-  /// Where the bytes go until commit(), for a library that wants a name; empty for standard output and devices.
-  const std::string& temporary_path() const { return temporary_; }
-
  private:
   [[noreturn]] void fail(const std::string& what) const;
   void open_temporary();
