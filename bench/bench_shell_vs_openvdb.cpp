@@ -68,23 +68,6 @@ class Watch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-double memory_mb(const char* key) {
-  return std::atof(bench::line_after_colon("/proc/self/status", key).c_str()) / 1024;
-}
-
-/// What a piece of work adds to the process's resident memory at its highest.
-class PeakMemory {
- public:
-  PeakMemory() {
-    std::ofstream("/proc/self/clear_refs") << "5";  // sets VmHWM back to VmRSS
-    before_ = memory_mb("VmRSS");
-  }
-  double mb() const { return memory_mb("VmHWM") - before_; }
-
- private:
-  double before_ = 0;
-};
-
 LatticeFrame frame_of(const TriangleSoup& soup, int32_t resolution) {
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
@@ -97,7 +80,7 @@ json run_ours(const Arguments& args) {
   context.threads = args.threads;
   const TriangleSoup soup = read_mesh(args.mesh);
   const LatticeFrame frame = frame_of(soup, args.resolution);
-  const PeakMemory memory;
+  const bench::PeakMemory memory;
   const Watch all;
   const LatticeSurface surface = snap_surface(soup, frame, context);
   const double snapped = all.ms();
@@ -133,7 +116,7 @@ json run_openvdb(const Arguments& args) {
     transform = openvdb::math::Transform::createLinearTransform(frame.voxel_size);
     transform->postTranslate({frame.origin.x, frame.origin.y, frame.origin.z});
   }
-  const PeakMemory memory;
+  const bench::PeakMemory memory;
   const Watch all;
   const auto grid = openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(*transform, points, triangles,
                                                                                     quads, float(args.band_vox));

@@ -49,7 +49,7 @@ class Rows {
   template <class Stage, class Count>
   auto run(const char* name, const char* unit, Stage stage, Count count) {
     std::vector<double> ms;
-    reset_host_memory_peak();
+    const bench::PeakMemory memory;
     auto product = timed(stage, ms);
     for (int i = 1; i < repeats_; ++i) product = timed(stage, ms);
     std::sort(ms.begin(), ms.end());
@@ -61,7 +61,7 @@ class Rows {
                      {"ms_min", ms.front()},
                      {"ms_max", ms.back()},
                      {"million_per_second", double(items) / median / 1000},
-                     {"peak_bytes", host_memory_peak_bytes()}});
+                     {"peak_mb", memory.mb()}});
     return product;
   }
   const json& rows() const { return rows_; }

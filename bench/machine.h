@@ -1,9 +1,10 @@
-// What a bench result must say about where it was measured.
+// What a bench result must say about where it was measured, and about memory.
 #pragma once
 
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -36,5 +37,22 @@ inline nlohmann::json machine() {
           {"flags", ISOSHELL_BENCH_FLAGS},
           {"date", date}};
 }
+
+inline double memory_mb(const char* key) {
+  return std::atof(line_after_colon("/proc/self/status", key).c_str()) / 1024;
+}
+
+/// What a piece of work adds to the process's resident memory at its highest.
+class PeakMemory {
+ public:
+  PeakMemory() {
+    std::ofstream("/proc/self/clear_refs") << "5";  // sets VmHWM back to VmRSS
+    before_ = memory_mb("VmRSS");
+  }
+  double mb() const { return memory_mb("VmHWM") - before_; }
+
+ private:
+  double before_ = 0;
+};
 
 }  // namespace isoshell::bench

@@ -45,10 +45,6 @@ class Memory {
 };
 Memory& host_memory();
 
-/// Largest number of bytes that host Buffers held at one time since the last reset.
-int64_t host_memory_peak_bytes();
-void reset_host_memory_peak();
-
 /// Whether every byte of T belongs to a member: copies and sorts read them all, and nothing writes padding. Types with
 /// floating-point members, which the language's trait leaves out, specialise it.
 template <class T>

@@ -1,5 +1,4 @@
-// Host memory of Buffers, counted.
-#include <atomic>
+// Host memory of Buffers.
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -9,8 +8,6 @@
 
 namespace isoshell {
 namespace {
-
-std::atomic<int64_t> held_bytes{0}, peak_bytes{0};
 
 int64_t rounded(int64_t bytes) { return (bytes + 63) / 64 * 64; }
 
@@ -24,17 +21,10 @@ class HostMemory final : public Memory {
     if (!data)
       throw Error(ErrorCode::out_of_memory, "memory",
                   "out of memory: " + std::to_string(bytes) + " bytes more were refused; lower the resolution");
-    const int64_t held = held_bytes += bytes;
-    int64_t peak = peak_bytes.load();
-    while (held > peak && !peak_bytes.compare_exchange_weak(peak, held)) {
-    }
     return data;
   }
 
-  void free(void* data, int64_t bytes) noexcept override {
-    std::free(data);
-    held_bytes -= bytes;
-  }
+  void free(void* data, int64_t) noexcept override { std::free(data); }
 
   void copy_to_host(void* to, const void* from, int64_t bytes) override { std::memcpy(to, from, size_t(bytes)); }
 };
@@ -45,8 +35,5 @@ Memory& host_memory() {
   static HostMemory memory;
   return memory;
 }
-
-int64_t host_memory_peak_bytes() { return peak_bytes; }
-void reset_host_memory_peak() { peak_bytes = held_bytes.load(); }
 
 }  // namespace isoshell
