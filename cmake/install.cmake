@@ -10,7 +10,8 @@ install(EXPORT isoshell NAMESPACE isoshell:: FILE isoshellTargets.cmake DESTINAT
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/isoshellConfig.cmake.in ${PROJECT_BINARY_DIR}/isoshellConfig.cmake
                               INSTALL_DESTINATION ${isoshell_cmake_dir})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/isoshellConfigVersion.cmake COMPATIBILITY SameMajorVersion)
+# Below 1.0 every minor version may change the interface. From 1.0 on this is SameMajorVersion.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/isoshellConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/isoshellConfig.cmake ${PROJECT_BINARY_DIR}/isoshellConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/openvdb.cmake
         DESTINATION ${isoshell_cmake_dir} COMPONENT dev)
