@@ -107,7 +107,7 @@ struct IsBridge {
   ISOSHELL_HD bool operator()(int64_t v) const { return source_triangle[v] == kNone; }
 };
 
-/// Neighbours of the bridging vertices, six places each; `leaf_of` is found by the vertex's lattice corner.
+/// Neighbours of the bridging vertices: six places each, those beyond the last neighbour hold kNone.
 struct ListBridgeNeighbours {
   VoxelSetView corners;
   View<const uint8_t> edges;

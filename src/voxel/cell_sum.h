@@ -72,8 +72,8 @@ ISOSHELL_HD inline PieceSum corner_piece(int64_t area2, Local p, Local q, Local 
   return piece_sum(part, p, between(p, q, t_q), between(p, r, t_r));
 }
 
-/// Splits the triangle p[0..2] between the seeds s[0..2] of its corners, at least two of them different (equal seeds
-/// have equal `same` flags below). Adds the piece of corner i through add(i, piece).
+/// Splits the triangle p[0..2] between the seeds s[0..2] of its corners. The caller, who knows which seeds are equal,
+/// takes two_cells or three_cells. Adds the piece of corner i through add(i, piece).
 ///
 /// Two cells: the bisector cuts one corner off. Three cells: when the third seed wins where the bisector of two corners
 /// meets their edge, it separates them and each of the two keeps a corner; else the three bisectors meet inside in X
