@@ -20,11 +20,11 @@ namespace {
 constexpr const char* kDescription =
     "vdb_isomesh INPUT OUTPUT [options]\n\n"
     "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
-    "INPUT   mesh (.obj .ply .stl .off), points (.ply .xyz .pcd), volume (.vdb .nvdb; FILE.vdb:NAME names\n"
-    "        a grid), or a stage file that this command wrote (.vdb); - reads standard input and needs\n"
-    "        --input-format\n"
-    "OUTPUT  mesh (.ply .obj .stl .off), or .vdb with --stop-after; - writes standard output and needs\n"
-    "        --output-format";
+    "INPUT   a mesh (.obj .ply .stl .off), a point cloud (.ply .xyz .pcd), a volume (.vdb .nvdb;\n"
+    "        FILE.vdb:NAME names a grid), or a stage file that this command wrote (.vdb); - reads\n"
+    "        standard input and needs --input-format\n"
+    "OUTPUT  a mesh (.ply .obj .stl .off), or a .vdb file with --stop-after; - writes standard output\n"
+    "        and needs --output-format";
 
 /// What CLI11 fills in before it is checked and turned into Arguments.
 struct Raw {
@@ -43,7 +43,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   app.add_option("OUTPUT", a.output);
 
   const auto option = [&](const char* group, const char* name, auto& value, const char* value_name, const char* text,
-                          const char* fallback) {
+                          const char* fallback = "") {
     if (std::is_floating_point_v<std::decay_t<decltype(value)>>) raw.reals.push_back(name);
     return app.add_option(name, value, text)->group(group)->type_name(value_name)->default_str(fallback);
   };
@@ -52,69 +52,69 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   };
 
   const char* size = "Size of the result";
-  CLI::Option* vertices = option(size, "--vertices", raw.vertices, "K", "number of vertices", "10000");
-  option(size, "--edge-length", raw.edge_length, "L", "edge length to aim at, in world units, instead of --vertices",
-         "")
+  CLI::Option* vertices = option(size, "--vertices", raw.vertices, "K", "number of vertices of the result", "10000");
+  option(size, "--edge-length", raw.edge_length, "L", "target edge length in world units, instead of --vertices")
       ->excludes(vertices);
   option(size, "--sizing", a.sizing, "F.vdb[:GRID]",
-         "edge lengths to aim at, world units, a float grid; without --vertices they alone decide the count", "");
+         "float grid of target edge lengths in world units; without --vertices it also decides the number of vertices");
   option(size, "--adaptivity", raw.adaptivity, "A",
-         "0 to 1: the part of the vertices that goes by curvature rather than by area", "0");
-  option(size, "--gradation", raw.gradation, "G", "most that an edge may be longer than the next, above 1 to 10",
+         "fraction of the vertices, 0 to 1, distributed by curvature instead of area", "0");
+  option(size, "--gradation", raw.gradation, "G", "maximum ratio of neighbouring edge lengths, above 1 and at most 10",
          "1.2");
 
   const char* grid = "Grid";
   CLI::Option* resolution = option(grid, "--resolution", raw.resolution, "R",
-                                   "voxels along the longest side, 8 to 8192", "a cell is 4.5 to 5.5 voxels wide");
-  option(grid, "--voxel-size", raw.voxel_size, "S", "the same in world units, instead of --resolution", "")
+                                   "voxels along the longest side, 8 to 8192", "cells are 4.5 to 5.5 voxels wide");
+  option(grid, "--voxel-size", raw.voxel_size, "S", "voxel size in world units, instead of --resolution")
       ->excludes(resolution);
   option(grid, "--band", raw.band, "D", "thickness of the shell in voxels, 1 to 20", "2");
-  option(grid, "--close-gaps", raw.close_gaps, "W", "bridge gaps up to W world units wide; auto, 0, or voxels as 4vox",
-         "auto");
-  flag(grid, "--outer-only", a.remesh.outer_only, "drop what lies inside of closed surfaces; else hollows are kept");
+  option(grid, "--close-gaps", raw.close_gaps, "W",
+         "maximum width of the gaps to bridge: W in world units, voxels as 4vox, 0, or auto", "auto");
+  flag(grid, "--outer-only", a.remesh.outer_only, "drop what lies inside of closed surfaces (default: keep hollows)");
 
   const char* relaxation = "Relaxation";
   option(relaxation, "--method", raw.method, "sheet|shell",
-         "sheet: exact clipped cells on the closed sheet; shell: the paper's Lloyd loop on shell voxels", "sheet");
-  option(relaxation, "--iterations", raw.iterations, "N", "most passes, of the finest level of seeds",
-         "the method's own");
-  option(relaxation, "--tolerance", raw.tolerance, "E", "stop when the energy falls by less than this part a pass",
-         "the method's own");
-  option(relaxation, "--step", raw.step, "U", "longest move of a seed in a pass, in voxels", "the method's own");
-  option(relaxation, "--seed", raw.seed, "N", "start of the random generator", "0");
+         "sheet: exact clipped Voronoi cells on the closed sheet; shell: the paper's iteration on voxels of the shell",
+         "sheet");
+  option(relaxation, "--iterations", raw.iterations, "N",
+         "maximum number of relaxation passes on the finest level of seeds", "the method's own");
+  option(relaxation, "--tolerance", raw.tolerance, "E",
+         "stop when the energy falls by less than this fraction per pass", "the method's own");
+  option(relaxation, "--step", raw.step, "U", "maximum movement of a seed per pass, in voxels", "the method's own");
+  option(relaxation, "--seed", raw.seed, "N", "seed of the random number generator", "0");
 
   const char* shape = "Shape of the result";
   option(shape, "--fit", raw.fit, "balanced|surface",
-         "balanced: vertices where the mesh is closest to the surface; surface: vertices on it", "balanced");
-  flag(shape, "--uniform-area", a.remesh.uniform_area, "triangles of even size rather than of the best shape");
+         "balanced: vertices where the mesh is closest to the surface; surface: vertices on the surface", "balanced");
+  flag(shape, "--uniform-area", a.remesh.uniform_area, "prefer triangles of equal area to triangles of the best shape");
 
   const char* files = "Files";
-  option(files, "--iso", raw.iso, "V", "value of a volume's surface; a fog volume needs it", "0 in a level set");
+  option(files, "--iso", raw.iso, "V", "isovalue of a volume; required for a fog volume", "0 in a level set");
   option(files, "--input-format", a.input_format, "F", "format of INPUT: obj, ply, stl, off, xyz, pcd, vdb or nvdb",
          "by its name");
   option(files, "--output-format", a.output_format, "F", "format of OUTPUT: ply, obj, stl, off or vdb", "by its name");
-  option(files, "--save-shell", a.save_shell, "F.vdb", "keep the shell; a run can resume from it", "");
-  option(files, "--save-voronoi", a.save_voronoi, "F.vdb", "keep the Voronoi volume; a run can resume from it", "");
-  option(files, "--stop-after", raw.stop_after, "shell|voronoi", "stop there; OUTPUT is that stage's .vdb", "");
-  option(files, "--stats", a.stats, "F.json", "write everything measured; - for standard output", "");
-  flag(files, "--force", a.force, "replace files that exist");
+  option(files, "--save-shell", a.save_shell, "F.vdb", "also write the shell, to resume from");
+  option(files, "--save-voronoi", a.save_voronoi, "F.vdb", "also write the Voronoi volume, to resume from");
+  option(files, "--stop-after", raw.stop_after, "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file");
+  option(files, "--stats", a.stats, "F.json", "write all statistics as JSON; - writes to standard output");
+  flag(files, "--force", a.force, "overwrite existing files");
 
   const char* run = "Run";
   option(run, "--require", raw.require, "LIST",
-         "gates on the result, exit 6 when one fails: closed, manifold, no-self-intersections, genus=G, components=N, "
-         "min-angle=DEG, max-deviation=W (between result and input, world units)",
-         "");
-  option(run, "--device", raw.device, "auto|cpu|cuda[:N]", "where to run", "auto");
-  option(run, "--threads", raw.threads, "N", "CPU threads", "all");
+         "exit with status 6 unless the result meets every requirement of this comma-separated list: closed, manifold, "
+         "no-self-intersections, genus=G, components=N, min-angle=DEG (smallest angle in degrees), max-deviation=W "
+         "(distance between result and input in world units)");
+  option(run, "--device", raw.device, "auto|cpu|cuda[:N]", "device to run on", "auto");
+  option(run, "--threads", raw.threads, "N", "number of CPU threads", "all");
   option(run, "--max-memory", raw.max_memory, "SIZE",
-         "refuse runs that would need more memory, the device's where it runs there, as 512M or 8G",
-         "80 % of what is free");
-  flag(run, "--dry-run", a.dry_run, "print grid and memory estimate, and stop");
-  option(run, "--progress", raw.progress, "auto|always|never|json", "progress on standard error", "auto");
-  flag(run, "-v,--verbose", raw.verbose, "say more");
-  flag(run, "-q,--quiet", raw.quiet, "say errors only");
-  flag(run, "-h,--help", raw.help, "print this and stop");
-  flag(run, "--version", raw.version, "print the version and stop");
+         "refuse a run that would need more memory than this (of the device, for a run there), as 512M or 8G",
+         "80 % of the free memory");
+  flag(run, "--dry-run", a.dry_run, "print the grid and the memory estimate, and exit");
+  option(run, "--progress", raw.progress, "auto|always|never|json", "report progress on standard error", "auto");
+  flag(run, "-v,--verbose", raw.verbose, "print more messages");
+  flag(run, "-q,--quiet", raw.quiet, "print errors only");
+  flag(run, "-h,--help", raw.help, "print this help and exit");
+  flag(run, "--version", raw.version, "print the version and exit");
 }
 
 template <class Value>
