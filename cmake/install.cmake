@@ -29,6 +29,8 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEB_COMPONENT_INSTALL ON)
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME isoshell)
   set(CPACK_DEBIAN_DEV_PACKAGE_NAME libisoshell-dev)
-  set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libtbb-dev, libopenvdb-dev, libboost-iostreams-dev")
+  # The library is static, and OpenVDB's CMake module asks for all that OpenVDB was built with.
+  set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+      "libtbb-dev, libopenvdb-dev, libblosc-dev, libboost-iostreams-dev, libimath-dev, zlib1g-dev")
   include(CPack)
 endif()
