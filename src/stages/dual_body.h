@@ -58,7 +58,7 @@ class Partition {
       report_.failed_cells = strays + failing.size() + unused.size();
       if (report_.failed_cells == 0 && split_crossing(faces)) continue;
       if (report_.failed_cells == 0 || strays > 0 || !take_round()) break;
-      if (failing.size() > 0)
+      if (!failing.empty())
         split(failing, unused);
       else
         split(largest_cells(unused.size()), unused);

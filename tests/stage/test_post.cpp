@@ -245,7 +245,7 @@ TEST_CASE("post: points that the sheet misses draw the mesh towards them", "[pos
   DualReport report;
   const DualMesh start = triangulate_dual(sheet, seeds, {}, report, context);
   REQUIRE(report.failed_cells == 0);
-  REQUIRE(sheet.missed.size() > 0);
+  REQUIRE(!sheet.missed.empty());
   const auto distance_of_pit = [&] {
     SeedSet s = copy_of(seeds);
     DualMesh mesh = copy_of(start);
@@ -329,7 +329,7 @@ TEST_CASE("post: a mesh without triangles stays one", "[post][stage]") {
 }
 
 TEST_CASE("post: moves are held to the planes of triangles, at creases and tips, not on smooth places", "[post]") {
-  const auto held = [](std::vector<post::Vector> normals, post::Vector move) {
+  const auto held = [](const std::vector<post::Vector>& normals, post::Vector move) {
     post::PlanesAround planes;
     for (const post::Vector& n : normals) planes.add(n);
     return planes.holding(64).solve(move);

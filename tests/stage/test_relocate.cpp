@@ -110,7 +110,7 @@ TEST_CASE("relocate: a vertex of a flat place goes where a sample is far, and th
   Tube::Found f = tube.find(kFar, 0.5);
   REQUIRE(f.far.size() == 1);
   CHECK(post::number_of(f.far[0]) == kFar);
-  REQUIRE(f.spare.size() > 0);
+  REQUIRE(!f.spare.empty());
   const uint32_t edge = post::number_of(f.spare[0]);
   const uint32_t kept = tube.view().from(edge), moved = tube.view().to(edge);
   const PointQ8 middle = collapse::CollapseCost::middle_of(tube.mesh.position[kept], tube.mesh.position[moved]);

@@ -215,7 +215,7 @@ TEST_CASE("mend: fins stand on the undivided sides of T-junctions, and the face 
     TriangleSoup soup = ball(64);
     const double volume = six_volume(soup);
     const auto face = soup.triangles[500];  // all its neighbours are split, and two of its edges have fins
-    const auto split = [&](uint32_t a, uint32_t b, std::vector<double> places) {
+    const auto split = [&](uint32_t a, uint32_t b, const std::vector<double>& places) {
       for (size_t i = 0; i < soup.triangles.size(); ++i)
         for (size_t k = 0; k < 3; ++k) {
           const auto t = soup.triangles[i];

@@ -164,14 +164,14 @@ class Run {
       if (content.unusable_faces > 0)
         warn(input_name() + ": none of its faces is usable (" + with_commas(content.unusable_faces) +
              "); it is read as a point cloud");
-      make_surface(std::move(content.points), soup);
+      make_surface(content.points, soup);
     } else {
       soup = std::move(content.mesh);
       note_soup(soup);
     }
   }
 
-  void make_surface(PointCloud cloud, TriangleSoup& soup) {
+  void make_surface(const PointCloud& cloud, TriangleSoup& soup) {
     PointSurfaceInfo points;
     soup = surface_of_points(cloud, context_.memory_limit_bytes, points);
     note_soup(soup);
