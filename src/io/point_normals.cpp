@@ -261,6 +261,7 @@ OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<World
   points.spacing = spacing[count / 2];
   points.position = std::move(position);
   Orientation(points, neighbours, degree).run(given);
+  points.as_given = given && !points.turned;
   return points;
 }
 

@@ -7,6 +7,7 @@
 
 #include "io/indicator_grid.h"
 #include "io/iso_surface.h"
+#include "io/point_support.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
 #include "voxel/union_find.h"
@@ -16,19 +17,13 @@ namespace {
 
 constexpr int64_t kMaxGrid = int64_t(1) << 27;
 constexpr int64_t kBytesPerVoxel = 9;   // value and source, and an eighth of them on the next grid
-constexpr size_t kPullNeighbours = 16;  // points that a vertex follows
-constexpr int kPullSteps = 3;
-constexpr double kSupportVoxels = 3;    // a vertex farther than that from every point bridges
-constexpr double kPullWidth = 1.0;      // of the weights, in voxels or spacings, whichever is larger
 constexpr double kVoxelSpacings = 1.5;  // noise of a scan is about its spacing: finer voxels make handles of it
 constexpr double kLineSpacings = 0.01;  // points that keep so near to a line have no side
-constexpr double kMinSupported = 0.1;   // of a component's vertices, else it is a bubble
 constexpr size_t kOutlierNeighbours = 8, kFewestForOutliers = 200;
 constexpr double kOutlierToNeighbours = 2.2;  // times as far from its neighbours as they, or all points, from theirs
 constexpr double kGroupLink = 4;              // what such points are at most apart in a group, in the same distance
 constexpr uint32_t kSmallGroup = 12;
-constexpr double kMostOutliers = 0.1;    // of all points
-constexpr double kSmallestPart = 0.002;  // of all vertices near points; a component with fewer is noise
+constexpr double kMostOutliers = 0.1;  // of all points
 
 /// The different points, and their normals in the same order.
 void keep_different(std::vector<WorldPoint>& position, std::vector<WorldPoint>& normal) {
@@ -133,91 +128,6 @@ bool on_a_line(const std::vector<WorldPoint>& position, double reach) {
   });
 }
 
-/// Moves vertices onto the points around them and tells which have any.
-class Pull {
- public:
-  Pull(const OrientedPoints& points, const PointTree& tree, double voxel_size)
-      : points_(points), tree_(tree), voxel_size_(voxel_size) {}
-
-  std::vector<uint8_t> run(std::vector<WorldPoint>& vertices) const {
-    std::vector<uint8_t> supported(vertices.size());
-    tbb::parallel_for(size_t(0), vertices.size(), [&](size_t v) {
-      const WorldPoint start = vertices[v];
-      std::vector<PointTree::Near> near;
-      tree_.nearest(start, std::min(kPullNeighbours, points_.position.size()), near);
-      const double away = std::sqrt(near[0].first) / voxel_size_;
-      supported[v] = away < kSupportVoxels;
-      const double part = std::clamp(kSupportVoxels - away, 0.0, 1.0);
-      if (part <= 0) return;
-      WorldPoint p = start;
-      for (int step = 0; step < kPullSteps; ++step) p = pulled(p, near);
-      vertices[v] = {start.x + part * (p.x - start.x), start.y + part * (p.y - start.y),
-                     start.z + part * (p.z - start.z)};
-    });
-    return supported;
-  }
-
- private:
-  /// Along the mean normal to the mean plane of the points, at most a voxel.
-  WorldPoint pulled(const WorldPoint& p, const std::vector<PointTree::Near>& near) const {
-    const double spacing = std::sqrt(near[std::min<size_t>(6, near.size() - 1)].first) * 0.7071067811865476;
-    const double width = kPullWidth * std::max(voxel_size_, spacing);
-    WorldPoint normal{0, 0, 0};
-    double height = 0, total = 0;
-    for (const auto& [unused, i] : near) {
-      const WorldPoint &q = points_.position[i], &n = points_.normal[i];
-      // A bell without exp: what libraries round differently decides nothing here either.
-      const double t = 1 - distance_sq(p, q) / (9 * width * width);
-      if (t <= 0) continue;
-      const double weight = t * t * t * t * points_.area[i];
-      normal = {normal.x + weight * n.x, normal.y + weight * n.y, normal.z + weight * n.z};
-      height += weight * (n.x * (p.x - q.x) + n.y * (p.y - q.y) + n.z * (p.z - q.z));
-      total += weight;
-    }
-    const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-    if (!(total > 0) || length < 0.5 * total) return p;  // sides that face each other: no plane
-    const double move = std::clamp(-height / total, -voxel_size_, voxel_size_) / length;
-    return {p.x + move * normal.x, p.y + move * normal.y, p.z + move * normal.z};
-  }
-
-  const OrientedPoints& points_;
-  const PointTree& tree_;
-  const double voxel_size_;
-};
-
-/// Leaves out components that hardly any point supports, and numbers the vertices that stay anew.
-void drop_bubbles(TriangleSoup& soup, std::vector<uint8_t>& supported) {
-  const uint32_t count = uint32_t(soup.vertices.size());
-  Buffer<uint32_t> parent(count);
-  std::iota(parent.view().data, parent.view().data + count, 0u);
-  for (const auto& t : soup.triangles)
-    for (const uint32_t v : {t[1], t[2]}) join(parent.view(), t[0], v);
-  const auto find = [&](uint32_t v) { return find_root(parent.view(), v); };
-  std::vector<int64_t> all(count, 0), held(count, 0);
-  for (uint32_t v = 0; v < count; ++v) {
-    ++all[find(v)];
-    held[find(v)] += supported[v];
-  }
-  const double least = kSmallestPart * double(std::accumulate(supported.begin(), supported.end(), int64_t(0)));
-  const auto gone = [&](uint32_t v) {
-    return double(held[find(v)]) < std::max(least, kMinSupported * double(all[find(v)]));
-  };
-  soup.triangles.erase(
-      std::remove_if(soup.triangles.begin(), soup.triangles.end(), [&](const auto& t) { return gone(t[0]); }),
-      soup.triangles.end());
-  std::vector<uint32_t> number(count);
-  uint32_t kept = 0;
-  for (uint32_t v = 0; v < count; ++v) {
-    if (gone(v)) continue;
-    soup.vertices[kept] = soup.vertices[v];
-    supported[kept] = supported[v];
-    number[v] = kept++;
-  }
-  for (auto& t : soup.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-  soup.vertices.resize(kept);
-  supported.resize(kept);
-}
-
 }  // namespace
 
 TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info) {
@@ -249,11 +159,12 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   field.file = "the points";
   field.name = "indicator";
   TriangleSoup soup = extract_iso_surface(field, level, memory_limit_bytes);
-  std::vector<uint8_t> supported = Pull(points, tree, shape.voxel_size).run(soup.vertices);
-  drop_bubbles(soup, supported);
+  const PointsOfSurface around{points, tree, shape.voxel_size};
+  drop_unsupported(around, soup);
   if (soup.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "points",
                 "the points enclose nothing: they lie on a line, or too far apart to be one surface");
+  const std::vector<uint8_t> supported = pull_to_points(around, soup);
   const int64_t held = std::accumulate(supported.begin(), supported.end(), int64_t(0));
   info.open_part = 1 - double(held) / double(soup.vertices.size());
   soup.faces_in_file = 0;

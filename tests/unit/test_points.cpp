@@ -6,13 +6,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "io/lzf.h"
 #include "io/point_readers.h"
+#include "io/point_support.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/shapes.h"
 #include "support/soup_volume.h"
 #include "support/source_folder.h"
 #include "voxel/random.h"
@@ -66,6 +69,24 @@ double worst_radius_error(const TriangleSoup& soup, double above) {
     if (z > above) worst = std::max(worst, std::abs(std::sqrt(x * x + y * y + z * z) - 1));
   }
   return worst;
+}
+
+/// Of the angle between the normals of two triangles that share an edge.
+double sharpest_cosine(const TriangleSoup& soup) {
+  std::map<std::pair<uint32_t, uint32_t>, WorldPoint> normal_at;
+  double sharpest = 1;
+  for (const auto& t : soup.triangles) {
+    const WorldPoint n = doubled_area(soup.vertices[t[0]], soup.vertices[t[1]], soup.vertices[t[2]]);
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t a = t[size_t(i)], b = t[size_t((i + 1) % 3)];
+      const auto other = normal_at.find({b, a});
+      if (other == normal_at.end())
+        normal_at[{a, b}] = n;
+      else if (const double sizes = length(n) * length(other->second); sizes > 0)
+        sharpest = std::min(sharpest, dot(n, other->second) / sizes);
+    }
+  }
+  return sharpest;
 }
 
 std::string raw(const void* data, size_t size) { return {static_cast<const char*>(data), size}; }
@@ -295,6 +316,60 @@ TEST_CASE("points: a scan from one side becomes one closed surface, true where t
   CHECK(volume(soup) > 0);
   CHECK(worst_radius_error(soup, 0.3) < 0.02);
   CHECK(info.open_part > 0.1);
+}
+
+TEST_CASE("points: a steep scan from one side folds nowhere, though its back is near", "[points][unit]") {
+  PointCloud cloud;
+  for (uint64_t i = 0; i < 1500; ++i) {
+    const auto at = [&](uint64_t axis) { return double(random_bits(7, 2 * i + axis) >> 11) / 9007199254740992.; };
+    const double x = at(0), y = at(1);
+    cloud.position.push_back({x, y, .4 * std::sin(9 * x) * std::cos(8 * y) + .2 * std::sin(23 * x + 11 * y)});
+  }
+  PointSurfaceInfo info;
+  CHECK(sharpest_cosine(surface_of_points(cloud, 0, info)) > -0.98);
+  CHECK(info.open_part > 0.3);
+}
+
+TEST_CASE("points: a hollow whose points look into it stays, whose points are turned outwards goes", "[points][unit]") {
+  for (const bool normals : {true, false}) {
+    PointCloud cloud = ball(6000, -2, 0, normals);
+    const PointCloud inner = ball(2000, -2, 0, normals);
+    for (const WorldPoint& p : inner.position) cloud.position.push_back({5 + .5 * p.x, .5 * p.y, .5 * p.z});
+    for (const WorldPoint& n : inner.normal) cloud.normal.push_back({-n.x, -n.y, -n.z});
+    PointSurfaceInfo info;
+    const TriangleSoup soup = surface_of_points(cloud, 0, info);
+    CHECK(topology_of(soup).components == (normals ? 2 : 1));
+    CHECK(volume(soup) == Approx((normals ? 7. / 8 : 1) * 4 / 3 * 3.14159265 * 27).epsilon(0.03));
+  }
+}
+
+TEST_CASE("points: parts of a surface that no point supports from their own side are left out", "[points][unit]") {
+  const auto shape = [](double inner_radius) {
+    return shapes::together(shapes::sphere({0, 0, 0}, 1, 48),
+                            shapes::inside_out(shapes::sphere({0, 0, 0}, inner_radius, 48)));
+  };
+  const auto points_of = [](const TriangleSoup& soup) {
+    OrientedPoints points;
+    for (const auto& t : soup.triangles) {
+      const WorldPoint &p = soup.vertices[t[0]], &q = soup.vertices[t[1]], &r = soup.vertices[t[2]];
+      const WorldPoint n = doubled_area(p, q, r);
+      points.position.push_back((1. / 3) * (p + q + r));
+      points.normal.push_back((1 / length(n)) * n);
+      points.area.push_back(length(n) / 2);
+    }
+    points.as_given = true;
+    return points;
+  };
+  // Points of the outer surface are as near to the inner one as a voxel is wide, but look the other way.
+  for (const double inner_radius : {.5, .95}) {
+    const OrientedPoints outer = points_of(shapes::sphere({0, 0, 0}, 1, 48)), both = points_of(shape(inner_radius));
+    TriangleSoup soup = shape(inner_radius);
+    drop_unsupported({both, PointTree(both.position), .05}, soup);
+    CHECK(topology_of(soup).components == 2);
+    drop_unsupported({outer, PointTree(outer.position), .05}, soup);
+    CHECK(topology_of(soup).components == 1);
+    CHECK(volume(soup) > 4);
+  }
 }
 
 TEST_CASE("points: what spans nothing is nothing to mesh, and memory is asked for before it is taken",

@@ -44,13 +44,13 @@ struct PointSurfaceInfo {
 };
 
 /// The surface of the points: the level of a smooth indicator function whose gradient is the points' normals (Poisson
-/// reconstruction), drawn onto the points where there are any. Result: closed, 2-manifold, oriented outward; a scan
-/// from one side is closed on its back. Normals that are missing, or that stand on the planes of their neighbours no
-/// more than any would, or badly where those are flat, are estimated from neighbours, those that disagree are
-/// turned along a spanning tree, and all of them so that they point away from the middle. Up to a tenth of the points
-/// is left out where they lie several times as far from their neighbours as others do. The same for any number of
-/// threads. Cost: 9 bytes a voxel of the points' box. Throws: nothing_to_mesh for fewer than four different points,
-/// out_of_memory over `memory_limit_bytes`, if above 0.
+/// reconstruction), drawn onto the points where any look its way. Result: closed, 2-manifold, oriented outward; a scan
+/// from one side is closed on its back, and hollows are left out but where the points' own normals look into them.
+/// Normals that are missing, or that stand on the planes of their neighbours no more than any would, or badly where
+/// those are flat, are estimated from neighbours, those that disagree are turned along a spanning tree, and all of them
+/// so that they point away from the middle. Up to a tenth of the points is left out where they lie several times as far
+/// from their neighbours as others do. The same for any number of threads. Cost: 9 bytes a voxel of the points' box.
+/// Throws: nothing_to_mesh for fewer than four different points, out_of_memory over `memory_limit_bytes`, if above 0.
 TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info);
 
 }  // namespace isoshell
