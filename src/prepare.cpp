@@ -9,6 +9,7 @@
 #include "core/copy_product.h"
 #include "core/hollows.h"
 #include "core/joined_components.h"
+#include "flaps.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/mend.h"
@@ -52,7 +53,11 @@ class Preparation {
     } else {
       close_leaks(p);
     }
-    if (!p.surface.topology.closed && is_crust(p)) keep_sides_apart(p);
+    const bool is_open = !p.surface.topology.closed;
+    if (is_open && is_crust(p))
+      keep_sides_apart(p);
+    else if (is_open || p.surface.first_cap != kNone)  // a flap's cap may lie on it
+      thicken_flaps(p);
     return p;
   }
 
@@ -110,6 +115,14 @@ class Preparation {
       grow(p, grown);
       if (grown == 1 || thickness_vox(p.sheet) < 2 * grown + 3) return;
     }
+  }
+
+  /// A solid whose false handles were cut is no longer that of its sites, and stays as it is.
+  void thicken_flaps(Prepared& p) {
+    if (p.sheet.topology.cut_handles > 0) return;
+    const double edge_vox = usual_edge_length(options_, sheet_area_world(p.sheet)) / p.surface.frame.voxel_size;
+    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    timed(report_, "sheet", context_, [&] { return grow_flaps(p, growth_for_edge(edge_vox), smallest, context_); });
   }
 
   void grow(Prepared& p, int32_t grown_vox) {

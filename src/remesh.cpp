@@ -11,6 +11,7 @@
 #include "isoshell/to_host.h"
 #include "resolve_intersections.h"
 #include "sizing.h"
+#include "thin_walls.h"
 #include "timed.h"
 #include "voxel/exact_int.h"
 
@@ -32,16 +33,24 @@ RelaxOptions relax_options(const RemeshOptions& options) {
   return relax;
 }
 
-/// A vertex lies in a gap when its home does. Grown walls lie off the surface everywhere.
+/// Grown walls have no source, and bridge nothing.
+void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::vector<uint8_t>& gaps) {
+  const OnHost<Sheet> sheet(of);
+  for (size_t v = 0; v < gaps.size(); ++v)
+    if (sheet->source_triangle[int64_t(v)] == kNone) gaps[v] = !bridges.empty() && bridges[v];
+}
+
+/// A vertex lies in a gap when its home does. Where all walls were grown, they lie off the surface everywhere.
 void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
-  if (p.grown_vox > 0) return;
+  if (p.grown_vox > 0 && !p.only_flaps_grown) return;
   std::vector<uint8_t> bridges;
   if (p.closing_vox > 0) {
-    bridges = find_bridges(p.sites, p.sheet);
+    bridges = find_bridges(walls_of(p), p.sheet);
     measure_bridges(p.sheet, bridges, report);
     if (report.bridges == 0) bridges.clear();
   }
-  const std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet, bridges);
+  std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet, bridges);
+  if (p.only_flaps_grown) leave_out_grown(p.sheet, bridges, gaps);
   if (gaps.empty()) return;
   const OnHost<SeedSet> here(seeds);
   mesh.gap.resize(mesh.vertices.size());

@@ -23,6 +23,12 @@ std::string length_text(double world) {
 void warn_of_grown_walls(const Prepared& p, const InputTopology& input, RemeshReport& report) {
   const double voxel = p.surface.frame.voxel_size;
   const std::string thickness = length_text((2 * p.grown_vox + 1) * voxel);
+  if (p.only_flaps_grown) {
+    report.warnings.push_back(
+        "parts of the surface are open and bound nothing: the result follows both of their sides, about " + thickness +
+        " apart");
+    return;
+  }
   if (!input.closed) {
     report.warnings.push_back(
         "the surface is open and its gaps are too wide to close: the result follows both of its sides, about " +

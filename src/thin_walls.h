@@ -16,6 +16,7 @@ void grow_walls(Prepared& prepared, int32_t grown_vox, int64_t smallest_componen
 /// The voxels whose solid the sheet bounds, and by how much that is closed.
 inline const SiteSet& walls_of(const Prepared& p) { return p.grown_vox > 0 ? p.walls : p.sites; }
 inline int32_t closing_of_walls(const Prepared& p) {
+  if (p.only_flaps_grown) return p.closing_vox;
   return p.closing_vox > p.grown_vox ? p.closing_vox - p.grown_vox : 0;
 }
 

@@ -84,7 +84,8 @@ struct Prepared {
   int32_t closing_vox = 0;
   int32_t grown_vox = 0;  ///< above 0: the sheet bounds all within so many voxels of a site, see `walls`
   SiteSet walls;          ///< those voxels, where edges could not follow both sides of the surface's walls; else empty
-  int64_t vertices = 0;   ///< as many as the sizing field asks for; 0: as the options say
+  bool only_flaps_grown = false;  ///< walls hold the sites, and voxels around those of open parts
+  int64_t vertices = 0;           ///< as many as the sizing field asks for; 0: as the options say
 };
 
 /// Mends the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for. Unites

@@ -15,15 +15,15 @@ namespace {
 
 constexpr size_t kPullNeighbours = 16;  // points that a vertex follows
 constexpr int kPullSteps = 3;
-constexpr double kSupportVoxels = 3;     // a vertex farther than that from every point bridges
-constexpr double kPullWidth = 1.0;       // of the weights, in voxels or spacings, whichever is larger
-constexpr double kSureCosine = 0.5;      // of vertex and points; where they agree less, points pull less
-constexpr double kFoldCosine = 0.5;      // a pull may not turn a triangle farther
-constexpr int kHalvings = 3;             // of a pull that folds, before there is none
+constexpr double kSupportVoxels = 3;      // a vertex farther than that from every point bridges
+constexpr double kPullWidth = 1.0;        // of the weights, in voxels or spacings, whichever is larger
+constexpr double kSureCosine = 0.5;       // of vertex and points; where they agree less, points pull less
+constexpr double kFoldCosine = 0.5;       // a pull may not turn a triangle farther
+constexpr int kHalvings = 3;              // of a pull that folds, before there is none
 constexpr size_t kSupportedVertices = 8;  // nearest to a point; it supports the first one that looks its way
-constexpr double kMinSupported = 0.1;    // of a component's area, else it is a bubble
-constexpr double kSmallestPart = 0.002;  // of the area of all points; a component with less is noise
-constexpr int64_t kFewestPoints = 12;    // the same
+constexpr double kMinSupported = 0.1;     // of a component's area, else it is a bubble
+constexpr double kSmallestPart = 0.002;   // of the area of all points; a component with less is noise
+constexpr int64_t kFewestPoints = 12;     // the same
 
 std::vector<WorldPoint> vertex_normals(const TriangleSoup& soup) {
   std::vector<WorldPoint> normal(soup.vertices.size(), {0, 0, 0});
@@ -200,9 +200,9 @@ class Components {
 void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup) {
   if (soup.triangles.empty()) return;
   Components components(of, soup);
-  soup.triangles.erase(
-      std::remove_if(soup.triangles.begin(), soup.triangles.end(), [&](const auto& t) { return !components.keeps(t[0]); }),
-      soup.triangles.end());
+  soup.triangles.erase(std::remove_if(soup.triangles.begin(), soup.triangles.end(),
+                                      [&](const auto& t) { return !components.keeps(t[0]); }),
+                       soup.triangles.end());
   std::vector<uint32_t> number(soup.vertices.size());
   uint32_t kept = 0;
   for (uint32_t v = 0; v < number.size(); ++v) {

@@ -284,6 +284,35 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   CHECK(ball.prepared.grown_vox == 0);
 }
 
+TEST_CASE("prepare: open parts of a solid get walls that edges turn around, the solid stays where it is", "[prepare]") {
+  TriangleSoup ball_with_flag = shapes::sphere({0, 0, 0}, 1, 64);
+  const uint32_t first = uint32_t(ball_with_flag.vertices.size());
+  constexpr uint32_t kCells = 20;
+  for (uint32_t i = 0; i <= kCells; ++i)
+    for (uint32_t j = 0; j <= kCells; ++j) {
+      const double x = .9 + 1.6 * i / kCells, z = 1. * j / kCells - .5;
+      ball_with_flag.vertices.push_back({x, .1 * std::sin(6 * x), z});
+    }
+  for (uint32_t i = 0; i < kCells; ++i)
+    for (uint32_t j = 0; j < kCells; ++j) {
+      const uint32_t a = first + i * (kCells + 1) + j, c = a + kCells + 2;
+      shapes::add_triangle(ball_with_flag, a, a + kCells + 1, c);
+      shapes::add_triangle(ball_with_flag, a, c, a + 1);
+    }
+  RemeshOptions options;
+  options.vertices = 2000;
+  TestContext context;
+  const RemeshResult result = remesh(ball_with_flag, options, context);
+  CHECK(result.report.grown_vox > 0);
+  CHECK(result.report.post.self_intersections == 0);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(check_mesh(result.mesh).genus == 0);
+  CHECK(measure_quality(result.mesh).theta_min_deg > 30);
+  CHECK(measure_quality(result.mesh).q_avg > .92);
+  for (const WorldPoint& p : result.mesh.vertices)
+    if (p.x < .8) CHECK(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) == Approx(1).epsilon(.01));
+}
+
 TEST_CASE("prepare: walls of what the widest closing does not close grow too", "[prepare]") {
   RemeshOptions options;
   options.resolution = 200;
