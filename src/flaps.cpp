@@ -15,7 +15,7 @@
 namespace isoshell {
 namespace {
 
-constexpr int32_t kDeepest = 4;          // voxels of a flap's sites, from one side to the other
+constexpr int32_t kDeepest = 4;           // voxels of a flap's sites, from one side to the other
 constexpr int64_t kMostThicknessQ8 = 64;  // between its sides, as they are laid onto the surface
 
 using LeafMasks = std::map<uint64_t, LeafMask>;
@@ -148,8 +148,8 @@ bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, 
   p.grown_vox = grown_vox;
   p.only_flaps_grown = true;
   p.sheet = {};
-  p.sheet = build_outline(p.walls, p.surface.frame, {closing_of_walls(p), smallest_component_q16, kNoGenus, false},
-                          context);
+  p.sheet =
+      build_outline(p.walls, p.surface.frame, {closing_of_walls(p), smallest_component_q16, kNoGenus, false}, context);
   lay_as(laid, grown, on_host(p.sheet));
   return true;
 }

@@ -6,8 +6,8 @@
 
 namespace isoshell {
 
-/// Gives a prepared surface that has flaps the sheet of its solid together with all voxels within `grown_vox` of a flap:
-/// laid onto the surface but for the flaps, which it follows at that distance. Returns whether there are any.
+/// Gives a prepared surface that has flaps the sheet of its solid together with all voxels within `grown_vox` of a
+/// flap: laid onto the surface but for the flaps, which it follows at that distance. Returns whether there are any.
 bool grow_flaps(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 }  // namespace isoshell

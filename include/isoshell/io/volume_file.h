@@ -10,10 +10,10 @@
 namespace isoshell {
 
 struct VolumeReadOptions {
-  /// Name of the grid, NAME[1] for the second one of that name, or NAME[2] where a grid is called NAME[1]: what a grid is
-  /// called comes first. Empty takes the only level set, or the only grid that can be meshed.
+  /// Name of the grid, NAME[1] for the second one of that name, or NAME[2] where a grid is called NAME[1]: what a grid
+  /// is called comes first. Empty takes the only level set, or the only grid that can be meshed.
   std::string grid;
-  std::optional<double> iso;  ///< value of the surface; without it 0 in a level set, and an error in a fog volume
+  std::optional<double> iso;       ///< value of the surface; without it 0 in a level set, and an error in a fog volume
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
 };
 
