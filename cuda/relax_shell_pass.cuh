@@ -1,4 +1,4 @@
-// One pass of relax_in_shell in two kernels: sum_leaves (candidates, labels, sums of the cells; the last block ends the
+// One pass of relax_in_shell in two kernels: sum_parts (candidates, labels, sums of the cells; the last block ends the
 // pass) and move_shell_seeds. Definition and arithmetic are those of stages/relax_shell_body.h; labels are never
 // stored.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace isoshell::cuda_relax {
 
-constexpr int kLeafWarps = 4;
+constexpr int kPartWarps = 4;
 
 /// Sums over voxels of a leaf by their offsets from voxel 0. The largest: 512 * 147.
 struct OffsetSums {
@@ -23,8 +23,9 @@ struct OffsetSums {
   __device__ void add(const OffsetSums& o) { count_x += o.count_x, y_z += o.y_z, squares += o.squares; }
 };
 
-/// What a pass reads of a leaf beside its voxels' offsets.
-struct alignas(16) ShellLeaf {
+/// What a pass reads of a part of a leaf beside its voxels' offsets. Parts are cubes, as large as seeds are apart: see
+/// cube_edge_for.
+struct alignas(16) ShellPart {
   int64_t voxel_first;
   Voxel leaf;        ///< leaf coordinates
   OffsetSums total;  ///< of all voxels
@@ -34,9 +35,9 @@ struct alignas(16) ShellLeaf {
 };
 
 struct ShellPass {
-  const ShellLeaf* leaf;
-  const uint16_t* offset;  ///< per active voxel, in its leaf
-  int64_t leaves;
+  const ShellPart* part;
+  const uint16_t* offset;  ///< per active voxel, in its leaf; those of a part lie together
+  int64_t parts;
   SeedSearch search;
   int32_t* reach;
   int32_t reach_slack;
@@ -63,8 +64,8 @@ __device__ inline Local voxel_local(int offset) {
 }
 
 /// From the centre of voxel 0.
-__device__ inline PatchBox box_of(const ShellLeaf& leaf) {
-  return {voxel_centre({leaf.leaf.x * 8, leaf.leaf.y * 8, leaf.leaf.z * 8}), voxel_local(leaf.lo), voxel_local(leaf.hi),
+__device__ inline PatchBox box_of(const ShellPart& part) {
+  return {voxel_centre({part.leaf.x * 8, part.leaf.y * 8, part.leaf.z * 8}), voxel_local(part.lo), voxel_local(part.hi),
           0, 0};
 }
 
@@ -73,14 +74,14 @@ struct NoPenalty {
   __device__ int64_t operator()(const Winners&, int) const { return INT64_MAX; }
 };
 
-/// A leaf with more candidates than lists hold: each lane searches for its voxels.
-__device__ __noinline__ inline Int128 sum_leaf_directly(const ShellPass& pass, int64_t number, int64_t limit) {
+/// A part with more candidates than lists hold: each lane searches for its voxels.
+__device__ __noinline__ inline Int128 sum_part_directly(const ShellPass& pass, int64_t number, int64_t limit) {
   Int128 energy = 0;
-  const ShellLeaf& leaf = pass.leaf[number];
-  const PatchBox box = box_of(leaf);
+  const ShellPart& part = pass.part[number];
+  const PatchBox box = box_of(part);
   const int32_t reach = reach_of(limit);
-  for (int i = threadIdx.x & 31; i < leaf.voxels; i += 32) {
-    const int offset = pass.offset[leaf.voxel_first + i];
+  for (int i = threadIdx.x & 31; i < part.voxels; i += 32) {
+    const int offset = pass.offset[part.voxel_first + i];
     const Local u = voxel_local(offset);
     const PointQ8 p = {box.origin.x + u.x, box.origin.y + u.y, box.origin.z + u.z};
     const uint32_t id = label_directly(pass.search, box, reach, p, Normal8{0, 0, 0});
@@ -91,21 +92,21 @@ __device__ __noinline__ inline Int128 sum_leaf_directly(const ShellPass& pass, i
 }
 
 /// Sums per winner, in the lane of its number.
-__device__ inline OffsetSums sum_voxels(const ShellPass& pass, const ShellLeaf& leaf, const SearchResult& found,
+__device__ inline OffsetSums sum_voxels(const ShellPass& pass, const ShellPart& part, const SearchResult& found,
                                         const Winners& winners) {
   constexpr int kRounds = 4;
   const int lane = threadIdx.x & 31;
   OffsetSums mine{0, 0, 0};
-  for (int base = 0; base < leaf.voxels; base += 32 * kRounds) {
+  for (int base = 0; base < part.voxels; base += 32 * kRounds) {
     int label[kRounds];
     Local v[kRounds];
     OffsetSums sums[kRounds];
 #pragma unroll
     for (int r = 0; r < kRounds; ++r) {
       const int i = base + 32 * r + lane;
-      const int offset = i < leaf.voxels ? pass.offset[leaf.voxel_first + i] : 0;
+      const int offset = i < part.voxels ? pass.offset[part.voxel_first + i] : 0;
       v[r] = voxel_local(offset);
-      sums[r] = i < leaf.voxels ? OffsetSums::of(offset) : OffsetSums{0, 0, 0};
+      sums[r] = i < part.voxels ? OffsetSums::of(offset) : OffsetSums{0, 0, 0};
     }
     if (found.narrow) {
       winners_at(winners, found.count, v, label);
@@ -130,30 +131,33 @@ struct ShellScratch {
   SearchScratch search;
 };
 
-/// One warp's leaf; returns the lane's part of the energy.
-__device__ inline Int128 sum_shell_leaf(const ShellPass& pass, int64_t number, ShellScratch& scratch) {
-  const ShellLeaf& leaf = pass.leaf[number];
-  if (leaf.voxels == 0) return 0;
+/// One warp's part; returns the lane's share of the energy.
+__device__ inline Int128 sum_shell_part(const ShellPass& pass, int64_t number, ShellScratch& scratch) {
+  const ShellPart& part = pass.part[number];
+  if (part.voxels == 0) return 0;
   const int lane = threadIdx.x & 31;
-  const PatchBox box = box_of(leaf);
-  const SearchResult found =
-      find_winners(pass.search, box, pass.reach[number], scratch.search, scratch.winners, NoPenalty{});
-  if (lane == 0) pass.reach[number] = found.reach + pass.reach_slack;
-  if (found.count > kMaxWinners) return sum_leaf_directly(pass, number, found.limit);
-  OffsetSums sums = leaf.total;
-  if (found.count > 1) sums = sum_voxels(pass, leaf, found, scratch.winners);
+  const PatchBox box = box_of(part);
+  const int32_t reach = pass.reach[number];
+  SearchResult found;
+  if (!PatchSearch(pass.search, box, scratch.search).find_near(reach, scratch.winners, found) ||
+      found.limit > int64_t(reach) * reach)
+    found = find_winners(pass.search, box, reach, scratch.search, scratch.winners, NoPenalty{});
+  if (lane == 0) pass.reach[number] = reach_of(found.limit) + pass.reach_slack;
+  if (found.count > kMaxWinners) return sum_part_directly(pass, number, found.limit);
+  OffsetSums sums = part.total;
+  if (found.count > 1) sums = sum_voxels(pass, part, found, scratch.winners);
   if (lane >= found.count || sums.count_x == 0) return 0;
   const Local a = scratch.winners.place[lane];
   return add_to_shell_cell(pass.cell[scratch.winners.id[lane]], sums, {a.x, a.y, a.z});
 }
 
-__global__ void __launch_bounds__(kLeafWarps * 32) sum_leaves(const __grid_constant__ ShellPass pass) {
-  __shared__ ShellScratch scratch[kLeafWarps];
+__global__ void __launch_bounds__(kPartWarps * 32) sum_parts(const __grid_constant__ ShellPass pass) {
+  __shared__ ShellScratch scratch[kPartWarps];
   if (pass_is_over(pass.state, pass.progress)) return;
-  const int64_t leaf = int64_t(blockIdx.x) * kLeafWarps + (threadIdx.x >> 5);
+  const int64_t part = int64_t(blockIdx.x) * kPartWarps + (threadIdx.x >> 5);
   Int128 energy = 0;
-  if (leaf < pass.leaves) energy = sum_shell_leaf(pass, leaf, scratch[threadIdx.x >> 5]);
-  end_block<kLeafWarps>(pass.progress, energy, [&](View<const int64_t> total) {
+  if (part < pass.parts) energy = sum_shell_part(pass, part, scratch[threadIdx.x >> 5]);
+  end_block<kPartWarps>(pass.progress, energy, [&](View<const int64_t> total) {
     relax_shell::FinishPass{{pass.state, 1}, total, pass.tolerance_ppb}(0);
   });
 }
@@ -190,41 +194,54 @@ __global__ void start_shell_seeds(ShellMove m, PassState* state, PassProgress* p
   m.record[i] = seed_record(m.move.position[i], {0, 0, 0});
 }
 
-/// One warp a leaf.
-__global__ void describe_leaves(VoxelSetView voxels, ShellLeaf* out, uint16_t* offsets, int64_t spacing_q8,
-                                int32_t* reach) {
-  const int64_t number = (int64_t(blockIdx.x) * blockDim.x + threadIdx.x) >> 5;
+/// The part at (x, y, z) of a leaf, by a warp: lists its voxels from `first` on.
+__device__ inline ShellPart describe_part(const LeafMask& mask, Voxel leaf, int edge, Voxel at, int64_t first,
+                                          uint16_t* offsets) {
   const int lane = threadIdx.x & 31;
-  if (number >= voxels.leaf_key.size) return;
-  const LeafMask& mask = voxels.mask[number];
-  const int64_t first = voxels.first[number];
   OffsetSums total{0, 0, 0};
-  int at = 0;
+  int count = 0;
   unsigned x = 0, y = 0, z = 0;
-  for (int base = 0; base < 512; base += 32) {
-    const int offset = base + lane;
-    const unsigned on = unsigned(mask.word[base >> 6] >> (base & 32));
-    if (on >> lane & 1) {
-      offsets[first + at + lanes_before(on)] = uint16_t(offset);
+  for (int base = 0; base < edge * edge * edge; base += 32) {
+    const int i = base + lane;
+    const int offset = (at.x + i / (edge * edge)) << 6 | (at.y + i / edge % edge) << 3 | (at.z + i % edge);
+    const bool in = i < edge * edge * edge && (mask.word[offset >> 6 & 7] >> (offset & 63) & 1);
+    const unsigned on = __ballot_sync(kWholeWarp, in);
+    if (in) {
+      offsets[first + count + lanes_before(on)] = uint16_t(offset);
       total.add(OffsetSums::of(offset));
       x |= 1u << (offset >> 6), y |= 1u << (offset >> 3 & 7), z |= 1u << (offset & 7);
     }
-    at += __popc(on);
+    count += __popc(on);
   }
   total = {warp_sum(total.count_x), warp_sum(total.y_z), warp_sum(total.squares)};
   x = warp_or(x), y = warp_or(y), z = warp_or(z);
-  if (lane) return;
   const auto lowest = [](unsigned w) { return w ? __ffs(int(w)) - 1 : 0; };
   const auto highest = [](unsigned w) { return w ? 31 - __clz(int(w)) : 0; };
-  ShellLeaf leaf{first,
-                 leaf_of_key(voxels.leaf_key[number]),
-                 total,
-                 uint16_t(lowest(x) << 6 | lowest(y) << 3 | lowest(z)),
-                 uint16_t(highest(x) << 6 | highest(y) << 3 | highest(z)),
-                 uint16_t(at)};
-  out[number] = leaf;
-  const Local lo = voxel_local(leaf.lo), hi = voxel_local(leaf.hi);
-  reach[number] = reach_of(square({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z})) + int32_t(spacing_q8 * 3 / 4);
+  return {first,
+          leaf,
+          total,
+          uint16_t(lowest(x) << 6 | lowest(y) << 3 | lowest(z)),
+          uint16_t(highest(x) << 6 | highest(y) << 3 | highest(z)),
+          uint16_t(count)};
+}
+
+/// One warp a leaf.
+__global__ void describe_parts(VoxelSetView voxels, int edge, ShellPart* out, uint16_t* offsets, int64_t spacing_q8,
+                               int32_t* reach) {
+  const int64_t number = (int64_t(blockIdx.x) * blockDim.x + threadIdx.x) >> 5;
+  if (number >= voxels.leaf_key.size) return;
+  const Voxel leaf = leaf_of_key(voxels.leaf_key[number]);
+  const int along = 8 / edge, parts = along * along * along;
+  int64_t first = voxels.first[number];
+  for (int p = 0; p < parts; ++p) {
+    const Voxel at = {p / (along * along) * edge, p / along % along * edge, p % along * edge};
+    const ShellPart part = describe_part(voxels.mask[number], leaf, edge, at, first, offsets);
+    first += part.voxels;
+    if (threadIdx.x & 31) continue;
+    out[number * parts + p] = part;
+    const Local lo = voxel_local(part.lo), hi = voxel_local(part.hi);
+    reach[number * parts + p] = reach_of(square({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z})) + int32_t(spacing_q8 * 3 / 4);
+  }
 }
 
 }  // namespace isoshell::cuda_relax

@@ -1,5 +1,6 @@
-// Nearest seed of every active voxel (paper section 3.2), by leaves: a list of candidates a leaf, eighths of a leaf
-// where the list does not fit, and one search a voxel where even that does not. All three give the same labels.
+// Nearest seed of every active voxel (paper section 3.2), by cubes of voxels: a list of candidates a cube, eighths of
+// the cube where the list does not fit, and one search a voxel where seeds are as dense as voxels. All give the same
+// labels.
 #pragma once
 
 #include "stages/point_grid_body.h"
@@ -96,26 +97,36 @@ ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafC
     }
 }
 
+/// Edge of the cubes that get one candidate list each: a leaf, or a part of one when seeds are closer, so that lists
+/// stay short and a voxel costs about the same whatever the number of seeds.
+inline int cube_edge_for(int64_t seed_spacing_vox) { return seed_spacing_vox >= 6 ? 8 : seed_spacing_vox >= 3 ? 4 : 2; }
+
 /// One leaf: label its active voxels and hand the labels to the sink.
 template <class Sink>
 struct LabelLeaf {
   VoxelSetView voxels;
   PointGridView grid;
   Sink sink;
-  int first_edge;  ///< 8, or 4 where seeds are dense
+  int first_edge;  ///< see cube_edge_for
 
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    if (first_edge == 8 && label(leaf, cube_of_leaf(voxels.mask[leaf], 8, 0, 0, 0))) return;
-    for (int octant = 0; octant < 8; ++octant) {
-      const LeafCube block =
-          cube_of_leaf(voxels.mask[leaf], 4, (octant >> 2) * 4, (octant >> 1 & 1) * 4, (octant & 1) * 4);
-      if (!label(leaf, block)) label_each(leaf, block);
+  ISOSHELL_HD void operator()(int64_t leaf) const { label_cube<8>(leaf, 0, 0, 0); }
+
+  /// By one list, or by eighths.
+  template <int kEdge>
+  ISOSHELL_HD void label_cube(int64_t leaf, int x, int y, int z) const {
+    const LeafCube cube = cube_of_leaf(voxels.mask[leaf], kEdge, x, y, z);
+    if (cube.empty() || (kEdge <= first_edge && label(leaf, cube))) return;
+    if constexpr (kEdge > 2) {
+      constexpr int kHalf = kEdge / 2;
+      for (int octant = 0; octant < 8; ++octant)
+        label_cube<kHalf>(leaf, x + (octant >> 2) * kHalf, y + (octant >> 1 & 1) * kHalf, z + (octant & 1) * kHalf);
+    } else {
+      label_each(leaf, cube);
     }
   }
 
   /// False when the candidates do not fit; nothing was handed over then.
   ISOSHELL_HD bool label(int64_t leaf, const LeafCube& block) const {
-    if (block.empty()) return true;
     const PointQ8 origin = voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[leaf]), 0));
     Candidates candidates(box_of_centres(block, origin));
     gather_candidates(grid, candidates);
@@ -138,9 +149,6 @@ struct LabelLeaf {
       }
   }
 };
-
-/// Edge of the cubes that get one candidate list each: a leaf, or an eighth of one when seeds are closer than a leaf.
-inline int cube_edge_for(int64_t seed_spacing_vox) { return seed_spacing_vox >= 6 ? 8 : 4; }
 
 /// Per active voxel the seed of the smallest (squared distance from the voxel's centre, seed id).
 template <class Exec>

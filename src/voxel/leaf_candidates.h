@@ -118,11 +118,32 @@ ISOSHELL_HD inline bool beats_in_box(const BoxQ8& box, const GridPoint& a, const
   return most < 0 || (most == 0 && a.id < b.id);
 }
 
+/// Drops what the point that is nearest to the middle of the box beats everywhere: most of what goes, for one
+/// comparison a point.
+ISOSHELL_HD inline void drop_beaten_by_best(Candidates& out) {
+  const BoxQ8& box = out.box;
+  int best = 0;
+  int64_t nearest = int64_t(1) << 62;
+  for (int i = 0; i < out.count; ++i) {
+    const PointQ8 p = out.point[i].position;  // twice as far as the middle is
+    const int64_t x = 2 * int64_t(p.x) - box.lo.x - box.hi.x, y = 2 * int64_t(p.y) - box.lo.y - box.hi.y,
+                  z = 2 * int64_t(p.z) - box.lo.z - box.hi.z;
+    const int64_t d = x * x + y * y + z * z;
+    if (d < nearest) nearest = d, best = i;
+  }
+  const GridPoint first = out.point[best];
+  int kept = 0;
+  for (int i = 0; i < out.count; ++i)
+    if (i == best || !beats_in_box(box, first, out.point[i])) out.point[kept++] = out.point[i];
+  out.count = kept;
+}
+
 /// Gathers, drops what others beat everywhere, sorts by id. The outcome does not depend on the order within grid cells.
 ISOSHELL_HD inline void gather_candidates(const PointGridView& grid, Candidates& out) {
   visit_around(grid, out.box, out);
   if (out.overflow) return;
   out.drop_far();
+  drop_beaten_by_best(out);
   // Beating is transitive, so comparing with points that are out themselves changes nothing.
   bool beaten[kMaxCandidates];
   for (int b = 0; b < out.count; ++b) {

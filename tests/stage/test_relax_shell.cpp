@@ -24,7 +24,7 @@ std::vector<uint32_t> labels_of(const VoxelSet& voxels, const std::vector<PointQ
 
 void check_labels(const VoxelSet& voxels, const std::vector<PointQ8>& seeds) {
   const std::vector<uint32_t> expect = oracle::nearest_seeds(voxels, seeds);
-  for (const int edge : {8, 4})
+  for (const int edge : {8, 4, 2})
     for (const int64_t spacing : {1, 5, 40}) CHECK(labels_of(voxels, seeds, spacing, edge) == expect);
 }
 
