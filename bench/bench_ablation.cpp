@@ -41,13 +41,13 @@ struct Bench {
   }
 
   /// Quality of the dual of a copy of the seeds, improved as asked.
-  json judged(const SeedSet& seeds, const PostOptions* post) const {
+  json judged(const SeedSet& seeds, const OptimizeOptions* optimize) const {
     SeedSet copy = to_host(seeds);
     DualReport dual_report;
     DualMesh dual = triangulate_dual(prepared.sheet, copy, {}, dual_report, context);
     json row = json::object();
-    if (post) {
-      const PostReport report = improve_mesh(prepared.sheet, *post, copy, dual, context);
+    if (optimize) {
+      const OptimizeReport report = optimize_mesh(prepared.sheet, *optimize, copy, dual, context);
       row["self_intersections"] = report.self_intersections;
     }
     const MeshQuality q = measure_quality(to_world(dual, prepared.surface.frame));
@@ -100,8 +100,8 @@ int main(int argc, char** argv) {
                  {"no levels", bench.curve(strata, &Bench::relax, 100)},
                  {"no momentum", bench.curve(levels, &Bench::relax_without_momentum, 40)}};
 
-  const PostOptions post;
-  PostOptions no_flips = post, flips_only = post, no_search = post, no_fit = post;
+  const OptimizeOptions optimize;
+  OptimizeOptions no_flips = optimize, flips_only = optimize, no_search = optimize, no_fit = optimize;
   no_flips.flip_rounds = 0;
   flips_only.smoothing_steps = flips_only.search_rounds = 0;
   no_search.search_rounds = 0;
@@ -111,14 +111,14 @@ int main(int argc, char** argv) {
   bench.relax(no_levels, 100);
   bench.relax_without_momentum(no_momentum, 40);
   json finals = json::array();
-  const auto add = [&](const char* name, const SeedSet& seeds, const PostOptions* p) {
+  const auto add = [&](const char* name, const SeedSet& seeds, const OptimizeOptions* p) {
     finals.push_back(bench.judged(seeds, p));
     finals.back()["variant"] = name;
   };
-  add("all", relaxed, &post);
-  add("no levels", no_levels, &post);
-  add("no momentum", no_momentum, &post);
-  add("no relaxation of the finest level", levels, &post);
+  add("all", relaxed, &optimize);
+  add("no levels", no_levels, &optimize);
+  add("no momentum", no_momentum, &optimize);
+  add("no relaxation of the finest level", levels, &optimize);
   add("no flips", relaxed, &no_flips);
   add("no search", relaxed, &no_search);
   add("no fit", relaxed, &no_fit);

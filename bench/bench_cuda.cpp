@@ -262,7 +262,7 @@ json stage_rows(const Arguments& a) {
         SeedSet copy = copied();
         DualReport report;
         DualMesh mesh = triangulate_dual(sheet, copy, {}, report, context);
-        improve_mesh(sheet, {}, copy, mesh, context);
+        optimize_mesh(sheet, {}, copy, mesh, context);
         return mesh;
       },
       [&] { return vertices; });

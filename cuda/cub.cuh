@@ -2,8 +2,9 @@
 //
 // DeviceMergeSort of CUB 2.8 to 3.0 (CUDA 12.9 and 13.0) launches its merge kernel as a programmatic dependent of the
 // kernel that finds the partitions, and reads the partitions before it waits for that kernel (NVIDIA/cccl issue 5297,
-// mended by pull request 5456). On a busy device it then merges by what lay in the scratch memory before: wrong orders,
-// writes anywhere, illegal instructions. Without programmatic dependent launch every kernel waits for the one before.
+// repaired by pull request 5456). On a busy device it then merges by what lay in the scratch memory before: wrong
+// orders, writes anywhere, illegal instructions. Without programmatic dependent launch every kernel waits for the one
+// before.
 #pragma once
 
 #include <cub/version.cuh>

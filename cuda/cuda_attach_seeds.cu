@@ -1,5 +1,5 @@
 // CUDA's attach_to_sheet.
-#include "cuda/attach_forms.cuh"
+#include "cuda/attach_cooperative.cuh"
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
 #include "stages/attach_seeds_body.h"

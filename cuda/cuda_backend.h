@@ -14,11 +14,11 @@ class CudaBackend final : public BackendTable {
   SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const override;
   Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const override;
   Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const override;
-  Sheet build_sheet(const LatticeSurface&, const SiteSet& walls, const SiteSet&, const SiteSamples&,
+  Sheet build_sheet(const LatticeSurface&, const SiteSet& solid_voxels, const SiteSet&, const SiteSamples&,
                     const SheetOptions&, Context&) const override;
   SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const override;
   SiteSet coarsen_sites(const SiteSet&, Context&) const override;
-  Sheet build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const override;
+  Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const override;
   void set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const override;
   void smooth_edge_lengths(Sheet&, int32_t rounds, Context&) const override;
   int64_t seed_shares(const Sheet&, Context&) const override;
@@ -33,7 +33,7 @@ class CudaBackend final : public BackendTable {
   VoronoiLabels flood_shell(const Shell&, const SeedSet&, Context&) const override;
   DualMesh triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&) const override;
   SeedSet subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&) const override;
-  PostReport improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&) const override;
+  OptimizeReport optimize_mesh(const Sheet&, const OptimizeOptions&, SeedSet&, DualMesh&, Context&) const override;
   int64_t six_volume_vox(const Sheet&, Context&) const override;
   void collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const override;
   int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const override;

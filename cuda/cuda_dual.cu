@@ -1,9 +1,9 @@
 // CUDA's triangulate_dual.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
-#include "cuda/label_forms.cuh"
+#include "cuda/label_cooperative.cuh"
+#include "cuda/pieces_cooperative.cuh"
 #include "cuda/split_cells.cuh"
-#include "cuda/stray_forms.cuh"
 #include "stages/dual_body.h"
 
 namespace isoshell {

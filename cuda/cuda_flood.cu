@@ -1,7 +1,7 @@
 // CUDA's flood_shell.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
-#include "cuda/flood_forms.cuh"
+#include "cuda/flood_cooperative.cuh"
 #include "stages/flood_body.h"
 
 namespace isoshell {

@@ -22,11 +22,11 @@ struct ListSiteTrianglesByMasks;
 namespace dual {
 struct SplitCellsByBlocks;
 }
-namespace post {
+namespace optimize {
 struct FlipEdgesInBatches;
 struct SearchPlacesInOneLaunch;
 struct UndoHarmInOneLaunch;
-}  // namespace post
+}  // namespace optimize
 
 // Steps with a form; see CudaKernels::Forms.
 struct SampleSites;
@@ -39,9 +39,9 @@ struct JoinAcrossLeaves;
 struct JoinInsideLeaf;
 }  // namespace component_steps
 namespace dual {
-struct DecideStray;
+struct DecideDisconnectedPiece;
 struct FoundCell;
-struct JoinStray;
+struct JoinDisconnectedPiece;
 }  // namespace dual
 namespace flood {
 struct FindNeighbours;
@@ -52,10 +52,10 @@ namespace label {
 template <int kCapacity>
 struct LabelLeaf;
 }
-namespace sample_forms {
+namespace sample_cooperative {
 struct CountMet;
 struct FillMet;
-}  // namespace sample_forms
+}  // namespace sample_cooperative
 namespace sheet_steps {
 struct CountFaces;
 struct DescribeCorners;
@@ -76,7 +76,8 @@ struct StepList {
 };
 
 struct CudaKernels {
-  /// sample_forms.cuh: a thread tests one leaf with one triangle, once; a leaf's sites read the masks that come out.
+  /// sample_cooperative.cuh: a thread tests one leaf with one triangle, once; a leaf's sites read the masks that come
+  /// out.
   using ListSiteTriangles = ListSiteTrianglesByMasks;
   /// cuda_sheet.cu: the stage itself.
   using BuildShell = CudaBuildShell;
@@ -86,12 +87,12 @@ struct CudaKernels {
   using JoinComponents = JoinComponentsByLeaves;
   /// split_cells.cuh: a block of threads a cell; cells are few and large.
   using SplitCells = dual::SplitCellsByBlocks;
-  /// post_kernels.cuh: three rounds between two looks of the host; one that finds nothing changes nothing.
-  using FlipEdges = post::FlipEdgesInBatches;
-  /// post_kernels.cuh: all rounds in one cooperative launch, none of which the host waits for.
-  using UndoHarm = post::UndoHarmInOneLaunch;
-  /// post_kernels.cuh: the same, and a warp a vertex: a lane tries each place.
-  using SearchPlaces = post::SearchPlacesInOneLaunch;
+  /// optimize_kernels.cuh: three rounds between two looks of the host; one that finds nothing changes nothing.
+  using FlipEdges = optimize::FlipEdgesInBatches;
+  /// optimize_kernels.cuh: all rounds in one cooperative launch, none of which the host waits for.
+  using UndoHarm = optimize::UndoHarmInOneLaunch;
+  /// optimize_kernels.cuh: the same, and a warp a vertex: a lane tries each place.
+  using SearchPlaces = optimize::SearchPlacesInOneLaunch;
 
   // Plain: one thread an element, or the step's form.
   using ProjectVertices = PlainKernels::ProjectVertices;
@@ -104,24 +105,24 @@ struct CudaKernels {
   using LeafPasses = WholeStage;
 
   /// Steps whose elements are too large for one thread, or lie so that neighbouring threads would read far apart.
-  /// BlockForm (block_form.cuh) says how several threads share an element of each.
+  /// CooperativeKernel (cooperative_kernel.cuh) says how several threads share an element of each.
   using Forms = StepList<
-      // attach_forms.cuh: a warp a seed, a lane a row of the grid's cells.
+      // attach_cooperative.cuh: a warp a seed, a lane a row of the grid's cells.
       attach_seeds::AttachSeed,
-      // flood_forms.cuh: a warp a leaf; what it reads of its 26 neighbours lies in shared memory.
+      // flood_cooperative.cuh: a warp a leaf; what it reads of its 26 neighbours lies in shared memory.
       flood::FindNeighbours, flood::ListReached, flood::Spread,
-      // label_forms.cuh: a warp a leaf, which gathers the leaf's candidates together.
+      // label_cooperative.cuh: a warp a leaf, which gathers the leaf's candidates together.
       label::LabelLeaf<256>,
-      // sample_forms.cuh: a warp a leaf, a lane a site.
-      SortLeafTriangles, SampleSites, sample_forms::CountMet, sample_forms::FillMet,
+      // sample_cooperative.cuh: a warp a leaf, a lane a site.
+      SortLeafTriangles, SampleSites, sample_cooperative::CountMet, sample_cooperative::FillMet,
       // sheet_components.cuh: a warp a leaf, a lane a vertex.
       component_steps::JoinInsideLeaf, component_steps::JoinAcrossLeaves,
-      // sheet_forms.cuh: a warp a leaf; the voxels around it lie in shared memory.
+      // sheet_cooperative.cuh: a warp a leaf; the voxels around it lie in shared memory.
       sheet_steps::FindAdditions, sheet_steps::WantCornerLeaves, sheet_steps::MarkCorners, sheet_steps::DescribeCorners,
       sheet_steps::CountFaces, sheet_steps::ListFaces, sheet_steps::SmoothCorners,
-      // stray_forms.cuh: a warp a stray piece, a lane a vertex of it.
-      dual::DecideStray, dual::JoinStray, dual::FoundCell,
-      // surface_forms.cuh: a block a run of faces, whose areas one thread then adds in order.
+      // pieces_cooperative.cuh: a warp a disconnected piece piece, a lane a vertex of it.
+      dual::DecideDisconnectedPiece, dual::JoinDisconnectedPiece, dual::FoundCell,
+      // surface_cooperative.cuh: a block a run of faces, whose areas one thread then adds in order.
       topology_steps::AddAreas>;
 };
 

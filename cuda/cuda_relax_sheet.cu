@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "cuda/cuda_backend.h"
-#include "cuda/label_forms.cuh"
+#include "cuda/label_cooperative.cuh"
 #include "cuda/relax_sheet_pass.cuh"
 
 namespace isoshell {

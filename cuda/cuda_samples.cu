@@ -1,7 +1,7 @@
 // CUDA's sample_sites.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
-#include "cuda/sample_forms.cuh"
+#include "cuda/sample_cooperative.cuh"
 #include "stages/samples_body.h"
 
 namespace isoshell {

@@ -2,8 +2,8 @@
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
 #include "cuda/sheet_components.cuh"
+#include "cuda/sheet_cooperative.cuh"
 #include "cuda/sheet_flood.cuh"
-#include "cuda/sheet_forms.cuh"
 #include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
 #include "stages/sheet_volume_body.h"
@@ -14,10 +14,10 @@ Shell CudaBuildShell::run(CudaExecutor& exec, const SiteSet& sites, const ShellO
   return CudaBackend().build_shell(sites, options, exec.context());
 }
 
-Sheet CudaBackend::build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+Sheet CudaBackend::build_sheet(const LatticeSurface& surface, const SiteSet& solid_voxels, const SiteSet& sites,
                                const SiteSamples& samples, const SheetOptions& options, Context& context) const {
   CudaExecutor exec(context, "sheet");
-  return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, walls),
+  return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, solid_voxels),
                           *OnDevice<SiteSet>(exec, sites), *OnDevice<SiteSamples>(exec, samples), options);
 }
 
@@ -26,10 +26,10 @@ SiteSet CudaBackend::coarsen_sites(const SiteSet& sites, Context& context) const
   return coarsen_sites_body(exec, *OnDevice<SiteSet>(exec, sites));
 }
 
-Sheet CudaBackend::build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
-                                 Context& context) const {
+Sheet CudaBackend::build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                               Context& context) const {
   CudaExecutor exec(context, "outline");
-  return build_outline_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
+  return build_proxy_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
 }
 
 int64_t CudaBackend::six_volume_vox(const Sheet& sheet, Context& context) const {

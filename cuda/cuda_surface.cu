@@ -1,7 +1,7 @@
 // CUDA's measure_topology and snap_surface.
 #include "cuda/cuda_backend.h"
 #include "cuda/executor_cuda.cuh"
-#include "cuda/surface_forms.cuh"
+#include "cuda/surface_cooperative.cuh"
 #include "stages/surface_body.h"
 #include "stages/topology_body.h"
 

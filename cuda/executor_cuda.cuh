@@ -1,5 +1,5 @@
-// The CUDA executor: exec/executor.h over a stream. Steps run one a thread, or as their BlockForm says; words that
-// return a value to the host wait for the stream, all others only enqueue.
+// The CUDA executor: exec/executor.h over a stream. Steps run one a thread, or as their CooperativeKernel says; words
+// that return a value to the host wait for the stream, all others only enqueue.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "core/copy_product.h"
-#include "cuda/block_form.cuh"
+#include "cuda/cooperative_kernel.cuh"
 #include "cuda/cub.cuh"
 #include "cuda/cuda_kernels.h"
 #include "cuda/device_stream.h"

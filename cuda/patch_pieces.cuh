@@ -44,8 +44,8 @@ __device__ inline int32_t part_of(int32_t area2, int32_t t_q15, int32_t u_q15) {
 
 /// The corner p of the triangle (p, q, r) on the side of `here` of the bisector with `other`.
 __device__ inline PieceSum corner_piece32(int32_t area2, Local p, Local q, Local r, Local here, Local other) {
-  const int64_t at = nearer(p, here, other);
-  const int32_t t = crossing32(at, nearer(q, here, other)), u = crossing32(at, nearer(r, here, other));
+  const int64_t at = bisector_value(p, here, other);
+  const int32_t t = crossing32(at, bisector_value(q, here, other)), u = crossing32(at, bisector_value(r, here, other));
   return piece_sum32(part_of(area2, t, u), p, between32(p, q, t), between32(p, r, u));
 }
 
@@ -55,8 +55,9 @@ struct Junction {
 
   /// SplitTriangle::separates(0).
   __device__ bool separates() const {
-    const Local m = between32(p[1], p[2], crossing32(nearer(p[1], s[1], s[2]), nearer(p[2], s[1], s[2])));
-    return nearer(m, s[1], s[0]) > 0 && nearer(m, s[2], s[0]) > 0;
+    const Local m =
+        between32(p[1], p[2], crossing32(bisector_value(p[1], s[1], s[2]), bisector_value(p[2], s[1], s[2])));
+    return bisector_value(m, s[1], s[0]) > 0 && bisector_value(m, s[2], s[0]) > 0;
   }
 };
 

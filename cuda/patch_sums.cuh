@@ -212,7 +212,7 @@ class PatchSums {
 
   /// Where the bisector of its first seed with another crosses the side to corner `end`.
   __device__ static int32_t crossing(const in_patch::Junction& j, Local other, int end) {
-    return in_patch::crossing32(nearer(j.p[0], j.s[0], other), nearer(j.p[end], j.s[0], other));
+    return in_patch::crossing32(bisector_value(j.p[0], j.s[0], other), bisector_value(j.p[end], j.s[0], other));
   }
 
   /// SplitTriangle::meeting_point, of which lane i of four gives the weight of corner i.
@@ -220,8 +220,8 @@ class PatchSums {
     // The seeds in the triangle's order.
     const Local s0 = in_patch::pick(i, j.s[0], j.s[2], j.s[1]), s1 = in_patch::pick(i, j.s[1], j.s[0], j.s[2]),
                 s2 = in_patch::pick(i, j.s[2], j.s[1], j.s[0]);
-    const double f1 = double(nearer(j.p[1], s0, s1)), g1 = double(nearer(j.p[1], s0, s2)),
-                 f2 = double(nearer(j.p[2], s0, s1)), g2 = double(nearer(j.p[2], s0, s2));
+    const double f1 = double(bisector_value(j.p[1], s0, s1)), g1 = double(bisector_value(j.p[1], s0, s2)),
+                 f2 = double(bisector_value(j.p[2], s0, s1)), g2 = double(bisector_value(j.p[2], s0, s2));
     double w = f1 * g2 - f2 * g1;
     const auto total = [&] {
       const double w0 = __shfl_sync(~0u, w, group), w1 = __shfl_sync(~0u, w, group + 1),

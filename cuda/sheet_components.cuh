@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cuda/executor_cuda.cuh"
-#include "cuda/leaf_forms.cuh"
+#include "cuda/leaf_cooperative.cuh"
 #include "stages/sheet_components_body.h"
 
 namespace isoshell {
@@ -38,11 +38,11 @@ __device__ inline void for_each_rising_edge(uint8_t edges, int offset, Visit vis
 }  // namespace component_steps
 
 template <>
-struct BlockForm<component_steps::JoinInsideLeaf>
-    : leaf_forms::LeafForm<component_steps::JoinInsideLeaf, component_steps::LeafSets> {
+struct CooperativeKernel<component_steps::JoinInsideLeaf>
+    : leaf_cooperative::CooperativeLeaf<component_steps::JoinInsideLeaf, component_steps::LeafSets> {
   static __device__ void run(const component_steps::JoinInsideLeaf& step, int64_t leaf, Shared& sets, int lane) {
     const component_steps::LeafEdges& of = step.of;
-    const int count = leaf_forms::list_active(of.corners.mask[leaf], sets.offset, lane);
+    const int count = leaf_cooperative::list_active(of.corners.mask[leaf], sets.offset, lane);
     const int64_t first = of.corners.first[leaf];
     for (int k = lane; k < count; k += 32) {
       const int offset = sets.offset[k];
@@ -64,11 +64,11 @@ struct BlockForm<component_steps::JoinInsideLeaf>
 };
 
 template <>
-struct BlockForm<component_steps::JoinAcrossLeaves>
-    : leaf_forms::LeafForm<component_steps::JoinAcrossLeaves, leaf_forms::Offsets> {
+struct CooperativeKernel<component_steps::JoinAcrossLeaves>
+    : leaf_cooperative::CooperativeLeaf<component_steps::JoinAcrossLeaves, leaf_cooperative::Offsets> {
   static __device__ void run(const component_steps::JoinAcrossLeaves& step, int64_t leaf, Shared& shared, int lane) {
     const component_steps::LeafEdges& of = step.of;
-    const int count = leaf_forms::list_active(of.corners.mask[leaf], shared.offset, lane);
+    const int count = leaf_cooperative::list_active(of.corners.mask[leaf], shared.offset, lane);
     const int64_t first = of.corners.first[leaf];
     const Voxel l = leaf_of_key(of.corners.leaf_key[leaf]);
     for (int k = lane; k < count; k += 32) {

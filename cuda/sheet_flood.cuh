@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cuda/block_form.cuh"
+#include "cuda/cooperative_kernel.cuh"
 #include "cuda/executor_cuda.cuh"
 #include "stages/sheet_flood_body.h"
 

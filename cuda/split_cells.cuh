@@ -3,7 +3,7 @@
 // an order.
 #pragma once
 
-#include "cuda/block_form.cuh"
+#include "cuda/cooperative_kernel.cuh"
 #include "cuda/executor_cuda.cuh"
 #include "stages/dual_split_body.h"
 

@@ -149,7 +149,7 @@ bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, 
   p.only_flaps_grown = true;
   p.sheet = {};
   p.sheet =
-      build_outline(p.walls, p.surface.frame, {closing_of_walls(p), smallest_component_q16, kNoGenus, false}, context);
+      build_proxy(p.walls, p.surface.frame, {closing_of_solid(p), smallest_component_q16, kNoGenus, false}, context);
   lay_as(laid, grown, on_host(p.sheet));
   return true;
 }

@@ -1,4 +1,4 @@
-// prepare (see remesh.h): mends and unites what was given, chooses the grid, voxelises, builds the sheet. The grid is
+// prepare (see remesh.h): repairs and unites what was given, chooses the grid, voxelises, builds the sheet. The grid is
 // made finer while the sheet lacks the input's topology.
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include "flaps.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
-#include "isoshell/mend.h"
 #include "isoshell/remesh.h"
+#include "isoshell/repair.h"
 #include "isoshell/to_host.h"
 #include "shown_parts.h"
 #include "sizing.h"
@@ -127,7 +127,7 @@ class Preparation {
 
   void grow(Prepared& p, int32_t grown_vox) {
     const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    timed(report_, "sheet", context_, [&] { grow_walls(p, grown_vox, smallest, context_); });
+    timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest, context_); });
   }
 
   Sheet sheet(const Prepared& p, int32_t closing_vox) {
@@ -195,7 +195,7 @@ double voxel_edge(const TriangleSoup& soup, const InputTopology& input, const Re
 }
 
 /// Of faces that were cut: closed, whatever their edges say, and of a genus that nobody knows.
-InputTopology topology_of_union(InputTopology input, const UniteReport& unite) {
+InputTopology topology_of_union(InputTopology input, const UnionReport& unite) {
   input.closed = input.oriented = true;
   input.components = unite.joined_components;
   input.genus = -1;
@@ -335,7 +335,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const InputTopology given =
       timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
   check_area(given);
-  memory_allows(estimate_run(soup, given, options, kCoarsestGrid), false, report, context);  // mending comes first
+  memory_allows(estimate_run(soup, given, options, kCoarsestGrid), false, report, context);  // repair comes first
   TriangleSoup changed;
   const TriangleSoup* current = &soup;
   InputTopology input = given;
@@ -345,14 +345,14 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   };
   if (!given.closed || !given.oriented) {
     const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
-    changed = timed(report, "mend", context, [&] { return mend(soup, {closing_chosen}, report.mend); });
+    changed = timed(report, "mend", context, [&] { return repair_soup(soup, {closing_chosen}, report.mend); });
     current = &changed;
     input = timed(report, "topology", context, measure);
   }
   if (input.closed && input.oriented && input.components > 1) {
-    const UniteOptions unite_options{options.outer_only, voxel_edge(*current, input, options) / 2};
+    const UnionOptions union_options{options.outer_only, voxel_edge(*current, input, options) / 2};
     TriangleSoup united =
-        timed(report, "unite", context, [&] { return unite(*current, unite_options, report.unite, context); });
+        timed(report, "unite", context, [&] { return boolean_union(*current, union_options, report.unite, context); });
     if (report.unite.changed_anything()) {
       changed = std::move(united);
       current = &changed;

@@ -45,7 +45,7 @@ void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapR
   if (p.grown_vox > 0 && !p.only_flaps_grown) return;
   std::vector<uint8_t> bridges;
   if (p.closing_vox > 0) {
-    bridges = find_bridges(walls_of(p), p.sheet);
+    bridges = find_bridges(solid_voxels_of(p), p.sheet);
     measure_bridges(p.sheet, bridges, report);
     if (report.bridges == 0) bridges.clear();
   }
@@ -105,13 +105,14 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   if (seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
-  PostOptions post;
-  post.fit = options.fit;
-  post.uniform_area = options.uniform_area;
+  OptimizeOptions optimize;
+  optimize.fit = options.fit;
+  optimize.uniform_area = options.uniform_area;
   if (report.dual.failed_cells == 0) {
-    report.post = timed(report, "post", context, [&] { return improve_mesh(p.sheet, post, seeds, dual, context); });
+    report.post =
+        timed(report, "post", context, [&] { return optimize_mesh(p.sheet, optimize, seeds, dual, context); });
     if (report.post.self_intersections > 0)
-      timed(report, "untangle", context, [&] { resolve_intersections(p, post, seeds, dual, report, context); });
+      timed(report, "untangle", context, [&] { resolve_intersections(p, optimize, seeds, dual, report, context); });
     report.post_done = true;
   }
   if (report.post.self_intersections > 0)

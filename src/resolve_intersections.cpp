@@ -5,7 +5,7 @@
 
 namespace isoshell {
 
-void resolve_intersections(const Prepared& prepared, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
                            RemeshReport& report, Context& context) {
   const int64_t asked = seeds.size();
   Sheet sheet = host_copy(prepared.sheet);
@@ -20,13 +20,13 @@ void resolve_intersections(const Prepared& prepared, const PostOptions& options,
   collapse_edges(sheet, asked, start, dual, context, keep_apart);
   collapse_edges(sheet, asked, start, dual, context);  // the count goes before what is left
   if (start.size() != asked) return;
-  PostOptions again = options;
+  OptimizeOptions again = options;
   again.keep_apart = true;
-  const PostReport post = improve_mesh(sheet, again, start, dual, context);
-  if (post.self_intersections >= report.post.self_intersections) return;
+  const OptimizeReport optimize = optimize_mesh(sheet, again, start, dual, context);
+  if (optimize.self_intersections >= report.post.self_intersections) return;
   seeds = std::move(start);
   mesh = std::move(dual);
-  report.post = post;
+  report.post = optimize;
   report.seeds_against_intersections = found.inserted_seeds;
 }
 

@@ -9,7 +9,7 @@ namespace isoshell {
 /// intersects, and as many taken out elsewhere; then once more without flips, which are what cannot be undone. Of all
 /// these the mesh with the fewest intersections counts, the first among equals; `seeds`, `mesh` and the report become
 /// its own.
-void resolve_intersections(const Prepared& prepared, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
+void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
                            RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -20,7 +20,7 @@ std::string length_text(double world) {
   return text.str();
 }
 
-void warn_of_grown_walls(const Prepared& p, const InputTopology& input, RemeshReport& report) {
+void warn_of_grown_solid(const Prepared& p, const InputTopology& input, RemeshReport& report) {
   const double voxel = p.surface.frame.voxel_size;
   const std::string thickness = length_text((2 * p.grown_vox + 1) * voxel);
   if (p.only_flaps_grown) {
@@ -63,7 +63,7 @@ int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology
 void warn_of_topology(const Prepared& p, const InputTopology& input, const RemeshOptions& options,
                       RemeshReport& report) {
   if (p.grown_vox > 0)
-    warn_of_grown_walls(p, input, report);
+    warn_of_grown_solid(p, input, report);
   else if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
     report.warnings.push_back(std::to_string(input.components) +
                               " components and their handles are more than so few vertices can show: those smaller "

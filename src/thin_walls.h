@@ -1,4 +1,5 @@
-// Walls that the edges of the result cannot follow on both sides are grown: what the sheet and its outlines bound then.
+// Walls that the edges of the result cannot follow on both sides are grown: what the sheet and its coarse proxies bound
+// then.
 #pragma once
 
 #include "isoshell/remesh.h"
@@ -11,11 +12,11 @@ int32_t growth_for_edge(double edge_vox);
 
 /// Gives a prepared surface the sheet of all voxels within `grown_vox` of a site. Gaps up to twice its closing close,
 /// or twice the growth if that is more; hollows too.
-void grow_walls(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
+void grow_solid(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 /// The voxels whose solid the sheet bounds, and by how much that is closed.
-inline const SiteSet& walls_of(const Prepared& p) { return p.grown_vox > 0 ? p.walls : p.sites; }
-inline int32_t closing_of_walls(const Prepared& p) {
+inline const SiteSet& solid_voxels_of(const Prepared& p) { return p.grown_vox > 0 ? p.walls : p.sites; }
+inline int32_t closing_of_solid(const Prepared& p) {
   if (p.only_flaps_grown) return p.closing_vox;
   return p.closing_vox > p.grown_vox ? p.closing_vox - p.grown_vox : 0;
 }

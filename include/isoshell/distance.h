@@ -29,7 +29,7 @@ constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh th
 /// Throws: usage when a mesh has no triangle or names a vertex that it does not have.
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context);
 
-/// The triangles of the input as the stages see it: snapped, and mended where it was.
+/// The triangles of the input as the stages see it: snapped, and repaired where it was.
 TriangleMesh to_world(const LatticeSurface& surface);
 
 }  // namespace isoshell

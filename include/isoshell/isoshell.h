@@ -1,6 +1,7 @@
 // Umbrella header.
 #pragma once
 
+#include "isoshell/boolean_union.h"
 #include "isoshell/device_info.h"
 #include "isoshell/digest.h"
 #include "isoshell/distance.h"
@@ -12,10 +13,9 @@
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/memory_estimate.h"
-#include "isoshell/mend.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/remesh.h"
+#include "isoshell/repair.h"
 #include "isoshell/stages.h"
 #include "isoshell/to_host.h"
-#include "isoshell/unite.h"

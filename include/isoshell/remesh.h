@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/boolean_union.h"
 #include "isoshell/gaps.h"
-#include "isoshell/mend.h"
+#include "isoshell/repair.h"
 #include "isoshell/sizing.h"
 #include "isoshell/stages.h"
-#include "isoshell/unite.h"
 
 namespace isoshell {
 
@@ -50,20 +50,20 @@ struct StageTime {
 
 /// Everything measured on the way.
 struct RemeshReport {
-  InputTopology input;  ///< as given; of a resumed run, as mended
+  InputTopology input;  ///< as given; of a resumed run, as repaired
   DirtCounts dirt;
-  MendReport mend;
-  UniteReport unite;
+  RepairReport mend;
+  UnionReport unite;
   LatticeFrame frame;
   int32_t band_vox = 0, closing_vox = 0, grown_vox = 0;
   int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
   int64_t sheet_vertices = 0, seeds = 0;
   SheetTopology sheet;
-  bool topology_compared = false;  ///< the input, as mended, is closed and oriented
+  bool topology_compared = false;  ///< the input, as repaired, is closed and oriented
   bool topology_agrees = false;    ///< components and genus of the sheet equal the input's
   RelaxReport relax;
   DualReport dual;
-  PostReport post;                          ///< of the final mesh, when post_done
+  OptimizeReport post;                      ///< of the final mesh, when post_done
   int64_t seeds_against_intersections = 0;  ///< put in where triangles intersected; others were taken out for them
   SizingReport sizing;
   GapReport gaps;
@@ -88,12 +88,12 @@ struct Prepared {
   int64_t vertices = 0;           ///< as many as the sizing field asks for; 0: as the options say
 };
 
-/// Mends the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for. Unites
-/// the components of one that is: what lies in solid goes, surfaces of hollows stay unless only outer ones are wanted.
-/// Then chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by halves until
-/// the sheet's components and genus are the input's, at most to four times the first choice (never beyond a given
-/// resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage, out_of_memory,
-/// interrupted.
+/// Repairs the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for.
+/// Unites the components of one that is: what lies in solid goes, surfaces of hollows stay unless only outer ones are
+/// wanted. Then chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by
+/// halves until the sheet's components and genus are the input's, at most to four times the first choice (never beyond
+/// a given resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage,
+/// out_of_memory, interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context);
 /// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,

@@ -45,7 +45,7 @@ struct SheetOptions {
   int32_t closing_vox = 0;             ///< r: gaps up to 2 r voxels are bridged; 0 to kMaxClosingVox
   int64_t min_component_area_q16 = 0;  ///< smaller sheet components are dropped; voxel^2 / 65536
   int64_t genus = kNoGenus;            ///< of a closed and oriented surface: more handles are cut
-  bool move_in = true;                 ///< an outline goes to where the surface is on average
+  bool move_in = true;                 ///< a coarse proxy goes to where the surface is on average
 };
 /// Closes the sites by r, floods from outside, repairs the solid until it is well-composed, and lays its boundary onto
 /// the surface. Handles beyond `genus` are cut where their thinnest part lies farthest outside: the solid is grown anew
@@ -61,7 +61,7 @@ SiteSet coarsen_sites(const SiteSet& sites, Context& context);
 /// The sheet of the sites alone, smoothed and, unless told not to, moved in to where the surface is on average, but not
 /// laid onto it: within about a voxel. What coarse levels of seeds relax on, and what stands for an open surface whose
 /// two sides would lie on each other.
-Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
+Sheet build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
 
 /// Six times the volume inside a sheet, in whole voxels, rounded down once.
 int64_t six_volume_vox(const Sheet& sheet, Context& context);
@@ -75,8 +75,8 @@ void set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Con
 void smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context);
 /// Doubled area of the sheet, that of each triangle over the square of its length, the least length being 1; q16.
 int64_t seed_shares_q16(const Sheet& sheet, Context& context);
-/// Gives an outline the lengths of the sheet it stands for, those of the nearest vertices. `halvings`: how many times
-/// the edge of its voxels was doubled.
+/// Gives a coarse proxy the lengths of the sheet it stands for, those of the nearest vertices. `halvings`: how many
+/// times the edge of its voxels was doubled.
 void copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context);
 /// Per vertex how much normals turn a voxel, in 1/65536: the root of the mean square over its edges, of normals that
 /// became the mean of their neighbours' in so many rounds, and smoothed in two thirds as many.
@@ -113,8 +113,8 @@ RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteS
                            const RelaxOptions& options, Context& context);
 
 /// Moves seeds onto a sheet: nearest point of the sheet, its home vertex and outward normal. `halvings`: how many times
-/// the voxels of the seeds' lattice must be halved to give the sheet's; above 0 seeds come from an outline, from half a
-/// voxel of theirs outside of it.
+/// the voxels of the seeds' lattice must be halved to give the sheet's; above 0 seeds come from a coarse proxy, from
+/// half a voxel of theirs outside of it.
 void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context, int halvings = 0);
 
 /// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in
@@ -133,7 +133,7 @@ struct DualMesh {
 };
 struct DualReport {
   int64_t inserted_seeds = 0;       ///< appended to the seeds, in every round; a run may drop others afterwards
-  int64_t relabelled_vertices = 0;  ///< in stray pieces that joined a neighbouring cell
+  int64_t relabelled_vertices = 0;  ///< in disconnected pieces that joined a neighbouring cell
   int64_t repair_rounds = 0;
   int64_t failed_cells = 0;  ///< left after the last round; 0 means the guarantee holds
 };
@@ -176,7 +176,7 @@ enum class Fit {
   balanced,  ///< where the mesh straddles the surface: least distance on average and at tips, for its shapes
   surface,   ///< on the sheet, that is on the input
 };
-struct PostOptions {
+struct OptimizeOptions {
   int32_t flip_rounds = 6;       ///< independent sets each time
   int32_t smoothing_steps = 80;  ///< 0 leaves vertices where they are: flips only
   int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
@@ -185,7 +185,7 @@ struct PostOptions {
   bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
   bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began, and no relocation
 };
-struct PostReport {
+struct OptimizeReport {
   int64_t flips = 0;
   int64_t undone_vertices = 0;     ///< went back because of intersections; counted each time
   int64_t self_intersections = 0;  ///< pairs of triangles that still intersect; not looked for when the vertices
@@ -195,10 +195,12 @@ struct PostReport {
 /// vertices are the seeds; homes and positions of the seeds follow. Where triangles intersect in the end, exactly
 /// tested, the vertices around go back to where they were on the sheet, then to where they began. Result: still closed
 /// and 2-manifold, same genus.
-PostReport improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                        Context& context);
+OptimizeReport optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
+                             Context& context);
 
 /// Final positions in the world.
 TriangleMesh to_world(const DualMesh& mesh, const LatticeFrame& frame);
 
 }  // namespace isoshell
+
+#include "isoshell/deprecated.h"  // old names, for one release

@@ -5,7 +5,7 @@
 
 #include "core/world_vector.h"
 
-namespace isoshell::mending {
+namespace isoshell::repair {
 namespace {
 
 constexpr size_t kMostCorners = 128;
@@ -101,4 +101,4 @@ std::vector<LoopTriangle> cap_loop(const std::vector<WorldPoint>& corner, const 
   return triangles;
 }
 
-}  // namespace isoshell::mending
+}  // namespace isoshell::repair

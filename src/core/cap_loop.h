@@ -8,7 +8,7 @@
 
 #include "isoshell/lattice.h"
 
-namespace isoshell::mending {
+namespace isoshell::repair {
 
 /// Positions in the loop, each triangle in the loop's direction.
 using LoopTriangle = std::array<uint32_t, 3>;
@@ -20,4 +20,4 @@ using LoopTriangle = std::array<uint32_t, 3>;
 std::vector<LoopTriangle> cap_loop(const std::vector<WorldPoint>& corner,
                                    const std::function<bool(uint32_t, uint32_t)>& may_join);
 
-}  // namespace isoshell::mending
+}  // namespace isoshell::repair

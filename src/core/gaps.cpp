@@ -111,7 +111,7 @@ void measure_bridges(const Sheet& on, const std::vector<uint8_t>& bridges, GapRe
 }
 
 std::vector<uint8_t> find_gaps(const LatticeSurface& of, const Sheet& on, const std::vector<uint8_t>& bridges) {
-  if (on.source_triangle.empty()) return {};  // an outline
+  if (on.source_triangle.empty()) return {};  // a coarse proxy
   if (of.first_cap == kNone && bridges.empty()) return {};
   const OnHost<LatticeSurface> surface(of);
   const OnHost<Sheet> sheet(on);

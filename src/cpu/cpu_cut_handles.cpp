@@ -120,7 +120,7 @@ class SolidEntry {
 };
 
 /// The sites less the cuts, with the solid that surrounds those: a wall again.
-SiteSet walls_around(CpuExecutor& exec, const HandleCutter& cutter, const Box& box, const SiteSet& of) {
+SiteSet solid_around(CpuExecutor& exec, const HandleCutter& cutter, const Box& box, const SiteSet& of) {
   const VoxelSetView sites = of.voxels.view();
   std::map<uint64_t, LeafMask> leaves;
   for (int64_t l = 0; l < sites.leaf_key.size; ++l) leaves.emplace_hint(leaves.end(), sites.leaf_key[l], sites.mask[l]);
@@ -168,7 +168,7 @@ SiteSet CpuBackend::cut_false_handles(const SiteSet& sites, const SiteSamples& s
     }
     cutter.grow(std::max<int64_t>(0, genus), [&] { check_cancel(context, "cut handles"); });
     if (genus == kUnknownGenus) cutter.close_cuts_below(kInsideRanks);
-    return walls_around(exec, cutter, box, *here);
+    return solid_around(exec, cutter, box, *here);
   });
 }
 

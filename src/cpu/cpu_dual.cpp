@@ -2,7 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "cpu/label_lanes.h"
+#include "cpu/label_simd.h"
 #include "stages/dual_body.h"
 
 namespace isoshell {

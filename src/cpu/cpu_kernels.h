@@ -7,29 +7,30 @@
 
 namespace isoshell {
 
-class CpuPassWork;
-class CpuStepWork;
-class LabelLanes;
+class CpuPassSimd;
+class CpuStepSimd;
+class LabelSimd;
 class WalksAhead;
 struct CpuBuildShell;
-struct LeafLanes;
+struct LeafSimd;
 struct ProjectLanes;
 
 struct CpuKernels {
-  /// leaf_lanes.h: separable passes over rows of eight voxels, a row a vector, instead of all sites for each voxel.
-  using LeafPasses = LeafLanes;
+  /// leaf_simd.h: separable passes over rows of eight voxels, a row a vector, instead of all sites for each voxel.
+  using LeafPasses = LeafSimd;
   /// cpu_backend.h: the stage itself, which is instantiated once.
   using BuildShell = CpuBuildShell;
-  /// project_lanes.h: runs of vertices share the triangles that they meet, which are taken in lanes.
+  /// project_simd.h: runs of vertices share the triangles that they meet, which are taken in lanes.
   using ProjectVertices = ProjectLanes;
-  /// label_lanes.h: all vertices of a leaf are compared with one seed after the other, in lanes.
-  using LabelSheet = LabelLanes;
+  /// label_simd.h: all vertices of a leaf are compared with one seed after the other, in lanes.
+  using LabelSheet = LabelSimd;
   /// walk_ahead.h: memory is asked for some walks ahead, and the triangles where walks end are taken in lanes.
   using Walks = WalksAhead;
-  /// pass_work.h: bounds, last labels and moments of triangles are kept from pass to pass; cells are cut in lanes.
-  using PassWork = CpuPassWork;
-  /// post_work.h: the triangles around each vertex are listed once, samples are sorted by triangle, sums go in lanes.
-  using StepWork = CpuStepWork;
+  /// pass_simd.h: bounds, last labels and moments of triangles are kept from pass to pass; cells are cut in lanes.
+  using PassWork = CpuPassSimd;
+  /// optimize_simd.h: the triangles around each vertex are listed once, samples are sorted by triangle, sums go in
+  /// lanes.
+  using StepWork = CpuStepSimd;
 
   // Plain: they take little of a run's time, or leave nothing to share between elements.
   using ListSiteTriangles = PlainKernels::ListSiteTriangles;

@@ -2,7 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "cpu/pass_work.h"
+#include "cpu/pass_simd.h"
 #include "cpu/walk_ahead.h"
 #include "stages/relax_sheet_body.h"
 

@@ -2,18 +2,18 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "cpu/project_lanes.h"
+#include "cpu/project_simd.h"
 #include "stages/coarsen_sites_body.h"
 #include "stages/sheet_body.h"
 #include "stages/sheet_volume_body.h"
 
 namespace isoshell {
 
-Sheet CpuBackend::build_sheet(const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+Sheet CpuBackend::build_sheet(const LatticeSurface& surface, const SiteSet& solid_voxels, const SiteSet& sites,
                               const SiteSamples& samples, const SheetOptions& options, Context& context) const {
   CpuExecutor exec(context, "sheet");
   return run_with_threads(context, [&] {
-    return build_sheet_body(exec, *OnHost(surface), *OnHost(walls), *OnHost(sites), *OnHost(samples), options);
+    return build_sheet_body(exec, *OnHost(surface), *OnHost(solid_voxels), *OnHost(sites), *OnHost(samples), options);
   });
 }
 
@@ -22,10 +22,10 @@ SiteSet CpuBackend::coarsen_sites(const SiteSet& sites, Context& context) const 
   return run_with_threads(context, [&] { return coarsen_sites_body(exec, *OnHost(sites)); });
 }
 
-Sheet CpuBackend::build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
-                                Context& context) const {
+Sheet CpuBackend::build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                              Context& context) const {
   CpuExecutor exec(context, "outline");
-  return run_with_threads(context, [&] { return build_outline_body(exec, *OnHost(sites), frame, options); });
+  return run_with_threads(context, [&] { return build_proxy_body(exec, *OnHost(sites), frame, options); });
 }
 
 int64_t CpuBackend::six_volume_vox(const Sheet& sheet, Context& context) const {

@@ -2,7 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "cpu/leaf_lanes.h"
+#include "cpu/leaf_simd.h"
 #include "stages/shell_body.h"
 
 namespace isoshell {

@@ -23,7 +23,7 @@ ISOSHELL_INLINE uint32_t beyond(int32_t reach, Local u) {
 }
 
 /// nearer, for values in 32 bits.
-ISOSHELL_INLINE int32_t nearer_32(Local v, Local a, Local b) {
+ISOSHELL_INLINE int32_t bisector_value_32(Local v, Local a, Local b) {
   return (b.x - a.x) * (2 * v.x - (a.x + b.x)) + (b.y - a.y) * (2 * v.y - (a.y + b.y)) +
          (b.z - a.z) * (2 * v.z - (a.z + b.z));
 }

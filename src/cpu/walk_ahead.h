@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cpu/executor_tbb.h"
-#include "cpu/foot_lanes.h"
+#include "cpu/foot_simd.h"
 #include "stages/sheet_walk.h"
 
 namespace isoshell {
@@ -35,14 +35,13 @@ class WalkAhead {
 
 /// Walks to the targets of elements one after the other; the triangles at their ends are taken in lanes.
 template <class Step>
-class WalksInLanes {
+class WalksSimd {
  public:
-  WalksInLanes(const WalkOntoSheet& walk, View<uint32_t> home, const Step& step)
-      : walk_(walk), home_(home), step_(step) {}
-  ~WalksInLanes() { arrive(); }
+  WalksSimd(const WalkOntoSheet& walk, View<uint32_t> home, const Step& step) : walk_(walk), home_(home), step_(step) {}
+  ~WalksSimd() { arrive(); }
 
   void add(int64_t i, PointQ8 target) {
-    if (feet_ + kMostAround > FootLanes::kLanes) arrive();
+    if (feet_ + kMostAround > FootSimd::kLanes) arrive();
     const uint32_t vertex = walk_to(home_[i], target);
     if (walk_.vertex_first[vertex + 1] - walk_.vertex_first[vertex] > kMostAround)
       return step_.arrives(i, vertex, walk_.closest_around(vertex, target));
@@ -89,11 +88,11 @@ class WalksInLanes {
   const WalkOntoSheet walk_;
   const View<uint32_t> home_;
   const Step& step_;
-  FootLanes lanes_;
+  FootSimd lanes_;
   int walks_ = 0, feet_ = 0, around_ = 0;
-  int64_t element_[FootLanes::kLanes];
-  uint32_t vertex_[FootLanes::kLanes];
-  int first_[FootLanes::kLanes + 1];
+  int64_t element_[FootSimd::kLanes];
+  uint32_t vertex_[FootSimd::kLanes];
+  int first_[FootSimd::kLanes + 1];
 };
 
 /// PlainWalks of stages/sheet_walk.h, a run of elements after the other.
@@ -116,7 +115,7 @@ class WalksAhead {
                          Step step) {
     exec.for_each(name, runs(home.size), [walk, step, home, ahead = WalkAhead(walk, home)](int64_t run) {
       const int64_t end = end_of(run, home.size);
-      WalksInLanes<Step> walks(walk, home, step);
+      WalksSimd<Step> walks(walk, home, step);
       for (int64_t i = run * kRun; i < end; ++i) {
         ahead.before(i, end);
         PointQ8 target;

@@ -4,7 +4,7 @@
 #include "isoshell/stages.h"
 #include "stages/point_grid_body.h"
 #include "stages/sheet_walk.h"
-#include "voxel/outline_depth.h"
+#include "voxel/proxy_depth.h"
 
 namespace isoshell {
 namespace attach_seeds {
@@ -25,10 +25,10 @@ struct AttachSeed {
     normal[i] = sheet.normal[vertex];
     position[i] = sheet.closest_around(vertex, p);
   }
-  /// Seeds of an outline come from outside, so that they find the right side of a thin wall.
+  /// Seeds of a coarse proxy come from outside, so that they find the right side of a thin wall.
   ISOSHELL_HD PointQ8 where_from(int64_t i) const {
     const PointQ8 p = {position[i].x << halvings, position[i].y << halvings, position[i].z << halvings};
-    return halvings == 0 ? p : moved_by_outline_depth(p, normal[i], kOneVoxelQ8 << halvings);
+    return halvings == 0 ? p : moved_by_proxy_depth(p, normal[i], kOneVoxelQ8 << halvings);
   }
 };
 

@@ -17,13 +17,13 @@ class BackendTable {
   virtual Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const = 0;
   virtual Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const = 0;
   /// From the sheet of all `walls`, which are the sites or what cut_false_handles makes of them.
-  virtual Sheet build_sheet(const LatticeSurface&, const SiteSet& walls, const SiteSet&, const SiteSamples&,
+  virtual Sheet build_sheet(const LatticeSurface&, const SiteSet& solid_voxels, const SiteSet&, const SiteSamples&,
                             const SheetOptions&, Context&) const = 0;
   /// Result: the sites less those that close handles beyond `genus`, with the solid voxels around these. Empty when
   /// the box around the sites is too large.
   virtual SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const = 0;
   virtual SiteSet coarsen_sites(const SiteSet&, Context&) const = 0;
-  virtual Sheet build_outline(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const = 0;
+  virtual Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const = 0;
   virtual void set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const = 0;
   virtual void smooth_edge_lengths(Sheet&, int32_t rounds, Context&) const = 0;
   virtual int64_t seed_shares(const Sheet&, Context&) const = 0;
@@ -38,7 +38,7 @@ class BackendTable {
   virtual VoronoiLabels flood_shell(const Shell&, const SeedSet&, Context&) const = 0;
   virtual DualMesh triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&) const = 0;
   virtual SeedSet subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&) const = 0;
-  virtual PostReport improve_mesh(const Sheet&, const PostOptions&, SeedSet&, DualMesh&, Context&) const = 0;
+  virtual OptimizeReport optimize_mesh(const Sheet&, const OptimizeOptions&, SeedSet&, DualMesh&, Context&) const = 0;
   virtual int64_t six_volume_vox(const Sheet&, Context&) const = 0;
   virtual void collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const = 0;
   virtual int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const = 0;

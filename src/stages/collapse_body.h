@@ -4,9 +4,9 @@
 #include "isoshell/stages.h"
 #include "stages/collapse_cost.h"
 #include "stages/label_body.h"
-#include "stages/post_intersections.h"
-#include "stages/post_mesh.h"
-#include "stages/post_shape.h"
+#include "stages/optimize_intersections.h"
+#include "stages/optimize_mesh.h"
+#include "stages/optimize_shape.h"
 #include "stages/sheet_walk.h"
 
 namespace isoshell {
@@ -36,7 +36,7 @@ struct MakeCandidate {
 /// One step for all candidates: each choice depends on those before it, and few are made. Chosen edges have no
 /// neighbours in common, so that none changes what another one costs.
 struct ChooseEdges {
-  post::MeshView mesh;
+  optimize::MeshView mesh;
   View<const Candidate> candidates;
   int64_t excess;
   View<uint8_t> taken;
@@ -56,11 +56,11 @@ struct ChooseEdges {
  private:
   ISOSHELL_HD bool any_taken_around(uint32_t v) const {
     bool any = false;
-    post::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { any = any || taken[p]; });
+    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { any = any || taken[p]; });
     return any;
   }
   ISOSHELL_HD void take_around(uint32_t v) const {
-    post::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { taken[p] = 1; });
+    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { taken[p] = 1; });
   }
 };
 
@@ -171,8 +171,8 @@ int64_t part_crossing(Exec& exec, const Sheet& sheet, const WalkOntoSheet& walk,
     Buffer<TriangleIndices> triangles = exec.template make<TriangleIndices>(kept.size());
     exec.for_each("merge triangles", kept.size(),
                   MergeTriangle{kept.view(), merged_into, mesh.triangles.view(), triangles.view()});
-    post::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, spacing_vox,
-                             marked.view());
+    optimize::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, spacing_vox,
+                                 marked.view());
     exec.for_each("part crossing", vertices, PartCrossing{marked.view(), merged_into, blocked});
     left = exec.sum(vertices, IsMerged{merged_into});
   }
@@ -224,7 +224,7 @@ void collapse_edges_body(Exec& exec, const Sheet& sheet, const collapse::Collaps
   exec.fill(blocked.view(), uint8_t(0));
   for (bool any = true; any && seeds.size() > options.target;) {
     const int64_t before = seeds.size();
-    post::Connections connections(exec, mesh);
+    optimize::Connections connections(exec, mesh);
     const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(sheet)};
     const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
     Buffer<Candidate> candidates = exec.template make<Candidate>(half_edges.size());

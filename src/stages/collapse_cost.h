@@ -2,15 +2,15 @@
 #pragma once
 
 #include "stages/edge_lengths.h"
-#include "stages/post_mesh.h"
-#include "stages/post_shape.h"
+#include "stages/optimize_mesh.h"
+#include "stages/optimize_shape.h"
 
 namespace isoshell::collapse {
 
 /// What it costs to make one vertex, in the middle, of the two ends of an edge.
 struct CollapseCost {
   static constexpr int64_t kNever = INT64_MAX;
-  post::MeshView mesh;
+  optimize::MeshView mesh;
   View<const PointQ8> position;
   View<const uint32_t> home;
   EdgeLengthsView lengths;
@@ -41,17 +41,17 @@ struct CollapseCost {
   /// A third one would be joined to the merged vertex by two edges.
   ISOSHELL_HD bool share_two_neighbours(uint32_t a, uint32_t b) const {
     int shared = 0;
-    post::for_each_triangle_around(mesh, a, [&](uint32_t v, uint32_t) { shared += mesh.are_neighbours(v, b); });
+    optimize::for_each_triangle_around(mesh, a, [&](uint32_t v, uint32_t) { shared += mesh.are_neighbours(v, b); });
     return shared == 2;
   }
 
   /// Whether a triangle around `v` that stays turns by more than 60 degrees when `v` moves.
   ISOSHELL_HD bool turns_over(uint32_t v, uint32_t other, PointQ8 to) const {
     bool any = false;
-    post::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t q) {
+    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t q) {
       if (p == other || q == other) return;
-      const post::Vector before = post::normal_of(position[v], position[p], position[q]),
-                         after = post::normal_of(to, position[p], position[q]);
+      const optimize::Vector before = optimize::normal_of(position[v], position[p], position[q]),
+                             after = optimize::normal_of(to, position[p], position[q]);
       const double d = dot(before, after);
       any = any || !(d > 0 && 4 * d * d > dot(before, before) * dot(after, after));
     });

@@ -2,18 +2,18 @@
 //
 // The labels of the sheet's vertices cut the sheet into cells; a sheet triangle with three labels is a face of the
 // dual. When every cell is a disk in one piece, two cells meet in at most one arc, and every component of the sheet has
-// four cells or more, the dual is a triangulation of the sheet. Strays are resolved first, then cells that are not
-// disks are split, then pairs that meet twice; a split keeps both halves connected, so no strays come back, and since
-// the finest partition is the sheet itself, the rounds end.
+// four cells or more, the dual is a triangulation of the sheet. DisconnectedPieces are resolved first, then cells that
+// are not disks are split, then pairs that meet twice; a split keeps both halves connected, so no disconnected pieces
+// come back, and since the finest partition is the sheet itself, the rounds end.
 #pragma once
 
 #include "isoshell/stages.h"
 #include "stages/dual_cells_body.h"
 #include "stages/dual_faces_body.h"
+#include "stages/dual_pieces_body.h"
 #include "stages/dual_split_body.h"
-#include "stages/dual_strays_body.h"
 #include "stages/label_body.h"
-#include "stages/post_intersections.h"
+#include "stages/optimize_intersections.h"
 
 namespace isoshell {
 namespace dual {
@@ -49,15 +49,15 @@ class Partition {
 
   /// Repairs as far as the rounds allow; returns the faces, not sorted.
   Buffer<TriangleIndices> repair() {
-    const int64_t strays = resolve_strays();
+    const int64_t disconnected_pieces = resolve_disconnected_pieces();
     measure_euler(exec_, sheet_, label_.view(), cells_);
     Buffer<TriangleIndices> faces;
     for (;;) {
       const Buffer<uint32_t> failing = find_failing(faces);
       const Buffer<uint32_t> unused = unused_seeds();
-      report_.failed_cells = strays + failing.size() + unused.size();
+      report_.failed_cells = disconnected_pieces + failing.size() + unused.size();
       if (report_.failed_cells == 0 && split_crossing(faces)) continue;
-      if (report_.failed_cells == 0 || strays > 0 || !take_round()) break;
+      if (report_.failed_cells == 0 || disconnected_pieces > 0 || !take_round()) break;
       if (!failing.empty())
         split(failing, unused);
       else
@@ -92,23 +92,26 @@ class Partition {
     return ids;
   }
 
-  /// Leaves every cell in one piece. Returns the number of strays that are left.
-  int64_t resolve_strays() {
+  /// Leaves every cell in one piece. Returns the number of disconnected pieces that are left.
+  int64_t resolve_disconnected_pieces() {
     Pieces pieces = find_pieces(exec_, sheet_, label_.view(), cells_);
-    const Strays strays = list_strays(exec_, pieces, label_.view(), cells_);
-    Buffer<uint32_t> waiting = exec_.template make<uint32_t>(strays.count());
-    exec_.for_each("all strays wait", strays.count(), StartAlone{waiting.view()});
-    while (!waiting.empty() && take_round()) waiting = resolve_strays_once(pieces, strays, waiting.view());
+    const DisconnectedPieces disconnected_pieces = list_disconnected_pieces(exec_, pieces, label_.view(), cells_);
+    Buffer<uint32_t> waiting = exec_.template make<uint32_t>(disconnected_pieces.count());
+    exec_.for_each("all strays wait", disconnected_pieces.count(), StartAlone{waiting.view()});
+    while (!waiting.empty() && take_round())
+      waiting = resolve_disconnected_pieces_once(pieces, disconnected_pieces, waiting.view());
     return waiting.size();
   }
 
-  /// One round; returns the strays that still wait.
-  Buffer<uint32_t> resolve_strays_once(Pieces& pieces, const Strays& strays, View<const uint32_t> waiting) {
+  /// One round; returns the disconnected pieces that still wait.
+  Buffer<uint32_t> resolve_disconnected_pieces_once(Pieces& pieces, const DisconnectedPieces& disconnected_pieces,
+                                                    View<const uint32_t> waiting) {
     Buffer<uint32_t> decision = exec_.template make<uint32_t>(waiting.size);
-    exec_.for_each("decide strays", waiting.size,
-                   DecideStray{strays.view(), waiting, graph_of(sheet_), pieces.piece.view(), pieces.size.view(),
-                               label_.view(), cells_.root.view(), sheet_.position.view(), seeds_.position.view(),
-                               sheet_.vertex_count(), first_count_, decision.view()});
+    exec_.for_each(
+        "decide strays", waiting.size,
+        DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(sheet_), pieces.piece.view(),
+                                pieces.size.view(), label_.view(), cells_.root.view(), sheet_.position.view(),
+                                seeds_.position.view(), sheet_.vertex_count(), first_count_, decision.view()});
     const Buffer<uint32_t> joining = exec_.select(waiting.size, IsJoining{decision.view()});
     Buffer<uint32_t> founding = exec_.select(waiting.size, DecisionIs{decision.view(), kNewCell});
     uint32_t resolved = kNewCell;
@@ -117,13 +120,14 @@ class Partition {
       resolved = kLocalLargest;
     }
     exec_.for_each("join strays", joining.size(),
-                   JoinStray{strays.view(), waiting, joining.view(), decision.view(), pieces.piece.view(),
-                             label_.view(), cells_.view()});
-    report_.relabelled_vertices += exec_.sum(joining.size(), SizeOfJoining{strays.view(), waiting, joining.view()});
+                   JoinDisconnectedPiece{disconnected_pieces.view(), waiting, joining.view(), decision.view(),
+                                         pieces.piece.view(), label_.view(), cells_.view()});
+    report_.relabelled_vertices +=
+        exec_.sum(joining.size(), SizeOfJoining{disconnected_pieces.view(), waiting, joining.view()});
     const Buffer<uint32_t> ids = founding.empty() ? Buffer<uint32_t>() : new_ids(founding.size(), unused_seeds());
     exec_.for_each("found cells", founding.size(),
-                   FoundCell{strays.view(), waiting, founding.view(), ids.view(), label_.view(), cells_.view(),
-                             writer_of(sheet_, seeds_)});
+                   FoundCell{disconnected_pieces.view(), waiting, founding.view(), ids.view(), label_.view(),
+                             cells_.view(), writer_of(sheet_, seeds_)});
     const Buffer<uint32_t> rest = exec_.select(waiting.size, StillWaits{decision.view(), resolved});
     Buffer<uint32_t> out = exec_.template make<uint32_t>(rest.size());
     exec_.for_each("gather waiting", rest.size(), GatherWaiting{waiting, rest.view(), out.view()});
@@ -161,8 +165,8 @@ class Partition {
     if (most_against_crossing_ == 0) return false;
     Buffer<uint32_t> marked = exec_.template make<uint32_t>(seeds_.size());
     const int64_t pairs =
-        post::find_intersections(exec_, {faces.view(), seeds_.position.view()}, sheet_.corners.block_dims,
-                                 spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
+        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view()}, sheet_.corners.block_dims,
+                                     spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
     if (pairs == 0) return false;
     exec_.for_each("request crossing cells", cells_.count(),
                    RequestCrossing{marked.view(), cells_.view(), request_.view()});

@@ -2,7 +2,7 @@
 //
 // Result: label = minimum of (squared distance + penalty, seed id). The penalty, 16 h^2, is paid by a seed that sits on
 // the other side of a thin wall (normals at more than about 104 degrees), so that each side keeps its own seeds.
-// A leaf gathers the seeds that can win inside its box, each 4^3 quarter keeps those that can win inside its own box,
+// A leaf gathers the seeds that can win inside its box, each 4^3 octant keeps those that can win inside its own box,
 // and its vertices compare those. A seed can win when its smallest cost over the box is not above the smallest of the
 // seeds' largest costs.
 #pragma once
@@ -159,7 +159,7 @@ struct LabelLeaf {
       return;
     }
     sort_by_id(candidates, count);
-    label_quarters(leaf, candidates, count);
+    label_octants(leaf, candidates, count);
   }
 
   ISOSHELL_HD static void sort_by_id(LabelSeed* c, int count) {
@@ -209,8 +209,8 @@ struct LabelLeaf {
     return kept;
   }
 
-  /// The eight 4^3 quarters of the leaf in turn.
-  ISOSHELL_HD void label_quarters(int64_t leaf, const LabelSeed* candidates, int count) const {
+  /// The eight 4^3 octants of the leaf in turn.
+  ISOSHELL_HD void label_octants(int64_t leaf, const LabelSeed* candidates, int count) const {
     for (int q = 0; q < 8; ++q) {
       int64_t member[64];
       int members = 0;
@@ -226,11 +226,11 @@ struct LabelLeaf {
           }
         word_first += popcount64(word);
       }
-      if (members) label_quarter(member, members, candidates, count);
+      if (members) label_octant(member, members, candidates, count);
     }
   }
 
-  ISOSHELL_HD void label_quarter(const int64_t* member, int members, const LabelSeed* candidates, int count) const {
+  ISOSHELL_HD void label_octant(const int64_t* member, int members, const LabelSeed* candidates, int count) const {
     Bounds bounds = empty_bounds();
     for (int m = 0; m < members; ++m) include(bounds, position[member[m]], normal[member[m]]);
     int64_t least[kCapacity];

@@ -1,5 +1,5 @@
-// Edge lengths of a sheet (see stages.h): how fast they may grow, how many seeds they ask for, their way onto outlines,
-// and the curvature that adaptivity makes them from.
+// Edge lengths of a sheet (see stages.h): how fast they may grow, how many seeds they ask for, their way onto coarse
+// proxies, and the curvature that adaptivity makes them from.
 #pragma once
 
 #include <utility>

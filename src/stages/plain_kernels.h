@@ -27,12 +27,12 @@ class PlainPassWork;
 namespace dual {
 struct PlainSplitCells;
 }
-namespace post {
+namespace optimize {
 struct PlainFlipEdges;
 struct PlainSearchPlaces;
 struct PlainStepWork;
 struct PlainUndoHarm;
-}  // namespace post
+}  // namespace optimize
 
 struct PlainKernels {
   // sample_sites
@@ -41,13 +41,13 @@ struct PlainKernels {
   // build_shell
   using LeafPasses = shell_steps::PlainLeafPasses;  ///< voxels within reach, closest sites of a leaf: shell_body.h
 
-  // build_sheet, build_outline
+  // build_sheet, build_proxy
   using BuildShell = PlainBuildShell;                       ///< the shell that closing needs: shell_body.h
   using FindOutside = PlainFindOutside;                     ///< flood from the border: sheet_flood_body.h
   using JoinComponents = sheet_steps::PlainJoinComponents;  ///< of the boundary: sheet_components_body.h
   using ProjectVertices = PlainProjectVertices;             ///< onto the nearest triangles: sheet_project_body.h
 
-  // relax_on_sheet, triangulate_dual, improve_mesh
+  // relax_on_sheet, triangulate_dual, optimize_mesh
   using LabelSheet = PlainLabelSheet;  ///< nearest seed of every vertex: label_body.h
   using Walks = PlainWalks;            ///< along the sheet to what is nearest: sheet_walk.h
 
@@ -57,11 +57,11 @@ struct PlainKernels {
   // triangulate_dual
   using SplitCells = dual::PlainSplitCells;  ///< dual_split_body.h
 
-  // improve_mesh
-  using StepWork = post::PlainStepWork;          ///< smoothing and fit: post_body.h
-  using FlipEdges = post::PlainFlipEdges;        ///< in independent sets: post_flips.h
-  using UndoHarm = post::PlainUndoHarm;          ///< of a step, to a fixed point: post_guard.h
-  using SearchPlaces = post::PlainSearchPlaces;  ///< for poor vertices: post_search.h
+  // optimize_mesh
+  using StepWork = optimize::PlainStepWork;          ///< smoothing and fit: optimize_body.h
+  using FlipEdges = optimize::PlainFlipEdges;        ///< in independent sets: optimize_flips.h
+  using UndoHarm = optimize::PlainUndoHarm;          ///< of a step, to a fixed point: optimize_guard.h
+  using SearchPlaces = optimize::PlainSearchPlaces;  ///< for poor vertices: optimize_search.h
 };
 
 /// Stands in a set for a kernel that no body asks for, since the backend does the whole stage in its own way.

@@ -26,9 +26,9 @@ Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const Sit
   Sheet sheet = backend.build_sheet(surface, sites, sites, samples, options, context);
   const int64_t fewest = std::max<int64_t>(0, options.genus);
   if (options.genus == kNoGenus || sheet.topology.genus <= fewest || options.closing_vox > 0) return sheet;
-  const SiteSet walls = backend.cut_false_handles(sites, samples, options.genus, context);
-  if (walls.voxels.voxel_count() == 0) return sheet;
-  Sheet cut = backend.build_sheet(surface, walls, sites, samples, options, context);
+  const SiteSet solid_voxels = backend.cut_false_handles(sites, samples, options.genus, context);
+  if (solid_voxels.voxels.voxel_count() == 0) return sheet;
+  Sheet cut = backend.build_sheet(surface, solid_voxels, sites, samples, options, context);
   const int64_t handles = sheet.topology.genus - cut.topology.genus;
   const bool is_right = options.genus == kUnknownGenus ? handles > 0 : cut.topology.genus == options.genus;
   if (cut.topology.components != sheet.topology.components || !is_right) return sheet;
@@ -40,9 +40,9 @@ SiteSet coarsen_sites(const SiteSet& sites, Context& context) {
   return backend_for(context).coarsen_sites(sites, context);
 }
 
-Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context) {
+Sheet build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context) {
   require_sheet_options(sites, options);
-  return backend_for(context).build_outline(sites, frame, options, context);
+  return backend_for(context).build_proxy(sites, frame, options, context);
 }
 
 int64_t six_volume_vox(const Sheet& sheet, Context& context) {

@@ -5,11 +5,11 @@
 #include "isoshell/stages.h"
 #include "stages/sheet_closing_body.h"
 #include "stages/sheet_components_body.h"
-#include "stages/sheet_missed_body.h"
+#include "stages/sheet_off_surface_body.h"
 #include "stages/sheet_project_body.h"
 #include "stages/sheet_quads_body.h"
 #include "stages/sheet_repair_body.h"
-#include "voxel/outline_depth.h"
+#include "voxel/proxy_depth.h"
 
 namespace isoshell {
 namespace sheet_steps {
@@ -87,12 +87,12 @@ struct FindNormal {
   ISOSHELL_HD static bool is_zero(Vec64 n) { return n.x == 0 && n.y == 0 && n.z == 0; }
 };
 
-/// An outline's vertices go to about where the surface is.
+/// A coarse proxy's vertices go to about where the surface is.
 struct MoveIn {
   View<const Normal8> normal;
   View<PointQ8> position;
   ISOSHELL_HD void operator()(int64_t v) const {
-    position[v] = moved_by_outline_depth(position[v], normal[v], -kOneVoxelQ8);
+    position[v] = moved_by_proxy_depth(position[v], normal[v], -kOneVoxelQ8);
   }
 };
 
@@ -165,20 +165,20 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMes
 }  // namespace sheet_steps
 
 template <class Exec>
-Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& walls, const SiteSet& sites,
+Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& solid_voxels, const SiteSet& sites,
                        const SiteSamples& samples, const SheetOptions& options) {
   using namespace sheet_steps;
-  QuadMesh mesh = boundary_of_sites(exec, walls, options.closing_vox);
+  QuadMesh mesh = boundary_of_sites(exec, solid_voxels, options.closing_vox);
   const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
                                          samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
   Sheet sheet = finish_sheet(exec, surface.frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
-  if (surface.topology.closed && surface.topology.oriented) find_missed(exec, surface, sheet);
+  if (surface.topology.closed && surface.topology.oriented) find_off_surface(exec, surface, sheet);
   return sheet;
 }
 
 template <class Exec>
-Sheet build_outline_body(Exec& exec, const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options) {
+Sheet build_proxy_body(Exec& exec, const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options) {
   using namespace sheet_steps;
   QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
   LaidMesh laid = lay_smooth(exec, mesh);

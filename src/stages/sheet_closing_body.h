@@ -115,14 +115,14 @@ struct WantInsideNeighbours {
 
 /// The solid of every voxel that is not outside of `walls`, which must stay where it is as long as the solid lives.
 template <class Exec>
-Solid complement_of_outside(Exec& exec, const VoxelSetView& walls, View<const Voxel> hollows) {
+Solid complement_of_outside(Exec& exec, const VoxelSetView& barrier, View<const Voxel> hollows) {
   Solid solid;
-  solid.outside = Exec::Kernels::FindOutside::run(exec, walls, hollows);
-  solid.set.leaf_key = exec.template make<uint64_t>(walls.leaf_key.size);
-  solid.set.mask = exec.template make<LeafMask>(walls.leaf_key.size);
-  exec.for_each("solid", walls.leaf_key.size,
+  solid.outside = Exec::Kernels::FindOutside::run(exec, barrier, hollows);
+  solid.set.leaf_key = exec.template make<uint64_t>(barrier.leaf_key.size);
+  solid.set.mask = exec.template make<LeafMask>(barrier.leaf_key.size);
+  exec.for_each("solid", barrier.leaf_key.size,
                 ComplementOfOutside{solid.outside.view(), solid.set.leaf_key.view(), solid.set.mask.view()});
-  index_leaves(exec, solid.set, BlockExtent(walls).vox);
+  index_leaves(exec, solid.set, BlockExtent(barrier).vox);
   return solid;
 }
 
@@ -184,9 +184,9 @@ Solid close_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox) {
 template <class Exec>
 void fill_cavities(Exec& exec, Solid& solid, View<const Voxel> hollows = {}) {
   const Buffer<Voxel> open = sheet_steps::empty_voxels(exec, solid.view(), hollows);
-  VoxelSet walls = std::move(solid.set);
-  solid = sheet_steps::complement_of_outside(exec, walls.view(), View<const Voxel>(open.view()));
-  solid.blocked = std::move(walls);
+  VoxelSet barrier = std::move(solid.set);
+  solid = sheet_steps::complement_of_outside(exec, barrier.view(), View<const Voxel>(open.view()));
+  solid.blocked = std::move(barrier);
 }
 
 }  // namespace isoshell

@@ -9,7 +9,7 @@
 namespace isoshell {
 
 constexpr int kSheetSmoothingSteps = 2;                 ///< before projection
-constexpr int kOutlineSmoothingSteps = 6;               ///< even: odd ones turn checkerboards of corners over
+constexpr int kProxySmoothingSteps = 6;                 ///< even: odd ones turn checkerboards of corners over
 constexpr int kBridgeSteps = 60;                        ///< for vertices over a gap, after projection
 constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther from the surface are over a gap
 
@@ -192,9 +192,9 @@ LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
   laid.position = std::move(mesh.position);
   laid.smooth = exec.template make<PointQ8>(vertices);
   Buffer<PointQ8> scratch = exec.template make<PointQ8>(vertices);
-  smooth_corners(exec, mesh, kOutlineSmoothingSteps, laid.position, scratch);
+  smooth_corners(exec, mesh, kProxySmoothingSteps, laid.position, scratch);
   exec.copy(View<const PointQ8>(laid.position.view()), laid.smooth.view());
-  smooth_corners(exec, mesh, kOutlineSmoothingSteps, laid.smooth, scratch);
+  smooth_corners(exec, mesh, kProxySmoothingSteps, laid.smooth, scratch);
   exec.for_each("give back", vertices, GiveBack{laid.smooth.view(), laid.position.view()});
   laid.source_triangle = exec.template make<uint32_t>(vertices);
   exec.fill(laid.source_triangle.view(), kNone);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "isoshell/stages.h"
-#include "stages/post_intersections.h"
+#include "stages/optimize_intersections.h"
 #include "stages/sheet_walk.h"
 #include "voxel/leaf.h"
 
@@ -44,8 +44,8 @@ int64_t untangle_sheet_body(Exec& exec, Sheet& sheet, SeedSet& seeds) {
   using namespace untangle;
   Buffer<uint32_t> marked = exec.template make<uint32_t>(sheet.vertex_count());
   for (int round = 0;; ++round) {
-    const int64_t pairs = post::find_intersections(exec, {sheet.triangles.view(), sheet.position.view()},
-                                                   sheet.corners.block_dims, 1, marked.view());
+    const int64_t pairs = optimize::find_intersections(exec, {sheet.triangles.view(), sheet.position.view()},
+                                                       sheet.corners.block_dims, 1, marked.view());
     if (pairs == 0 || round == kRounds) {
       const WalkOntoSheet walk = walk_onto(sheet);
       exec.for_each("follow the sheet", seeds.size(), FollowSheet{walk, seeds.home.view(), seeds.position.view()});

@@ -43,7 +43,7 @@ ISOSHELL_HD inline PieceSum piece_sum(int64_t area2, Local a, Local b, Local c) 
 }
 
 /// |v - a|^2 - |v - b|^2: negative where a is nearer. Exact, and linear in v.
-ISOSHELL_HD inline int64_t nearer(Local v, Local a, Local b) {
+ISOSHELL_HD inline int64_t bisector_value(Local v, Local a, Local b) {
   return int64_t(b.x - a.x) * (2 * v.x - a.x - b.x) + int64_t(b.y - a.y) * (2 * v.y - a.y - b.y) +
          int64_t(b.z - a.z) * (2 * v.z - a.z - b.z);
 }
@@ -115,16 +115,17 @@ struct SplitTriangle {
   /// True when seed k wins where the bisector of the other two meets their edge.
   ISOSHELL_HD bool separates(int k) const {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const Local m = between(p[i], p[j], crossing_q15(nearer(p[i], s[i], s[j]), nearer(p[j], s[i], s[j])));
-    return nearer(m, s[i], s[k]) > 0 && nearer(m, s[j], s[k]) > 0;
+    const Local m =
+        between(p[i], p[j], crossing_q15(bisector_value(p[i], s[i], s[j]), bisector_value(p[j], s[i], s[j])));
+    return bisector_value(m, s[i], s[k]) > 0 && bisector_value(m, s[j], s[k]) > 0;
   }
 
   /// Part of corner i on its own side of the bisector with the seed of corner j.
   ISOSHELL_HD PieceSum corner(int i, int j) const {
     const int q = (i + 1) % 3, r = (i + 2) % 3;
-    const int64_t at = nearer(p[i], s[i], s[j]);
-    return corner_piece(area2, p[i], p[q], p[r], crossing_q15(at, nearer(p[q], s[i], s[j])),
-                        crossing_q15(at, nearer(p[r], s[i], s[j])));
+    const int64_t at = bisector_value(p[i], s[i], s[j]);
+    return corner_piece(area2, p[i], p[q], p[r], crossing_q15(at, bisector_value(p[q], s[i], s[j])),
+                        crossing_q15(at, bisector_value(p[r], s[i], s[j])));
   }
 
   /// Weights of the corners, in 1/32768.
@@ -141,8 +142,8 @@ struct SplitTriangle {
   /// The piece of corner i when the three cells meet inside, at `meet` with weights `b`.
   ISOSHELL_HD PieceSum around_meeting(int i, Local meet, const Barycentric& b) const {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const int32_t t = crossing_q15(nearer(p[i], s[i], s[j]), nearer(p[j], s[i], s[j]));
-    const int32_t u = crossing_q15(nearer(p[i], s[i], s[k]), nearer(p[k], s[i], s[k]));
+    const int32_t t = crossing_q15(bisector_value(p[i], s[i], s[j]), bisector_value(p[j], s[i], s[j]));
+    const int32_t u = crossing_q15(bisector_value(p[i], s[i], s[k]), bisector_value(p[k], s[i], s[k]));
     const int64_t part_j = area2 * ((int64_t(t) * b.x[k]) >> 15) >> 15;
     const int64_t part_k = area2 * ((int64_t(u) * b.x[j]) >> 15) >> 15;
     return piece_sum(part_j, p[i], between(p[i], p[j], t), meet) +
@@ -153,8 +154,8 @@ struct SplitTriangle {
   ISOSHELL_HD Barycentric meeting_point() const {
     double f[3], g[3], w[3];
     for (int i = 0; i < 3; ++i) {
-      f[i] = double(nearer(p[i], s[0], s[1]));
-      g[i] = double(nearer(p[i], s[0], s[2]));
+      f[i] = double(bisector_value(p[i], s[0], s[1]));
+      g[i] = double(bisector_value(p[i], s[0], s[2]));
     }
     double total = 0;
     for (int i = 0; i < 3; ++i) w[i] = f[(i + 1) % 3] * g[(i + 2) % 3] - f[(i + 2) % 3] * g[(i + 1) % 3];

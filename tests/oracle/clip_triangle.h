@@ -17,7 +17,7 @@ inline double distance_sq(const Point& a, const Point& b) {
 }
 
 /// Corners of the part of `polygon` at least as near to `own` as to `other`.
-inline std::vector<Point> clip_nearer(const std::vector<Point>& polygon, const Point& own, const Point& other) {
+inline std::vector<Point> clip_to_nearer(const std::vector<Point>& polygon, const Point& own, const Point& other) {
   std::vector<Point> out;
   for (size_t i = 0; i < polygon.size(); ++i) {
     const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];

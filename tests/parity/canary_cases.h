@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "isoshell/buffer.h"
-#include "parity/executor_words.h"
+#include "parity/executor_operations.h"
 
 namespace isoshell::parity {
 

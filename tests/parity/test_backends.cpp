@@ -62,7 +62,7 @@ struct Products {
   SiteSet sites, coarse_sites;
   SiteSamples samples;
   Shell shell;
-  Sheet sheet, outline;
+  Sheet sheet, proxy;
   SeedSet seeds, site_seeds;
   DualMesh dual;
   VoronoiLabels labels;
@@ -164,14 +164,14 @@ bool shell_of_band(SideBySide& both, int32_t band_vox) {
                     [=](const Products& p, Context& c) { return made(build_shell(p.sites, {band_vox}, c)); });
 }
 
-void outline_of_coarse_sites(SideBySide& both) {
+void proxy_of_coarse_sites(SideBySide& both) {
   if (!both.stage("coarse sites", &Products::coarse_sites,
                   [](const Products& p, Context& c) { return made(coarsen_sites(p.sites, c)); }))
     return;
-  both.stage("outline", &Products::outline, [](const Products& p, Context& c) {
-    Sheet outline = build_outline(p.coarse_sites, p.surface.frame, {}, c);
-    const std::string facts = text_of(outline.topology);
-    return made(std::move(outline), facts);
+  both.stage("outline", &Products::proxy, [](const Products& p, Context& c) {
+    Sheet proxy = build_proxy(p.coarse_sites, p.surface.frame, {}, c);
+    const std::string facts = text_of(proxy.topology);
+    return made(std::move(proxy), facts);
   });
 }
 
@@ -213,7 +213,7 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
   both.stage("improved mesh", &Products::dual, [](const Products& p, Context& c) {
     SeedSet seeds = to_host(p.seeds);
     DualMesh mesh = to_host(p.dual);
-    const PostReport report = improve_mesh(p.sheet, {}, seeds, mesh, c);
+    const OptimizeReport report = optimize_mesh(p.sheet, {}, seeds, mesh, c);
     return made(std::move(mesh), std::to_string(report.flips) + " flips, " + std::to_string(report.self_intersections) +
                                      " intersections, seeds " + digest_text(hash_arrays(seeds)));
   });
@@ -256,11 +256,11 @@ void relax_and_flood_the_shell(SideBySide& both, int64_t count, bool has_sheet) 
     });
   };
   both.stage("attached seeds", &Products::site_seeds, attach);
-  if (both.cpu.outline.vertex_count() == 0) return;
+  if (both.cpu.proxy.vertex_count() == 0) return;
   const auto attach_twice_as_fine = [](const Products& p, Context& c) {
     return changed(p.site_seeds, [&](SeedSet& seeds) {
       for (PointQ8& q : seeds.position) q = {q.x / 2, q.y / 2, q.z / 2};
-      attach_to_sheet(p.outline, seeds, c);
+      attach_to_sheet(p.proxy, seeds, c);
       attach_to_sheet(p.sheet, seeds, c, 1);
       return std::string();
     });
@@ -271,7 +271,7 @@ void relax_and_flood_the_shell(SideBySide& both, int64_t count, bool has_sheet) 
 void every_stage_after_snapping(SideBySide& both, int32_t band_vox, int32_t closing_vox) {
   if (!up_to_samples(both)) return;
   shell_of_band(both, band_vox);
-  outline_of_coarse_sites(both);
+  proxy_of_coarse_sites(both);
   const bool has_sheet = sheet_with_closing(both, closing_vox);
   const int64_t sites = both.cpu.sites.voxels.voxel_count();
   if (has_sheet) relax_and_mesh_the_sheet(both, std::max<int64_t>(4, sites / 40));
@@ -324,8 +324,8 @@ TEST_CASE("parity: solids with hollows, on coarse lattices too", "[parity][cuda]
     }
     CHECK(sheet_with_closing(both, 0));
     CHECK(both.cpu.sheet.topology.components == 2);
-    outline_of_coarse_sites(both);
-    CHECK(both.cpu.outline.topology.components == 2);
+    proxy_of_coarse_sites(both);
+    CHECK(both.cpu.proxy.topology.components == 2);
     sheet_with_closing(both, 2);
   }
 }

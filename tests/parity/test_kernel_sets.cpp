@@ -2,11 +2,11 @@
 // gives. What the stages run is CpuKernels, or with --cuda CudaKernels.
 #include <type_traits>
 
-#include "cpu/label_lanes.h"
+#include "cpu/label_simd.h"
 #include "isoshell/stages.h"
 #include "parity/product_hash.h"
 #include "stages/dual_body.h"
-#include "stages/post_body.h"
+#include "stages/optimize_body.h"
 #include "stages/relax_sheet_body.h"
 #include "stages/samples_body.h"
 #include "stages/sheet_body.h"
@@ -130,8 +130,8 @@ TEST_CASE("kernels: relaxed seeds, duals and improved meshes are those of the pl
       CHECK(hash_arrays(mesh) == hash_arrays(plain_mesh));
       split += dual_report.inserted_seeds;
 
-      flips += improve_mesh(*sheet, {}, seeds, mesh, context).flips;
-      improve_mesh_body(exec, *sheet, {}, plain_seeds, plain_mesh);
+      flips += optimize_mesh(*sheet, {}, seeds, mesh, context).flips;
+      optimize_mesh_body(exec, *sheet, {}, plain_seeds, plain_mesh);
       CHECK(hash_arrays(mesh) == hash_arrays(plain_mesh));
       CHECK(hash_arrays(seeds) == hash_arrays(plain_seeds));
     }

@@ -4,7 +4,7 @@
 
 #include "isoshell/mesh_topology.h"
 #include "isoshell/stages.h"
-#include "stages/post_shape.h"
+#include "stages/optimize_shape.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
@@ -40,8 +40,8 @@ bool turns(const DualMesh& mesh, uint32_t v, uint32_t other, PointQ8 to) {
     const uint32_t corner[3] = {t.a, t.b, t.c};
     if (std::count(corner, corner + 3, v) == 0 || std::count(corner, corner + 3, other) > 0) continue;
     const auto at = [&](uint32_t u) { return u == v ? to : mesh.position[u]; };
-    const post::Vector before = post::normal_of(mesh.position[t.a], mesh.position[t.b], mesh.position[t.c]),
-                       after = post::normal_of(at(t.a), at(t.b), at(t.c));
+    const optimize::Vector before = optimize::normal_of(mesh.position[t.a], mesh.position[t.b], mesh.position[t.c]),
+                           after = optimize::normal_of(at(t.a), at(t.b), at(t.c));
     if (!(dot(before, after) > 0.5 * std::sqrt(dot(before, before)) * std::sqrt(dot(after, after)))) return true;
   }
   return false;

@@ -1,5 +1,5 @@
 // The dual on sheets with few and badly placed seeds: every run must give the sheet's own topology.
-#include "cpu/label_lanes.h"
+#include "cpu/label_simd.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/stages.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cpu/executor_tbb.h"
-#include "stages/post_intersections.h"
+#include "stages/optimize_intersections.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
@@ -151,7 +151,7 @@ struct OracleTally {
 
 }  // namespace
 
-TEST_CASE("intersections: pairs of triangles as separating axes say, whatever they share", "[post][stage]") {
+TEST_CASE("intersections: pairs of triangles as separating axes say, whatever they share", "[optimize][stage]") {
   OracleTally tally;
   for (int32_t range : {3, 5, 40, 1000})
     for (uint64_t seed = 0; seed < 3000; ++seed) {
@@ -166,7 +166,7 @@ TEST_CASE("intersections: pairs of triangles as separating axes say, whatever th
   tally.check_that_both_occur();
 }
 
-TEST_CASE("intersections: triangles without area are the segments or points that they span", "[post][stage]") {
+TEST_CASE("intersections: triangles without area are the segments or points that they span", "[optimize][stage]") {
   OracleTally tally;
   for (int32_t range : {2, 3, 5})
     for (uint64_t seed = 0; seed < 3000; ++seed)
@@ -184,7 +184,7 @@ TEST_CASE("intersections: triangles without area are the segments or points that
   tally.check_that_both_occur();
 }
 
-TEST_CASE("intersections: a needle pierces, and one that ends on its own edge is folded", "[post][stage]") {
+TEST_CASE("intersections: a needle pierces, and one that ends on its own edge is folded", "[optimize][stage]") {
   const CornersOfTriangle wall{{0, 1, 2}, {{0, 0, 0}, {90, 0, 0}, {0, 90, 0}}};
   const auto needle = [](int32_t z0, int32_t z1) {
     return CornersOfTriangle{{3, 4, 5}, {{20, 20, z0}, {20, 20, z1}, {20, 20, (z0 + z1) / 2}}};
@@ -197,7 +197,7 @@ TEST_CASE("intersections: a needle pierces, and one that ends on its own edge is
   CHECK_FALSE(triangles_intersect(wall, {{0, 1, 6}, {{0, 0, 0}, {90, 0, 0}, {120, 0, 0}}}));
 }
 
-TEST_CASE("intersections: triangles at the far ends of the largest lattice are exact", "[post][stage]") {
+TEST_CASE("intersections: triangles at the far ends of the largest lattice are exact", "[optimize][stage]") {
   const int32_t far = (1 << 22) - 1;
   const CornersOfTriangle s{{0, 1, 2}, {{0, 0, 0}, {far, 0, far}, {0, far, far}}};
   // A needle that ends on the plane of s, and one that ends a step before it.
@@ -220,7 +220,7 @@ std::pair<int64_t, std::vector<uint32_t>> found_in(const std::vector<TriangleInd
   Buffer<uint32_t> marked(p.size());
   const int32_t blocks[3] = {16, 16, 16};
   const int64_t pairs = run_with_threads(context, [&] {
-    return post::find_intersections(exec, {t.view(), p.view()}, blocks, spacing_vox, marked.view());
+    return optimize::find_intersections(exec, {t.view(), p.view()}, blocks, spacing_vox, marked.view());
   });
   return {pairs, {marked.begin(), marked.end()}};
 }
@@ -241,7 +241,7 @@ void add_tube(int32_t rings, int32_t step, std::vector<TriangleIndices>& triangl
 
 }  // namespace
 
-TEST_CASE("intersections: triangles of all sizes find each other", "[post][stage]") {
+TEST_CASE("intersections: triangles of all sizes find each other", "[optimize][stage]") {
   std::vector<TriangleIndices> triangles;
   std::vector<PointQ8> position;
   add_tube(60, 512, triangles, position);
@@ -261,7 +261,7 @@ TEST_CASE("intersections: triangles of all sizes find each other", "[post][stage
     }
 }
 
-TEST_CASE("intersections: one huge triangle beside a rod of 100,000 small ones", "[post][stage]") {
+TEST_CASE("intersections: one huge triangle beside a rod of 100,000 small ones", "[optimize][stage]") {
   std::vector<TriangleIndices> triangles;
   std::vector<PointQ8> position;
   const int32_t step = 40, rings = 12501, length = rings * step;
@@ -285,7 +285,7 @@ TEST_CASE("intersections: one huge triangle beside a rod of 100,000 small ones",
   CHECK(pairs > 1000);
 }
 
-TEST_CASE("intersections: every pair of a mesh is found, with any number of threads", "[post][stage]") {
+TEST_CASE("intersections: every pair of a mesh is found, with any number of threads", "[optimize][stage]") {
   const TriangleSoup soups[] = {
       shapes::torus(2, 0.7, 40, 18),
       shapes::together(shapes::torus(2, 0.5, 40, 16), shapes::torus(2.2, 0.5, 30, 16)),
@@ -317,7 +317,7 @@ TEST_CASE("intersections: every pair of a mesh is found, with any number of thre
         Buffer<uint32_t> marked(p.size());
         const int32_t blocks[3] = {2, 2, 2};
         const int64_t pairs = run_with_threads(context, [&] {
-          return post::find_intersections(exec, {t.view(), p.view()}, blocks, 4, marked.view());
+          return optimize::find_intersections(exec, {t.view(), p.view()}, blocks, 4, marked.view());
         });
         CHECK(pairs == expected.first);
         CHECK(std::equal(marked.begin(), marked.end(), expected.second.begin()));

@@ -1,4 +1,4 @@
-// Edge lengths of a sheet: their limit, their way onto outlines, and curvature.
+// Edge lengths of a sheet: their limit, their way onto coarse proxies, and curvature.
 #include <algorithm>
 #include <cmath>
 #include <queue>

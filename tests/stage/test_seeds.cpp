@@ -5,7 +5,7 @@
 #include "support/paper_setup.h"
 #include "support/test_context.h"
 #include "voxel/closest_point.h"
-#include "voxel/outline_depth.h"
+#include "voxel/proxy_depth.h"
 
 using namespace isoshell;
 
@@ -88,9 +88,9 @@ TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex th
   for (size_t i = 0; i < from.size(); ++i)
     from[i] = {seeds.position[int64_t(i)].x << halvings, seeds.position[int64_t(i)].y << halvings,
                seeds.position[int64_t(i)].z << halvings};
-  if (halvings > 0)  // those of outlines come from outside
+  if (halvings > 0)  // those of coarse proxies come from outside
     for (size_t i = 0; i < from.size(); ++i)
-      from[i] = moved_by_outline_depth(from[i], seeds.normal[int64_t(i)], kOneVoxelQ8 << halvings);
+      from[i] = moved_by_proxy_depth(from[i], seeds.normal[int64_t(i)], kOneVoxelQ8 << halvings);
   TestContext context;
   attach_to_sheet(sheet, seeds, context, halvings);
   for (int64_t i = 0; i < seeds.size(); ++i) {

@@ -5,7 +5,7 @@
 
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "cpu/project_lanes.h"
+#include "cpu/project_simd.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
@@ -335,7 +335,7 @@ TEST_CASE("sheet: points of a closed surface that it misses are known", "[sheet]
       if (t.a == near || t.b == near || t.c == near)
         off = std::min(off, distance_sq_q16(q, closest_point_on_triangle(q, sheet.position[t.a], sheet.position[t.b],
                                                                          sheet.position[t.c])));
-    if (off <= kMissedQ8 * kMissedQ8 || off > kFarMissedQ8 * kFarMissedQ8) continue;
+    if (off <= kOffSurfaceQ8 * kOffSurfaceQ8 || off > kFarOffSurfaceQ8 * kFarOffSurfaceQ8) continue;
     wrong += next >= sheet.missed.size() || sheet.missed[next] != q || sheet.missed_vertex[next] != near;
     ++next;
     has_pit |= q == p.surface.frame.snap(pit);
@@ -425,25 +425,25 @@ TEST_CASE("sheet: an outline has the sheet's vertices and topology, is within a 
           "[sheet][stage]") {
   TestContext context;
   const Pipeline p = sites_of(shapes::torus(2, .7, 60, 30), 96, context);
-  const Sheet outline = build_outline(p.sites, p.surface.frame, {}, context),
+  const Sheet proxy = build_proxy(p.sites, p.surface.frame, {}, context),
               sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
-  check_sheet(outline);
-  CHECK(outline.topology.genus == 1);
-  REQUIRE(digest(outline.corners) == digest(sheet.corners));
+  check_sheet(proxy);
+  CHECK(proxy.topology.genus == 1);
+  REQUIRE(digest(proxy.corners) == digest(sheet.corners));
   for (int64_t v = 0; v < sheet.vertex_count(); ++v)
-    REQUIRE(distance_sq_q16(outline.position[v], sheet.position[v]) <= 65536);
+    REQUIRE(distance_sq_q16(proxy.position[v], sheet.position[v]) <= 65536);
   const int64_t volume = six_volume_vox(sheet, context);
-  CHECK(std::abs(six_volume_vox(outline, context) - volume) < volume / 100);
+  CHECK(std::abs(six_volume_vox(proxy, context) - volume) < volume / 100);
 }
 
 TEST_CASE("sheet: smoothing an outline takes less than a hundredth of a small ball", "[sheet][stage]") {
   TestContext context;
   for (const int resolution : {24, 48}) {
     const Pipeline p = sites_of(shapes::sphere({0, 0, 0}, 1, 24), resolution, context);
-    const Sheet outline = build_outline(p.sites, p.surface.frame, {}, context),
+    const Sheet proxy = build_proxy(p.sites, p.surface.frame, {}, context),
                 sheet = build_sheet(p.surface, p.sites, p.samples, {}, context);
     const int64_t volume = six_volume_vox(sheet, context);
-    INFO("resolution " << resolution << ": " << double(six_volume_vox(outline, context)) / double(volume));
-    CHECK(std::abs(six_volume_vox(outline, context) - volume) < volume / 100);
+    INFO("resolution " << resolution << ": " << double(six_volume_vox(proxy, context)) / double(volume));
+    CHECK(std::abs(six_volume_vox(proxy, context) - volume) < volume / 100);
   }
 }

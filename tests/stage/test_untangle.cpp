@@ -6,7 +6,7 @@
 #include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"
-#include "stages/post_intersections.h"
+#include "stages/optimize_intersections.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
@@ -22,8 +22,8 @@ int64_t count_intersections(const Sheet& sheet, const Buffer<TriangleIndices>& t
   PlainExecutor exec(context, "test");
   Buffer<uint32_t> marked(position.size());
   return run_with_threads(context, [&] {
-    return post::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, 4,
-                                    marked.view());
+    return optimize::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, 4,
+                                        marked.view());
   });
 }
 
@@ -175,16 +175,17 @@ TEST_CASE("collapse: an edge whose loss would make triangles intersect stays", "
   }
 }
 
-TEST_CASE("post: flips that would make triangles intersect where vertices began are not made", "[post][stage]") {
+TEST_CASE("optimize: flips that would make triangles intersect where vertices began are not made",
+          "[optimize][stage]") {
   TestContext context;
   const Sheet sheet = thin_sheet(context);
   for (const bool keep_apart : {false, true}) {
     Meshed m = meshed(sheet, kFewSeeds, kAnyNumber, context);
     REQUIRE(count_intersections(sheet, m.mesh.triangles, m.mesh.position) == 0);
-    PostOptions options;
+    OptimizeOptions options;
     options.keep_apart = keep_apart;
     options.smoothing_steps = 0;
-    CHECK(improve_mesh(sheet, options, m.seeds, m.mesh, context).flips > 0);
+    CHECK(optimize_mesh(sheet, options, m.seeds, m.mesh, context).flips > 0);
     m.mesh = to_host(m.mesh);
     const int64_t pairs = count_intersections(sheet, m.mesh.triangles, m.mesh.position);
     CHECK(check_mesh(m.mesh.triangles.view(), m.mesh.position.size()).is_closed_manifold());

@@ -39,9 +39,9 @@ inline Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, co
 inline SiteSet coarsen_sites(const SiteSet& sites, TestContext& context) {
   return to_host(coarsen_sites(sites, context.plain()));
 }
-inline Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
-                           TestContext& context) {
-  return to_host(build_outline(sites, frame, options, context.plain()));
+inline Sheet build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
+                         TestContext& context) {
+  return to_host(build_proxy(sites, frame, options, context.plain()));
 }
 inline SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, TestContext& context) {
   return to_host(place_seeds(sheet, options, context.plain()));
@@ -84,9 +84,9 @@ inline void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, D
   seeds = to_host(seeds);
   mesh = to_host(mesh);
 }
-inline PostReport improve_mesh(const Sheet& sheet, const PostOptions& options, SeedSet& seeds, DualMesh& mesh,
-                               TestContext& context) {
-  const PostReport report = improve_mesh(sheet, options, seeds, mesh, context.plain());
+inline OptimizeReport optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
+                                    TestContext& context) {
+  const OptimizeReport report = optimize_mesh(sheet, options, seeds, mesh, context.plain());
   seeds = to_host(seeds);
   mesh = to_host(mesh);
   return report;

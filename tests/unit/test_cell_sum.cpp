@@ -19,7 +19,7 @@ oracle::Point point(Local u) { return {double(u.x), double(u.y), double(u.z)}; }
 int nearest(Local p, const Local (&s)[3]) {
   int best = 0;
   for (int i = 1; i < 3; ++i)
-    if (nearer(p, s[i], s[best]) < 0) best = i;
+    if (bisector_value(p, s[i], s[best]) < 0) best = i;
   return best;
 }
 int64_t doubled_area(Local a, Local b, Local c) {
@@ -54,7 +54,7 @@ TEST_CASE("cell sum: every cell of a triangle gets the area, moment and energy t
     for (int o = 0; o < 3; ++o) {
       std::vector<oracle::Point> part = whole;
       for (int other = 0; other < 3; ++other)
-        if (other != o) part = oracle::clip_nearer(part, point(seed[o]), point(seed[other]));
+        if (other != o) part = oracle::clip_to_nearer(part, point(seed[o]), point(seed[other]));
       expected[o] = oracle::moments(part);
       hidden |= !owned[o] && expected[o].area2 > 0;
     }

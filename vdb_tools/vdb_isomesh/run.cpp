@@ -327,7 +327,7 @@ class Run {
     note(d.unreferenced_vertices, "vertices that no face uses");
     note(d.nonmanifold_edges, "edges that more than two faces share");
     note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
-    const MendReport& m = record_.report.mend;
+    const RepairReport& m = record_.report.mend;
     note(m.joined_vertices, "vertices of boundaries joined over cracks");
     note(m.fins, "fins dropped: small patches that hang on edges of more than two faces");
     note(m.islands, "islands dropped: small open patches apart from the rest");
@@ -336,7 +336,7 @@ class Run {
     caps << "holes closed by new faces, up to " << m.widest_cap_world << " wide";
     note(m.capped_loops, caps.str().c_str());
     note(m.tubes, "pairs of them joined: they face each other like the ends of a tube");
-    const UniteReport& u = record_.report.unite;
+    const UnionReport& u = record_.report.unite;
     note(u.turned_components, "closed components turned outward");
     note(u.swallowed_components, "closed components dropped, they lie inside of others");
     note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");

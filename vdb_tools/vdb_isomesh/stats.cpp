@@ -30,7 +30,7 @@ Json dirt_json(const DirtCounts& d) {
           {"surplus_bytes", d.surplus_bytes}};
 }
 
-Json mend_json(const MendReport& m) {
+Json repair_json(const RepairReport& m) {
   return {{"joined_vertices", m.joined_vertices},
           {"repeated_faces", m.repeated_faces},
           {"fins", m.fins},
@@ -46,7 +46,7 @@ Json mend_json(const MendReport& m) {
           {"open_loops", m.open_loops}};
 }
 
-Json unite_json(const UniteReport& u) {
+Json union_json(const UnionReport& u) {
   return {{"turned_components", u.turned_components},
           {"swallowed_components", u.swallowed_components},
           {"inner_surfaces", u.inner_surfaces},
@@ -61,8 +61,8 @@ Json input_json(const Arguments& a, const RunRecord& r) {
           {"vertices", known(r.input.vertices)},
           {"faces", known(r.input.faces)},
           {"dropped", dirt_json(r.report.dirt)},
-          {"mended", mend_json(r.report.mend)},
-          {"united", unite_json(r.report.unite)},
+          {"mended", repair_json(r.report.mend)},
+          {"united", union_json(r.report.unite)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},
           {"genus", known(t.genus)},
@@ -93,7 +93,7 @@ Json counts_json(const RunRecord& r) {
 /// Holes that faces closed and gaps that voxels bridged, and how much of the result lies where the input has no
 /// surface.
 Json gaps_json(const RunRecord& r) {
-  const MendReport& m = r.report.mend;
+  const RepairReport& m = r.report.mend;
   return {{"loops", m.capped_loops + r.report.gaps.bridges},
           {"widest", std::max(m.widest_cap_world, r.report.gaps.widest_bridge_world)},
           {"bridged_sheet_vertices", r.report.sheet.bridged_vertices},

@@ -27,7 +27,7 @@ struct RunRecord {
   RemeshReport report;
   std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
   std::optional<MeshQuality> quality;
-  std::optional<MeshDistance> distance;  ///< of the result and the input, as mended
+  std::optional<MeshDistance> distance;  ///< of the result and the input, as repaired
   int64_t vertices = -1, triangles = -1;
   int64_t risky_sites = -1;      ///< with two walls in one voxel
   std::vector<StageTime> times;  ///< of the command; the library's are in the report
