@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bench/machine.h"
-#include "hierarchy.h"
 #include "isoshell/isoshell.h"
+#include "pipeline/hierarchy.h"
 
 using namespace isoshell;
 using nlohmann::json;

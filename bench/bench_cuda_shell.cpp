@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bench/machine.h"
-#include "cuda/device_stream.h"
+#include "cuda/runtime/device_stream.h"
 #include "isoshell/isoshell.h"
 
 using namespace isoshell;

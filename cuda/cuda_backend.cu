@@ -1,6 +1,6 @@
 // The CUDA backend's table, and what belongs to no stage of the device.
 #include "cuda/cuda_backend.h"
-#include "cuda/device_stream.h"
+#include "cuda/runtime/device_stream.h"
 
 namespace isoshell {
 

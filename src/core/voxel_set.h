@@ -5,7 +5,7 @@
 
 namespace isoshell {
 
-/// index_leaves (see stages/index_leaves.h) of a set that was read or written on the host.
+/// index_leaves (see stages/sparse/index_leaves.h) of a set that was read or written on the host.
 void index_host_leaves(VoxelSet& set, const int32_t extent_vox[3]);
 
 }  // namespace isoshell

@@ -1,7 +1,7 @@
 // index_leaves on the CPU, for sets that no stage made.
 #include "core/voxel_set.h"
 #include "cpu/executor_tbb.h"
-#include "stages/index_leaves.h"
+#include "stages/sparse/index_leaves.h"
 
 namespace isoshell {
 

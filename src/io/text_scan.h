@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_source.h"
+#include "io/mesh/mesh_source.h"
 
 namespace isoshell {
 

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "io/mesh_readers.h"
-#include "io/point_readers.h"
-#include "io/volume_readers.h"
+#include "io/mesh/mesh_readers.h"
+#include "io/points/point_readers.h"
+#include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
 

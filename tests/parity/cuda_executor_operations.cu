@@ -1,5 +1,5 @@
 // The words of the CUDA executor.
-#include "cuda/executor_cuda.cuh"
+#include "cuda/runtime/executor_cuda.cuh"
 
 namespace isoshell::parity {
 

@@ -1,5 +1,5 @@
 // Copies between the streams of two contexts.
-#include "cuda/executor_cuda.cuh"
+#include "cuda/runtime/executor_cuda.cuh"
 #include "parity/cuda_streams.h"
 
 namespace isoshell::parity {

@@ -2,15 +2,15 @@
 // gives. What the stages run is CpuKernels, or with --cuda CudaKernels.
 #include <type_traits>
 
-#include "cpu/label_simd.h"
+#include "cpu/relax/label_simd.h"
 #include "isoshell/stages.h"
 #include "parity/product_hash.h"
-#include "stages/dual_body.h"
-#include "stages/optimize_body.h"
-#include "stages/relax_sheet_body.h"
-#include "stages/samples_body.h"
-#include "stages/sheet_body.h"
-#include "stages/shell_body.h"
+#include "stages/dual/dual_body.h"
+#include "stages/optimize/optimize_body.h"
+#include "stages/relax/relax_sheet_body.h"
+#include "stages/sheet/sheet_body.h"
+#include "stages/shell/shell_body.h"
+#include "stages/sites/samples_body.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/site_shapes.h"
@@ -115,7 +115,7 @@ TEST_CASE("kernels: relaxed seeds, duals and improved meshes are those of the pl
   const Sheet even = torus_sheet(), varied = with_lengths(torus_sheet(), 4), plate = plate_sheet();
   int64_t split = 0, flips = 0;
   for (const Sheet* sheet : {&even, &varied, &plate})
-    for (const int64_t count : {4, 700}) {  // few seeds make cells that must be split
+    for (const int64_t count : {8, 700}) {  // few seeds make cells that must be split
       INFO(count << " seeds on a sheet of " << sheet->vertex_count() << " vertices");
       SeedSet seeds = place_seeds(*sheet, {count, 3}, context), plain_seeds = to_host(seeds);
       const RelaxReport report = relax_on_sheet(*sheet, seeds, {8, 0, 0}, context);

@@ -4,7 +4,7 @@
 
 #include "isoshell/mesh_topology.h"
 #include "isoshell/stages.h"
-#include "stages/optimize_shape.h"
+#include "stages/halfedge/triangle_shape.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"

@@ -1,6 +1,6 @@
 // What is closest on triangles, taken many at a time on the CPU, against the definitions.
-#include "cpu/project_simd.h"
-#include "cpu/walk_ahead.h"
+#include "cpu/relax/walk_ahead.h"
+#include "cpu/sheet/project_simd.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"

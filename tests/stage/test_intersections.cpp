@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cpu/executor_tbb.h"
-#include "stages/optimize_intersections.h"
+#include "stages/halfedge/intersections.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"

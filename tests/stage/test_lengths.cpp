@@ -7,7 +7,7 @@
 #include "isoshell/error.h"
 #include "isoshell/remesh.h"
 #include "isoshell/to_host.h"
-#include "stages/edge_lengths.h"
+#include "stages/sheet/edge_lengths.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/test_context.h"

@@ -5,7 +5,7 @@
 #include "cpu/executor_tbb.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/stages.h"
-#include "stages/optimize_relocate.h"
+#include "stages/optimize/optimize_relocate.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"

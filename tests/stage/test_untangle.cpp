@@ -6,7 +6,7 @@
 #include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
 #include "isoshell/stages.h"
-#include "stages/optimize_intersections.h"
+#include "stages/halfedge/intersections.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/test_context.h"

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/voxel_set.h"
-#include "io/vdb_layout.h"
+#include "io/vdb/vdb_layout.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "stages/label_body.h"
+#include "stages/labels/label_body.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
 

@@ -1,9 +1,9 @@
 // unite, and the rays that it counts windings with.
 #include <cmath>
 
-#include "core/winding.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/error.h"
+#include "repair/winding.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_volume.h"

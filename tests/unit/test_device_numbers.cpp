@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "cuda/overlap_plan.h"
-#include "cuda/site_order.h"
+#include "cuda/shell/site_order.h"
+#include "cuda/sites/overlap_plan.h"
 #include "support/catch.h"
 #include "voxel/leaf.h"
 #include "voxel/random.h"

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/triangle_grid.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
+#include "measure/triangle_grid.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "voxel/random.h"

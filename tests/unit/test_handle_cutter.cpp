@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "cpu/handle_cutter.h"
+#include "cpu/sheet/handle_cutter.h"
 #include "support/catch.h"
 #include "voxel/random.h"
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <map>
 
-#include "io/iso_surface.h"
+#include "implicit/iso_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"

@@ -1,5 +1,5 @@
 // Damaged files either give a sound soup or an Error: every truncation, and thousands of changed bytes.
-#include "io/mesh_readers.h"
+#include "io/mesh/mesh_readers.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "voxel/random.h"

@@ -4,7 +4,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "io/mesh_writers.h"
+#include "io/mesh/mesh_writers.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "voxel/random.h"

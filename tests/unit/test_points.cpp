@@ -8,9 +8,9 @@
 #include <fstream>
 #include <map>
 
-#include "io/lzf.h"
-#include "io/point_readers.h"
-#include "io/point_support.h"
+#include "implicit/point_support.h"
+#include "io/points/point_readers.h"
+#include "io/vdb/lzf.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"

@@ -1,7 +1,7 @@
 // Polygons into triangles.
 #include <cmath>
 
-#include "io/polygon_split.h"
+#include "io/mesh/polygon_split.h"
 #include "support/catch.h"
 #include "voxel/random.h"
 

@@ -1,0 +1,17 @@
+// CUDA's triangulate_dual.
+#include "cuda/cuda_backend.h"
+#include "cuda/dual/pieces_cooperative.cuh"
+#include "cuda/dual/split_cells.cuh"
+#include "cuda/relax/label_cooperative.cuh"
+#include "cuda/runtime/executor_cuda.cuh"
+#include "stages/dual/dual_body.h"
+
+namespace isoshell {
+
+DualMesh CudaBackend::triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options,
+                                       DualReport& report, Context& context) const {
+  CudaExecutor exec(context, "dual");
+  return triangulate_dual_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), options, report);
+}
+
+}  // namespace isoshell

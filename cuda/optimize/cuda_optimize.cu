@@ -1,0 +1,17 @@
+// CUDA's optimize_mesh.
+#include "cuda/cuda_backend.h"
+#include "cuda/optimize/optimize_kernels.cuh"
+#include "cuda/relax/label_cooperative.cuh"
+#include "cuda/runtime/executor_cuda.cuh"
+#include "stages/optimize/optimize_body.h"
+
+namespace isoshell {
+
+OptimizeReport CudaBackend::optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds,
+                                          DualMesh& mesh, Context& context) const {
+  CudaExecutor exec(context, "post");
+  return optimize_mesh_body(exec, *OnDevice<Sheet>(exec, sheet), options, on_device(exec, seeds),
+                            on_device(exec, mesh));
+}
+
+}  // namespace isoshell

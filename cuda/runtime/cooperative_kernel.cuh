@@ -1,0 +1,67 @@
+// Steps whose elements are too large for one thread: how several threads share one. CudaKernels::Forms lists them; a
+// step that is not there runs on one thread an element. A form computes what the step's operator() computes: same
+// definition, same bytes.
+#pragma once
+
+#include <cstdint>
+
+#include "cuda/cuda_kernels.h"
+#include "cuda/runtime/warp.cuh"
+#include "isoshell/buffer.h"
+
+namespace isoshell {
+
+/// Specialised for every step that is listed, from FormOf:
+///   struct Shared;                    // of an element
+///   static __device__ void run(const Step& step, int64_t i, Shared& shared, int lane);
+/// Threads of an element synchronise by sync_element<Form>(). A listed step does not compile without its form's header.
+template <class Step>
+struct CooperativeKernel;
+
+/// What a form begins with.
+template <class Step, int kThreadsOfElement = 32, int kElementsOfBlock = 4>
+struct FormOf {
+  static_assert(CudaKernels::Forms::has<Step>, "list the step in cuda/cuda_kernels.h: its form is not used else");
+  static constexpr int kThreads = kThreadsOfElement;  ///< 32 or fewer (a power of two), or a whole block
+  static constexpr int kElements = kElementsOfBlock;  ///< 1 where kThreads > 32
+};
+
+/// Lanes of the calling thread's group of `kThreads` within its warp.
+template <int kThreads>
+__device__ inline unsigned group_lanes() {
+  static_assert(kThreads <= 32 && (kThreads & (kThreads - 1)) == 0, "groups divide a warp");
+  if constexpr (kThreads == 32) return kWholeWarp;
+  return ((1u << (kThreads & 31)) - 1) << (threadIdx.x & 31 & ~(kThreads - 1));
+}
+
+template <class Form>
+__device__ inline void sync_element() {
+  if constexpr (Form::kThreads <= 32)
+    __syncwarp(group_lanes<Form::kThreads>());
+  else
+    __syncthreads();
+}
+
+template <class Step>
+__global__ void __launch_bounds__(CooperativeKernel<Step>::kThreads* CooperativeKernel<Step>::kElements)
+    run_block_form(int64_t count, Step step) {
+  using Form = CooperativeKernel<Step>;
+  static_assert(Form::kThreads <= 32 || Form::kElements == 1, "a block synchronises as one");
+  __shared__ typename Form::Shared shared[Form::kElements];
+  const int slot = int(threadIdx.x) / Form::kThreads, lane = int(threadIdx.x) % Form::kThreads;
+  for (int64_t i = int64_t(blockIdx.x) * Form::kElements + slot; i < count; i += int64_t(gridDim.x) * Form::kElements) {
+    Form::run(step, i, shared[slot], lane);
+    sync_element<Form>();
+  }
+}
+
+template <class Step>
+void launch_block_form(int64_t count, const Step& step, cudaStream_t stream) {
+  using Form = CooperativeKernel<Step>;
+  const int64_t blocks = (count + Form::kElements - 1) / Form::kElements;
+  constexpr int64_t kMaxBlocks = 1 << 20;
+  run_block_form<<<unsigned(blocks < kMaxBlocks ? blocks : kMaxBlocks), Form::kThreads * Form::kElements, 0, stream>>>(
+      count, step);
+}
+
+}  // namespace isoshell

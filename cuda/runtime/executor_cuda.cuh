@@ -1,0 +1,286 @@
+// The CUDA executor: exec/executor.h over a stream. Steps run one a thread, or as their CooperativeKernel says; words
+// that return a value to the host wait for the stream, all others only enqueue.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <type_traits>
+
+#include "core/copy_product.h"
+#include "cuda/cuda_kernels.h"
+#include "cuda/runtime/cooperative_kernel.cuh"
+#include "cuda/runtime/cub.cuh"
+#include "cuda/runtime/device_stream.h"
+#include "cuda/runtime/primitives.h"
+#include "cuda/runtime/small_words.cuh"
+#include "cuda/runtime/warp.cuh"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace cuda_steps {
+
+constexpr int kThreads = 128;
+inline unsigned blocks_for(int64_t count) { return isoshell::blocks_for(count, kThreads); }
+__device__ inline int64_t thread_number() { return int64_t(blockIdx.x) * blockDim.x + threadIdx.x; }
+
+template <class Step>
+__global__ void run_step(int64_t count, Step step) {
+  const int64_t i = thread_number();
+  if (i < count) step(i);
+}
+
+template <class T>
+__global__ void fill_values(View<T> out, T value) {
+  const int64_t i = thread_number();
+  if (i < out.size) out[i] = value;
+}
+
+/// One ballot a warp: bit l of words[w] says whether element 32 w + l is kept.
+template <class Keep>
+__global__ void mark_kept(int64_t count, Keep keep, View<uint32_t> words) {
+  const int64_t i = thread_number();
+  const uint32_t word = __ballot_sync(kWholeWarp, i < count && bool(keep(i)));
+  if ((threadIdx.x & 31) == 0 && i < count) words[i >> 5] = word;
+}
+
+template <class Term>
+__global__ void sum_terms(int64_t count, Term term, int64_t* total) {
+  int64_t part = 0;
+  for (int64_t i = thread_number(); i < count; i += int64_t(gridDim.x) * blockDim.x) part += int64_t(term(i));
+  part = warp_sum(part);
+  if ((threadIdx.x & 31) == 0 && part != 0)
+    atomicAdd(reinterpret_cast<unsigned long long*>(total), (unsigned long long)part);
+}
+
+}  // namespace cuda_steps
+
+/// One per stage call.
+class CudaExecutor {
+ public:
+  using Kernels = CudaKernels;
+
+  CudaExecutor(Context& context, const char* stage)
+      : context_(context), stage_(stage), stream_(DeviceStream::of(context)) {}
+
+  /// Passes of a loop that are enqueued before its state is read, which waits for them.
+  static constexpr int kPassBatch = 16;
+
+  Context& context() { return context_; }
+  DeviceStream& device() { return stream_; }
+  cudaStream_t stream() const { return stream_.stream(); }
+
+  void stop_if_cancelled() const {
+    if (context_.cancel.load(std::memory_order_relaxed)) throw Error(ErrorCode::interrupted, stage_, "interrupted");
+  }
+  /// Throws what went wrong with the launches so far, and Error{interrupted} when the context was cancelled.
+  void check(const char* name) {
+    if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
+      throw Error(ErrorCode::internal, stage_, std::string(name) + " failed on the device: " + describe_error(status));
+    stop_if_cancelled();
+  }
+
+  template <class T>
+  Buffer<T> make(int64_t count) {
+    return Buffer<T>(count, stream_);
+  }
+
+  template <class T>
+  void fill(View<T> out, T value) {
+    stop_if_cancelled();
+    if (out.empty()) return;
+    cuda_steps::fill_values<<<cuda_steps::blocks_for(out.size), cuda_steps::kThreads, 0, stream()>>>(out, value);
+    check("fill");
+  }
+
+  template <class T>
+  void copy(View<const T> from, View<T> to) {
+    if (from.empty()) return;
+    require_success(
+        cudaMemcpyAsync(to.data, from.data, size_t(from.size) * sizeof(T), cudaMemcpyDeviceToDevice, stream()), "copy");
+  }
+
+  template <class T>
+  T value(View<const T> values, int64_t i) {
+    static_assert(sizeof(T) <= DeviceStream::kPinnedBytes, "read back through the pinned words");
+    static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
+    read_back(values.data + i, 0, sizeof(T));
+    stream_.synchronize();
+    return *static_cast<const T*>(stream_.pinned());
+  }
+
+  template <class Step>
+  void for_each(const char* name, int64_t count, Step step) {
+    stop_if_cancelled();
+    if (count <= 0) return;
+    if constexpr (Kernels::Forms::has<Step>)
+      launch_block_form(count, step, stream());
+    else
+      cuda_steps::run_step<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, step);
+    check(name);
+  }
+
+  template <class T>
+  T exclusive_scan(View<T> counts) {
+    stop_if_cancelled();
+    if (counts.empty()) return 0;
+    if (counts.size <= small_words::kMost) {
+      T* const total = static_cast<T*>(stream_.pinned());
+      small_words::exclusive_scan<<<1, small_words::kThreads, 0, stream()>>>(counts, total);
+      check("scan");
+      stream_.synchronize();
+      return *total;
+    }
+    read_back(counts.data + counts.size - 1, 0, sizeof(T));
+    exclusive_scan_async(stream_, counts);
+    read_back(counts.data + counts.size - 1, sizeof(T), sizeof(T));
+    stream_.synchronize();
+    const T* last = static_cast<const T*>(stream_.pinned());
+    return T(last[0] + last[1]);
+  }
+
+  template <class T>
+  void inclusive_scan(View<T> counts) {
+    stop_if_cancelled();
+    inclusive_scan_async(stream_, counts);
+  }
+
+  template <class T, class Less = std::less<T>>
+  void sort(View<T> keys, Less less = {}) {
+    static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
+    stop_if_cancelled();  // before some thirty launches
+    if (keys.size < 2) return;
+    if constexpr (std::is_same_v<T, uint64_t> && std::is_same_v<Less, std::less<T>>) {
+      sort_keys_async(stream_, keys);
+    } else {
+      size_t bytes = 0;
+      require_success(cub::DeviceMergeSort::SortKeys(nullptr, bytes, keys.data, keys.size, less, stream()), "sort");
+      Buffer<uint8_t> scratch = make<uint8_t>(int64_t(bytes));
+      require_success(cub::DeviceMergeSort::SortKeys(scratch.data(), bytes, keys.data, keys.size, less, stream()),
+                      "sort");
+    }
+    check("sort");
+  }
+
+  template <class Keep>
+  Buffer<uint32_t> select(int64_t count, Keep keep) {
+    stop_if_cancelled();
+    if (count <= 0) return {};
+    if (count <= small_words::kMost) return select_of_few(count, keep);
+    Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32), rank = make<uint32_t>(words.size() + 1);
+    cuda_steps::mark_kept<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, keep,
+                                                                                                words.view());
+    check("select");
+    rank_kept_async(stream_, words.view(), rank.view());
+    Buffer<uint32_t> out = make<uint32_t>(value(View<const uint32_t>(rank.view()), words.size()));
+    if (!out.empty()) list_kept_async(stream_, words.view(), rank.view(), out.view());
+    return out;
+  }
+
+  template <class Term>
+  int64_t sum(int64_t count, Term term) {
+    stop_if_cancelled();
+    if (count <= 0) return 0;
+    if (count <= small_words::kMost) {
+      int64_t* const few = static_cast<int64_t*>(stream_.pinned());
+      small_words::sum<<<1, small_words::kThreads, 0, stream()>>>(count, term, few);
+      check("sum");
+      stream_.synchronize();
+      return *few;
+    }
+    Buffer<int64_t> total = make<int64_t>(1);
+    sum_into(total.view(), count, term);
+    return value(View<const int64_t>(total.view()), 0);
+  }
+
+  template <class Term>
+  void sum_into(View<int64_t> out, int64_t count, Term term) {
+    fill(out, int64_t(0));
+    if (count <= 0) return;
+    const unsigned most = 1024;
+    const unsigned blocks = cuda_steps::blocks_for(count) < most ? cuda_steps::blocks_for(count) : most;
+    cuda_steps::sum_terms<<<blocks, cuda_steps::kThreads, 0, stream()>>>(count, term, out.data);
+    check("sum");
+  }
+
+  /// Whether steps may use a product as it lies: made in this stream, so in the order of its work.
+  template <class Product>
+  bool owns(const Product& product) const {
+    return &memory_of(product) == &stream_;
+  }
+
+  /// A copy of any Buffer in this stream's memory. The owner of the Buffer may free it right away: another stream of
+  /// the device waits for the copy; what lies on another device goes through the host.
+  template <class T>
+  Buffer<T> to_device(const Buffer<T>& from) {
+    if (from.space() == MemorySpace::cuda) {
+      auto& owner = static_cast<DeviceStream&>(from.memory());
+      if (owner.device() == stream_.device()) return copy_in_order(from, owner);
+      return to_device(from.to_host());
+    }
+    Buffer<T> copy = make<T>(from.size());
+    stream_.copy_to_device(copy.data(), from.data(), from.size_bytes());
+    return copy;
+  }
+
+ private:
+  template <class T>
+  Buffer<T> copy_in_order(const Buffer<T>& from, DeviceStream& owner) {
+    Buffer<T> copy = make<T>(from.size());
+    stream_.wait_for(owner);
+    this->copy(from.view(), copy.view());
+    owner.wait_for(stream_);
+    return copy;
+  }
+
+  template <class Keep>
+  Buffer<uint32_t> select_of_few(int64_t count, Keep keep) {
+    Buffer<uint32_t> room = make<uint32_t>(count);
+    uint32_t* const total = static_cast<uint32_t*>(stream_.pinned());
+    small_words::select<<<1, small_words::kThreads, 0, stream()>>>(count, keep, room.data(), total);
+    check("select");
+    stream_.synchronize();
+    const int64_t kept = *total;
+    if (kept == count) return room;
+    Buffer<uint32_t> out = make<uint32_t>(kept);
+    copy(View<const uint32_t>(room.view()).part(0, kept), out.view());
+    return out;
+  }
+
+  /// To the pinned memory; complete after the stream was waited for.
+  void read_back(const void* from, int64_t at, size_t bytes) {
+    require_success(
+        cudaMemcpyAsync(static_cast<char*>(stream_.pinned()) + at, from, bytes, cudaMemcpyDeviceToHost, stream()),
+        "cudaMemcpyAsync");
+  }
+
+  Context& context_;
+  const char* stage_;
+  DeviceStream& stream_;
+};
+
+/// A product where steps can read it: itself, or a copy that lives as long as this.
+template <class Product>
+class OnDevice {
+ public:
+  OnDevice(CudaExecutor& exec, const Product& product) : product_(&product) {
+    if (exec.owns(product)) return;
+    copy_ = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
+    product_ = &copy_;
+  }
+  OnDevice(const OnDevice&) = delete;
+  const Product& operator*() const { return *product_; }
+  const Product* operator->() const { return product_; }
+
+ private:
+  const Product* product_;
+  Product copy_;
+};
+
+/// Brings a product that a stage changes to the executor's memory.
+template <class Product>
+Product& on_device(CudaExecutor& exec, Product& product) {
+  if (!exec.owns(product)) product = copy_product(product, [&](const auto& buffer) { return exec.to_device(buffer); });
+  return product;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,69 @@
+// CUDA's relax_in_shell: passes of two kernels.
+#include "cuda/cuda_backend.h"
+#include "cuda/shell/relax_shell_pass.cuh"
+
+namespace isoshell {
+namespace {
+
+using namespace cuda_relax;
+
+constexpr int kThreads = 128;
+
+RelaxReport relax_by_parts(CudaExecutor& exec, const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
+                           SeedSet& seeds, const RelaxOptions& options) {
+  const int64_t k = seeds.size(), leaves = shell.voxels.leaf_count();
+  const int64_t spacing_vox = relax_shell::spacing_vox(sites.voxels.voxel_count(), k);
+  const int64_t spacing_q8 = spacing_vox * kOneVoxelQ8;
+  const int edge = cube_edge_for(spacing_vox);
+  const int64_t parts = leaves * (8 / edge) * (8 / edge) * (8 / edge);
+  const VoxelSetView voxels = shell.voxels.view();
+  SeedBuckets buckets = make_seed_buckets(exec, shell.voxels.block_dims, 2 * spacing_q8, k, 2);
+  Buffer<SeedRecord> records = exec.make<SeedRecord>(k);
+  Buffer<relax_shell::CellSums> cells = exec.make<relax_shell::CellSums>(k);
+  Buffer<ShellPart> descriptions = exec.make<ShellPart>(parts);
+  Buffer<uint16_t> offsets = exec.make<uint16_t>(shell.voxels.voxel_count());
+  Buffer<int32_t> reach = exec.make<int32_t>(parts);
+  Buffer<PassState> state = exec.make<PassState>(1);
+  Buffer<PassProgress> progress = exec.make<PassProgress>(1);
+
+  ShellPass pass{
+      descriptions.data(), offsets.data(),          parts,        {buckets.grid, buckets.table(0), records.data(), 0},
+      reach.data(),        int32_t(spacing_q8 / 8), cells.data(), state.data(),
+      progress.data(),     options.tolerance_ppb};
+  ShellMove move{{voxels, shell.closest_site.view(), sites.voxels.view(), samples.sample.view(),
+                  options.max_step_q8 > 0 ? options.max_step_q8 : kOneVoxelQ8, cells.view(), seeds.position.view(),
+                  seeds.normal.view(), seeds.home.view(), state.view()},
+                 cells.data(),
+                 records.data(),
+                 buckets.grid,
+                 buckets.table(1),
+                 buckets.table(0),
+                 progress.data()};
+  start_shell_seeds<<<blocks_for(k, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
+  describe_parts<<<blocks_for(leaves, kThreads / 32), kThreads, 0, exec.stream()>>>(
+      voxels, edge, descriptions.data(), offsets.data(), spacing_q8, reach.data());
+  exec.check("start passes");
+  int searched = 0;
+  RelaxReport report = run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
+    pass.search.table = move.from = buckets.table(searched);
+    searched = 1 - searched;
+    move.to = buckets.table(searched);
+    sum_parts<<<blocks_for(parts, kPartWarps), kPartWarps * 32, 0, exec.stream()>>>(pass);
+    move_shell_seeds<<<blocks_for(k, kThreads), kThreads, 0, exec.stream()>>>(move);
+    exec.check("relaxation pass");
+  });
+  report.normalised_energy_factor =
+      relax_shell::normalised_energy_factor(k, shell.voxels.voxel_count(), sites.voxels.voxel_count());
+  return report;
+}
+
+}  // namespace
+
+RelaxReport CudaBackend::relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
+                                        SeedSet& seeds, const RelaxOptions& options, Context& context) const {
+  CudaExecutor exec(context, "relax_shell");
+  return relax_by_parts(exec, *OnDevice<Shell>(exec, shell), *OnDevice<SiteSet>(exec, sites),
+                        *OnDevice<SiteSamples>(exec, samples), on_device(exec, seeds), options);
+}
+
+}  // namespace isoshell

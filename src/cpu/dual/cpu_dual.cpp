@@ -1,0 +1,17 @@
+// The CPU's triangulate_dual.
+#include "core/copy_product.h"
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "cpu/relax/label_simd.h"
+#include "stages/dual/dual_body.h"
+
+namespace isoshell {
+
+DualMesh CpuBackend::triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options,
+                                      DualReport& report, Context& context) const {
+  CpuExecutor exec(context, "dual");
+  return run_with_threads(context,
+                          [&] { return triangulate_dual_body(exec, *OnHost(sheet), on_host(seeds), options, report); });
+}
+
+}  // namespace isoshell

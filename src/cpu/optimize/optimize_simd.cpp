@@ -1,0 +1,239 @@
+#include "cpu/optimize/optimize_simd.h"
+
+#include <vector>
+
+#include "cpu/optimize/pull_simd.h"
+#include "cpu/optimize/vertex_simd.h"
+#include "cpu/relax/walk_ahead.h"
+
+namespace isoshell {
+namespace {
+
+using namespace optimize;
+
+struct CountTrianglesAround {
+  MeshView mesh;
+  View<uint32_t> count;
+  void operator()(int64_t v) const {
+    uint32_t n = 0;
+    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t, uint32_t) { ++n; });
+    count[v] = n;
+  }
+};
+
+struct ListTrianglesAround {
+  MeshView mesh;
+  View<const uint32_t> first;
+  View<TrianglesAround::Triangle> triangles;
+  void operator()(int64_t v) const {
+    uint32_t h = mesh.outgoing[v];
+    for (uint32_t at = first[v]; at < first[v + 1]; ++at) {
+      triangles[at] = {mesh.to(h), mesh.opposite(h), h};
+      h = mesh.twin[previous_half_edge(h)];
+    }
+  }
+};
+
+/// A few vertices, one after the other in their order.
+struct VertexGroup {
+  View<const uint32_t> first;
+  View<const TrianglesAround::Triangle> triangles;
+  View<const PointQ8> position;
+
+  static constexpr int kLanes = VertexSimd::kLanes;
+  int64_t groups() const { return (position.size + kLanes - 1) / kLanes; }
+
+  /// Calls each(lanes, i, half-edge) for every triangle that vertex i of the group has, add(lanes) after one of each.
+  template <class Each, class Add>
+  void sum(int64_t group, VertexSimd& lanes, Each each, Add add) const {
+    const int64_t begin = group * kLanes;
+    const int count = count_of(group);
+    uint32_t most = 0;
+    for (int i = 0; i < count; ++i) most = std::max(most, first[begin + i + 1] - first[begin + i]);
+    for (uint32_t n = 0; n < most; ++n) {
+      for (int i = 0; i < kLanes; ++i) {
+        const int64_t v = begin + std::min(i, count - 1);
+        const bool is_there = i < count && n < first[v + 1] - first[v];
+        const TrianglesAround::Triangle& t = triangles[first[v] + (is_there ? n : 0)];
+        lanes.to_b.set(i, position[v], position[t.b]);
+        lanes.to_c.set(i, position[v], position[t.c]);
+        lanes.is_there[i] = is_there ? 1 : 0;
+        each(lanes, i, t.half_edge);
+      }
+      add(lanes);
+    }
+  }
+  int count_of(int64_t group) const { return int(std::min<int64_t>(kLanes, position.size - group * kLanes)); }
+};
+
+struct SmoothVertices {
+  SmoothVertex step;
+  VertexGroup vertices;
+
+  void operator()(int64_t group) const {
+    const int64_t begin = group * VertexSimd::kLanes;
+    const int count = vertices.count_of(group);
+    VertexSimd lanes;
+    lanes.clear();
+    for (int i = 0; i < count; ++i) lanes.radius_q8[i] = step.radius_q8(begin + i);
+    vertices.sum(
+        group, lanes, [](VertexSimd&, int, uint32_t) {}, [&](VertexSimd& l) { l.add(step.options.evenness); });
+    for (int i = 0; i < count; ++i) {
+      const FitSums s = lanes.sums(i);
+      step.to[begin + i] = step.place(begin + i, {s.corners, s.normal, {s.planes}});
+    }
+  }
+};
+
+struct LayOntoSheet {
+  SmoothVertex step;
+  bool aims(int64_t v, PointQ8& target) const {
+    target = step.to[v];
+    return true;
+  }
+  void arrives(int64_t v, uint32_t vertex, PointQ8 p) const { step.home[v] = vertex, step.to[v] = p; }
+};
+
+/// Some groups, whose vertices may walk.
+struct FitVertices {
+  FitVertex step;
+  VertexGroup vertices;
+  WalkAhead ahead;
+
+  static constexpr int64_t kGroups = 8;
+  int64_t runs() const { return (vertices.groups() + kGroups - 1) / kGroups; }
+
+  void operator()(int64_t run) const {
+    const int64_t end = std::min(vertices.groups(), (run + 1) * kGroups);
+    for (int64_t group = run * kGroups; group < end; ++group) fit(group, std::min(step.to.size, end * vertices.kLanes));
+  }
+
+ private:
+  void fit(int64_t group, int64_t end) const {
+    const int64_t begin = group * VertexSimd::kLanes;
+    const int count = vertices.count_of(group);
+    VertexSimd lanes;
+    lanes.clear();
+    for (int i = 0; i < count; ++i) lanes.radius_q8[i] = step.radius_q8(begin + i);
+    vertices.sum(
+        group, lanes,
+        [&](VertexSimd& l, int i, uint32_t h) {
+          const TrianglePull& asked = step.triangle_pull[h / 3];
+          l.weight[i] = double(asked.weight[h % 3]), l.pull[i] = double(asked.pull[h % 3]);
+        },
+        [&](VertexSimd& l) { l.add_with_pulls(step.options.smooth.evenness); });
+    for (int i = 0; i < count; ++i) {
+      ahead.before(begin + i, end);
+      step.to[begin + i] = step.place(begin + i, lanes.sums(i));
+    }
+  }
+};
+
+/// Sums over samples of one triangle after another, before they are added to what other threads add to.
+class TriangleRun {
+ public:
+  explicit TriangleRun(View<TrianglePull> to) : to_(to) {}
+  ~TriangleRun() { flush(); }
+
+  void add(uint32_t triangle, const PullSimd& lanes, int i) {
+    if (triangle != triangle_) flush();
+    triangle_ = triangle;
+    for (int k = 0; k < 3; ++k) {
+      sum_.weight[k] += int64_t(lanes.weight[k][i]);
+      sum_.pull[k] += int64_t(lanes.pull[k][i]);
+    }
+  }
+
+ private:
+  void flush() {
+    if (triangle_ == kNone) return;
+    for (int k = 0; k < 3; ++k) {
+      atomic_add(to_[triangle_].weight[k], sum_.weight[k]);
+      atomic_add(to_[triangle_].pull[k], sum_.pull[k]);
+    }
+    sum_ = {};
+  }
+
+  const View<TrianglePull> to_;
+  uint32_t triangle_ = kNone;
+  TrianglePull sum_{};
+};
+
+/// Some samples, one after the other in their order.
+struct PullSamples {
+  PullCorners step;
+
+  static constexpr int64_t kRun = 8 * PullSimd::kLanes;
+  int64_t runs() const { return (step.sample.size + kRun - 1) / kRun; }
+
+  void operator()(int64_t run) const {
+    TriangleRun sums(step.triangle_pull);
+    const int64_t end = std::min(step.sample.size, (run + 1) * kRun);
+    PullSimd lanes;
+    for (int64_t begin = run * kRun; begin < end; begin += PullSimd::kLanes)
+      pull(begin, int(std::min<int64_t>(PullSimd::kLanes, end - begin)), lanes, sums);
+  }
+
+ private:
+  void pull(int64_t begin, int count, PullSimd& lanes, TriangleRun& sums) const {
+    for (int i = 0; i < PullSimd::kLanes; ++i) {
+      const FitSample& s = step.sample[begin + std::min(i, count - 1)];
+      const TriangleIndices t = step.mesh.triangles[s.triangle == kNone ? 0 : s.triangle];
+      lanes.sample.set(i, s.position);
+      lanes.a.set(i, step.position[t.a]);
+      lanes.b.set(i, step.position[t.b]);
+      lanes.c.set(i, step.position[t.c]);
+    }
+    lanes.find(step.options);
+    for (int i = 0; i < count; ++i) {
+      const FitSample& s = step.sample[begin + i];
+      if (s.triangle == kNone || s.is_off_surface || !(lanes.is_inside[i] > 0)) {
+        step(begin + i);
+        continue;
+      }
+      step.rest_sq[begin + i] = int64_t(lanes.distance_sq[i]);
+      sums.add(s.triangle, lanes, i);
+    }
+  }
+};
+
+}  // namespace
+
+void CpuStepSimd::begin(CpuExecutor& exec, const MeshView& mesh) {
+  const int64_t vertices = mesh.outgoing.size;
+  around_ = {Buffer<uint32_t>(vertices + 1), Buffer<TrianglesAround::Triangle>(mesh.twin.size)};
+  around_.first[vertices] = 0;
+  exec.for_each("count triangles around", vertices, CountTrianglesAround{mesh, around_.first.view()});
+  exec.exclusive_scan(around_.first.view());
+  exec.for_each("list triangles around", vertices,
+                ListTrianglesAround{mesh, around_.first.view(), around_.triangles.view()});
+}
+
+void CpuStepSimd::smooth(CpuExecutor& exec, const SmoothVertex& step) {
+  const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
+  exec.for_each("smooth", vertices.groups(), SmoothVertices{step, vertices});
+  if (step.options.onto_sheet) WalksAhead::to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
+}
+
+void CpuStepSimd::sort(CpuExecutor&, int64_t triangles, View<FitSample> samples) {
+  const auto place = [&](const FitSample& s) { return s.triangle == kNone ? size_t(triangles) : size_t(s.triangle); };
+  std::vector<uint32_t> end(size_t(triangles) + 1);
+  for (const FitSample& s : samples) ++end[place(s)];
+  for (size_t t = 1; t < end.size(); ++t) end[t] += end[t - 1];
+  Buffer<FitSample> sorted(samples.size);
+  for (int64_t i = samples.size - 1; i >= 0; --i) sorted[--end[place(samples[i])]] = samples[i];
+  std::copy(sorted.begin(), sorted.end(), samples.begin());
+}
+
+void CpuStepSimd::pull(CpuExecutor& exec, const PullCorners& step) {
+  const PullSamples samples{step};
+  exec.for_each("pull corners", samples.runs(), samples);
+}
+
+void CpuStepSimd::fit(CpuExecutor& exec, const FitVertex& step) {
+  const VertexGroup vertices{around_.first.view(), around_.triangles.view(), step.from};
+  const FitVertices work{step, vertices, WalkAhead(step.walk, step.home)};
+  exec.for_each("fit", work.runs(), work);
+}
+
+}  // namespace isoshell

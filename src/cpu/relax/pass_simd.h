@@ -1,0 +1,36 @@
+// Passes of relax_on_sheet on the CPU: the definitions of stages/labels/label_body.h and relax_sheet_body.h, with what
+// stays the same between passes kept.
+#pragma once
+
+#include "cpu/executor_tbb.h"
+#include "cpu/relax/label_simd.h"
+#include "stages/relax/relax_sheet_body.h"
+
+namespace isoshell {
+
+/// Triangles by the leaf of their smallest vertex, and the moments about the leaf's origin of each vertex's triangles.
+struct LeafPatches {
+  struct Triangle {
+    uint32_t a, b, c, area2;
+  };
+  Buffer<int64_t> first;  ///< leaf_count + 1
+  Buffer<Triangle> triangles;
+  Buffer<PieceSum> of_vertex;  ///< sum over the triangles whose smallest vertex it is
+};
+
+/// relax_sheet::PlainPassWork in lanes.
+class CpuPassSimd {
+ public:
+  CpuPassSimd(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
+
+  void measure(CpuExecutor& exec, const SeedSet& seeds, View<relax_sheet::CellSum> cells, View<SplitSum> leaf_energy,
+               View<const PassState> state);
+
+ private:
+  const Sheet& sheet_;
+  LabelSimd labels_;
+  LeafPatches patches_;
+  Buffer<uint32_t> label_;
+};
+
+}  // namespace isoshell

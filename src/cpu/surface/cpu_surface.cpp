@@ -1,0 +1,19 @@
+// The CPU's measure_topology and snap_surface.
+#include "cpu/cpu_backend.h"
+#include "cpu/executor_tbb.h"
+#include "stages/surface/surface_body.h"
+#include "stages/surface/topology_body.h"
+
+namespace isoshell {
+
+InputTopology CpuBackend::measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) const {
+  CpuExecutor exec(context, "surface");
+  return run_with_threads(context, [&] { return measure_topology_body(exec, view_of(soup), dirt); });
+}
+
+LatticeSurface CpuBackend::snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) const {
+  CpuExecutor exec(context, "surface");
+  return run_with_threads(context, [&] { return snap_surface_body(exec, view_of(soup), frame); });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,302 @@
+// Marching cubes block by block: count what each block owns, then write vertices, then triangles to their places.
+#include "implicit/iso_surface.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "implicit/iso_cases.h"
+#include "implicit/tile_borders.h"
+#include "io/mesh/face_collector.h"
+#include "isoshell/error.h"
+#include "voxel/leaf.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kEdgeEnd = 1.0 / 4096;  // vertices keep that far from the ends of their edges, so none coincide
+constexpr int kCentreLoop = 6;           // patches of as many corners get a vertex in their middle: they can meet
+                                         // a face of the cell twice, where a diagonal might be the neighbour's too
+
+Voxel plus(Voxel a, int32_t x, int32_t y, int32_t z) { return {a.x + x, a.y + y, a.z + z}; }
+
+void sort_unique(std::vector<Voxel>& voxels) {
+  tbb::parallel_sort(voxels.begin(), voxels.end(), comes_before);
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+}
+
+struct Inside {
+  double iso;
+  bool below;
+  bool operator()(double value) const { return below ? value < iso : value > iso; }
+};
+
+/// What a block of cells owns: lattice edges that begin in it, by axis and corner, and the middles of patches.
+struct CellBlock {
+  uint64_t cut[3][8] = {};
+  uint32_t cuts = 0, middles = 0, triangles = 0;
+  int64_t first_vertex = 0, first_triangle = 0;
+
+  /// Which of the block's vertices lies on an edge.
+  uint32_t rank(int axis, int offset) const {
+    uint32_t count = 0;
+    for (int a = 0; a <= axis; ++a)
+      for (int w = 0; w < (a < axis ? 8 : offset >> 6); ++w) count += uint32_t(popcount64(cut[a][w]));
+    return count + uint32_t(popcount64(cut[axis][offset >> 6] & ((uint64_t(1) << (offset & 63)) - 1)));
+  }
+};
+
+class IsoSurface {
+ public:
+  IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes)
+      : field_(field),
+        memory_limit_bytes_(memory_limit_bytes > 0 ? memory_limit_bytes : INT64_MAX),
+        inside_{iso, field.background == iso ? field.grid_class == "level set" : field.background > iso} {}
+
+  TriangleSoup extract() {
+    list_cell_blocks();
+    cell_.resize(origin_.size());
+    each_block([&](size_t b, const float* window) { count(b, window); });
+    TriangleSoup soup;
+    make_room(soup);
+    each_block([&](size_t b, const float* window) { write_edges(b, window, soup); });
+    each_block([&](size_t b, const float* window) { write_patches(b, window, soup); });
+    return soup;
+  }
+
+ private:
+  /// Blocks whose cells touch a voxel with a value of its own, or lie where tiles of the two sides meet.
+  void list_cell_blocks() {
+    std::vector<Voxel> held = field_.blocks();
+    for (const Voxel& block : held) check_reach(block);
+    for (const FieldTile& tile : field_.tiles()) check_reach(tile.origin);
+    sort_unique(held);
+    const int64_t most = memory_limit_bytes_ / int64_t(8 * sizeof(Voxel));
+    const std::vector<Voxel> beside = blocks_beside_tiles(field_, inside_, held, most);
+    held.insert(held.end(), beside.begin(), beside.end());
+    sort_unique(held);
+    origin_.resize(8 * held.size());
+    tbb::parallel_for(size_t(0), held.size(), [&](size_t i) {
+      for (int n = 0; n < 8; ++n) origin_[8 * i + size_t(n)] = neighbour(held[i], n, -kFieldBlock);
+    });
+    sort_unique(origin_);
+    check_memory(int64_t(origin_.size() * (sizeof(Voxel) + sizeof(CellBlock))));
+  }
+
+  void check_reach(Voxel v) const {
+    if (std::max({std::abs(int64_t(v.x)), std::abs(int64_t(v.y)), std::abs(int64_t(v.z))}) > kFieldReach)
+      throw Error(ErrorCode::unreadable_input, "read",
+                  field_.title() + " has values at (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+                      std::to_string(v.z) + "), farther out than " + std::to_string(kFieldReach) + " voxels");
+  }
+
+  void check_memory(int64_t bytes) const {
+    if (bytes > memory_limit_bytes_)
+      throw Error(ErrorCode::out_of_memory, "memory",
+                  field_.title() + ": extracting its surface takes " + std::to_string(bytes >> 20) +
+                      " MiB, more than the limit of " + std::to_string(memory_limit_bytes_ >> 20) +
+                      " MiB; resample it coarser or raise --max-memory");
+  }
+
+  static Voxel neighbour(Voxel block, int corner, int32_t step) {
+    return plus(block, corner >> 2 ? step : 0, corner >> 1 & 1 ? step : 0, corner & 1 ? step : 0);
+  }
+
+  template <class Work>
+  void each_block(Work work) {
+    tbb::parallel_for(size_t(0), origin_.size(), [&](size_t b) {
+      float window[kWindow * kWindow * kWindow];
+      for (int n = 0; n < 8; ++n) {
+        const int size[3] = {n >> 2 ? 1 : 8, n >> 1 & 1 ? 1 : 8, n & 1 ? 1 : 8};
+        const int at = (n >> 2) * 8 * kWindowStride[0] + (n >> 1 & 1) * 8 * kWindowStride[1] + (n & 1) * 8;
+        field_.copy(neighbour(origin_[b], n, kFieldBlock), size, window + at);
+      }
+      work(b, window);
+    });
+  }
+
+  /// Calls visit(offset of the cell in its block, corner of the window, case) for the cells that the surface crosses.
+  template <class Visit>
+  void each_cut_cell(const float* window, Visit visit) const {
+    for (int offset = 0; offset < 512; ++offset) {
+      const float* corner = window + window_index(offset);
+      int inside = 0;
+      for (int c = 0; c < 8; ++c) inside |= int(inside_(corner[corner_step(c)])) << c;
+      if (inside != 0 && inside != 255) visit(offset, corner, kIsoCases.of[inside]);
+    }
+  }
+  static int window_index(int offset) {
+    return (offset >> 6) * kWindowStride[0] + (offset >> 3 & 7) * kWindowStride[1] + (offset & 7);
+  }
+  static int corner_step(int c) { return (c >> 2) * kWindowStride[0] + (c >> 1 & 1) * kWindowStride[1] + (c & 1); }
+
+  void count(size_t b, const float* window) {
+    CellBlock& cell = cell_[b];
+    for (int offset = 0; offset < 512; ++offset) {
+      const float* at = window + window_index(offset);
+      if (std::isnan(*at)) refuse_nan(plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7));
+      for (int axis = 0; axis < 3; ++axis)
+        if (inside_(*at) != inside_(at[kWindowStride[axis]]))
+          cell.cut[axis][offset >> 6] |= uint64_t(1) << (offset & 63);
+    }
+    for (const auto& axis : cell.cut)
+      for (const uint64_t word : axis) cell.cuts += uint32_t(popcount64(word));
+    each_cut_cell(window, [&](int, const float*, const IsoCase& loops) {
+      for (int l = 0; l < loops.loops; ++l) {
+        const bool middle = loops.size[l] >= kCentreLoop;
+        cell.middles += middle;
+        cell.triangles += uint32_t(loops.size[l] - (middle ? 0 : 2));
+      }
+    });
+  }
+
+  [[noreturn]] void refuse_nan(Voxel v) const {
+    throw Error(ErrorCode::unreadable_input, "read",
+                field_.title() + ", voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+                    std::to_string(v.z) + "): its value is not a number; repair the volume");
+  }
+
+  void make_room(TriangleSoup& soup) {
+    int64_t vertices = 0, triangles = 0;
+    for (CellBlock& cell : cell_) {
+      cell.first_vertex = vertices;
+      cell.first_triangle = triangles;
+      vertices += cell.cuts + cell.middles;
+      triangles += cell.triangles;
+    }
+    if (triangles == 0) refuse_empty();
+    if (vertices > kMaxSoupVertices || triangles > kMaxSoupVertices)
+      throw Error(ErrorCode::out_of_memory, "read",
+                  field_.title() + " has a surface of " + std::to_string(triangles) +
+                      " triangles, more than 32-bit indices can name; resample it coarser");
+    check_memory(int64_t(origin_.size() * (sizeof(Voxel) + sizeof(CellBlock))) +
+                 vertices * int64_t(sizeof(WorldPoint)) + triangles * int64_t(sizeof(soup.triangles[0])));
+    soup.vertices.resize(size_t(vertices));
+    soup.triangles.resize(size_t(triangles));
+    soup.faces_in_file = triangles;
+  }
+
+  [[noreturn]] void refuse_empty() const {
+    const ValueRange range = value_range(field_);
+    std::ostringstream text;
+    text << field_.title() << " has no surface at the value " << inside_.iso << ": ";
+    if (range.low == range.high)
+      text << "all its values are " << range.low;
+    else
+      text << "its values are " << range.low << " to " << range.high << "; name one between them by --iso";
+    throw Error(ErrorCode::nothing_to_mesh, "read", text.str());
+  }
+
+  void write_patches(size_t b, const float* window, TriangleSoup& soup) const {
+    uint32_t owners[8];
+    for (int n = 0; n < 8; ++n) {
+      const auto found =
+          std::lower_bound(origin_.begin(), origin_.end(), neighbour(origin_[b], n, kFieldBlock), comes_before);
+      owners[n] = uint32_t(found - origin_.begin());  // only looked at where an edge begins there: then it is listed
+    }
+    int64_t middle = cell_[b].first_vertex + cell_[b].cuts, triangle = cell_[b].first_triangle;
+    each_cut_cell(window, [&](int offset, const float*, const IsoCase& loops) {
+      const int8_t* edge = loops.edge;
+      for (int l = 0; l < loops.loops; edge += loops.size[l++]) {
+        uint32_t vertex[12];
+        for (int i = 0; i < loops.size[l]; ++i) vertex[i] = vertex_on(owners, offset, edge[i]);
+        triangle += write_patch(vertex, loops.size[l], middle, &soup.triangles[size_t(triangle)]);
+        if (loops.size[l] >= kCentreLoop) soup.vertices[size_t(middle++)] = middle_of(soup, vertex, loops.size[l]);
+      }
+    });
+  }
+
+  /// A fan around the first corner or around the middle. Returns its triangles.
+  int write_patch(const uint32_t* vertex, int size, int64_t middle, std::array<uint32_t, 3>* to) const {
+    if (size < kCentreLoop) {
+      for (int i = 2; i < size; ++i) to[i - 2] = oriented(vertex[0], vertex[i - 1], vertex[i]);
+      return size - 2;
+    }
+    for (int i = 0; i < size; ++i) to[i] = oriented(uint32_t(middle), vertex[i], vertex[(i + 1) % size]);
+    return size;
+  }
+  std::array<uint32_t, 3> oriented(uint32_t a, uint32_t b, uint32_t c) const {
+    return mirrored_ ? std::array<uint32_t, 3>{a, c, b} : std::array<uint32_t, 3>{a, b, c};
+  }
+
+  uint32_t vertex_on(const uint32_t* owners, int offset, int edge) const {
+    const int corner = edge_corner(edge);
+    int x = (offset >> 6) + (corner >> 2), y = (offset >> 3 & 7) + (corner >> 1 & 1), z = (offset & 7) + (corner & 1);
+    const CellBlock& owner = cell_[owners[(x >> 3) << 2 | (y >> 3) << 1 | z >> 3]];
+    return uint32_t(owner.first_vertex) + owner.rank(edge >> 2, (x & 7) << 6 | (y & 7) << 3 | (z & 7));
+  }
+
+  void write_edges(size_t b, const float* window, TriangleSoup& soup) const {
+    int64_t vertex = cell_[b].first_vertex;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int word = 0; word < 8; ++word)
+        for (uint64_t bits = cell_[b].cut[axis][word]; bits; bits &= bits - 1)
+          soup.vertices[size_t(vertex++)] = to_world(crossing(b, window, word * 64 + lowest_bit(bits), axis));
+  }
+
+  /// Where the edge from a corner along an axis crosses the surface, in index coordinates.
+  WorldPoint crossing(size_t b, const float* window, int offset, int axis) const {
+    const float* at = window + window_index(offset);
+    const double from = finite(at[0]), to = finite(at[kWindowStride[axis]]);
+    const double t = std::clamp((inside_.iso - from) / (to - from), kEdgeEnd, 1 - kEdgeEnd);
+    const Voxel o = plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7);
+    return {o.x + (axis == 0 ? t : 0), o.y + (axis == 1 ? t : 0), o.z + (axis == 2 ? t : 0)};
+  }
+  static double finite(float value) { return std::clamp<double>(value, -3e38, 3e38); }
+
+  static WorldPoint middle_of(const TriangleSoup& soup, const uint32_t* vertex, int size) {
+    WorldPoint sum{0, 0, 0};
+    for (int i = 0; i < size; ++i) {
+      const WorldPoint& p = soup.vertices[vertex[i]];
+      sum = {sum.x + p.x, sum.y + p.y, sum.z + p.z};
+    }
+    return {sum.x / size, sum.y / size, sum.z / size};
+  }
+
+  WorldPoint to_world(WorldPoint p) const {
+    const auto& m = field_.to_world.at;
+    return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
+            m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+            m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
+  }
+  static bool is_mirror(const AffineMap& map) {
+    const auto& m = map.at;
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+           0;
+  }
+
+  const ScalarField& field_;
+  const int64_t memory_limit_bytes_;
+  const Inside inside_;
+  const bool mirrored_ = is_mirror(field_.to_world);
+  std::vector<Voxel> origin_;    // of the blocks of cells, sorted
+  std::vector<CellBlock> cell_;  // per block
+};
+
+}  // namespace
+
+ValueRange value_range(const ScalarField& field) {
+  ValueRange range{float(field.background), float(field.background)};
+  const auto include = [&](float value) {
+    if (value < range.low) range.low = value;
+    if (value > range.high) range.high = value;
+  };
+  std::vector<float> window(size_t(kWindow) * kWindow * kWindow, range.low);
+  const int all[3] = {kFieldBlock, kFieldBlock, kFieldBlock};
+  for (const Voxel& block : field.blocks()) {
+    field.copy(block, all, window.data());
+    for (const float value : window) include(value);
+  }
+  for (const FieldTile& tile : field.tiles()) include(tile.value);
+  return range;
+}
+
+TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes) {
+  return IsoSurface(field, iso, memory_limit_bytes).extract();
+}
+
+}  // namespace isoshell

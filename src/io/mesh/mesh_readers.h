@@ -1,0 +1,17 @@
+// One reader a format. Each throws as read_mesh() does.
+#pragma once
+
+#include "io/mesh/mesh_source.h"
+#include "isoshell/surface_source.h"
+
+namespace isoshell {
+
+TriangleSoup read_obj(const MeshSource& source);
+TriangleSoup read_off(const MeshSource& source);
+TriangleSoup read_ply(const MeshSource& source);
+TriangleSoup read_stl(const MeshSource& source);
+
+/// As read_ply, but vertices of which no face makes a triangle are a result.
+TriangleSoup read_ply_faces(const MeshSource& source);
+
+}  // namespace isoshell

@@ -1,0 +1,139 @@
+// The body of a PLY file as text: a row a line, in parallel.
+#include <algorithm>
+#include <numeric>
+
+#include "io/mesh/ply_body.h"
+#include "io/text_scan.h"
+
+namespace isoshell {
+namespace {
+
+// One row of one element. Tokens are judged as they are passed; a row that goes on behind its last property is added to
+// `long_rows`.
+class RowReader {
+ public:
+  RowReader(const Text& text, const PlyElement& element, const char* p, const char* end, int64_t& long_rows)
+      : text_(text), element_(element), p_(p), end_(end), long_rows_(long_rows) {}
+
+  double real() {
+    double value = 0;
+    next();
+    if (!parse_real(p_, end_, value)) refuse(p_, "a number is expected; found " + quoted_token(p_, end_));
+    return value;
+  }
+  int64_t integer() {
+    int64_t value = 0;
+    const char* const token = next();
+    if (!parse_integer(p_, end_, value) || !ends_token(p_, end_))
+      refuse(token, "an integer is expected; found " + quoted_token(token, end_));
+    return value;
+  }
+  int64_t list_length() {
+    const int64_t length = integer();
+    if (length < 0 || length > (end_ - p_) / 2 + 1)
+      refuse(p_, "a list promises " + std::to_string(length) + " items, more than its line can hold");
+    return length;
+  }
+  void skip_value() {
+    if (const char* const token = next(); token == end_ || *token == '\n')
+      refuse(token, "the row ends before its last property");
+    p_ = skip_token(p_, end_);
+  }
+  void skip(const PlyProperty& property) {
+    for (int64_t left = property.is_list ? list_length() : 1; left > 0; --left) skip_value();
+  }
+  const char* finish() {
+    if (const char* const token = next(); token < end_ && *token != '\n') ++long_rows_;
+    return p_;
+  }
+  [[noreturn]] void refuse(const char* at, const std::string& what) const {
+    text_.refuse(at, "element " + element_.name + ": " + what + "; the file does not match its header");
+  }
+
+ private:
+  const char* next() { return p_ = skip_blanks(p_, end_); }
+
+  const Text& text_;
+  const PlyElement& element_;
+  const char *p_, *end_;
+  int64_t& long_rows_;
+};
+
+const char* read_vertex(RowReader row, const PlyMeshLayout& layout, WorldPoint& point) {
+  double* const xyz[] = {&point.x, &point.y, &point.z};
+  const int count = int(layout.vertices->properties.size());
+  for (int i = 0; i < count; ++i) {
+    const int axis = i == layout.xyz[0] ? 0 : i == layout.xyz[1] ? 1 : i == layout.xyz[2] ? 2 : -1;
+    if (axis >= 0)
+      *xyz[axis] = row.real();
+    else
+      row.skip(layout.vertices->properties[size_t(i)]);
+  }
+  return row.finish();
+}
+
+const char* read_corners(RowReader row, const PlyElement& element, int list, std::vector<int64_t>& corners) {
+  for (int i = 0; i < int(element.properties.size()); ++i) {
+    if (i != list) {
+      row.skip(element.properties[size_t(i)]);
+      continue;
+    }
+    corners.resize(size_t(row.list_length()));
+    for (int64_t& corner : corners) corner = row.integer();
+  }
+  return row.finish();
+}
+
+}  // namespace
+
+void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyMeshLayout& layout, PlyBody& body) {
+  const Text text(source);
+  const TextRows rows(text, text.end() - (source.size() - header.body), TextRows::kNoComment);
+  const auto row_count = [](const PlyElement& e) { return e.properties.empty() ? 0 : e.count; };
+  int64_t promised = 0;
+  for (const PlyElement& element : header.elements) promised += row_count(element);
+  if (rows.count() < promised)
+    text.refuse(text.end(), "the header promises " + std::to_string(promised) + " rows; the file holds " +
+                                std::to_string(rows.count()) + "; correct the counts or restore the file");
+  body.dirt.surplus_rows = rows.count() - promised;
+
+  int64_t first = 0;
+  std::vector<int64_t> long_rows(size_t(rows.chunk_count()), 0);
+  VertexTable& vertices = body.vertices;
+  const auto read_vertices = [&](const PlyElement& element) {
+    vertices = VertexTable(source, element.count);
+    rows.for_each(first, first + element.count, [&](int64_t row, const char* p, const char* end, int64_t chunk) {
+      return read_vertex(RowReader(text, element, p, end, long_rows[size_t(chunk)]), layout,
+                         vertices.points[size_t(row - first)]);
+    });
+    vertices.count_nonfinite();
+  };
+  const auto read_faces = [&](const PlyElement& element, int list) {
+    std::vector<FaceCollector>& faces = body.faces;
+    const size_t base = faces.size();
+    faces.resize(base + size_t(rows.chunk_count()), FaceCollector(vertices));
+    std::vector<std::vector<int64_t>> corners(size_t(rows.chunk_count()));
+    std::vector<std::vector<uint32_t>> scratch(corners.size());
+    const int64_t vertex_count = int64_t(vertices.points.size());
+    rows.for_each(first, first + element.count, [&](int64_t, const char* p, const char* end, int64_t chunk) {
+      const char* const stop = read_corners(RowReader(text, element, p, end, long_rows[size_t(chunk)]), element, list,
+                                            corners[size_t(chunk)]);
+      add_ply_row(corners[size_t(chunk)], &element == layout.strips, vertex_count, scratch[size_t(chunk)],
+                  faces[base + size_t(chunk)], [&](const std::string& what) { text.refuse(p, what); });
+      return stop;
+    });
+  };
+  // Vertices first, wherever they stand, since faces need them.
+  for (const bool want_vertices : {true, false}) {
+    first = 0;
+    for (const PlyElement& element : header.elements) {
+      if (&element == layout.vertices && want_vertices) read_vertices(element);
+      if (&element == layout.faces && !want_vertices && row_count(element)) read_faces(element, layout.face_corners);
+      if (&element == layout.strips && !want_vertices && row_count(element)) read_faces(element, layout.strip_corners);
+      first += row_count(element);
+    }
+  }
+  body.dirt.long_rows = std::accumulate(long_rows.begin(), long_rows.end(), int64_t(0));
+}
+
+}  // namespace isoshell

@@ -1,0 +1,186 @@
+// STL, binary and text. Normals are passed over; corners are welded by position.
+#include <algorithm>
+
+#include "io/mesh/face_collector.h"
+#include "io/mesh/mesh_readers.h"
+#include "io/mesh/weld.h"
+#include "io/text_scan.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50;
+
+// Little-endian, on any machine.
+uint32_t load_u32(const char* p) {
+  const auto byte = [&](int i) { return uint32_t(static_cast<unsigned char>(p[i])) << 8 * i; };
+  return byte(0) | byte(1) | byte(2) | byte(3);
+}
+
+// The word at p in lower-case letters equals `word`; then p moves behind it.
+bool take_word(const char*& p, const char* end, const char* word) {
+  p = skip_blanks(p, end);
+  const char* s = p;
+  for (; *word; ++word, ++s)
+    if (s == end || (*s | 0x20) != *word) return false;
+  if (!ends_token(s, end)) return false;
+  p = s;
+  return true;
+}
+
+bool is_binary(const MeshSource& source) {
+  const char* p = source.begin();
+  const int64_t size = source.size();
+  if (size >= kHeaderBytes + kCountBytes &&
+      size == kHeaderBytes + kCountBytes + kFacetBytes * int64_t(load_u32(p + kHeaderBytes)))
+    return true;
+  while (p < source.end() && (is_blank(*p) || *p == '\n')) ++p;
+  return !take_word(p, source.end(), "solid") || std::memchr(p, '\0', size_t(std::min<int64_t>(512, source.end() - p)));
+}
+
+TriangleSoup read_binary(const MeshSource& source) {
+  if (source.size() < kHeaderBytes + kCountBytes)
+    source.refuse("is " + std::to_string(source.size()) +
+                  " bytes long; a binary STL has at least 84 and a text STL "
+                  "begins with solid; restore the file");
+  const int64_t count = load_u32(source.begin() + kHeaderBytes);
+  const int64_t body = source.size() - kHeaderBytes - kCountBytes;
+  if (body < kFacetBytes * count || body >= kFacetBytes * (count + 1))
+    source.refuse_byte(kHeaderBytes, "the header promises " + std::to_string(count) + " facets of 50 bytes; " +
+                                         std::to_string(body) + " bytes follow, room for " +
+                                         std::to_string(body / kFacetBytes) +
+                                         "; the file is truncated or its count is wrong");
+  const BinaryStlCorners corners{source.begin() + kHeaderBytes + kCountBytes};
+  WeldedCorners welded = weld_corners(source, 3 * count, corners);
+  std::vector<FaceCollector> faces(1, FaceCollector(welded.vertices));
+  faces[0].adopt(std::move(welded.index));
+  return join_soup(source, std::move(welded.vertices), faces);
+}
+
+struct TextFacets {
+  TextChunk text{};
+  std::vector<WorldPoint> corners;
+  std::vector<uint32_t> corner_counts;  // of each facet
+  int64_t first_corner = 0;
+};
+
+// Reads facets until the end of the chunk; all lines between facets but solid and endsolid are refused.
+class FacetReader {
+ public:
+  FacetReader(const Text& text, TextFacets& out) : text_(text), out_(out), end_(out.text.end) {}
+
+  void read() {
+    const char* p = out_.text.begin;
+    for (; p < end_; p = line_end(p, end_) + 1) {
+      p = skip_blanks(p, end_);
+      if (p == end_ || *p == '\n') continue;
+      read_line(p);
+    }
+    if (in_facet_)
+      text_.refuse(
+          end_, "the facet before this place is not closed by endfacet; the file is truncated or damaged, restore it");
+  }
+
+ private:
+  void read_line(const char*& p) {
+    const char* const token = p;
+    if (take_word(p, end_, "vertex")) {
+      if (!in_loop_) text_.refuse(token, "a vertex stands outside a loop");
+      read_vertex(p);
+    } else if (take_word(p, end_, "facet")) {
+      if (in_facet_) text_.refuse(token, "a facet begins inside a facet; an endfacet is missing");
+      in_facet_ = true;
+      out_.corner_counts.push_back(0);
+    } else if (take_word(p, end_, "outer")) {
+      if (!in_facet_ || in_loop_ || out_.corner_counts.back() > 0) text_.refuse(token, "a loop stands outside a facet");
+      in_loop_ = true;
+    } else if (take_word(p, end_, "endloop")) {
+      if (!in_loop_) text_.refuse(token, "endloop closes no loop");
+      in_loop_ = false;
+    } else if (take_word(p, end_, "endfacet")) {
+      if (!in_facet_ || in_loop_) text_.refuse(token, "endfacet closes no facet");
+      in_facet_ = false;
+    } else if (in_facet_ || !(take_word(p, end_, "solid") || take_word(p, end_, "endsolid"))) {
+      text_.refuse(token, quoted_token(token, end_) + " is no word of a text STL at this place");
+    }
+  }
+
+  void read_vertex(const char*& p) {
+    WorldPoint point;
+    for (double* value : {&point.x, &point.y, &point.z}) {
+      p = skip_blanks(p, end_);
+      if (!parse_real(p, end_, *value))
+        text_.refuse(p, "a vertex needs three numbers; found " + quoted_token(p, end_) + " instead of one");
+    }
+    out_.corners.push_back(point);
+    ++out_.corner_counts.back();
+  }
+
+  const Text& text_;
+  TextFacets& out_;
+  const char* end_;
+  bool in_facet_ = false, in_loop_ = false;
+};
+
+// Chunks that begin at a facet.
+std::vector<TextFacets> split_at_facets(const Text& text) {
+  std::vector<TextFacets> parts;
+  for (const TextChunk& chunk : split_at_lines(text.begin(), text.end())) {
+    const char* p = chunk.begin;
+    for (const char* word = p; p < chunk.end && !take_word(word, chunk.end, "facet"); word = p)
+      p = std::min(chunk.end, line_end(p, chunk.end) + 1);
+    if (parts.empty()) {
+      parts.emplace_back().text = chunk;
+    } else if (p == chunk.end) {
+      parts.back().text.end = chunk.end;
+    } else {
+      parts.back().text.end = p;
+      parts.emplace_back().text = {p, chunk.end};
+    }
+  }
+  return parts;
+}
+
+// A file cut at the end of a facet would look whole without this.
+void require_endsolid(const Text& text) {
+  const char* p = text.end();
+  while (p > text.begin() && (is_blank(p[-1]) || p[-1] == '\n')) --p;
+  const char* const last = p;
+  while (p > text.begin() && p[-1] != '\n') --p;
+  if (const char* word = p; !take_word(word, last, "endsolid"))
+    text.refuse(p, "the file ends without endsolid; it is truncated, restore it");
+}
+
+TriangleSoup read_text(const MeshSource& source) {
+  const Text text(source);
+  require_endsolid(text);
+  std::vector<TextFacets> parts = split_at_facets(text);
+  const int64_t part_count = int64_t(parts.size());
+  for_each_chunk(part_count, [&](int64_t i) { FacetReader(text, parts[size_t(i)]).read(); });
+  int64_t corner_count = 0;
+  for (TextFacets& part : parts) {
+    part.first_corner = corner_count;
+    corner_count += int64_t(part.corners.size());
+  }
+  std::vector<WorldPoint> corners(static_cast<size_t>(corner_count));
+  for_each_chunk(part_count, [&](int64_t i) {
+    const TextFacets& part = parts[size_t(i)];
+    std::copy(part.corners.begin(), part.corners.end(), corners.begin() + part.first_corner);
+  });
+  WeldedCorners welded = weld_corners(source, corner_count, CornerArray{corners.data()});
+  std::vector<FaceCollector> faces(parts.size(), FaceCollector(welded.vertices));
+  for_each_chunk(part_count, [&](int64_t i) {
+    const uint32_t* at = reinterpret_cast<const uint32_t*>(welded.index.data()) + parts[size_t(i)].first_corner;
+    for (const uint32_t count : parts[size_t(i)].corner_counts) {
+      faces[size_t(i)].add_polygon(at, count);
+      at += count;
+    }
+  });
+  return join_soup(source, std::move(welded.vertices), faces);
+}
+
+}  // namespace
+
+TriangleSoup read_stl(const MeshSource& source) { return is_binary(source) ? read_binary(source) : read_text(source); }
+
+}  // namespace isoshell

@@ -1,0 +1,40 @@
+// Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
+#include "io/vdb/volume_readers.h"
+#include "isoshell/error.h"
+#include "isoshell/io/sizing_vdb.h"
+#include "isoshell/io/vdb_file.h"
+
+namespace isoshell {
+namespace {
+
+[[noreturn]] void throw_without_openvdb(ErrorCode code, const std::string& path) {
+  throw Error(code, "vdb", path + ": this build cannot read or write .vdb files; build with -DISOSHELL_VDB=ON");
+}
+
+}  // namespace
+
+bool can_write_vdb() { return false; }
+void save_shell(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&,
+                const StageWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+void save_voronoi(const std::string& path, const LatticeSurface&, const SiteSamples&, const Shell&, const SeedSet&,
+                  const VoronoiLabels&, const StageWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+void save_preview(const std::string& path, const LatticeFrame&, const Shell&, const VoronoiLabels&,
+                  const StageWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
+std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions&) {
+  throw_without_openvdb(ErrorCode::unreadable_input, source.name());
+}
+bool unpack_stream(View<const char>, bool, View<char>) {
+  throw_without_openvdb(ErrorCode::unreadable_input, "a packed .nvdb file");
+}
+std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_t) {
+  throw_without_openvdb(ErrorCode::unreadable_input, source);
+}
+StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
+
+}  // namespace isoshell

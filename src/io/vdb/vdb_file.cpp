@@ -1,0 +1,39 @@
+// What needs no OpenVDB: recognising a stage file.
+#include "isoshell/io/vdb_file.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "io/vdb/vdb_cursor.h"
+#include "io/vdb/vdb_format.h"
+#include "io/vdb/vdb_layout.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+
+Buffer<char> read_file_start(const std::string& path, int64_t max_bytes) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed))
+    throw_unreadable_vdb(path, "is not a file that can be read; check the name");
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const int64_t size = in ? int64_t(in.tellg()) : -1;
+  if (size < 0) throw_unreadable_vdb(path, "cannot be opened; check its permissions");
+  Buffer<char> bytes(std::min(size, max_bytes));
+  in.seekg(0);
+  if (!bytes.empty() && !in.read(bytes.data(), std::streamsize(bytes.size())))
+    throw_unreadable_vdb(
+        path, "only " + std::to_string(in.gcount()) + " of " + std::to_string(size) + " bytes could be read");
+  return bytes;
+}
+
+bool is_stage_file(const std::string& path) {
+  try {
+    const Buffer<char> start = read_file_start(path, vdb_format::kMaxHeaderBytes);
+    const auto texts = read_vdb_header(path, start.view()).texts;
+    return texts.count(vdb_format::kKeyStage) > 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace isoshell

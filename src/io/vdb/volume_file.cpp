@@ -1,0 +1,122 @@
+// Which reader a volume gets, which grid and which value.
+#include "isoshell/io/volume_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include "implicit/iso_surface.h"
+#include "io/vdb/grid_names.h"
+#include "io/vdb/volume_readers.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+constexpr char kLevelSet[] = "level set", kUnknown[] = "unknown";
+
+std::string list_of(const std::vector<VolumeGrid>& grids) {
+  std::string list;
+  for (const VolumeGrid& grid : grids) list += (list.empty() ? "" : ", ") + grid.text();
+  return list;
+}
+
+/// The value asked for, or 0 in a level set; one that does not say so shows it by a background outside and values
+/// inside.
+double iso_of(const ScalarField& field, const VolumeReadOptions& options) {
+  if (options.iso) return *options.iso;
+  if (field.grid_class == kLevelSet) return 0;
+  const ValueRange range = value_range(field);
+  if (field.grid_class == kUnknown && range.low < 0 && field.background > 0) return 0;
+  std::ostringstream text;
+  text << field.title();
+  if (range.low == range.high) {
+    text << " has no surface: all its values are " << range.low;
+    throw Error(ErrorCode::nothing_to_mesh, "read", text.str());
+  }
+  text << " is no level set (class " << field.grid_class << ", values " << range.low << " to " << range.high
+       << "); say by --iso at which value its surface lies, for example --iso " << (double(range.low) + range.high) / 2;
+  throw Error(ErrorCode::usage, "read", text.str());
+}
+
+double voxel_size(const AffineMap& map) {
+  double longest_sq = 0;
+  for (int i = 0; i < 3; ++i) {
+    double sq = 0;
+    for (const auto& row : map.at) sq += row[i] * row[i];
+    longest_sq = std::max(longest_sq, sq);
+  }
+  return std::sqrt(longest_sq);
+}
+
+void check_map(const ScalarField& field) {
+  const auto& m = field.to_world.at;
+  const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  bool finite = std::isfinite(det) && det != 0;
+  for (const auto& row : m)
+    for (const double value : row) finite = finite && std::isfinite(value);
+  if (!finite)
+    throw Error(ErrorCode::unreadable_input, "read",
+                field.title() + " has a transform that is not finite or has no inverse");
+}
+
+}  // namespace
+
+std::string VolumeGrid::text() const { return "\"" + name + "\" (" + type + ", " + grid_class + ")"; }
+
+size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named, const VolumeReadOptions& options) {
+  const std::vector<VolumeGrid> grids = with_names_apart(named);
+  std::vector<size_t> fit, level_sets;
+  for (size_t i = 0; i < grids.size(); ++i) {
+    if (!options.grid.empty() && grids[i].name != options.grid && named[i].name != options.grid) continue;
+    if (!options.grid.empty() && !grids[i].flaw.empty())
+      throw Error(ErrorCode::nothing_to_mesh, "read", path + ": grid " + grids[i].text() + " " + grids[i].flaw);
+    if (!grids[i].flaw.empty()) continue;
+    fit.push_back(i);
+    if (grids[i].grid_class == kLevelSet) level_sets.push_back(i);
+  }
+  if (fit.size() == 1) return fit[0];
+  if (level_sets.size() == 1) return level_sets[0];
+  if (!options.grid.empty() && fit.empty())
+    throw Error(ErrorCode::usage, "read", path + ": has no grid \"" + options.grid + "\"; it holds " + list_of(grids));
+  if (!fit.empty())
+    throw Error(ErrorCode::usage, "read",
+                path + ": holds several grids, name one as " + path + ":" + grids[fit[0]].name + "; they are " +
+                    list_of(grids));
+  std::string why;
+  for (const VolumeGrid& grid : grids) why += (why.empty() ? "; " : ", ") + grid.text() + " " + grid.flaw;
+  throw Error(ErrorCode::nothing_to_mesh, "read", path + ": holds no grid that has a surface" + why);
+}
+
+void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_t bytes,
+                         const VolumeReadOptions& options) {
+  if (options.memory_limit_bytes <= 0 || bytes <= options.memory_limit_bytes) return;
+  throw Error(ErrorCode::out_of_memory, "memory",
+              path + ": grid " + grid.text() + " takes " + std::to_string(bytes >> 20) +
+                  " MiB, more than the limit of " + std::to_string(options.memory_limit_bytes >> 20) +
+                  " MiB; resample it coarser or raise --max-memory");
+}
+
+TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info) {
+  return read_volume(MeshSource(path), options, info);
+}
+
+TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
+  if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
+  const bool nano = source.size() >= 7 && std::memcmp(source.begin(), "NanoVDB", 7) == 0;
+  const std::unique_ptr<ScalarField> field =
+      nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
+  field->file = source.name();
+  check_map(*field);
+  info.grid = field->name;
+  info.grid_class = field->grid_class;
+  info.iso = iso_of(*field, options);
+  info.voxel_size_world = voxel_size(field->to_world);
+  info.blocks = int64_t(field->blocks().size());
+  return extract_iso_surface(*field, info.iso, options.memory_limit_bytes);
+}
+
+}  // namespace isoshell

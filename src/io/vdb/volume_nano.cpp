@@ -1,0 +1,168 @@
+// Scalar grids of .nvdb files as fields: segments, each an index of its grids and then their bytes.
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "grid/nano_volume.h"
+#include "io/vdb/vdb_cursor.h"
+#include "io/vdb/volume_readers.h"
+
+namespace isoshell {
+namespace {
+
+enum class Codec : uint16_t { none, zip, blosc };
+constexpr int64_t kIndexBytes = 176, kGridHeadBytes = 672;
+constexpr uint32_t kMajor = 32;
+constexpr int64_t kBestZipRatio = 1032;
+
+/// One grid as the file's index has it.
+struct NanoGridSpan {
+  VolumeGrid grid;
+  int64_t begin = 0, file_bytes = 0, grid_bytes = 0;
+  Codec codec{};
+};
+
+template <class T>
+T value_at(const char* bytes, int64_t offset) {
+  T value;
+  std::memcpy(&value, bytes + offset, sizeof value);
+  return value;
+}
+
+std::vector<NanoGridSpan> read_index(const MeshSource& source) {
+  std::vector<NanoGridSpan> grids;
+  VdbCursor in(source.name(), {source.begin(), source.size()}, 0);
+  while (in.at() < source.size()) {
+    const char* head = in.take(16, "header of a segment");
+    if (std::memcmp(head, "NanoVDB", 7) != 0) in.fail("a segment does not begin with NanoVDB");
+    const uint32_t version = value_at<uint32_t>(head, 8) >> 21;
+    if (version != kMajor)
+      throw_unreadable_vdb(source.name(), "NanoVDB format " + std::to_string(version) + " is not " +
+                                              std::to_string(kMajor) + "; convert it again with another program");
+    const size_t first = grids.size();
+    const uint16_t count = value_at<uint16_t>(head, 12), codec = value_at<uint16_t>(head, 14);
+    if (codec > uint16_t(Codec::blosc)) in.fail("unknown codec " + std::to_string(codec));
+    for (uint16_t i = 0; i < count; ++i) {
+      const char* index = in.take(kIndexBytes, "index of a grid");
+      NanoGridSpan span;
+      span.codec = Codec(codec);
+      const NanoKind kind = nano_kind(value_at<uint32_t>(index, 32), value_at<uint32_t>(index, 36));
+      span.grid_bytes = value_at<int64_t>(index, 0);
+      span.file_bytes = value_at<int64_t>(index, 8);
+      const uint32_t name_bytes = value_at<uint32_t>(index, 136);
+      const char* name = in.take(name_bytes, "name of a grid");
+      span.grid = {std::string(name, strnlen(name, name_bytes)), kind.type, kind.grid_class, ""};
+      if (!kind.scalar) span.grid.flaw = "holds no numbers that have a surface; save it as float";
+      grids.push_back(span);
+    }
+    for (size_t i = first; i < grids.size(); ++i) {
+      grids[i].begin = in.at();
+      in.take(grids[i].file_bytes, "grid");
+    }
+  }
+  return grids;
+}
+
+/// Bytes of a grid, aligned as its nodes are.
+class GridBytes {
+ public:
+  explicit GridBytes(int64_t size)
+      : size_(size), unit_(new Unit[size_t((size + kNanoAlignment - 1) / kNanoAlignment)]) {}
+  View<char> view() { return {reinterpret_cast<char*>(unit_.get()), size_}; }
+  View<const std::byte> grid() const { return {reinterpret_cast<const std::byte*>(unit_.get()), size_}; }
+
+ private:
+  struct alignas(kNanoAlignment) Unit {
+    char bytes[kNanoAlignment];
+  };
+  int64_t size_;
+  std::unique_ptr<Unit[]> unit_;
+};
+
+class NanoField : public ScalarField {
+ public:
+  NanoField(const MeshSource& source, const NanoGridSpan& span) : bytes_(unpack(source, span)) {
+    volume_ = open_nano_volume(bytes_.grid());
+    name = span.grid.name;
+    grid_class = span.grid.grid_class;
+    if (!volume_.fault.empty())
+      throw_unreadable_vdb(source.name(), "grid \"" + name + "\": " + volume_.fault + ": the file is damaged");
+    background = volume_.background;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) to_world.at[i][j] = volume_.matrix[3 * i + j];
+      to_world.at[i][3] = volume_.shift[i];
+    }
+    std::sort(volume_.leaves.begin(), volume_.leaves.end(),
+              [](const auto& a, const auto& b) { return before(a.origin, b.origin); });
+    std::sort(volume_.tiles.begin(), volume_.tiles.end(), [](const auto& a, const auto& b) {
+      return a.size != b.size ? a.size < b.size : before(a.origin, b.origin);
+    });
+  }
+
+  std::vector<Voxel> blocks() const override {
+    std::vector<Voxel> origins;
+    for (const NanoLeafRef& leaf : volume_.leaves) origins.push_back(leaf.origin);
+    return origins;
+  }
+  std::vector<FieldTile> tiles() const override {
+    std::vector<FieldTile> tiles;
+    for (const NanoTileRef& tile : volume_.tiles) tiles.push_back({tile.origin, tile.size, tile.value});
+    return tiles;
+  }
+  void copy(Voxel origin, const int size[3], float* to) const override {
+    const auto leaf = std::lower_bound(volume_.leaves.begin(), volume_.leaves.end(), origin,
+                                       [](const NanoLeafRef& a, Voxel b) { return before(a.origin, b); });
+    if (leaf != volume_.leaves.end() && leaf->origin == origin) {
+      copy_block(size, to, [&](int i) { return volume_.value(leaf->leaf, i); });
+    } else {
+      const float value = tile_value(origin);
+      copy_block(size, to, [&](int) { return value; });
+    }
+  }
+
+ private:
+  static bool before(Voxel a, Voxel b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+
+  float tile_value(Voxel v) const {
+    for (const int32_t size : {8, 128, 4096}) {
+      const Voxel origin = {v.x & -size, v.y & -size, v.z & -size};
+      const auto tile = std::lower_bound(
+          volume_.tiles.begin(), volume_.tiles.end(), origin,
+          [&](const NanoTileRef& a, Voxel b) { return a.size != size ? a.size < size : before(a.origin, b); });
+      if (tile != volume_.tiles.end() && tile->size == size && tile->origin == origin) return tile->value;
+    }
+    return float(background);
+  }
+
+  static GridBytes unpack(const MeshSource& source, const NanoGridSpan& span) {
+    const VdbCursor in(source.name(), {source.begin(), source.size()}, span.begin);
+    GridBytes grid(span.grid_bytes);
+    const View<const char> packed{source.begin() + span.begin, span.file_bytes};
+    if (span.codec == Codec::none)
+      std::memcpy(grid.view().data, packed.data, size_t(span.grid_bytes));
+    else if (!unpack_stream(packed, span.codec == Codec::zip, grid.view()))
+      in.fail("grid \"" + span.grid.name + "\" cannot be unpacked");
+    return grid;
+  }
+
+  const GridBytes bytes_;
+  NanoVolume volume_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const VolumeReadOptions& options) {
+  const std::vector<NanoGridSpan> spans = read_index(source);
+  std::vector<VolumeGrid> grids;
+  for (const NanoGridSpan& span : spans) grids.push_back(span.grid);
+  const NanoGridSpan& span = spans[choose_grid(source.name(), grids, options)];
+  const int64_t most = span.codec == Codec::none ? span.file_bytes : span.file_bytes * kBestZipRatio;
+  if (span.grid_bytes < kGridHeadBytes || span.grid_bytes > most)
+    throw_unreadable_vdb(source.name(), "grid \"" + span.grid.name + "\" says that its " +
+                                            std::to_string(span.file_bytes) + " bytes hold " +
+                                            std::to_string(span.grid_bytes) + ": the file is damaged");
+  check_volume_memory(source.name(), span.grid, span.grid_bytes, options);
+  return std::make_unique<NanoField>(source, span);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,39 @@
+// One reader a format of volumes. Each throws as read_volume() does.
+#pragma once
+
+#include <memory>
+
+#include "implicit/scalar_field.h"
+#include "io/mesh/mesh_source.h"
+#include "isoshell/io/volume_file.h"
+
+namespace isoshell {
+
+/// A grid of a file as its reader lists it, before it is read.
+struct VolumeGrid {
+  std::string name, type, grid_class;
+  std::string flaw;  ///< why it has no surface, or empty
+
+  std::string text() const;  ///< "density" (float, fog volume)
+};
+
+/// Which of the grids to read. Throws: usage when several would do or the name is not there, nothing_to_mesh when none
+/// would.
+size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& grids, const VolumeReadOptions& options);
+
+/// Throws: out_of_memory when reading would take more than the limit.
+void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_t bytes,
+                         const VolumeReadOptions& options);
+
+/// Fills `to` from the packed grid of a .nvdb file. False when the bytes do not fit each other.
+/// Throws: unreadable_input in a build without OpenVDB.
+bool unpack_stream(View<const char> packed, bool zip, View<char> to);
+
+/// The field keeps what it needs of the source's bytes; the source must outlive it.
+std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions& options);
+std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const VolumeReadOptions& options);
+
+/// read_volume() of bytes that are in memory.
+TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info);
+
+}  // namespace isoshell

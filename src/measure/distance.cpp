@@ -1,0 +1,131 @@
+// Distances between meshes by samples. Chunks of fixed size are looked at in parallel and joined in order.
+#include "isoshell/distance.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/watched.h"
+#include "core/world_vector.h"
+#include "measure/triangle_grid.h"
+#include "voxel/random.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kChunk = 512;
+
+void check(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
+  for (const auto& t : mesh.triangles)
+    if (const uint32_t largest = std::max({t[0], t[1], t[2]}); largest >= mesh.vertices.size())
+      throw Error(
+          ErrorCode::usage, "distance",
+          "a triangle names vertex " + std::to_string(largest) + "; there are " + std::to_string(mesh.vertices.size()));
+}
+
+/// One point in each of kDistanceSamples strata of equal area, along the triangles.
+class AreaSamples {
+ public:
+  explicit AreaSamples(const TriangleMesh& mesh) : mesh_(mesh) {
+    area_until_.reserve(mesh.triangles.size());
+    double sum = 0;
+    for (const auto& t : mesh.triangles)
+      area_until_.push_back(sum += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+  }
+  WorldPoint operator[](int64_t number) const {
+    const double at = area_until_.back() * ((double(number) + part(number, 0)) / double(kDistanceSamples));
+    const auto found = std::upper_bound(area_until_.begin(), area_until_.end() - 1, at);
+    const auto& t = mesh_.triangles[size_t(found - area_until_.begin())];
+    const double root = std::sqrt(part(number, 1)), turn = part(number, 2);
+    const WorldPoint a = mesh_.vertices[t[0]], b = mesh_.vertices[t[1]], c = mesh_.vertices[t[2]];
+    const double u = root * (1 - turn), v = root * turn;
+    return {a.x + u * (b.x - a.x) + v * (c.x - a.x), a.y + u * (b.y - a.y) + v * (c.y - a.y),
+            a.z + u * (b.z - a.z) + v * (c.z - a.z)};
+  }
+
+ private:
+  /// 0 to 1.
+  static double part(int64_t number, uint64_t of) {
+    return double(random_bits(of, uint64_t(number)) >> 11) / 9007199254740992.0;
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<double> area_until_;
+};
+
+struct Sums {
+  double sum = 0, sum_sq = 0, max_sq = 0;
+};
+
+/// A search may be long where triangles are, so each point asks whether to go on.
+template <class PointAt>
+Sums sum_over(int64_t count, const TriangleGrid& to, const Context& context, PointAt point_at) {
+  std::vector<Sums> parts(size_t((count + kChunk - 1) / kChunk));
+  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+    const int64_t end = std::min(count, int64_t(c + 1) * kChunk);
+    for (int64_t i = int64_t(c) * kChunk; i < end; ++i) {
+      if (context.cancel.load(std::memory_order_relaxed)) return;
+      const double distance_sq = to.distance_sq(point_at(i));
+      parts[c].sum += std::sqrt(distance_sq);
+      parts[c].sum_sq += distance_sq;
+      parts[c].max_sq = std::max(parts[c].max_sq, distance_sq);
+    }
+  });
+  check_cancel(context, "distance");
+  Sums all;
+  for (const Sums& part : parts) {
+    all.sum += part.sum;
+    all.sum_sq += part.sum_sq;
+    all.max_sq = std::max(all.max_sq, part.max_sq);
+  }
+  return all;
+}
+
+OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to, const Context& context) {
+  check_cancel(context, "distance");
+  const TriangleGrid grid(to);
+  const AreaSamples samples(from);
+  const auto vertices = int64_t(from.vertices.size());
+  const int64_t stride = (vertices + kDistanceVertices - 1) / kDistanceVertices;
+  const Sums inside = sum_over(kDistanceSamples, grid, context, [&](int64_t i) { return samples[i]; });
+  const Sums corners = sum_over((vertices + stride - 1) / stride, grid, context,
+                                [&](int64_t i) { return from.vertices[size_t(i * stride)]; });
+  const double count = double(kDistanceSamples);
+  return {inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))};
+}
+
+double diagonal(const TriangleMesh& mesh) {
+  WorldPoint lo = mesh.vertices[mesh.triangles[0][0]], hi = lo;
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t v : t) {
+      const WorldPoint p = mesh.vertices[v];
+      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    }
+  const WorldPoint d = hi - lo;
+  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+}
+
+}  // namespace
+
+MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context) {
+  check(mesh);
+  check(reference);
+  return run_with_threads(context, [&] {
+    return MeshDistance{one_sided(mesh, reference, context), one_sided(reference, mesh, context), diagonal(reference)};
+  });
+}
+
+TriangleMesh to_world(const LatticeSurface& surface) {
+  TriangleMesh mesh;
+  mesh.vertices.reserve(size_t(surface.points.size()));
+  for (const PointQ8& p : surface.points) mesh.vertices.push_back(surface.frame.to_world(p));
+  mesh.triangles.reserve(size_t(surface.triangles.size()));
+  for (const TriangleIndices& t : surface.triangles) mesh.triangles.push_back({t.a, t.b, t.c});
+  return mesh;
+}
+
+}  // namespace isoshell

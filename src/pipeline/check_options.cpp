@@ -1,0 +1,56 @@
+// Bounds of the options of a run.
+#include "pipeline/check_options.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "isoshell/error.h"
+#include "isoshell/option_range.h"
+
+namespace isoshell {
+namespace {
+
+/// All digits that a count or a bound has, where a stream would round to six.
+std::string number_text(double value) {
+  std::ostringstream text;
+  text.precision(10);
+  text << value;
+  return text.str();
+}
+
+/// `unset` stands for an option that the run chooses itself.
+void check(const char* option, double value, const OptionRange& range, double unset = NAN) {
+  if (value != unset && !range.holds(value)) throw Error(ErrorCode::usage, "options", range.refusal(option, value));
+}
+
+}  // namespace
+
+std::string OptionRange::refusal(const std::string& option, double value) const {
+  std::string text =
+      option + " is " + number_text(value) + "; it must be " + (above ? "more than " : "") + number_text(low);
+  if (high == std::numeric_limits<double>::max())
+    text += above ? "" : " or more";
+  else
+    text += (above ? " and at most " : " to ") + number_text(high);
+  return text;
+}
+
+void check_options(const RemeshOptions& o) {
+  check("vertices", double(o.vertices), option_range::vertices, 0);
+  check("edge_length_world", o.edge_length_world, option_range::length, 0);
+  check("resolution", o.resolution, option_range::resolution, 0);
+  check("voxel_size_world", o.voxel_size_world, option_range::length, 0);
+  check("band_vox", o.band_vox, option_range::band);
+  check("closing_vox", o.closing_vox, option_range::closing, -1);
+  check("closing_world", o.closing_world, OptionRange{}, -1);
+  check("max_passes", o.max_passes, option_range::iterations, 0);
+  check("tolerance", o.tolerance, option_range::tolerance, -1);
+  check("max_step_vox", o.max_step_vox, option_range::step, 0);
+  check("adaptivity", o.adaptivity, option_range::adaptivity);
+  check("gradation", o.gradation, option_range::gradation);
+  if (o.method == Method::shell && (o.sizing || o.adaptivity > 0))
+    throw Error(ErrorCode::usage, "options",
+                "a sizing field and adaptivity need the method sheet: the paper's loop on the shell has even cells");
+}
+
+}  // namespace isoshell

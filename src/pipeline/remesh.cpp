@@ -1,0 +1,137 @@
+// Algorithm 1 of the paper, readable as such: prepare (line 2, and 3 where the shell is wanted), relax (1 and 4 to 9),
+// triangulate (11). Line 10, flood_shell, makes the Voronoi volume that is saved; the dual is taken on the sheet.
+#include "isoshell/remesh.h"
+
+#include <algorithm>
+
+#include "core/copy_product.h"
+#include "isoshell/to_host.h"
+#include "pipeline/check_options.h"
+#include "pipeline/choose_grid.h"
+#include "pipeline/hierarchy.h"
+#include "pipeline/resolve_intersections.h"
+#include "pipeline/sizing.h"
+#include "pipeline/thin_walls.h"
+#include "pipeline/timed.h"
+#include "voxel/exact_int.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int32_t kReoptimisePasses = 20;
+constexpr int kMaxReoptimisations = 4;
+constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
+
+RelaxOptions relax_options(const RemeshOptions& options) {
+  RelaxOptions relax;
+  if (options.max_passes > 0)
+    relax.max_passes = options.max_passes;
+  else
+    relax.max_passes = options.method == Method::shell ? 200 : 100;
+  if (options.tolerance >= 0) relax.tolerance_ppb = int32_t(std::min(options.tolerance, 1.0) * 1e9);
+  relax.max_step_q8 = int32_t(options.max_step_vox * kOneVoxelQ8);
+  return relax;
+}
+
+/// Grown walls have no source, and bridge nothing.
+void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::vector<uint8_t>& gaps) {
+  const OnHost<Sheet> sheet(of);
+  for (size_t v = 0; v < gaps.size(); ++v)
+    if (sheet->source_triangle[int64_t(v)] == kNone) gaps[v] = !bridges.empty() && bridges[v];
+}
+
+/// A vertex lies in a gap when its home does. Where all walls were grown, they lie off the surface everywhere.
+void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
+  if (p.grown_vox > 0 && !p.only_flaps_grown) return;
+  std::vector<uint8_t> bridges;
+  if (p.closing_vox > 0) {
+    bridges = find_bridges(solid_voxels_of(p), p.sheet);
+    measure_bridges(p.sheet, bridges, report);
+    if (report.bridges == 0) bridges.clear();
+  }
+  std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet, bridges);
+  if (p.only_flaps_grown) leave_out_grown(p.sheet, bridges, gaps);
+  if (gaps.empty()) return;
+  const OnHost<SeedSet> here(seeds);
+  mesh.gap.resize(mesh.vertices.size());
+  for (int64_t i = 0; i < here->size(); ++i) report.vertices += mesh.gap[size_t(i)] = gaps[here->home[i]];
+  report.area_world = gap_area_world(p.sheet, gaps);
+}
+
+}  // namespace
+
+SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  check_options(options);
+  const double area_world = options.edge_length_world > 0 ? sheet_area_world(p.sheet) : 0;
+  const int64_t target = p.vertices > 0 ? p.vertices : vertex_target(options, area_world);
+  const SeedOptions seed_options{target, options.seed};
+  SeedSet seeds;
+  if (options.method == Method::sheet) {
+    seeds = timed(report, "relax", context, [&] {
+      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance >= 0, report.relax, context);
+    });
+  } else {
+    seeds = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
+    report.relax = timed(report, "relax", context, [&] {
+      return relax_in_shell(p.shell, p.sites, p.samples, seeds, relax_options(options), context);
+    });
+    timed(report, "attach", context, [&] { attach_to_sheet(p.sheet, seeds, context); });
+  }
+  report.seeds = seeds.size();
+  note_digest(options, report, context, "seeds", seeds);
+  return seeds;
+}
+
+TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
+                         Context& context) {
+  const int64_t asked = seeds.size();
+  DualMesh dual;
+  for (int round = 0;; ++round) {
+    DualReport found;
+    dual = timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, seeds, {}, found, context); });
+    report.dual.inserted_seeds += found.inserted_seeds;
+    report.dual.relabelled_vertices += found.relabelled_vertices;
+    report.dual.repair_rounds += found.repair_rounds;
+    report.dual.failed_cells = found.failed_cells;
+    if (found.failed_cells == 0)
+      timed(report, "dual", context, [&] { collapse_edges(p.sheet, asked, seeds, dual, context); });
+    if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMaxReoptimisations) break;
+    timed(report, "relax", context, [&] { relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context); });
+  }
+  if (report.dual.failed_cells > 0)
+    report.warnings.push_back(
+        std::to_string(report.dual.failed_cells) +
+        " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
+  if (seeds.size() != asked)
+    report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
+                              std::to_string(asked) + ": its topology needs them at this resolution");
+  OptimizeOptions optimize;
+  optimize.fit = options.fit;
+  optimize.uniform_area = options.uniform_area;
+  if (report.dual.failed_cells == 0) {
+    report.post =
+        timed(report, "post", context, [&] { return optimize_mesh(p.sheet, optimize, seeds, dual, context); });
+    if (report.post.self_intersections > 0)
+      timed(report, "untangle", context, [&] { resolve_intersections(p, optimize, seeds, dual, report, context); });
+    report.post_done = true;
+  }
+  if (report.post.self_intersections > 0)
+    report.warnings.push_back(std::to_string(report.post.self_intersections) +
+                              " pairs of triangles intersect: parts of the surface are nearer to one another than its "
+                              "edges are long; ask for more --vertices");
+  measure_edges(p.sheet, seeds, dual, report.sizing, context);
+  TriangleMesh mesh = to_world(dual, p.surface.frame);
+  flag_gaps(p, seeds, mesh, report.gaps);
+  note_digest(options, report, context, "mesh", mesh);
+  return mesh;
+}
+
+RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context) {
+  RemeshResult result;
+  const Prepared prepared = prepare(soup, options, result.report, context);
+  SeedSet seeds = relax(prepared, options, result.report, context);
+  result.mesh = triangulate(prepared, seeds, options, result.report, context);
+  return result;
+}
+
+}  // namespace isoshell

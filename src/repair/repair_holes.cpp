@@ -1,0 +1,189 @@
+#include "repair/repair_holes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/world_vector.h"
+#include "repair/cap_loop.h"
+#include "voxel/union_find.h"
+
+namespace isoshell::repair {
+namespace {
+
+struct Box {
+  WorldPoint lo, hi;
+  explicit Box(const WorldPoint& p) : lo(p), hi(p) {}
+  void add(const WorldPoint& p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  }
+  double diagonal_sq() const { return dot(hi - lo, hi - lo); }
+};
+
+/// Boxes and areas of what faces connect by their corners.
+class Components {
+ public:
+  explicit Components(const RepairMesh& mesh) : parent_(int64_t(mesh.position.size())) {
+    for (int64_t v = 0; v < parent_.size(); ++v) parent_[v] = uint32_t(v);
+    for (uint32_t f = 0; f < mesh.face_count(); ++f) {
+      if (!mesh.is_live(f)) continue;
+      join(parent_.view(), mesh.face[f][0], mesh.face[f][1]);
+      join(parent_.view(), mesh.face[f][0], mesh.face[f][2]);
+    }
+    for (uint32_t v = 0; v < mesh.position.size(); ++v)
+      size_.try_emplace(find_root(parent_.view(), v), Size{Box(mesh.position[v])})
+          .first->second.box.add(mesh.position[v]);
+    for (uint32_t f = 0; f < mesh.face_count(); ++f)
+      if (mesh.is_live(f)) size_.at(find_root(parent_.view(), mesh.face[f][0])).area += mesh.area(f);
+  }
+  struct Size {
+    Box box;
+    double area = 0;
+  };
+  const Size& of(uint32_t vertex) { return size_.at(find_root(parent_.view(), vertex)); }
+
+ private:
+  Buffer<uint32_t> parent_;
+  std::unordered_map<uint32_t, Size> size_;
+};
+
+class Capper {
+ public:
+  Capper(const RepairMesh& mesh, RepairReport& report) : mesh_(mesh), report_(report) {}
+
+  std::vector<Cap> run(std::vector<Cap> tubes, const std::vector<Loop>& loops, bool cap_loops) {
+    for (Cap& tube : tubes) add_tube(std::move(tube));
+    if (loops.empty()) return std::move(caps_);
+    Components components(mesh_);
+    for (const Loop& loop : loops)
+      if (!cap_loops || !cap(loop, largest_cap(loop, components.of(mesh_.from(loop[0]))))) ++report_.open_loops;
+    return std::move(caps_);
+  }
+
+ private:
+  /// The area of caps that make the loop a hole.
+  double largest_cap(const Loop& loop, const Components::Size& component) const {
+    Box box(mesh_.position[mesh_.from(loop[0])]);
+    for (uint32_t h : loop) box.add(mesh_.position[mesh_.from(h)]);
+    const bool is_short = box.diagonal_sq() <= kLargestHole * kLargestHole * component.box.diagonal_sq();
+    return is_short ? component.area : kLargestCrack * component.area;
+  }
+
+  /// The loop in one piece; where that fails because it passes vertices more than once, each simple cycle of it.
+  bool cap(const Loop& loop, double largest) {
+    if (cap_in_one(loop, largest)) return true;
+    const std::vector<Loop> cycles = simple_cycles(loop);
+    bool all = cycles.size() > 1;
+    if (all)
+      for (const Loop& cycle : cycles) all &= cap_in_one(cycle, largest);
+    return all;
+  }
+
+  std::vector<Loop> simple_cycles(const Loop& loop) const {
+    std::vector<Loop> cycles;
+    std::unordered_map<uint32_t, size_t> place;  // where the way so far leaves a vertex
+    Loop way;
+    for (uint32_t h : loop) {
+      place[mesh_.from(h)] = way.size();
+      way.push_back(h);
+      const auto again = place.find(mesh_.to(h));
+      if (again == place.end()) continue;
+      const size_t begin = again->second;
+      cycles.emplace_back(way.begin() + int64_t(begin), way.end());
+      for (uint32_t g : cycles.back()) place.erase(mesh_.from(g));
+      way.resize(begin);
+    }
+    return cycles;
+  }
+
+  bool cap_in_one(const Loop& loop, double largest) {
+    // The cap passes the loop's edges the other way.
+    const size_t n = loop.size();
+    std::vector<uint32_t> vertex(n);
+    std::vector<WorldPoint> corner(n);
+    for (size_t i = 0; i < n; ++i) {
+      vertex[i] = mesh_.from(loop[n - 1 - i]);
+      corner[i] = mesh_.position[vertex[i]];
+    }
+    if (n == 3 && loop[0] / 3 == loop[1] / 3 && loop[1] / 3 == loop[2] / 3) return false;  // a face alone
+    const std::vector<LoopTriangle> triangles =
+        cap_loop(corner, [&](uint32_t i, uint32_t j) { return may_join(vertex[i], vertex[j]); });
+    if (triangles.empty() || !joins_each_pair_once(vertex, triangles)) return false;
+    const double area = area_of(corner, triangles);
+    if (area > largest) return false;
+    Cap cap = {loop, {}};
+    for (const LoopTriangle& t : triangles) cap.face.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
+    count_width(area, length_of(corner));
+    add(std::move(cap), 1);
+    return true;
+  }
+
+  /// A loop that passes two vertices twice can have two chords between them.
+  static bool joins_each_pair_once(const std::vector<uint32_t>& vertex, const std::vector<LoopTriangle>& triangles) {
+    std::vector<uint64_t> keys;
+    for (const LoopTriangle& t : triangles)
+      for (size_t i = 0; i < 3; ++i) keys.push_back(key_of(vertex[t[i]], vertex[t[(i + 1) % 3]]));
+    std::sort(keys.begin(), keys.end());
+    for (size_t i = 2; i < keys.size(); ++i)
+      if (keys[i] == keys[i - 2]) return false;
+    return true;
+  }
+
+  bool may_join(uint32_t u, uint32_t v) const {
+    return u != v && !mesh_.has_edge(u, v) && chords_.count(key_of(u, v)) == 0;
+  }
+  static uint64_t key_of(uint32_t u, uint32_t v) { return uint64_t(std::min(u, v)) << 32 | std::max(u, v); }
+
+  void add_tube(Cap tube) {
+    for (const Corners& c : tube.face)
+      report_.cap_area_world += triangle_area(mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]);
+    ++report_.tubes;
+    add(std::move(tube), 2);
+  }
+
+  void count_width(double area, double length) {
+    report_.cap_area_world += area;
+    report_.widest_cap_world = std::max(report_.widest_cap_world, 4 * area / length);
+  }
+
+  void add(Cap cap, int loops) {
+    for (const Corners& c : cap.face)
+      for (size_t i = 0; i < 3; ++i) chords_.insert(key_of(c[i], c[(i + 1) % 3]));
+    report_.capped_loops += loops;
+    report_.cap_faces += int64_t(cap.face.size());
+    caps_.push_back(std::move(cap));
+  }
+
+  static double area_of(const std::vector<WorldPoint>& corner, const std::vector<LoopTriangle>& triangles) {
+    double area = 0;
+    for (const LoopTriangle& t : triangles) area += triangle_area(corner[t[0]], corner[t[1]], corner[t[2]]);
+    return area;
+  }
+  static double length_of(const std::vector<WorldPoint>& corner) {
+    double sum = 0;
+    for (size_t i = 0; i < corner.size(); ++i) sum += length(corner[(i + 1) % corner.size()] - corner[i]);
+    return sum;
+  }
+
+  const RepairMesh& mesh_;
+  RepairReport& report_;
+  std::vector<Cap> caps_;
+  std::unordered_set<uint64_t> chords_;  ///< edges of cap faces
+};
+
+}  // namespace
+
+std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const RepairOptions& options,
+                           RepairReport& report) {
+  std::vector<uint8_t> is_joined(size_t(mesh.face_count()) * 3, 0);
+  for (const Cap& tube : tubes)
+    for (uint32_t h : tube.loop) is_joined[h] = 1;
+  std::vector<Loop> loops = closed_loops(mesh);
+  loops.erase(std::remove_if(loops.begin(), loops.end(), [&](const Loop& loop) { return is_joined[loop[0]] != 0; }),
+              loops.end());
+  return Capper(mesh, report).run(std::move(tubes), loops, options.cap_loops);
+}
+
+}  // namespace isoshell::repair

@@ -1,0 +1,250 @@
+// collapse_edges (see stages.h), written once over an executor.
+#pragma once
+
+#include "isoshell/stages.h"
+#include "stages/halfedge/collapse_cost.h"
+#include "stages/halfedge/half_edges.h"
+#include "stages/halfedge/intersections.h"
+#include "stages/halfedge/triangle_shape.h"
+#include "stages/labels/label_body.h"
+#include "stages/sheet/sheet_walk.h"
+
+namespace isoshell {
+namespace collapse {
+
+struct Candidate {
+  int64_t cost;
+  uint32_t half_edge, zero = 0;
+};
+struct CheapestFirst {
+  ISOSHELL_HD bool operator()(const Candidate& p, const Candidate& q) const {
+    return p.cost != q.cost ? p.cost < q.cost : p.half_edge < q.half_edge;
+  }
+};
+
+struct MayCollapse {
+  CollapseCost cost;
+  ISOSHELL_HD bool operator()(int64_t h) const { return cost(uint32_t(h)) != CollapseCost::kNever; }
+};
+struct MakeCandidate {
+  CollapseCost cost;
+  View<const uint32_t> half_edge;
+  View<Candidate> out;
+  ISOSHELL_HD void operator()(int64_t i) const { out[i] = {cost(half_edge[i]), half_edge[i]}; }
+};
+
+/// One step for all candidates: each choice depends on those before it, and few are made. Chosen edges have no
+/// neighbours in common, so that none changes what another one costs.
+struct ChooseEdges {
+  optimize::MeshView mesh;
+  View<const Candidate> candidates;
+  int64_t excess;
+  View<uint8_t> taken;
+  View<uint32_t> merged_into;
+  ISOSHELL_HD void operator()(int64_t) const {
+    int64_t left = excess;
+    for (int64_t i = 0; i < candidates.size && left > 0; ++i) {
+      const uint32_t a = mesh.from(candidates[i].half_edge), b = mesh.to(candidates[i].half_edge);
+      if (any_taken_around(a) || any_taken_around(b)) continue;
+      take_around(a);
+      take_around(b);
+      merged_into[b] = a;
+      --left;
+    }
+  }
+
+ private:
+  ISOSHELL_HD bool any_taken_around(uint32_t v) const {
+    bool any = false;
+    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { any = any || taken[p]; });
+    return any;
+  }
+  ISOSHELL_HD void take_around(uint32_t v) const {
+    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { taken[p] = 1; });
+  }
+};
+
+struct StartApart {
+  View<uint32_t> merged_into;
+  ISOSHELL_HD void operator()(int64_t v) const { merged_into[v] = uint32_t(v); }
+};
+struct StaysVertex {
+  View<const uint32_t> merged_into;
+  ISOSHELL_HD bool operator()(int64_t v) const { return merged_into[v] == v; }
+};
+/// Merged vertices go to the middle of their edge, then back onto the sheet.
+struct MoveToMiddle {
+  WalkOntoSheet walk;
+  View<const uint32_t> merged_into;
+  View<PointQ8> position;
+  View<Normal8> normal;
+  View<uint32_t> home;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const uint32_t into = merged_into[v];
+    if (into == v) return;
+    const PointQ8 middle = CollapseCost::middle_of(position[into], position[v]);
+    home[into] = walk.nearest_vertex(home[into], middle);
+    normal[into] = walk.normal[home[into]];
+    position[into] = walk.closest_around(home[into], middle);
+  }
+};
+
+/// The triangle that stays, by the vertices that stay.
+struct MergeTriangle {
+  View<const uint32_t> kept, merged_into;
+  View<const TriangleIndices> from;
+  View<TriangleIndices> to;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const TriangleIndices t = from[kept[i]];
+    to[i] = {merged_into[t.a], merged_into[t.b], merged_into[t.c]};
+  }
+};
+/// Takes back what makes triangles intersect, and blocks it.
+struct PartCrossing {
+  View<const uint32_t> marked;
+  View<uint32_t> merged_into;
+  View<uint8_t> blocked;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const uint32_t into = merged_into[v];
+    if (into == v || !marked[into]) return;
+    blocked[v] = blocked[into] = 1;
+    merged_into[v] = uint32_t(v);
+  }
+};
+struct IsMerged {
+  View<const uint32_t> merged_into;
+  ISOSHELL_HD int64_t operator()(int64_t v) const { return merged_into[v] != v; }
+};
+
+struct NumberKept {
+  View<const uint32_t> kept;
+  View<uint32_t> new_id;
+  ISOSHELL_HD void operator()(int64_t i) const { new_id[kept[i]] = uint32_t(i); }
+};
+struct CopyKeptSeed {
+  View<const uint32_t> kept;
+  View<const PointQ8> from_position;
+  View<const Normal8> from_normal;
+  View<const uint32_t> from_home;
+  View<PointQ8> position, vertex;
+  View<Normal8> normal;
+  View<uint32_t> home;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    vertex[i] = position[i] = from_position[kept[i]];
+    normal[i] = from_normal[kept[i]];
+    home[i] = from_home[kept[i]];
+  }
+};
+struct CopyKeptMark {
+  View<const uint32_t> kept;
+  View<const uint8_t> from;
+  View<uint8_t> to;
+  ISOSHELL_HD void operator()(int64_t i) const { to[i] = from[kept[i]]; }
+};
+struct CopyKeptTriangle {
+  View<const uint32_t> kept, merged_into, new_id;
+  View<const TriangleIndices> from;
+  View<TriangleIndices> to;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const TriangleIndices t = from[kept[i]];
+    to[i] = smallest_first({new_id[merged_into[t.a]], new_id[merged_into[t.b]], new_id[merged_into[t.c]]});
+  }
+};
+
+/// Takes back, of the chosen edges, those that take part in intersections, until none does. Returns how many.
+template <class Exec>
+int64_t part_crossing(Exec& exec, const Sheet& sheet, const WalkOntoSheet& walk, const SeedSet& seeds,
+                      const DualMesh& mesh, View<uint32_t> merged_into, View<uint8_t> blocked) {
+  const int64_t vertices = seeds.size(), chosen = exec.sum(vertices, IsMerged{merged_into});
+  const int64_t spacing_vox = seed_spacing(exec, sheet, vertices).h_q8 / kOneVoxelQ8 + 1;
+  Buffer<PointQ8> position = exec.template make<PointQ8>(vertices);
+  Buffer<Normal8> normal = exec.template make<Normal8>(vertices);
+  Buffer<uint32_t> home = exec.template make<uint32_t>(vertices), marked = exec.template make<uint32_t>(vertices);
+  for (int64_t left = chosen, before = INT64_MAX; left > 0 && left < before;) {
+    before = left;
+    exec.copy(seeds.position.view(), position.view());
+    exec.copy(seeds.home.view(), home.view());
+    exec.for_each("move to the middle", vertices,
+                  MoveToMiddle{walk, merged_into, position.view(), normal.view(), home.view()});
+    const Buffer<uint32_t> kept =
+        exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
+    Buffer<TriangleIndices> triangles = exec.template make<TriangleIndices>(kept.size());
+    exec.for_each("merge triangles", kept.size(),
+                  MergeTriangle{kept.view(), merged_into, mesh.triangles.view(), triangles.view()});
+    optimize::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, spacing_vox,
+                                 marked.view());
+    exec.for_each("part crossing", vertices, PartCrossing{marked.view(), merged_into, blocked});
+    left = exec.sum(vertices, IsMerged{merged_into});
+  }
+  return chosen - exec.sum(vertices, IsMerged{merged_into});
+}
+
+struct CollapseOptions {
+  int64_t target;
+  bool keep_apart;
+};
+
+/// Numbers what stays anew.
+template <class Exec>
+void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh, Buffer<uint8_t>& blocked) {
+  const Buffer<uint32_t> vertices = exec.select(merged_into.size, StaysVertex{merged_into});
+  const Buffer<uint32_t> triangles =
+      exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
+  Buffer<uint32_t> new_id = exec.template make<uint32_t>(merged_into.size);
+  exec.for_each("number vertices", vertices.size(), NumberKept{vertices.view(), new_id.view()});
+  SeedSet left;
+  left.position = exec.template make<PointQ8>(vertices.size());
+  left.normal = exec.template make<Normal8>(vertices.size());
+  left.home = exec.template make<uint32_t>(vertices.size());
+  DualMesh out;
+  out.position = exec.template make<PointQ8>(vertices.size());
+  out.triangles = exec.template make<TriangleIndices>(triangles.size());
+  exec.for_each("copy kept seeds", vertices.size(),
+                CopyKeptSeed{vertices.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view(),
+                             left.position.view(), out.position.view(), left.normal.view(), left.home.view()});
+  exec.for_each(
+      "copy kept triangles", triangles.size(),
+      CopyKeptTriangle{triangles.view(), merged_into, new_id.view(), mesh.triangles.view(), out.triangles.view()});
+  exec.sort(out.triangles.view(), ByIndices{});
+  Buffer<uint8_t> still_blocked = exec.template make<uint8_t>(vertices.size());
+  exec.for_each("copy blocked", vertices.size(), CopyKeptMark{vertices.view(), blocked.view(), still_blocked.view()});
+  blocked = std::move(still_blocked);
+  seeds = std::move(left);
+  mesh = std::move(out);
+}
+
+}  // namespace collapse
+
+template <class Exec>
+void collapse_edges_body(Exec& exec, const Sheet& sheet, const collapse::CollapseOptions& options, SeedSet& seeds,
+                         DualMesh& mesh) {
+  using namespace collapse;
+  const WalkOntoSheet walk = walk_onto(sheet);
+  Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
+  exec.fill(blocked.view(), uint8_t(0));
+  for (bool any = true; any && seeds.size() > options.target;) {
+    const int64_t before = seeds.size();
+    optimize::Connections connections(exec, mesh);
+    const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(sheet)};
+    const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
+    Buffer<Candidate> candidates = exec.template make<Candidate>(half_edges.size());
+    exec.for_each("make candidates", candidates.size(), MakeCandidate{cost, half_edges.view(), candidates.view()});
+    exec.sort(candidates.view(), CheapestFirst{});
+    Buffer<uint8_t> taken = exec.template make<uint8_t>(before);
+    Buffer<uint32_t> merged_into = exec.template make<uint32_t>(before);
+    exec.copy(View<const uint8_t>(blocked.view()), taken.view());
+    exec.for_each("start apart", before, StartApart{merged_into.view()});
+    exec.for_each("choose edges", 1,
+                  ChooseEdges{cost.mesh, candidates.view(), before - options.target, taken.view(), merged_into.view()});
+    int64_t taken_back = 0;
+    if (options.keep_apart)
+      taken_back = part_crossing(exec, sheet, walk, seeds, mesh, merged_into.view(), blocked.view());
+    exec.for_each(
+        "move to the middle", before,
+        MoveToMiddle{walk, merged_into.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()});
+    close_up(exec, merged_into.view(), seeds, mesh, blocked);
+    any = seeds.size() < before || taken_back > 0;
+  }
+}
+
+}  // namespace isoshell

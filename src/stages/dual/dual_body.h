@@ -1,0 +1,240 @@
+// triangulate_dual (see stages.h), written once over an executor. Paper section 3.4.
+//
+// The labels of the sheet's vertices cut the sheet into cells; a sheet triangle with three labels is a face of the
+// dual. When every cell is a disk in one piece, two cells meet in at most one arc, and every component of the sheet has
+// four cells or more, the dual is a triangulation of the sheet. DisconnectedPieces are resolved first, then cells that
+// are not disks are split, then pairs that meet twice; a split keeps both halves connected, so no disconnected pieces
+// come back, and since the finest partition is the sheet itself, the rounds end.
+#pragma once
+
+#include "isoshell/stages.h"
+#include "stages/dual/dual_cells_body.h"
+#include "stages/dual/dual_faces_body.h"
+#include "stages/dual/dual_pieces_body.h"
+#include "stages/dual/dual_split_body.h"
+#include "stages/halfedge/intersections.h"
+#include "stages/labels/label_body.h"
+
+namespace isoshell {
+namespace dual {
+
+/// Seeds that own nothing are used up first, in order; then ids are appended.
+struct TakeIds {
+  View<const uint32_t> unused;
+  uint32_t next;
+  View<uint32_t> out;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    out[i] = i < unused.size ? unused[i] : next + uint32_t(i - unused.size);
+  }
+};
+
+/// The labels of one sheet and their repair.
+template <class Exec>
+class Partition {
+ public:
+  Partition(Exec& exec, const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report)
+      : exec_(exec),
+        sheet_(sheet),
+        seeds_(seeds),
+        report_(report),
+        rounds_left_(options.max_repair_rounds),
+        first_count_(seeds.size()),
+        most_against_crossing_(options.most_against_crossing),
+        spacing_(seed_spacing(exec, sheet, seeds.size())),
+        label_(exec.template make<uint32_t>(sheet.vertex_count())) {
+    report_ = {};
+    Exec::Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label_.view());
+    grow(exec_, cells_, seeds_.size());
+  }
+
+  /// Repairs as far as the rounds allow; returns the faces, not sorted.
+  Buffer<TriangleIndices> repair() {
+    const int64_t disconnected_pieces = resolve_disconnected_pieces();
+    measure_euler(exec_, sheet_, label_.view(), cells_);
+    Buffer<TriangleIndices> faces;
+    for (;;) {
+      const Buffer<uint32_t> failing = find_failing(faces);
+      const Buffer<uint32_t> unused = unused_seeds();
+      report_.failed_cells = disconnected_pieces + failing.size() + unused.size();
+      if (report_.failed_cells == 0 && split_crossing(faces)) continue;
+      if (report_.failed_cells == 0 || disconnected_pieces > 0 || !take_round()) break;
+      if (!failing.empty())
+        split(failing, unused);
+      else
+        split(largest_cells(unused.size()), unused);
+    }
+    if (faces.empty()) faces = faces_now();
+    return faces;
+  }
+
+  View<const uint32_t> label() const { return label_.view(); }
+
+ private:
+  bool take_round() {
+    if (rounds_left_ == 0) return false;
+    --rounds_left_;
+    ++report_.repair_rounds;
+    return true;
+  }
+
+  Buffer<uint32_t> unused_seeds() { return exec_.select(cells_.count(), OwnsNothing{cells_.size.view()}); }
+
+  /// Ids for `count` new cells; makes room for them in seeds and cells. `unused`: see unused_seeds().
+  Buffer<uint32_t> new_ids(int64_t count, const Buffer<uint32_t>& unused) {
+    const int64_t before = seeds_.size();
+    Buffer<uint32_t> ids = exec_.template make<uint32_t>(count);
+    exec_.for_each("take ids", count, TakeIds{unused.view(), uint32_t(before), ids.view()});
+    if (count > unused.size()) {
+      grow(exec_, seeds_, before + count - unused.size());
+      grow(exec_, cells_, before + count - unused.size());
+      report_.inserted_seeds += count - unused.size();
+    }
+    return ids;
+  }
+
+  /// Leaves every cell in one piece. Returns the number of disconnected pieces that are left.
+  int64_t resolve_disconnected_pieces() {
+    Pieces pieces = find_pieces(exec_, sheet_, label_.view(), cells_);
+    const DisconnectedPieces disconnected_pieces = list_disconnected_pieces(exec_, pieces, label_.view(), cells_);
+    Buffer<uint32_t> waiting = exec_.template make<uint32_t>(disconnected_pieces.count());
+    exec_.for_each("all strays wait", disconnected_pieces.count(), StartAlone{waiting.view()});
+    while (!waiting.empty() && take_round())
+      waiting = resolve_disconnected_pieces_once(pieces, disconnected_pieces, waiting.view());
+    return waiting.size();
+  }
+
+  /// One round; returns the disconnected pieces that still wait.
+  Buffer<uint32_t> resolve_disconnected_pieces_once(Pieces& pieces, const DisconnectedPieces& disconnected_pieces,
+                                                    View<const uint32_t> waiting) {
+    Buffer<uint32_t> decision = exec_.template make<uint32_t>(waiting.size);
+    exec_.for_each(
+        "decide strays", waiting.size,
+        DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(sheet_), pieces.piece.view(),
+                                pieces.size.view(), label_.view(), cells_.root.view(), sheet_.position.view(),
+                                seeds_.position.view(), sheet_.vertex_count(), first_count_, decision.view()});
+    const Buffer<uint32_t> joining = exec_.select(waiting.size, IsJoining{decision.view()});
+    Buffer<uint32_t> founding = exec_.select(waiting.size, DecisionIs{decision.view(), kNewCell});
+    uint32_t resolved = kNewCell;
+    if (joining.empty() && founding.empty()) {
+      founding = exec_.select(waiting.size, DecisionIs{decision.view(), kLocalLargest});
+      resolved = kLocalLargest;
+    }
+    exec_.for_each("join strays", joining.size(),
+                   JoinDisconnectedPiece{disconnected_pieces.view(), waiting, joining.view(), decision.view(),
+                                         pieces.piece.view(), label_.view(), cells_.view()});
+    report_.relabelled_vertices +=
+        exec_.sum(joining.size(), SizeOfJoining{disconnected_pieces.view(), waiting, joining.view()});
+    const Buffer<uint32_t> ids = founding.empty() ? Buffer<uint32_t>() : new_ids(founding.size(), unused_seeds());
+    exec_.for_each("found cells", founding.size(),
+                   FoundCell{disconnected_pieces.view(), waiting, founding.view(), ids.view(), label_.view(),
+                             cells_.view(), writer_of(sheet_, seeds_)});
+    const Buffer<uint32_t> rest = exec_.select(waiting.size, StillWaits{decision.view(), resolved});
+    Buffer<uint32_t> out = exec_.template make<uint32_t>(rest.size());
+    exec_.for_each("gather waiting", rest.size(), GatherWaiting{waiting, rest.view(), out.view()});
+    return out;
+  }
+
+  /// Cells to split. Faces are made, and pairs looked at, only when all cells are disks.
+  Buffer<uint32_t> find_failing(Buffer<TriangleIndices>& faces) {
+    request_ = exec_.template make<uint32_t>(cells_.count());
+    exec_.for_each("check disks", cells_.count(), RequestNonDisks{cells_.view(), request_.view()});
+    Buffer<uint32_t> failing = requested();
+    faces = {};
+    if (!failing.empty()) return failing;
+    faces = faces_now();
+    const Buffer<uint64_t> pairs = face_pairs(exec_, faces.view());
+    exec_.for_each("check pairs", pairs.size(), RequestDoublePairs{pairs.view(), cells_.view(), request_.view()});
+    request_small_components(exec_, pairs.view(), cells_, request_.view());
+    return requested();
+  }
+
+  /// Splits keep the list of the faces' triangles up to date: the sheet is searched for them only once.
+  Buffer<TriangleIndices> faces_now() {
+    if (face_triangle_.empty()) face_triangle_ = select_face_triangles(exec_, sheet_, label_.view());
+    return make_faces(exec_, sheet_, label_.view(), face_triangle_.view());
+  }
+
+  Buffer<uint32_t> largest_cells(int64_t count) {
+    request_largest(exec_, cells_, count, request_.view());
+    return requested();
+  }
+  Buffer<uint32_t> requested() { return exec_.select(cells_.count(), IsRequested{request_.view()}); }
+
+  /// Splits the cells of triangles that intersect. False when there are none, or not enough seeds for them.
+  bool split_crossing(const Buffer<TriangleIndices>& faces) {
+    if (most_against_crossing_ == 0) return false;
+    Buffer<uint32_t> marked = exec_.template make<uint32_t>(seeds_.size());
+    const int64_t pairs =
+        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view()}, sheet_.corners.block_dims,
+                                     spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
+    if (pairs == 0) return false;
+    exec_.for_each("request crossing cells", cells_.count(),
+                   RequestCrossing{marked.view(), cells_.view(), request_.view()});
+    const Buffer<uint32_t> crossing = requested();
+    Buffer<int64_t> moved = exec_.template make<int64_t>(cells_.count());
+    exec_.for_each("settle crossing cells", cells_.count(),
+                   SettleCrossing{marked.view(), cells_.view(), writer_of(sheet_, seeds_), moved.view()});
+    const int64_t settled = exec_.sum(cells_.count(), MovedSeeds{moved.view()});
+    if (crossing.size() + settled == 0 || crossing.size() > most_against_crossing_ || !take_round()) return false;
+    most_against_crossing_ -= crossing.size();
+    if (!crossing.empty()) split(crossing, {}, true);
+    return true;
+  }
+
+  void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused, bool to_middles = false) {
+    const int64_t count = cell.size();
+    Buffer<int64_t> first = exec_.template make<int64_t>(count + 1);
+    exec_.for_each("size splits", count + 1, SizeOfRequested{cell.view(), cells_.size.view(), first.view()});
+    Buffer<uint32_t> queue = exec_.template make<uint32_t>(exec_.exclusive_scan(first.view()));
+    Buffer<Half> half = exec_.template make<Half>(count);
+    if (mark_.empty()) {
+      mark_ = exec_.template make<uint8_t>(sheet_.vertex_count());
+      exec_.fill(mark_.view(), uint8_t(SplitCell::kClear));
+    }
+    const Buffer<uint32_t> ids = new_ids(count, unused);
+    Exec::Kernels::SplitCells::run(
+        exec_, count,
+        SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(), sheet_.position.view(),
+                  seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()},
+        ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(), cells_.view(),
+                   writer_of(sheet_, seeds_)});
+    if (to_middles)
+      exec_.for_each("seeds to middles", count,
+                     SeedsToMiddles{cell.view(), ids.view(), queue.view(), first.view(), label_.view(),
+                                    sheet_.position.view(), writer_of(sheet_, seeds_)});
+    if (!face_triangle_.empty())
+      add_new_faces(exec_, {graph_of(sheet_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
+                    cell.view(), cells_.count(), face_triangle_);
+  }
+
+  Exec& exec_;
+  const Sheet& sheet_;
+  SeedSet& seeds_;
+  DualReport& report_;
+  int64_t rounds_left_;
+  int64_t first_count_;
+  int64_t most_against_crossing_;
+  SeedSpacing spacing_;
+  Buffer<uint32_t> label_;
+  Cells cells_;
+  Buffer<uint32_t> request_;
+  Buffer<uint8_t> mark_;
+  Buffer<uint32_t> face_triangle_;  ///< sheet triangles with three labels, in any order; empty while not known
+};
+
+}  // namespace dual
+
+template <class Exec>
+DualMesh triangulate_dual_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const DualOptions& options,
+                               DualReport& report) {
+  dual::Partition<Exec> partition(exec, sheet, seeds, options, report);
+  DualMesh mesh;
+  mesh.triangles = partition.repair();
+  exec.sort(mesh.triangles.view(), ByIndices{});
+  dual::grow(exec, mesh.position, seeds.size(), PointQ8{0, 0, 0});
+  exec.for_each("place vertices", seeds.size(),
+                dual::CopyOrFill<PointQ8>{seeds.position.view(), mesh.position.view(), PointQ8{0, 0, 0}});
+  return mesh;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,266 @@
+// Splitting one cell into two connected halves. Paper section 3.4.
+#pragma once
+
+#include "stages/dual/dual_cells_body.h"
+#include "stages/dual/dual_faces_body.h"
+
+namespace isoshell::dual {
+
+/// What a split leaves for its second half.
+struct Half {
+  uint32_t seed_vertex;
+  uint32_t size;
+  int32_t euler;
+};
+
+/// Splits cell[i]: its old source is its vertex nearest to its seed, the new source the vertex farthest from that along
+/// edges (among those that touch the requested cell, if one is), ties by the smaller vertex. A vertex goes to the
+/// source that is fewer edges away within the cell, ties to the old one; so both halves are connected. Writes marks
+/// only, so that all splits of a round read the same labels.
+struct SplitCell {
+  enum Mark : uint8_t { kClear, kSeen, kMeasured, kOldHalf, kNewHalf };
+
+  SheetGraph graph;
+  View<const uint32_t> label, cell, request;
+  View<const int64_t> first;  ///< offsets of the cells' places in queue
+  View<const PointQ8> vertex_position, seed_position;
+  CellsView cells;
+  View<uint32_t> queue;
+  View<uint8_t> mark;  ///< kClear outside the cells of the round, before and after
+  View<Half> half;
+
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t id = cell[i];
+    const View<uint32_t> places = {queue.data + first[i], first[i + 1] - first[i]};
+    const uint32_t old_source = nearest_to_seed(id, places);
+    const uint32_t new_source = farthest(id, places, old_source, request[id]);
+    places[0] = old_source;
+    places[1] = new_source;
+    mark[old_source] = kOldHalf;
+    mark[new_source] = kNewHalf;
+    // Within a level the queue holds the old half first, so ties go to it.
+    spread(id, places, 2, kMeasured, [&](uint32_t from) { return mark[from]; });
+    measure_halves(i, id, places);
+    cells.root[id] = old_source;
+    half[i].seed_vertex = new_source;
+  }
+
+ private:
+  /// Breadth first over the vertices of the cell whose mark is `fresh`; each takes mark_from(its predecessor).
+  /// Calls from the first `count` places; returns how many vertices the queue then holds.
+  template <class MarkFrom>
+  ISOSHELL_HD int64_t spread(uint32_t id, View<uint32_t> places, int64_t count, uint8_t fresh,
+                             MarkFrom mark_from) const {
+    for (int64_t at = 0; at < count; ++at) {
+      const uint32_t v = places[at];
+      graph.for_each_corner(v, [&](uint32_t w, uint32_t) {
+        if (label[w] != id || mark[w] != fresh) return;
+        mark[w] = mark_from(v);
+        places[count++] = w;
+      });
+    }
+    return count;
+  }
+
+  ISOSHELL_HD uint32_t nearest_to_seed(uint32_t id, View<uint32_t> places) const {
+    places[0] = cells.root[id];
+    mark[places[0]] = kSeen;
+    spread(id, places, 1, kClear, [](uint32_t) { return uint8_t(kSeen); });
+    int64_t nearest = INT64_MAX;
+    uint32_t best = kNone;
+    for (uint32_t v : places) {
+      const int64_t d = distance_sq_q16(vertex_position[v], seed_position[id]);
+      if (d < nearest || (d == nearest && v < best)) nearest = d, best = v;
+    }
+    return best;
+  }
+
+  ISOSHELL_HD bool touches(uint32_t v, uint32_t other) const {
+    bool found = false;
+    graph.for_each_corner(v, [&](uint32_t w, uint32_t) { found = found || label[w] == other; });
+    return found;
+  }
+
+  ISOSHELL_HD uint32_t farthest(uint32_t id, View<uint32_t> places, uint32_t source, uint32_t touching) const {
+    places[0] = source;
+    mark[source] = kMeasured;
+    uint32_t anywhere = kNone, at_other = kNone;
+    for (int64_t begin = 0, end = 1; begin < end;) {
+      uint32_t level_anywhere = kNone, level_at_other = kNone;
+      int64_t count = end;
+      for (int64_t at = begin; at < end; ++at) {
+        const uint32_t v = places[at];
+        if (v < level_anywhere) level_anywhere = v;
+        if (touching != kSplitAnywhere && v != source && v < level_at_other && touches(v, touching)) level_at_other = v;
+        graph.for_each_corner(v, [&](uint32_t w, uint32_t) {
+          if (label[w] != id || mark[w] != kSeen) return;
+          mark[w] = kMeasured;
+          places[count++] = w;
+        });
+      }
+      anywhere = level_anywhere;
+      if (level_at_other != kNone) at_other = level_at_other;
+      begin = end;
+      end = count;
+    }
+    return at_other != kNone ? at_other : anywhere;
+  }
+
+  /// Sizes and Euler numbers of both halves.
+  ISOSHELL_HD void measure_halves(int64_t i, uint32_t id, View<uint32_t> places) const {
+    uint32_t size[2] = {0, 0};
+    int32_t euler[2] = {0, 0};
+    for (uint32_t v : places) {
+      const uint8_t side = mark[v];
+      const int h = side == kNewHalf;
+      ++size[h];
+      ++euler[h];
+      graph.for_each_corner(v, [&](uint32_t next, uint32_t last) {
+        if (next < v || label[next] != id || mark[next] != side) return;
+        --euler[h];
+        if (last > v && label[last] == id && mark[last] == side) ++euler[h];
+      });
+    }
+    cells.size[id] = size[0];
+    cells.euler[id] = euler[0];
+    half[i].size = size[1];
+    half[i].euler = euler[1];
+  }
+};
+
+struct SizeOfRequested {
+  View<const uint32_t> cell, size;
+  View<int64_t> out;
+  ISOSHELL_HD void operator()(int64_t i) const { out[i] = i < cell.size ? size[cell[i]] : 0; }
+};
+
+/// Gives the new half of split i to cell new_id[i].
+struct ApplySplit {
+  View<const uint32_t> new_id, queue;
+  View<const int64_t> first;
+  View<const Half> half;
+  View<uint8_t> mark;
+  View<uint32_t> label;
+  CellsView cells;
+  SeedWriter seeds;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t id = new_id[i];
+    for (int64_t at = first[i]; at < first[i + 1]; ++at) {
+      const uint32_t v = queue[at];
+      if (mark[v] == SplitCell::kNewHalf) label[v] = id;
+      mark[v] = SplitCell::kClear;
+    }
+    cells.root[id] = half[i].seed_vertex;
+    cells.size[id] = half[i].size;
+    cells.euler[id] = half[i].euler;
+    seeds.put(id, half[i].seed_vertex);
+  }
+};
+
+/// Both seeds of a split cell go to the vertices of their halves that are nearest to the halves' middles, ties to the
+/// smaller vertex.
+struct SeedsToMiddles {
+  View<const uint32_t> cell, new_id, queue;
+  View<const int64_t> first;
+  View<const uint32_t> label;
+  View<const PointQ8> position;
+  SeedWriter seeds;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    for (const uint32_t id : {cell[i], new_id[i]}) seeds.put(id, vertex_in_the_middle(i, id));
+  }
+
+ private:
+  ISOSHELL_HD uint32_t vertex_in_the_middle(int64_t i, uint32_t id) const {
+    Vec64 sum = {0, 0, 0};
+    int64_t count = 0;
+    for (int64_t at = first[i]; at < first[i + 1]; ++at) {
+      if (label[queue[at]] != id) continue;
+      const PointQ8 p = position[queue[at]];
+      sum = sum + Vec64{p.x, p.y, p.z};
+      ++count;
+    }
+    const PointQ8 middle = {int32_t(round_div(sum.x, count)), int32_t(round_div(sum.y, count)),
+                            int32_t(round_div(sum.z, count))};
+    uint32_t best = kNone;
+    int64_t nearest = INT64_MAX;
+    for (int64_t at = first[i]; at < first[i + 1]; ++at) {
+      const uint32_t v = queue[at];
+      if (label[v] != id) continue;
+      const int64_t d = distance_sq_q16(position[v], middle);
+      if (d < nearest || (d == nearest && v < best)) nearest = d, best = v;
+    }
+    return best;
+  }
+};
+
+/// Sheet triangles that splits made to faces, found at the vertices of the cells that were split. Three labels stay
+/// three, so no triangle ceases to be a face.
+struct NewFaces {
+  SheetGraph graph;
+  View<const uint32_t> label, member, request;  ///< request: of the cells before the splits
+  View<const uint32_t> origin;                  ///< of every cell: the one that it was split from, or itself
+
+  template <class Visit>
+  ISOSHELL_HD void for_each(int64_t at, Visit visit) const {
+    const uint32_t v = member[at];
+    for (int64_t n = graph.first[v]; n < graph.first[v + 1]; ++n) {
+      const TriangleIndices t = graph.triangles[graph.incident[n]];
+      const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
+      if (a == b || b == c || c == a) continue;
+      if ((t.a < v && is_split(a)) || (t.b < v && is_split(b)) || (t.c < v && is_split(c))) continue;  // found there
+      const bool was_face = origin[a] != origin[b] && origin[b] != origin[c] && origin[c] != origin[a];
+      if (!was_face) visit(graph.incident[n]);
+    }
+  }
+  ISOSHELL_HD bool is_split(uint32_t id) const { return origin[id] < request.size && request[origin[id]] != kNoSplit; }
+};
+struct SetOrigin {
+  View<const uint32_t> new_id, cell;
+  View<uint32_t> origin;
+  ISOSHELL_HD void operator()(int64_t i) const { origin[new_id[i]] = cell[i]; }
+};
+struct CountNewFaces {
+  NewFaces faces;
+  View<int64_t> count;
+  ISOSHELL_HD void operator()(int64_t at) const {
+    int64_t found = 0;
+    faces.for_each(at, [&](uint32_t) { ++found; });
+    count[at] = found;
+  }
+};
+struct ListNewFaces {
+  NewFaces faces;
+  View<const int64_t> first;
+  View<uint32_t> out;
+  ISOSHELL_HD void operator()(int64_t at) const {
+    int64_t to = first[at];
+    faces.for_each(at, [&](uint32_t triangle) { out[to++] = triangle; });
+  }
+};
+/// Appends what the splits of `cell` into themselves and `new_id` made to faces.
+template <class Exec>
+void add_new_faces(Exec& exec, NewFaces faces, View<const uint32_t> new_id, View<const uint32_t> cell, int64_t cells,
+                   Buffer<uint32_t>& face_triangle) {
+  Buffer<uint32_t> origin = exec.template make<uint32_t>(cells);
+  exec.for_each("start origins", cells, StartAlone{origin.view()});
+  exec.for_each("set origins", cell.size, SetOrigin{new_id, cell, origin.view()});
+  faces.origin = origin.view();
+  Buffer<int64_t> first = exec.template make<int64_t>(faces.member.size);
+  exec.for_each("count new faces", first.size(), CountNewFaces{faces, first.view()});
+  const int64_t before = face_triangle.size(), more = exec.exclusive_scan(first.view());
+  Buffer<uint32_t> all = exec.template make<uint32_t>(before + more);
+  exec.copy(View<const uint32_t>(face_triangle.view()), all.view().part(0, before));
+  exec.for_each("list new faces", first.size(), ListNewFaces{faces, first.view(), all.view().part(before, more)});
+  face_triangle = std::move(all);
+}
+
+/// Splits cells in two, a thread a cell.
+struct PlainSplitCells {
+  template <class Exec>
+  static void run(Exec& exec, int64_t count, const SplitCell& split, const ApplySplit& apply) {
+    exec.for_each("split cells", count, split);
+    exec.for_each("apply splits", count, apply);
+  }
+};
+
+}  // namespace isoshell::dual

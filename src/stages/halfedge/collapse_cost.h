@@ -1,0 +1,62 @@
+// Which edge of a closed mesh to collapse: short ones, rather those whose loss makes valences more even.
+#pragma once
+
+#include "stages/halfedge/half_edges.h"
+#include "stages/halfedge/triangle_shape.h"
+#include "stages/sheet/edge_lengths.h"
+
+namespace isoshell::collapse {
+
+/// What it costs to make one vertex, in the middle, of the two ends of an edge.
+struct CollapseCost {
+  static constexpr int64_t kNever = INT64_MAX;
+  optimize::MeshView mesh;
+  View<const PointQ8> position;
+  View<const uint32_t> home;
+  EdgeLengthsView lengths;
+
+  /// The square of the edge, beside the lengths there, more where valences get less even. kNever when the mesh would be
+  /// no manifold any more or turn over.
+  ISOSHELL_HD int64_t operator()(uint32_t h) const {
+    const uint32_t a = mesh.from(h), b = mesh.to(h);
+    if (a > b) return kNever;
+    const uint32_t c = mesh.opposite(h), d = mesh.opposite(mesh.twin[h]);
+    const uint32_t va = mesh.valence[a], vb = mesh.valence[b], vc = mesh.valence[c], vd = mesh.valence[d];
+    if (va + vb < 7 || vc < 4 || vd < 4 || !share_two_neighbours(a, b)) return kNever;
+    const PointQ8 middle = middle_of(position[a], position[b]);
+    if (turns_over(a, b, middle) || turns_over(b, a, middle)) return kNever;
+    const int32_t unevenness = excess_sq(va + vb - 4) + excess_sq(vc - 1) + excess_sq(vd - 1) - excess_sq(va) -
+                               excess_sq(vb) - excess_sq(vc) - excess_sq(vd);
+    const int64_t length_sq = distance_sq_q16(position[a], position[b]);
+    return lengths.share_of_seeds(length_sq, {home[a], home[a], home[b]}) * (unevenness > -8 ? 8 + unevenness : 1);
+  }
+
+  ISOSHELL_HD static PointQ8 middle_of(PointQ8 p, PointQ8 q) {
+    return {(p.x + q.x) >> 1, (p.y + q.y) >> 1, (p.z + q.z) >> 1};
+  }
+
+ private:
+  ISOSHELL_HD static int32_t excess_sq(uint32_t valence) { return (int32_t(valence) - 6) * (int32_t(valence) - 6); }
+
+  /// A third one would be joined to the merged vertex by two edges.
+  ISOSHELL_HD bool share_two_neighbours(uint32_t a, uint32_t b) const {
+    int shared = 0;
+    optimize::for_each_triangle_around(mesh, a, [&](uint32_t v, uint32_t) { shared += mesh.are_neighbours(v, b); });
+    return shared == 2;
+  }
+
+  /// Whether a triangle around `v` that stays turns by more than 60 degrees when `v` moves.
+  ISOSHELL_HD bool turns_over(uint32_t v, uint32_t other, PointQ8 to) const {
+    bool any = false;
+    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t q) {
+      if (p == other || q == other) return;
+      const optimize::Vector before = optimize::normal_of(position[v], position[p], position[q]),
+                             after = optimize::normal_of(to, position[p], position[q]);
+      const double d = dot(before, after);
+      any = any || !(d > 0 && 4 * d * d > dot(before, before) * dot(after, after));
+    });
+    return any;
+  }
+};
+
+}  // namespace isoshell::collapse

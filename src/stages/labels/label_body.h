@@ -1,0 +1,357 @@
+// Nearest seed of every sheet vertex, exact (paper section 3.2, on the sheet).
+//
+// Result: label = minimum of (squared distance + penalty, seed id). The penalty, 16 h^2, is paid by a seed that sits on
+// the other side of a thin wall (normals at more than about 104 degrees), so that each side keeps its own seeds.
+// A leaf gathers the seeds that can win inside its box, each 4^3 octant keeps those that can win inside its own box,
+// and its vertices compare those. A seed can win when its smallest cost over the box is not above the smallest of the
+// seeds' largest costs.
+#pragma once
+
+#include <algorithm>
+
+#include "isoshell/seed_set.h"
+#include "stages/sheet/edge_lengths.h"
+#include "stages/sparse/point_grid_body.h"
+#include "voxel/leaf.h"
+
+namespace isoshell {
+
+/// Sum of the doubled areas of the sheet's triangles, q16.
+template <class Exec>
+int64_t doubled_area_q16(Exec& exec, const Sheet& sheet);
+
+/// Seed spacing and what follows from it. Where lengths vary it is that of the least length.
+struct SeedSpacing {
+  int64_t h_sq_q16;     ///< area per seed
+  int64_t h_q8;         ///< its square root
+  int64_t penalty_q16;  ///< 16 h^2; 16 times the least h times the largest where they vary
+  int64_t largest_h_q8;
+  int64_t area2_q16;  ///< of the sheet, doubled
+  EdgeLengthsView lengths;
+
+  ISOSHELL_HD int64_t h_at(uint32_t vertex) const { return lengths.scaled(h_q8, vertex); }
+};
+template <class Exec>
+SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds);
+
+namespace label {
+
+constexpr int32_t kOpposite = -127 * 127 / 4;  ///< dot products below this are opposite sides
+constexpr int kMaxCandidates = 256;            ///< per leaf; more take the exact slow path
+
+/// Smallest and largest of the vertices' positions and normals.
+struct Bounds {
+  PointQ8 lo, hi;
+  Normal8 normal_lo, normal_hi;
+};
+
+ISOSHELL_HD inline Bounds empty_bounds() {
+  return {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}, {127, 127, 127}, {-127, -127, -127}};
+}
+template <class T>
+ISOSHELL_HD inline void widen(T& lo, T& hi, T value) {
+  if (value < lo) lo = value;
+  if (value > hi) hi = value;
+}
+ISOSHELL_HD inline void include(Bounds& b, PointQ8 p, Normal8 n) {
+  widen(b.lo.x, b.hi.x, p.x);
+  widen(b.lo.y, b.hi.y, p.y);
+  widen(b.lo.z, b.hi.z, p.z);
+  widen(b.normal_lo.x, b.normal_hi.x, n.x);
+  widen(b.normal_lo.y, b.normal_hi.y, n.y);
+  widen(b.normal_lo.z, b.normal_hi.z, n.z);
+}
+
+/// Smallest and largest cost of a seed over the bounds.
+struct CostRange {
+  int64_t lo, hi;
+  bool may_oppose;
+};
+ISOSHELL_HD inline CostRange cost_range(const Bounds& b, PointQ8 p, Normal8 n, int64_t penalty) {
+  const auto axis = [](int32_t s, int32_t lo, int32_t hi, int64_t& near_sq, int64_t& far_sq) {
+    const int64_t to_lo = int64_t(s) - lo, to_hi = int64_t(hi) - s;
+    const int64_t outside = to_lo < 0 ? -to_lo : (to_hi < 0 ? -to_hi : 0);
+    const int64_t far = to_lo > to_hi ? to_lo : to_hi;
+    near_sq += outside * outside;
+    far_sq += far * far;
+  };
+  int64_t near_sq = 0, far_sq = 0;
+  axis(p.x, b.lo.x, b.hi.x, near_sq, far_sq);
+  axis(p.y, b.lo.y, b.hi.y, near_sq, far_sq);
+  axis(p.z, b.lo.z, b.hi.z, near_sq, far_sq);
+  const auto product = [](int8_t s, int8_t lo, int8_t hi, int32_t& least, int32_t& most) {
+    const int32_t a = int32_t(s) * lo, c = int32_t(s) * hi;
+    least += a < c ? a : c;
+    most += a < c ? c : a;
+  };
+  int32_t least = 0, most = 0;
+  product(n.x, b.normal_lo.x, b.normal_hi.x, least, most);
+  product(n.y, b.normal_lo.y, b.normal_hi.y, least, most);
+  product(n.z, b.normal_lo.z, b.normal_hi.z, least, most);
+  const bool may = least < kOpposite;
+  return {near_sq + (most < kOpposite ? penalty : 0), far_sq + (may ? penalty : 0), may};
+}
+
+/// A seed as labelling compares it.
+struct LabelSeed {
+  PointQ8 position;
+  uint32_t id;
+  Normal8 normal;
+};
+
+ISOSHELL_HD inline int64_t cost(PointQ8 v, Normal8 n, const LabelSeed& s, int64_t penalty) {
+  return distance_sq_q16(v, s.position) + (dot(n, s.normal) < kOpposite ? penalty : 0);
+}
+
+/// Labels the vertices of one leaf.
+template <int kCapacity = kMaxCandidates>
+struct LabelLeaf {
+  VoxelSetView corners;
+  View<const PointQ8> position;
+  View<const Normal8> normal;
+  PointGridView grid;
+  View<const Normal8> seed_normal;
+  SeedSpacing spacing;
+  View<uint32_t> out;
+
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    const int64_t begin = corners.first[leaf], end = corners.first[leaf + 1];
+    Bounds bounds = empty_bounds();
+    for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
+    LabelSeed candidates[kCapacity];
+    int64_t limit;
+    const int count = gather(bounds, spacing.h_at(uint32_t(begin)), candidates, limit);
+    if (count > kCapacity) return label_directly(limit, begin, end);
+    label_from(leaf, candidates, count);
+  }
+
+  /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
+  /// costs, taken over those in reach; the spacing says how far to look first. Returns more than kCapacity when they do
+  /// not fit.
+  ISOSHELL_HD int gather(const Bounds& bounds, int64_t h_q8, LabelSeed* candidates, int64_t& limit) const {
+    const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds.lo, bounds.hi))));
+    for (int64_t reach = diagonal / 2 + h_q8;; reach *= 2) {
+      limit = INT64_MAX;
+      int count = 0;
+      for_each_within(bounds, reach * reach, [&](const LabelSeed& s) {
+        const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
+        if (range.hi < limit) limit = range.hi;
+        if (count < kCapacity) candidates[count] = s;
+        ++count;
+      });
+      if (limit == INT64_MAX) continue;
+      if (limit <= reach * reach && count <= kCapacity) return keep_winnable(bounds, limit, candidates, count);
+      // Reached too short or too far; the limit is a bound all the same, and says how far to look.
+      count = 0;
+      for_each_within(bounds, limit, [&](const LabelSeed& s) {
+        if (cost_range(bounds, s.position, s.normal, spacing.penalty_q16).lo > limit) return;
+        if (count < kCapacity) candidates[count] = s;
+        ++count;
+      });
+      return count;
+    }
+  }
+
+  /// Labels from all the candidates; sorts them.
+  ISOSHELL_HD void label_from(int64_t leaf, LabelSeed* candidates, int count) const {
+    if (count == 1) {
+      for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v) out[v] = candidates[0].id;
+      return;
+    }
+    sort_by_id(candidates, count);
+    label_octants(leaf, candidates, count);
+  }
+
+  ISOSHELL_HD static void sort_by_id(LabelSeed* c, int count) {
+    for (int i = 1; i < count; ++i) {
+      const LabelSeed here = c[i];
+      int j = i;
+      for (; j > 0 && c[j - 1].id > here.id; --j) c[j] = c[j - 1];
+      c[j] = here;
+    }
+  }
+
+  /// The exact path without lists, where too many seeds can win somewhere in the leaf: each vertex looks for its own,
+  /// farther until the best one is nearer than it looked. No label costs more than the limit.
+  ISOSHELL_HD void label_directly(int64_t limit, int64_t begin, int64_t end) const {
+    for (int64_t v = begin; v < end; ++v) {
+      Bounds at = empty_bounds();
+      include(at, position[v], normal[v]);
+      for (int64_t reach = spacing.h_at(uint32_t(v)) + 1;; reach *= 2) {
+        const int64_t within = reach * reach < limit ? reach * reach : limit;
+        int64_t best = INT64_MAX;
+        uint32_t id = kNone;
+        for_each_within(at, within, [&](const LabelSeed& s) {
+          const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
+          if (c < best || (c == best && s.id < id)) best = c, id = s.id;
+        });
+        if (best > within && within < limit) continue;
+        out[v] = id;
+        break;
+      }
+    }
+  }
+
+  /// Calls visit(LabelSeed) for every seed whose squared distance to the box is at most the limit, and for some more.
+  template <class Visit>
+  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
+    const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
+    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
+    visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
+  }
+
+ private:
+  ISOSHELL_HD int keep_winnable(const Bounds& bounds, int64_t limit, LabelSeed* candidates, int count) const {
+    int kept = 0;
+    for (int c = 0; c < count; ++c)
+      if (cost_range(bounds, candidates[c].position, candidates[c].normal, spacing.penalty_q16).lo <= limit)
+        candidates[kept++] = candidates[c];
+    return kept;
+  }
+
+  /// The eight 4^3 octants of the leaf in turn.
+  ISOSHELL_HD void label_octants(int64_t leaf, const LabelSeed* candidates, int count) const {
+    for (int q = 0; q < 8; ++q) {
+      int64_t member[64];
+      int members = 0;
+      const int x0 = q >> 2 << 2, y0 = (q >> 1 & 1) << 2, z0 = (q & 1) << 2;
+      const uint64_t rows = uint64_t(0x0f0f0f0f) << (y0 * 8) << z0;
+      int64_t word_first = corners.first[leaf];
+      for (int x = 0; x < 8; ++x) {
+        const uint64_t word = corners.mask[leaf].word[x];
+        if (x >= x0 && x < x0 + 4)
+          for (uint64_t bits = word & rows; bits; bits &= bits - 1) {
+            const uint64_t bit = bits & (~bits + 1);
+            member[members++] = word_first + popcount64(word & (bit - 1));
+          }
+        word_first += popcount64(word);
+      }
+      if (members) label_octant(member, members, candidates, count);
+    }
+  }
+
+  ISOSHELL_HD void label_octant(const int64_t* member, int members, const LabelSeed* candidates, int count) const {
+    Bounds bounds = empty_bounds();
+    for (int m = 0; m < members; ++m) include(bounds, position[member[m]], normal[member[m]]);
+    int64_t least[kCapacity];
+    int64_t limit = INT64_MAX;
+    bool may_oppose = false;
+    for (int c = 0; c < count; ++c) {
+      const LabelSeed& s = candidates[c];
+      const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
+      least[c] = range.lo;
+      if (range.hi < limit) limit = range.hi;
+      may_oppose |= range.may_oppose;
+    }
+    const PointQ8 origin = bounds.lo;
+    // Differences below 2^15 keep squared distances below 3 * 2^30: 32 bits do.
+    const bool narrow = !may_oppose && limit < int64_t(1) << 29 && bounds.hi.x - origin.x < 1 << 13 &&
+                        bounds.hi.y - origin.y < 1 << 13 && bounds.hi.z - origin.z < 1 << 13;
+    if (narrow)
+      label_narrow(member, members, candidates, count, least, limit, origin);
+    else
+      label_wide(member, members, candidates, count, least, limit);
+  }
+
+  ISOSHELL_HD void label_wide(const int64_t* member, int members, const LabelSeed* candidates, int count,
+                              const int64_t* least, int64_t limit) const {
+    for (int m = 0; m < members; ++m) {
+      int64_t best = INT64_MAX;
+      uint32_t id = kNone;
+      for (int c = 0; c < count; ++c) {
+        if (least[c] > limit) continue;
+        const int64_t here = cost(position[member[m]], normal[member[m]], candidates[c], spacing.penalty_q16);
+        if (here < best) best = here, id = candidates[c].id;
+      }
+      out[member[m]] = id;
+    }
+  }
+
+  ISOSHELL_HD void label_narrow(const int64_t* member, int members, const LabelSeed* candidates, int count,
+                                const int64_t* least, int64_t limit, PointQ8 origin) const {
+    uint32_t x[64], y[64], z[64], best[64], id[64];
+    for (int m = 0; m < members; ++m) {
+      const PointQ8 p = position[member[m]];
+      x[m] = uint32_t(p.x - origin.x);
+      y[m] = uint32_t(p.y - origin.y);
+      z[m] = uint32_t(p.z - origin.z);
+      best[m] = UINT32_MAX;
+      id[m] = kNone;
+    }
+    for (int c = 0; c < count; ++c) {
+      if (least[c] > limit) continue;
+      const LabelSeed& s = candidates[c];
+      const uint32_t sx = uint32_t(s.position.x - origin.x), sy = uint32_t(s.position.y - origin.y),
+                     sz = uint32_t(s.position.z - origin.z), seed = s.id;
+      for (int m = 0; m < members; ++m) {
+        const uint32_t dx = x[m] - sx, dy = y[m] - sy, dz = z[m] - sz;
+        const uint32_t here = dx * dx + dy * dy + dz * dz;
+        id[m] = here < best[m] ? seed : id[m];
+        best[m] = here < best[m] ? here : best[m];
+      }
+    }
+    for (int m = 0; m < members; ++m) out[member[m]] = id[m];
+  }
+};
+
+struct DoubledArea {
+  View<const PointQ8> position;
+  View<const TriangleIndices> triangles;
+  ISOSHELL_HD int64_t operator()(int64_t t) const {
+    const TriangleIndices i = triangles[t];
+    const Vec64 n = cross(difference(position[i.b], position[i.a]), difference(position[i.c], position[i.a]));
+    return int64_t(isqrt(uint64_t(dot(n, n))));
+  }
+};
+
+struct ShareOfSeeds {
+  DoubledArea area;
+  EdgeLengthsView lengths;
+  ISOSHELL_HD int64_t operator()(int64_t t) const { return lengths.share_of_seeds(area(t), area.triangles[t]); }
+};
+
+}  // namespace label
+
+template <class Exec>
+int64_t doubled_area_q16(Exec& exec, const Sheet& sheet) {
+  return exec.sum(sheet.triangles.size(), label::DoubledArea{sheet.position.view(), sheet.triangles.view()});
+}
+
+template <class Exec>
+SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds) {
+  const EdgeLengthsView lengths = lengths_of(sheet);
+  const int64_t area2 = doubled_area_q16(exec, sheet);
+  const int64_t shares = lengths.vary()
+                             ? exec.sum(sheet.triangles.size(),
+                                        label::ShareOfSeeds{{sheet.position.view(), sheet.triangles.view()}, lengths})
+                             : area2;
+  const int64_t h_sq = shares / 2 / (seeds > 0 ? seeds : 1), h = int64_t(isqrt(uint64_t(h_sq))) + 1;
+  if (!lengths.vary()) return {h_sq, h, 16 * h_sq, h, area2, lengths};
+  constexpr int64_t kMostPenalty = (int64_t(1) << 28) - 1;  // beyond, labels take slower ways
+  const int64_t largest = h * lengths.largest / lengths.least;
+  return {h_sq, h, std::min(16 * h * largest, kMostPenalty), largest, area2, lengths};
+}
+
+/// Grid of the current seeds, with cells about as wide as seeds are apart; twice that where lengths vary.
+template <class Exec>
+PointGrid grid_of_seeds(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing) {
+  const int64_t edge_q8 = std::min(2 * spacing.h_q8, spacing.largest_h_q8);
+  const int64_t spacing_vox = (edge_q8 + kOneVoxelQ8 - 1) / kOneVoxelQ8;
+  PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, spacing_vox, seeds.size());
+  fill_point_grid(exec, grid, seeds.position.view());
+  return grid;
+}
+
+/// Labels of all sheet vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
+struct PlainLabelSheet {
+  template <class Exec>
+  static void run(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+                  View<uint32_t> labels) {
+    const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
+    exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
+                  label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
+                                     seeds.normal.view(), spacing, labels});
+  }
+};
+
+}  // namespace isoshell

@@ -1,0 +1,410 @@
+// relax_on_sheet (see stages.h): centroidal Voronoi tessellation restricted to the sheet (paper section 3.3, with the
+// sheet in place of the shell and cells clipped by their bisectors instead of counted in voxels).
+//
+// A pass: look ahead along the last move (Nesterov), label the sheet, sum area and moments of every clipped cell in
+// integers, move each seed past its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy
+// rose.
+#pragma once
+
+#include "isoshell/stages.h"
+#include "stages/labels/label_body.h"
+#include "stages/relax/pass_state.h"
+#include "stages/sheet/sheet_walk.h"
+#include "voxel/atomic.h"
+#include "voxel/cell_sum.h"
+
+namespace isoshell {
+namespace relax_sheet {
+
+/// Area and centre of a cell relative to its seed: mass is the doubled area (q16), first three times the doubled first
+/// moment.
+struct CellSum {
+  int64_t mass, first_x, first_y, first_z;
+};
+
+/// Bits that the energy loses at last (twelve times the doubled second moments of all cells about their seeds, summed
+/// exactly), so that it (about 2^6 times area times h^2 at the worst) stays below 2^60: 12 on all but the largest
+/// sheets with the fewest seeds.
+inline int energy_shift(const SeedSpacing& spacing) {
+  const bool vary = spacing.lengths.vary();
+  int bits = vary ? 6 + EdgeLengthsView::kDensityBits : 6;
+  for (int64_t rest = spacing.area2_q16; rest > 0; rest >>= 1) ++bits;
+  const int64_t largest_h_sq = vary ? spacing.largest_h_q8 * spacing.largest_h_q8 : spacing.h_sq_q16;
+  for (int64_t rest = largest_h_sq; rest > 0; rest >>= 1) ++bits;
+  return bits - 60 > 12 ? bits - 60 : 12;
+}
+
+/// Centre of a leaf: origin of its local coordinates.
+ISOSHELL_HD inline PointQ8 leaf_origin(uint64_t key) {
+  const Voxel v = leaf_of_key(key);
+  return {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
+}
+
+/// A sheet triangle with its doubled area, times the density where lengths vary, and what its moments about the leaf's
+/// origin are made of: most triangles lie in one cell, and need no more.
+struct PatchTriangle {
+  uint32_t a, b, c, area2;
+  Local corner_sum;
+  int64_t squares;
+
+  ISOSHELL_HD PieceSum whole() const {
+    return {area2, int64_t(area2) * corner_sum.x, int64_t(area2) * corner_sum.y, int64_t(area2) * corner_sum.z,
+            area2 * squares};
+  }
+};
+
+/// Triangles by the leaf of their smallest vertex: so all of a leaf's triangles are close to it.
+struct Patches {
+  Buffer<int64_t> first;  ///< leaf_count + 1
+  Buffer<PatchTriangle> triangles;
+};
+
+struct VisitPatch {
+  VoxelSetView corners;
+  View<const TriangleIndices> triangles;
+  View<const int64_t> vertex_first;
+  View<const uint32_t> vertex_triangles;
+
+  template <class Visit>
+  ISOSHELL_HD void visit(int64_t leaf, Visit each) const {
+    for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v)
+      for (int64_t n = vertex_first[v]; n < vertex_first[v + 1]; ++n) {
+        const TriangleIndices t = triangles[vertex_triangles[n]];
+        if (t.a >= v && t.b >= v && t.c >= v) each(t);
+      }
+  }
+};
+
+struct CountPatch {
+  VisitPatch patch;
+  View<int64_t> count;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    int64_t n = 0;
+    patch.visit(leaf, [&](TriangleIndices) { ++n; });
+    count[leaf] = n;
+  }
+};
+
+struct FillPatch {
+  VisitPatch patch;
+  View<const PointQ8> position;
+  EdgeLengthsView lengths;
+  View<const int64_t> first;
+  View<PatchTriangle> out;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    int64_t at = first[leaf];
+    const PointQ8 origin = leaf_origin(patch.corners.leaf_key[leaf]);
+    patch.visit(leaf, [&](TriangleIndices t) {
+      const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
+      const Local a = local(position[t.a], origin), b = local(position[t.b], origin), c = local(position[t.c], origin);
+      const uint32_t mass = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
+      out[at++] = {t.a, t.b, t.c, mass, corner_sum(a, b, c), sum_of_squares(a, b, c)};
+    });
+  }
+};
+
+template <class Exec>
+Patches make_patches(Exec& exec, const Sheet& sheet) {
+  const int64_t leaves = sheet.corners.leaf_count();
+  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
+                         sheet.vertex_triangles.view()};
+  Patches patches;
+  patches.first = exec.template make<int64_t>(leaves + 1);
+  exec.fill(patches.first.view().part(leaves, 1), int64_t(0));
+  exec.for_each("count patch triangles", leaves, CountPatch{visit, patches.first.view()});
+  exec.exclusive_scan(patches.first.view());
+  patches.triangles = exec.template make<PatchTriangle>(sheet.triangles.size());
+  exec.for_each(
+      "fill patch triangles", leaves,
+      FillPatch{visit, sheet.position.view(), lengths_of(sheet), patches.first.view(), patches.triangles.view()});
+  return patches;
+}
+
+/// Sums of a few cells while a leaf is worked on; what does not fit goes straight to the cell.
+template <int kSlots>
+class LocalSums {
+ public:
+  ISOSHELL_HD LocalSums() {
+    for (int i = 0; i < kSlots; ++i) label_[i] = kNone;
+  }
+  /// Null when every slot is taken by other labels.
+  ISOSHELL_HD PieceSum* of(uint32_t label) {
+    for (int probe = 0; probe < kSlots; ++probe) {
+      const int slot = int((label * 2654435761u >> 16) + uint32_t(probe)) & (kSlots - 1);
+      if (label_[slot] == label) return &sum_[slot];
+      if (label_[slot] == kNone) {
+        label_[slot] = label;
+        sum_[slot] = {0, 0, 0, 0, 0};
+        return &sum_[slot];
+      }
+    }
+    return nullptr;
+  }
+  template <class Visit>
+  ISOSHELL_HD void for_each(Visit visit) const {
+    for (int i = 0; i < kSlots; ++i)
+      if (label_[i] != kNone) visit(label_[i], sum_[i]);
+  }
+
+ private:
+  uint32_t label_[kSlots];
+  PieceSum sum_[kSlots];
+};
+
+/// Moves sums from an origin to the seed at `d` from it, adds them to the seed's cell, and returns their energy. Far
+/// seeds take that past 64 bits.
+ISOSHELL_HD inline Int128 add_to_cell(CellSum& cell, const PieceSum& s, Local d) {
+  atomic_add(cell.mass, s.mass);
+  atomic_add(cell.first_x, s.first_x - 3 * s.mass * d.x);
+  atomic_add(cell.first_y, s.first_y - 3 * s.mass * d.y);
+  atomic_add(cell.first_z, s.first_z - 3 * s.mass * d.z);
+  return Int128(s.second) - 8 * (Int128(s.first_x) * d.x + Int128(s.first_y) * d.y + Int128(s.first_z) * d.z) +
+         Int128(12 * square(d)) * s.mass;
+}
+
+/// Adds the pieces of one leaf's triangles to their cells, and writes the leaf's part of the energy.
+template <int kSlots = 64>
+struct SumLeaf {
+  View<const uint64_t> leaf_key;
+  View<const int64_t> first;
+  View<const PatchTriangle> triangles;
+  View<const PointQ8> position;
+  View<const uint32_t> label;
+  View<const PointQ8> seed;
+  View<CellSum> cell;
+  View<SplitSum> energy;
+  View<const PassState> state;
+
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    if (state[0].converged) return;
+    const PointQ8 origin = leaf_origin(leaf_key[leaf]);
+    LocalSums<kSlots> sums;
+    uint32_t last = kNone;
+    PieceSum* last_sum = nullptr;
+    Int128 leaf_energy = 0;
+    const auto flush = [&](uint32_t id, const PieceSum& sum) {
+      leaf_energy += add_to_cell(cell[id], sum, local(seed[id], origin));
+    };
+    const auto add = [&](uint32_t id, const PieceSum& piece) {
+      if (id != last) last = id, last_sum = sums.of(id);
+      if (last_sum)
+        *last_sum = *last_sum + piece;
+      else
+        flush(id, piece);
+    };
+    for (int64_t t = first[leaf]; t < first[leaf + 1]; ++t) add_triangle(triangles[t], origin, add);
+    sums.for_each(flush);
+    energy[leaf] = SplitSum::of(leaf_energy);
+  }
+
+ private:
+  template <class Add>
+  ISOSHELL_HD void add_triangle(const PatchTriangle& t, PointQ8 origin, Add add) const {
+    const uint32_t id[3] = {label[t.a], label[t.b], label[t.c]};
+    if (id[0] == id[1] && id[1] == id[2]) return add(id[0], t.whole());
+    const Local p[3] = {local(position[t.a], origin), local(position[t.b], origin), local(position[t.c], origin)};
+    const SplitTriangle split{{p[0], p[1], p[2]},
+                              {local(seed[id[0]], origin), local(seed[id[1]], origin), local(seed[id[2]], origin)},
+                              t.area2};
+    const auto add_piece = [&](int corner, const PieceSum& piece) { add(id[corner], piece); };
+    if (id[1] == id[2])
+      split.two_cells(0, add_piece);
+    else if (id[2] == id[0])
+      split.two_cells(1, add_piece);
+    else if (id[0] == id[1])
+      split.two_cells(2, add_piece);
+    else
+      split.three_cells(add_piece);
+  }
+};
+
+/// Seeds while they move. `here` is where the cells are measured, `last` the outcome of the pass before.
+struct MovingSeeds {
+  WalkOntoSheet walk;
+  View<PointQ8> here;
+  View<PointQ8> last;
+  View<uint32_t> home;
+  View<Normal8> normal;
+  int64_t max_step_q8;  ///< where lengths are least
+  EdgeLengthsView lengths;
+
+  /// The step of seed i, shortened to the bound where it is at home.
+  ISOSHELL_HD PointQ8 moved(int64_t i, PointQ8 from, Vec64 step) const {
+    const int64_t length_sq = dot(step, step), most = lengths.scaled(max_step_q8, home[i]);
+    if (length_sq > most * most) {
+      const int64_t length = int64_t(isqrt(uint64_t(length_sq))) + 1;
+      step = {step.x * most / length, step.y * most / length, step.z * most / length};
+    }
+    return {from.x + int32_t(step.x), from.y + int32_t(step.y), from.z + int32_t(step.z)};
+  }
+  /// Seed i is on the sheet again, nearest to the vertex.
+  ISOSHELL_HD void arrives(int64_t i, uint32_t vertex, PointQ8 p) const {
+    home[i] = vertex;
+    normal[i] = walk.normal[vertex];
+    here[i] = p;
+  }
+};
+
+inline MovingSeeds moving_seeds(const WalkOntoSheet& walk, SeedSet& seeds, View<PointQ8> last,
+                                const SeedSpacing& spacing, const RelaxOptions& options) {
+  const int64_t most = options.max_step_q8;
+  return {walk,
+          seeds.position.view(),
+          last,
+          seeds.home.view(),
+          seeds.normal.view(),
+          most > 0 ? most : spacing.h_q8 * 2 / 5,
+          most > 0 ? EdgeLengthsView{} : spacing.lengths};
+}
+
+/// s + beta (s - last).
+ISOSHELL_HD inline PointQ8 point_ahead(const MovingSeeds& seeds, PointQ8 s, int64_t beta_q15, int64_t i) {
+  const Vec64 step = difference(s, seeds.last[i]) * beta_q15;
+  return seeds.moved(i, s, {step.x >> 15, step.y >> 15, step.z >> 15});
+}
+
+/// One component of the way from a seed to its cell's centre; `first` is that of the cell, which must have an area.
+ISOSHELL_HD inline int64_t way_to_centre(int64_t first, int64_t mass) { return round_div(first, 3 * mass); }
+
+/// Seeds go 1.3 times as far as their centres: neighbours follow, and fewer passes are needed.
+ISOSHELL_HD inline int64_t past_centre(int64_t way) { return way + way * 3 / 10; }
+
+/// A place beyond the centre of the cell measured at here, no farther than a step. The cell must have an area.
+ISOSHELL_HD inline PointQ8 point_past_centre(const MovingSeeds& seeds, const CellSum& c, int64_t i) {
+  const auto step = [&](int64_t first) { return past_centre(way_to_centre(first, c.mass)); };
+  return seeds.moved(i, seeds.here[i], {step(c.first_x), step(c.first_y), step(c.first_z)});
+}
+
+struct LookAhead {
+  MovingSeeds seeds;
+  View<const PassState> state;
+  ISOSHELL_HD bool aims(int64_t i, PointQ8& target) const {
+    if (state[0].converged) return false;
+    const int64_t beta_q15 = state[0].beta_q15;
+    const PointQ8 s = seeds.here[i];
+    target = point_ahead(seeds, s, beta_q15, i);
+    seeds.last[i] = s;
+    return beta_q15 != 0;
+  }
+  ISOSHELL_HD void arrives(int64_t i, uint32_t vertex, PointQ8 p) const { seeds.arrives(i, vertex, p); }
+};
+
+struct MovePastCentre {
+  MovingSeeds seeds;
+  View<const CellSum> cell;
+  View<const PassState> state;
+  ISOSHELL_HD bool aims(int64_t i, PointQ8& target) const {
+    if (state[0].converged || cell[i].mass <= 0) return false;
+    target = point_past_centre(seeds, cell[i], i);
+    return true;
+  }
+  ISOSHELL_HD void arrives(int64_t i, uint32_t vertex, PointQ8 p) const { seeds.arrives(i, vertex, p); }
+};
+
+/// Nesterov's momentum factors, capped: the one for the next pass. One square root a pass.
+ISOSHELL_HD inline void advance_momentum(PassState& state) {
+  constexpr double kCap = 0.9;
+  const double after = (1 + rounded_sqrt(1 + 4 * state.momentum * state.momentum)) / 2;
+  const double beta = (state.momentum - 1) / after;
+  state.momentum = after;
+  state.beta_q15 = int64_t((beta < kCap ? beta : kCap) * 32768);
+}
+
+/// True when the energy fell by less than `tolerance_ppb` of itself a pass over the last five passes.
+ISOSHELL_HD inline bool has_converged(const PassState& state, int32_t tolerance_ppb) {
+  constexpr int kWindow = 5;
+  if (state.passes <= kWindow) return false;
+  const double before = double(state.energy_of(state.passes - 1 - kWindow)),
+               now = double(state.energy_of(state.passes - 1));
+  return before - now < before * (double(tolerance_ppb) * 1e-9 * kWindow) && now <= before;
+}
+
+/// State before the first pass, which has no momentum.
+struct StartPasses {
+  View<PassState> state;
+  ISOSHELL_HD void operator()(int64_t) const {
+    PassState& s = state[0];
+    s = {};
+    s.momentum = 1;
+    advance_momentum(s);
+  }
+};
+
+/// Ends a pass: notes its energy, starts momentum anew when it rose, stops when it no longer falls.
+struct FinishPass {
+  View<PassState> state;
+  View<const int64_t> energy;  ///< high and low part of a SplitSum
+  int shift;
+  int32_t tolerance_ppb;
+  ISOSHELL_HD void operator()(int64_t) const {
+    PassState& s = state[0];
+    if (s.converged) return;
+    const int64_t now = int64_t(SplitSum{energy[0], energy[1]}.value() >> shift);
+    if (s.passes > 0 && double(now) > double(s.energy_of(s.passes - 1))) s.momentum = 1;
+    s.add(now);
+    s.converged = has_converged(s, tolerance_ppb);
+    advance_momentum(s);
+  }
+};
+
+/// What passes spend their time on, as it is defined.
+class PlainPassWork {
+ public:
+  template <class Exec>
+  PlainPassWork(Exec& exec, const Sheet& sheet, const SeedSpacing& spacing)
+      : sheet_(sheet),
+        spacing_(spacing),
+        patches_(make_patches(exec, sheet)),
+        labels_(exec.template make<uint32_t>(sheet.vertex_count())) {}
+
+  /// Labels the sheet, adds to the cells, and writes each leaf's part of the energy. Nothing counts once the passes
+  /// have converged.
+  template <class Exec>
+  void measure(Exec& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
+               View<const PassState> state) {
+    Exec::Kernels::LabelSheet::run(exec, sheet_, seeds, spacing_, labels_.view());
+    exec.for_each("sum cells", sheet_.corners.leaf_count(),
+                  SumLeaf<>{sheet_.corners.leaf_key.view(), patches_.first.view(), patches_.triangles.view(),
+                            sheet_.position.view(), labels_.view(), seeds.position.view(), cells, leaf_energy, state});
+  }
+
+ private:
+  const Sheet& sheet_;
+  const SeedSpacing spacing_;
+  const Patches patches_;
+  Buffer<uint32_t> labels_;
+};
+
+}  // namespace relax_sheet
+
+template <class Exec>
+RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options) {
+  using namespace relax_sheet;
+  using Kernels = typename Exec::Kernels;
+  const int64_t count = seeds.size();
+  const SeedSpacing spacing = seed_spacing(exec, sheet, count);
+  typename Kernels::PassWork pass(exec, sheet, spacing);
+  Buffer<PointQ8> last = exec.template make<PointQ8>(count);
+  Buffer<CellSum> cells = exec.template make<CellSum>(count);
+  Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(sheet.corners.leaf_count());
+  Buffer<int64_t> energy = exec.template make<int64_t>(2);
+  Buffer<PassState> state = exec.template make<PassState>(1);
+  exec.copy(View<const PointQ8>(seeds.position.view()), last.view());
+  exec.for_each("start passes", 1, StartPasses{state.view()});
+
+  const WalkOntoSheet walk = walk_onto(sheet);
+  const MovingSeeds moving = moving_seeds(walk, seeds, last.view(), spacing, options);
+  const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
+
+  return run_passes(exec, state.view(), options.max_passes, [&] {
+    Kernels::Walks::to_targets(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
+    exec.fill(cells.view(), CellSum{0, 0, 0, 0});
+    pass.measure(exec, seeds, cells.view(), leaf_energy.view(), state.view());
+    Kernels::Walks::to_targets(exec, "move past centre", walk, seeds.home.view(),
+                               MovePastCentre{moving, cells.view(), state.view()});
+    sum_split_into(exec, energy.view(), leaf_energy.view());
+    exec.for_each("finish pass", 1, finish);
+  });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,243 @@
+// Edge lengths of a sheet (see stages.h): how fast they may grow, how many seeds they ask for, their way onto coarse
+// proxies, and the curvature that adaptivity makes them from.
+#pragma once
+
+#include <utility>
+
+#include "isoshell/stages.h"
+#include "stages/labels/label_body.h"
+#include "stages/sheet/sheet_graph.h"
+#include "stages/sparse/point_grid_body.h"
+#include "voxel/atomic.h"
+
+namespace isoshell {
+namespace lengths {
+
+/// Lowers the lengths of a leaf's own vertices until they obey the limit towards one another and towards the vertices
+/// of other leaves, whose lengths are those of the round before; then wakes the leaves that this concerns. The limit is
+/// a shortest path over the sheet's edges: it has one fixed point, in whatever order leaves come to it.
+struct LimitLeaf {
+  SheetGraph graph;
+  View<const int64_t> leaf_first;
+  View<const PointQ8> position;
+  int64_t slope_q16;
+  View<const uint32_t> from;
+  View<uint32_t> to;
+  View<const uint32_t> awake;
+  View<uint32_t> wake;
+
+  ISOSHELL_HD uint32_t beyond(uint32_t length, uint32_t u, uint32_t v) const {
+    const int64_t way = int64_t(isqrt(uint64_t(distance_sq_q16(position[u], position[v]))));
+    const int64_t reached = length + (way * slope_q16 >> 16);
+    return reached < UINT32_MAX ? uint32_t(reached) : UINT32_MAX;
+  }
+  ISOSHELL_HD bool lower(uint32_t v, int64_t begin, int64_t end) const {
+    uint32_t least = to[v];
+    graph.for_each_corner(v, [&](uint32_t u, uint32_t) {
+      const uint32_t here = beyond(u >= begin && u < end ? to[u] : from[u], u, v);
+      least = here < least ? here : least;
+    });
+    const bool lowered = least < to[v];
+    to[v] = least;
+    return lowered;
+  }
+  ISOSHELL_HD int64_t leaf_of(int64_t v) const {
+    int64_t lo = 0, hi = leaf_first.size - 1;
+    while (hi - lo > 1) {
+      const int64_t mid = (lo + hi) / 2;
+      (leaf_first[mid] <= v ? lo : hi) = mid;
+    }
+    return lo;
+  }
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    if (!awake[leaf]) return;
+    const int64_t begin = leaf_first[leaf], end = leaf_first[leaf + 1];
+    for (bool lowered = true; lowered;) {
+      lowered = false;
+      for (int64_t v = begin; v < end; ++v) lowered |= lower(uint32_t(v), begin, end);
+      for (int64_t v = end - 1; lowered && v >= begin; --v) lower(uint32_t(v), begin, end);
+    }
+    for (int64_t v = begin; v < end; ++v) {
+      if (to[v] == from[v]) continue;
+      graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) {
+        if ((u < begin || u >= end) && beyond(to[v], uint32_t(v), u) < from[u]) atomic_or(wake[leaf_of(u)], 1u);
+      });
+    }
+  }
+};
+struct IsAwake {
+  View<const uint32_t> awake;
+  ISOSHELL_HD int64_t operator()(int64_t leaf) const { return awake[leaf]; }
+};
+struct FindRange {
+  View<const uint32_t> at;
+  View<uint32_t> range;  ///< least and largest
+  ISOSHELL_HD void operator()(int64_t v) const {
+    atomic_min(range[0], at[v]);
+    atomic_max(range[1], at[v]);
+  }
+};
+
+struct CopyLength {
+  PointGridView vertices;
+  View<const uint32_t> from;
+  View<const PointQ8> position;
+  int halvings;
+  View<uint32_t> to;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const PointQ8 p = position[v];
+    to[v] = from[nearest_point(vertices, {p.x << halvings, p.y << halvings, p.z << halvings}).id];
+  }
+};
+
+constexpr int32_t kUnit = 1 << 14;  ///< length of a normal
+
+struct StartNormal {
+  View<const Normal8> normal;
+  View<PointQ8> out;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const Normal8 n = normal[v];
+    out[v] = {n.x * (kUnit / 128), n.y * (kUnit / 128), n.z * (kUnit / 128)};
+  }
+};
+/// The mean of a vertex and its neighbours.
+struct MeanNormal {
+  SheetGraph graph;
+  View<const PointQ8> from;
+  View<PointQ8> to;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    PointQ8 sum = from[v];
+    int32_t count = 1;
+    graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) {
+      sum = {sum.x + from[u].x, sum.y + from[u].y, sum.z + from[u].z};
+      ++count;
+    });
+    to[v] = {sum.x / count, sum.y / count, sum.z / count};
+  }
+};
+struct UnitNormal {
+  View<PointQ8> normal;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const PointQ8 n = normal[v];
+    const int64_t length = int64_t(isqrt(uint64_t(distance_sq_q16(n, {0, 0, 0}))));
+    if (length == 0) return;
+    normal[v] = {int32_t(int64_t(n.x) * kUnit / length), int32_t(int64_t(n.y) * kUnit / length),
+                 int32_t(int64_t(n.z) * kUnit / length)};
+  }
+};
+/// How much the normal turns a voxel, the root of the mean square over the edges of a vertex, in 1/65536.
+struct TurnOfNormal {
+  SheetGraph graph;
+  View<const PointQ8> position, normal;
+  View<uint32_t> out;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    uint64_t turn_sq = 0, way_sq = 0;
+    graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) {
+      turn_sq += uint64_t(distance_sq_q16(normal[u], normal[v]));
+      way_sq += uint64_t(distance_sq_q16(position[u], position[v]));
+    });
+    constexpr uint64_t kScale = uint64_t(65536 / kUnit * kOneVoxelQ8) * (65536 / kUnit * kOneVoxelQ8);
+    out[v] = way_sq > 0 ? uint32_t(isqrt(turn_sq * kScale / way_sq)) : 0;
+  }
+};
+struct MeanValue {
+  SheetGraph graph;
+  View<const uint32_t> from;
+  View<uint32_t> to;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    uint64_t sum = from[v], count = 1;
+    graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) { sum += from[u], ++count; });
+    to[v] = uint32_t((sum + count / 2) / count);
+  }
+};
+
+/// Takes the lengths to the sheet.
+template <class Exec>
+void keep_lengths(Exec& exec, Buffer<uint32_t> at, Sheet& sheet) {
+  Buffer<uint32_t> range = exec.template make<uint32_t>(2);
+  exec.fill(range.view().part(0, 1), UINT32_MAX);
+  exec.fill(range.view().part(1, 1), 0u);
+  exec.for_each("range of lengths", at.size(), FindRange{at.view(), range.view()});
+  sheet.lengths.least = exec.value(View<const uint32_t>(range.view()), 0);
+  sheet.lengths.largest = exec.value(View<const uint32_t>(range.view()), 1);
+  sheet.lengths.at = std::move(at);
+}
+
+/// The means, so many times.
+template <class Exec>
+void smooth_values(Exec& exec, const SheetGraph& graph, int32_t rounds, Buffer<uint32_t>& values) {
+  Buffer<uint32_t> smooth = exec.template make<uint32_t>(values.size());
+  for (int32_t r = 0; r < rounds; ++r) {
+    exec.for_each("mean values", values.size(), MeanValue{graph, values.view(), smooth.view()});
+    std::swap(values, smooth);
+  }
+}
+
+}  // namespace lengths
+
+/// `raw` lies in the executor's memory.
+template <class Exec>
+void set_edge_lengths_body(Exec& exec, Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16) {
+  using namespace lengths;
+  const int64_t leaves = sheet.corners.leaf_count(), vertices = sheet.vertex_count();
+  Buffer<uint32_t> next = exec.template make<uint32_t>(vertices);
+  Buffer<uint32_t> awake = exec.template make<uint32_t>(leaves), wake = exec.template make<uint32_t>(leaves);
+  exec.fill(awake.view(), 1u);
+  do {
+    exec.fill(wake.view(), 0u);
+    exec.copy(View<const uint32_t>(raw.view()), next.view());
+    exec.for_each("limit lengths", leaves,
+                  LimitLeaf{graph_of(sheet), sheet.corners.first.view(), sheet.position.view(), slope_q16, raw.view(),
+                            next.view(), awake.view(), wake.view()});
+    std::swap(raw, next);
+    std::swap(awake, wake);
+  } while (exec.sum(leaves, IsAwake{awake.view()}) > 0);
+  keep_lengths(exec, std::move(raw), sheet);
+}
+
+template <class Exec>
+void smooth_edge_lengths_body(Exec& exec, Sheet& sheet, int32_t rounds) {
+  using namespace lengths;
+  Buffer<uint32_t> at = std::move(sheet.lengths.at);
+  smooth_values(exec, graph_of(sheet), rounds, at);
+  keep_lengths(exec, std::move(at), sheet);
+}
+
+template <class Exec>
+int64_t seed_shares_body(Exec& exec, const Sheet& sheet) {
+  return exec.sum(sheet.triangles.size(),
+                  label::ShareOfSeeds{{sheet.position.view(), sheet.triangles.view()}, lengths_of(sheet)});
+}
+
+template <class Exec>
+void copy_edge_lengths_body(Exec& exec, const Sheet& from, int halvings, Sheet& to) {
+  constexpr int32_t kCellVox = 4;
+  PointGrid grid = make_point_grid(exec, from.corners.block_dims, kCellVox, from.vertex_count());
+  fill_point_grid(exec, grid, from.position.view());
+  to.lengths.at = exec.template make<uint32_t>(to.vertex_count());
+  to.lengths.least = from.lengths.least;
+  to.lengths.largest = from.lengths.largest;
+  exec.for_each(
+      "copy lengths", to.vertex_count(),
+      lengths::CopyLength{grid.view(), from.lengths.at.view(), to.position.view(), halvings, to.lengths.at.view()});
+}
+
+template <class Exec>
+Buffer<uint32_t> measure_curvature_body(Exec& exec, const Sheet& sheet, int32_t rounds) {
+  using namespace lengths;
+  const int64_t vertices = sheet.vertex_count();
+  const SheetGraph graph = graph_of(sheet);
+  Buffer<PointQ8> normal = exec.template make<PointQ8>(vertices), mean = exec.template make<PointQ8>(vertices);
+  exec.for_each("start normals", vertices, StartNormal{sheet.normal.view(), normal.view()});
+  for (int32_t r = 0; r < rounds; ++r) {
+    exec.for_each("mean normals", vertices, MeanNormal{graph, normal.view(), mean.view()});
+    std::swap(normal, mean);
+  }
+  exec.for_each("unit normals", vertices, UnitNormal{normal.view()});
+  Buffer<uint32_t> turn = exec.template make<uint32_t>(vertices);
+  exec.for_each("turn of normals", vertices, TurnOfNormal{graph, sheet.position.view(), normal.view(), turn.view()});
+  smooth_values(exec, graph, rounds * 2 / 3, turn);
+  return turn;
+}
+
+}  // namespace isoshell

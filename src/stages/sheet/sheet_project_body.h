@@ -1,0 +1,227 @@
+// The part of build_sheet that lays the quad mesh onto the surface: smoothing, projection, bridges over gaps.
+#pragma once
+
+#include "isoshell/stages.h"
+#include "stages/sheet/sheet_quads_body.h"
+#include "voxel/exact_int.h"
+#include "voxel/nearest_triangle.h"
+
+namespace isoshell {
+
+constexpr int kSheetSmoothingSteps = 2;                 ///< before projection
+constexpr int kProxySmoothingSteps = 6;                 ///< even: odd ones turn checkerboards of corners over
+constexpr int kBridgeSteps = 60;                        ///< for vertices over a gap, after projection
+constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther from the surface are over a gap
+
+namespace sheet_steps {
+
+/// Whether the neighbour of the corner at `offset` through a face lies in its leaf.
+ISOSHELL_HD inline bool stays_in_leaf(int offset, int face) {
+  const int along = offset >> (face < 2 ? 6 : face < 4 ? 3 : 0) & 7;
+  return along != (face & 1 ? 7 : 0);
+}
+/// How many vertices later it comes then; both are active.
+ISOSHELL_HD inline int vertices_later(const LeafMask& mask, int offset, int face) {
+  const int x = offset >> 6, bit = offset & 63;
+  const uint64_t before = (uint64_t(1) << bit) - 1;
+  if (face == 0) return -popcount64(mask.word[x - 1] & ~before) - popcount64(mask.word[x] & before);
+  if (face == 1) return popcount64(mask.word[x] & ~before) + popcount64(mask.word[x + 1] & before);
+  if (face == 2) return -popcount64(mask.word[x] >> (bit - 8) & 255);
+  if (face == 3) return popcount64(mask.word[x] >> bit & 255);
+  return face == 4 ? -1 : 1;
+}
+
+/// Calls visit(neighbour) for the vertices that lattice edges of the boundary join to v, the corner at `offset` of a
+/// leaf.
+template <class Visit>
+ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, int64_t leaf, int offset, int64_t v,
+                                           uint8_t edges, Visit visit) {
+  for (int f = 0; f < 6; ++f) {
+    if (!(edges >> f & 1)) continue;
+    if (stays_in_leaf(offset, f))
+      visit(uint32_t(v + vertices_later(corners.mask[leaf], offset, f)));
+    else
+      visit(uint32_t(find_voxel(corners, step_through(voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset), f))));
+  }
+}
+
+/// Six coordinates fit 32 bits, twice; so does what rounding needs.
+ISOSHELL_HD inline int32_t rounded_mean(int32_t sum, int32_t count) {
+  const int32_t n = 2 * sum + count, d = 2 * count;
+  return n / d - (n % d < 0);
+}
+ISOSHELL_HD inline PointQ8 mean_of(PointQ8 sum, int32_t count) {
+  return {rounded_mean(sum.x, count), rounded_mean(sum.y, count), rounded_mean(sum.z, count)};
+}
+ISOSHELL_HD inline PointQ8 sum_of(PointQ8 a, PointQ8 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+/// One umbrella step: every vertex goes to the mean of its neighbours.
+struct SmoothCorners {
+  VoxelSetView corners;
+  View<const uint8_t> edges;
+  View<const PointQ8> from;
+  View<PointQ8> to;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    for_each_active(corners, leaf, [&](int offset, int64_t v) { smooth(leaf, offset, v); });
+  }
+  ISOSHELL_HD void smooth(int64_t leaf, int offset, int64_t v) const {
+    PointQ8 sum = {0, 0, 0};
+    int32_t count = 0;
+    for_each_neighbour(corners, leaf, offset, v, edges[v], [&](uint32_t n) {
+      sum = sum_of(sum, from[n]);
+      ++count;
+    });
+    to[v] = mean_of(sum, count);
+  }
+};
+
+/// Moves vertices from where they went with one smoothing by what a second one moved them, the other way.
+struct GiveBack {
+  View<const PointQ8> twice;
+  View<PointQ8> once;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    const PointQ8 p = once[v], q = twice[v];
+    once[v] = {2 * p.x - q.x, 2 * p.y - q.y, 2 * p.z - q.z};
+  }
+};
+
+/// Puts every vertex on the nearest triangle. Only with `may_bridge` a vertex farther than two voxels stays in place.
+struct ProjectVertex {
+  SitedSurfaceView surface;
+  bool may_bridge;
+  View<const PointQ8> smooth;
+  View<PointQ8> position;
+  View<uint32_t> source_triangle;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    NearestTriangleSearch search(surface, smooth[v]);
+    bool found = search.search(1) || search.search(2);
+    if (may_bridge) found = search.best().distance_sq_q16 <= kBridgeDistanceQ8 * kBridgeDistanceQ8;
+    for (int32_t reach = 4; !found && !may_bridge && reach <= 16; reach *= 2) found = search.search(reach);
+    position[v] = found ? search.best().point : smooth[v];
+    source_triangle[v] = found ? search.best().triangle : kNone;
+  }
+};
+
+struct IsBridge {
+  View<const uint32_t> source_triangle;
+  ISOSHELL_HD bool operator()(int64_t v) const { return source_triangle[v] == kNone; }
+};
+
+/// Neighbours of the bridging vertices: six places each, those beyond the last neighbour hold kNone.
+struct ListBridgeNeighbours {
+  VoxelSetView corners;
+  View<const uint8_t> edges;
+  View<const uint32_t> bridges;
+  View<uint32_t> neighbours;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    // The leaf is the last one that starts at or before the vertex.
+    int64_t lo = 0, hi = corners.leaf_key.size;
+    while (hi - lo > 1) {
+      const int64_t middle = (lo + hi) / 2;
+      (corners.first[middle] <= int64_t(bridges[i]) ? lo : hi) = middle;
+    }
+    int count = 0;
+    for_each_active(corners, lo, [&](int offset, int64_t v) {
+      if (v != int64_t(bridges[i])) return;
+      for_each_neighbour(corners, lo, offset, v, edges[v], [&](uint32_t n) { neighbours[6 * i + count++] = n; });
+    });
+    while (count < 6) neighbours[6 * i + count++] = kNone;
+  }
+};
+
+struct SmoothBridge {
+  View<const uint32_t> neighbours;
+  View<const PointQ8> position;
+  View<PointQ8> moved;  ///< per bridging vertex
+  ISOSHELL_HD void operator()(int64_t i) const {
+    PointQ8 sum = {0, 0, 0};
+    int32_t count = 0;
+    for (; count < 6 && neighbours[6 * i + count] != kNone; ++count)
+      sum = sum_of(sum, position[neighbours[6 * i + count]]);
+    moved[i] = mean_of(sum, count);
+  }
+};
+
+struct MoveBridge {
+  View<const uint32_t> bridges;
+  View<const PointQ8> moved;
+  View<PointQ8> position;
+  ISOSHELL_HD void operator()(int64_t i) const { position[bridges[i]] = moved[i]; }
+};
+
+template <class Exec>
+void smooth_bridges(Exec& exec, const QuadMesh& mesh, View<const uint32_t> source_triangle, View<PointQ8> position) {
+  const Buffer<uint32_t> bridges = exec.select(source_triangle.size, IsBridge{source_triangle});
+  if (bridges.empty()) return;
+  Buffer<uint32_t> neighbours = exec.template make<uint32_t>(6 * bridges.size());
+  exec.for_each("neighbours on bridges", bridges.size(),
+                ListBridgeNeighbours{mesh.corners.view(), mesh.edges.view(), bridges.view(), neighbours.view()});
+  Buffer<PointQ8> moved = exec.template make<PointQ8>(bridges.size());
+  for (int step = 0; step < kBridgeSteps; ++step) {
+    exec.for_each("smooth bridges", bridges.size(), SmoothBridge{neighbours.view(), position, moved.view()});
+    exec.for_each("move bridges", bridges.size(), MoveBridge{bridges.view(), moved.view(), position});
+  }
+}
+
+}  // namespace sheet_steps
+
+/// The quad mesh with its vertices where they belong.
+struct LaidMesh {
+  Buffer<PointQ8> smooth;  ///< before projection: sides are plain here
+  Buffer<PointQ8> position;
+  Buffer<uint32_t> source_triangle;
+};
+
+/// Takes vertices to the means of their neighbours, `steps` times.
+template <class Exec>
+void smooth_corners(Exec& exec, const QuadMesh& mesh, int steps, Buffer<PointQ8>& position, Buffer<PointQ8>& scratch) {
+  for (int step = 0; step < steps; ++step) {
+    exec.for_each("smooth", mesh.corners.leaf_count(),
+                  sheet_steps::SmoothCorners{mesh.corners.view(), mesh.edges.view(), position.view(), scratch.view()});
+    std::swap(position, scratch);
+  }
+}
+
+/// Smooths only: the vertices stay where the solid's boundary is, and have no source. What smoothing takes from the
+/// volume is what as many steps more would take, so that much is given back.
+template <class Exec>
+LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
+  using namespace sheet_steps;
+  LaidMesh laid;
+  const int64_t vertices = mesh.position.size();
+  laid.position = std::move(mesh.position);
+  laid.smooth = exec.template make<PointQ8>(vertices);
+  Buffer<PointQ8> scratch = exec.template make<PointQ8>(vertices);
+  smooth_corners(exec, mesh, kProxySmoothingSteps, laid.position, scratch);
+  exec.copy(View<const PointQ8>(laid.position.view()), laid.smooth.view());
+  smooth_corners(exec, mesh, kProxySmoothingSteps, laid.smooth, scratch);
+  exec.for_each("give back", vertices, GiveBack{laid.smooth.view(), laid.position.view()});
+  laid.source_triangle = exec.template make<uint32_t>(vertices);
+  exec.fill(laid.source_triangle.view(), kNone);
+  return laid;
+}
+
+/// Runs the step for all vertices.
+struct PlainProjectVertices {
+  template <class Exec>
+  static void run(Exec& exec, const sheet_steps::ProjectVertex& step) {
+    exec.for_each("project", step.position.size, step);
+  }
+};
+
+template <class Exec>
+LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& surface, bool may_bridge) {
+  using namespace sheet_steps;
+  LaidMesh laid;
+  const int64_t vertices = mesh.position.size();
+  laid.smooth = std::move(mesh.position);
+  laid.position = exec.template make<PointQ8>(vertices);
+  laid.source_triangle = exec.template make<uint32_t>(vertices);
+  smooth_corners(exec, mesh, kSheetSmoothingSteps, laid.smooth, laid.position);
+  Exec::Kernels::ProjectVertices::run(
+      exec, ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
+  smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
+  return laid;
+}
+
+}  // namespace isoshell
