@@ -89,16 +89,19 @@ DeviceStream* take_stream(int device) {
 
 __global__ void probe() {}
 
-/// The build may hold machine code for other chips only.
+/// The build may hold machine code for other chips only, and the driver may be too old to make it from PTX.
 void require_code(int device) {
   cudaFuncAttributes attributes;
   const cudaError_t status = cudaFuncGetAttributes(&attributes, probe);
-  if (status != cudaErrorNoKernelImageForDevice && status != cudaErrorInvalidDeviceFunction)
-    return require_success(status, "cudaFuncGetAttributes");
+  const bool is_missing = status == cudaErrorNoKernelImageForDevice || status == cudaErrorInvalidDeviceFunction ||
+                          status == cudaErrorUnsupportedPtxVersion || status == cudaErrorInvalidPtx ||
+                          status == cudaErrorJitCompilerNotFound;
+  if (!is_missing) return require_success(status, "cudaFuncGetAttributes");
   cudaGetLastError();
   throw Error(ErrorCode::no_device, "device",
-              "this build has no machine code for CUDA device " + std::to_string(device) +
-                  ": build with CMAKE_CUDA_ARCHITECTURES for its chip, or use --device cpu");
+              "this build has no machine code for CUDA device " + std::to_string(device) + " (" +
+                  cudaGetErrorString(status) +
+                  "): update the driver, build with CMAKE_CUDA_ARCHITECTURES for its chip, or use --device cpu");
 }
 
 void return_stream(void* stream) {
@@ -120,11 +123,31 @@ int64_t rounded(int64_t bytes) {
 
 }  // namespace
 
+/// What a kernel of this or another context leaves behind when it fails.
+static bool is_fault(cudaError_t status) {
+  switch (status) {
+    case cudaErrorIllegalAddress:
+    case cudaErrorIllegalInstruction:
+    case cudaErrorInvalidAddressSpace:
+    case cudaErrorInvalidPc:
+    case cudaErrorLaunchFailure:
+    case cudaErrorLaunchTimeout:
+    case cudaErrorMisalignedAddress:
+    case cudaErrorHardwareStackError:
+    case cudaErrorAssert:
+    case cudaErrorECCUncorrectable:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::string describe_error(cudaError_t status) {
   const std::string what = cudaGetErrorString(status);
-  cudaGetLastError();  // said here; the next check is about what comes next
-  if (cudaFree(nullptr) == cudaSuccess) return what;
-  cudaGetLastError();  // a kernel's fault, of this context or another one, stays with every call of the process
+  cudaGetLastError();                           // said here; the next check is about what comes next
+  const cudaError_t stays = cudaFree(nullptr);  // a kernel's fault stays with every call of the process
+  cudaGetLastError();
+  if (!is_fault(stays)) return what;
   return what + "; a kernel of this process failed, and no context of it can use the device any more: start it again";
 }
 

@@ -115,12 +115,12 @@ __device__ inline OffsetSums sum_voxels(const ShellPass& pass, const ShellPart& 
       for (int r = 0; r < kRounds; ++r) label[r] = winner_at(winners, found.count, v[r], Normal8{0, 0, 0}, 0);
     }
     for (int c = 0; c < found.count; ++c) {
-      OffsetSums part{0, 0, 0};
+      OffsetSums of_winner{0, 0, 0};
 #pragma unroll
       for (int r = 0; r < kRounds; ++r)
-        if (label[r] == c) part.add(sums[r]);
-      part = {warp_sum(part.count_x), warp_sum(part.y_z), warp_sum(part.squares)};
-      if (lane == c) mine.add(part);
+        if (label[r] == c) of_winner.add(sums[r]);
+      of_winner = {warp_sum(of_winner.count_x), warp_sum(of_winner.y_z), warp_sum(of_winner.squares)};
+      if (lane == c) mine.add(of_winner);
     }
   }
   return mine;

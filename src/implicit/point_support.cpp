@@ -174,19 +174,20 @@ class Components {
       c.supported_area += of.points.area[i];
       ++c.points;
       supported_area_ += of.points.area[i];
-      if (c.supported_area > most_) most_ = c.supported_area;
+      if (may_stay(c)) most_ = std::max(most_, c.supported_area);
     }
   }
 
   bool keeps(uint32_t vertex) {
     const Component& c = at(vertex);
-    if (c.six_volume < 0 && !hollows_are_known_) return false;
+    if (!may_stay(c)) return false;
     if (c.supported_area == most_) return true;
     return c.points >= kFewestPoints &&
            c.supported_area >= std::max(kSmallestPart * supported_area_, kMinSupported * c.area);
   }
 
  private:
+  bool may_stay(const Component& c) const { return hollows_are_known_ || c.six_volume >= 0; }
   Component& at(uint32_t vertex) { return component_[find_root(parent_.view(), vertex)]; }
 
   const bool hollows_are_known_;

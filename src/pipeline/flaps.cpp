@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 #include "core/copy_product.h"
 #include "core/voxel_set.h"
@@ -136,10 +137,10 @@ void lay_as(const Sheet& laid, const VoxelSet& grown, Sheet& sheet) {
 }  // namespace
 
 bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
-  const SiteSet& sites = on_host(p.sites);
-  const Sheet laid = host_copy(p.sheet);
-  const SiteSet flaps = sites_of_flaps(sites, laid);
+  const SiteSet flaps = sites_of_flaps(*OnHost(p.sites), *OnHost(p.sheet));
   if (flaps.voxels.voxel_count() == 0) return false;
+  const SiteSet& sites = on_host(p.sites);
+  const Sheet laid = std::move(on_host(p.sheet));
   const VoxelSet grown = host_copy(build_shell(flaps, {grown_vox}, context)).voxels;
   LeafMasks leaves;
   add(leaves, sites.voxels);
@@ -151,6 +152,7 @@ bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, 
   p.sheet =
       build_proxy(p.walls, p.surface.frame, {closing_of_solid(p), smallest_component_q16, kNoGenus, false}, context);
   lay_as(laid, grown, on_host(p.sheet));
+  p.sheet.topology.bridged_vertices = laid.topology.bridged_vertices;  // the proxy has no sources of its own
   return true;
 }
 
