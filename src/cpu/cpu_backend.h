@@ -1,7 +1,6 @@
 // What the CPU backend provides; one file cpu_<stage>.cpp instantiates each body.
 #pragma once
 
-#include "cpu/executor_tbb.h"
 #include "stages/backend_table.h"
 
 namespace isoshell {
@@ -43,7 +42,8 @@ class CpuBackend final : public BackendTable {
 
 /// The stage, for a body that needs a shell on its way.
 struct CpuBuildShell {
-  static Shell run(CpuExecutor& exec, const SiteSet& sites, const ShellOptions& options) {
+  template <class Exec>
+  static Shell run(Exec& exec, const SiteSet& sites, const ShellOptions& options) {
     return CpuBackend().build_shell(sites, options, exec.context());
   }
 };
