@@ -285,7 +285,7 @@ class PatchSearch {
       if (base != collected_) collect<false>(base);
       each(scratch_.id, total_);
     }
-    if (const uint32_t spilt = search_.table.spill[0]) each(search_.table.spill + 1, int(spilt));
+    if (__any_sync(~0u, has_spilt_)) each(search_.table.spill + 1, int(search_.table.spill[0]));
   }
 
   static constexpr int kFewCells = 1 << 10;  ///< the most that a quick search looks at

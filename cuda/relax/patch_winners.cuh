@@ -87,13 +87,16 @@ __device__ inline uint32_t label_directly(const SeedSearch& search, const PatchB
   };
   const BucketGrid& g = search.grid;
   const PointQ8 o = box.origin;
+  bool has_spilt = false;
   for (int x = g.cell(o.x + box.lo.x - reach, 0); x <= g.cell(o.x + box.hi.x + reach, 0); ++x)
     for (int y = g.cell(o.y + box.lo.y - reach, 1); y <= g.cell(o.y + box.hi.y + reach, 1); ++y)
       for (int z = g.cell(o.z + box.lo.z - reach, 2); z <= g.cell(o.z + box.hi.z + reach, 2); ++z) {
         const SeedBucket& b = search.table.bucket[g.bucket(x, y, z)];
+        has_spilt |= b.count > kBucketSeeds;
         for (uint32_t i = 0; i < min(b.count, uint32_t(kBucketSeeds)); ++i) consider(b.id[i]);
       }
-  for (uint32_t i = 0; i < search.table.spill[0]; ++i) consider(search.table.spill[1 + i]);
+  if (has_spilt)
+    for (uint32_t i = 0; i < search.table.spill[0]; ++i) consider(search.table.spill[1 + i]);
   return label;
 }
 
