@@ -12,12 +12,14 @@ constexpr int kThreads = 128;
 RelaxReport relax_by_parts(CudaExecutor& exec, const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
                            SeedSet& seeds, const RelaxOptions& options) {
   const int64_t k = seeds.size(), leaves = shell.voxels.leaf_count();
-  const int64_t spacing_vox = relax_shell::spacing_vox(sites.voxels.voxel_count(), k);
-  const int64_t spacing_q8 = spacing_vox * kOneVoxelQ8;
-  const int edge = cube_edge_for(spacing_vox);
-  const int64_t parts = leaves * (8 / edge) * (8 / edge) * (8 / edge);
+  const int64_t spacing_q8 = relax_shell::spacing_q8(sites.voxels.voxel_count(), k);
+  const int of_leaf = parts_of_leaf(spacing_q8);
   const VoxelSetView voxels = shell.voxels.view();
-  SeedBuckets buckets = make_seed_buckets(exec, shell.voxels.block_dims, 2 * spacing_q8, k, 2);
+  Buffer<int64_t> first_part = exec.make<int64_t>(leaves);
+  exec.for_each("count parts", leaves, CountParts{voxels, of_leaf, first_part.view()});
+  const int64_t parts = exec.exclusive_scan(first_part.view());
+  // Cells that hold about five seeds, so that two in a bucket rarely overfill it.
+  SeedBuckets buckets = make_seed_buckets(exec, shell.voxels.block_dims, 7 * spacing_q8 / 4, k, 2);
   Buffer<SeedRecord> records = exec.make<SeedRecord>(k);
   Buffer<relax_shell::CellSums> cells = exec.make<relax_shell::CellSums>(k);
   Buffer<ShellPart> descriptions = exec.make<ShellPart>(parts);
@@ -41,14 +43,17 @@ RelaxReport relax_by_parts(CudaExecutor& exec, const Shell& shell, const SiteSet
                  progress.data()};
   start_shell_seeds<<<blocks_for(k, kThreads), kThreads, 0, exec.stream()>>>(move, state.data(), progress.data());
   describe_parts<<<blocks_for(leaves, kThreads / 32), kThreads, 0, exec.stream()>>>(
-      voxels, edge, descriptions.data(), offsets.data(), spacing_q8, reach.data());
+      voxels, of_leaf, first_part.view(), descriptions.data(), offsets.data());
+  exec.fill(reach.view(), int32_t(spacing_q8 * 5 / 4));
   exec.check("start passes");
+  constexpr int kRounds = 8;  // so that blocks that are done early take more, and that few have to end a pass
+  const unsigned blocks = exec.device().resident_blocks(blocks_for(parts, kPartWarps), kRounds * kPartBlocks);
   int searched = 0;
   RelaxReport report = run_passes(exec, View<const PassState>(state.view()), options.max_passes, [&] {
     pass.search.table = move.from = buckets.table(searched);
     searched = 1 - searched;
     move.to = buckets.table(searched);
-    sum_parts<<<blocks_for(parts, kPartWarps), kPartWarps * 32, 0, exec.stream()>>>(pass);
+    sum_parts<<<blocks, kPartWarps * 32, 0, exec.stream()>>>(pass);
     move_shell_seeds<<<blocks_for(k, kThreads), kThreads, 0, exec.stream()>>>(move);
     exec.check("relaxation pass");
   });

@@ -4,31 +4,46 @@
 #pragma once
 
 #include "cuda/relax/pass_end.cuh"
+#include "cuda/relax/patch_pieces.cuh"
 #include "cuda/relax/patch_winners.cuh"
 #include "stages/shell/relax_shell_body.h"
 
 namespace isoshell::cuda_relax {
 
 constexpr int kPartWarps = 4;
+constexpr int kPartBlocks = 8;  ///< a multiprocessor
 
-/// Sums over voxels of a leaf by their offsets from voxel 0. The largest: 512 * 147.
+/// Sums over voxels of a leaf by their offsets from voxel 0, 16 bits each: 512 * 7 fits.
 struct OffsetSums {
-  uint32_t count_x, y_z;  ///< 16 bits each: 512 * 7 fits
-  uint32_t squares;
+  uint32_t count_x, y_z;
 
   __device__ static OffsetSums of(int offset) {
     const uint32_t x = uint32_t(offset) >> 6, y = uint32_t(offset) >> 3 & 7, z = uint32_t(offset) & 7;
-    return {1u | x << 16, y | z << 16, x * x + y * y + z * z};
+    return {1u | x << 16, y | z << 16};
   }
-  __device__ void add(const OffsetSums& o) { count_x += o.count_x, y_z += o.y_z, squares += o.squares; }
+  __device__ void add(const OffsetSums& o) { count_x += o.count_x, y_z += o.y_z; }
+  __device__ int64_t count() const { return count_x & 0xffff; }
+  __device__ Vec64 first() const { return {int64_t(count_x >> 16), int64_t(y_z & 0xffff), int64_t(y_z >> 16)}; }
 };
+__device__ inline uint32_t square_of(int offset) {
+  const uint32_t x = uint32_t(offset) >> 6, y = uint32_t(offset) >> 3 & 7, z = uint32_t(offset) & 7;
+  return x * x + y * y + z * z;
+}
 
-/// What a pass reads of a part of a leaf beside its voxels' offsets. Parts are cubes, as large as seeds are apart: see
-/// cube_edge_for.
+/// Leaves are summed whole, or by their octants where seeds are so dense that more than kMaxWinners could label a leaf.
+inline int parts_of_leaf(int64_t seed_spacing_q8) { return seed_spacing_q8 >= 15 * kOneVoxelQ8 / 4 ? 1 : 8; }
+
+__device__ inline LeafCube part_of_leaf(const LeafMask& mask, int parts, int number) {
+  const LeafCube whole = cube_of_leaf(mask, 8, 0, 0, 0);
+  return parts == 1 ? whole : octant_of(mask, whole, number);
+}
+
+/// What a pass reads of a part of a leaf beside its voxels' offsets.
 struct alignas(16) ShellPart {
   int64_t voxel_first;
   Voxel leaf;        ///< leaf coordinates
   OffsetSums total;  ///< of all voxels
+  uint32_t squares;  ///< sum over all voxels of the squared offset
   uint16_t lo, hi;   ///< corners of the voxels' box, as offsets
   uint16_t voxels;
   uint16_t zero[5] = {};
@@ -39,7 +54,7 @@ struct ShellPass {
   const uint16_t* offset;  ///< per active voxel, in its leaf; those of a part lie together
   int64_t parts;
   SeedSearch search;
-  int32_t* reach;
+  int32_t* reach;  ///< per part: how far seeds may be that label it
   int32_t reach_slack;
   relax_shell::CellSums* cell;
   PassState* state;
@@ -47,16 +62,13 @@ struct ShellPass {
   int32_t tolerance_ppb;
 };
 
-/// Sums from voxel 0 to the seed, which is at `a` from that voxel's centre; returns their energy.
-__device__ inline Int128 add_to_shell_cell(relax_shell::CellSums& cell, const OffsetSums& s, Vec64 a) {
-  const int64_t n = s.count_x & 0xffff;
-  const Vec64 first = {int64_t(s.count_x >> 16), int64_t(s.y_z & 0xffff), int64_t(s.y_z >> 16)};
-  const Vec64 moment = first * kOneVoxelQ8 - a * n;
-  atomic_add(cell.count, n);
-  atomic_add(cell.x, moment.x);
-  atomic_add(cell.y, moment.y);
-  atomic_add(cell.z, moment.z);
-  return int64_t(s.squares) * kOneVoxelQ8 * kOneVoxelQ8 - 2 * kOneVoxelQ8 * dot(a, first) + n * dot(a, a);
+/// Adds the sums from voxel 0 to a seed that is at `a` from that voxel's centre.
+__device__ inline void add_to_shell_cell(relax_shell::CellSums& cell, const OffsetSums& s, Vec64 a) {
+  const Vec64 moment = s.first() * kOneVoxelQ8 - a * s.count();
+  in_patch::add_unread(cell.count, s.count());
+  in_patch::add_unread(cell.x, moment.x);
+  in_patch::add_unread(cell.y, moment.y);
+  in_patch::add_unread(cell.z, moment.z);
 }
 
 __device__ inline Local voxel_local(int offset) {
@@ -74,90 +86,146 @@ struct NoPenalty {
   __device__ int64_t operator()(const Winners&, int) const { return INT64_MAX; }
 };
 
-/// A part with more candidates than lists hold: each lane searches for its voxels.
-__device__ __noinline__ inline Int128 sum_part_directly(const ShellPass& pass, int64_t number, int64_t limit) {
-  Int128 energy = 0;
-  const ShellPart& part = pass.part[number];
-  const PatchBox box = box_of(part);
-  const int32_t reach = reach_of(limit);
-  for (int i = threadIdx.x & 31; i < part.voxels; i += 32) {
-    const int offset = pass.offset[part.voxel_first + i];
-    const Local u = voxel_local(offset);
-    const PointQ8 p = {box.origin.x + u.x, box.origin.y + u.y, box.origin.z + u.z};
-    const uint32_t id = label_directly(pass.search, box, reach, p, Normal8{0, 0, 0});
-    energy += add_to_shell_cell(pass.cell[id], OffsetSums::of(offset),
-                                difference(pass.search.seed[id].position(), box.origin));
-  }
-  return energy;
-}
-
-/// Sums per winner, in the lane of its number.
-__device__ inline OffsetSums sum_voxels(const ShellPass& pass, const ShellPart& part, const SearchResult& found,
-                                        const Winners& winners) {
-  constexpr int kRounds = 4;
-  const int lane = threadIdx.x & 31;
-  OffsetSums mine{0, 0, 0};
-  for (int base = 0; base < part.voxels; base += 32 * kRounds) {
-    int label[kRounds];
-    Local v[kRounds];
-    OffsetSums sums[kRounds];
-#pragma unroll
-    for (int r = 0; r < kRounds; ++r) {
-      const int i = base + 32 * r + lane;
-      const int offset = i < part.voxels ? pass.offset[part.voxel_first + i] : 0;
-      v[r] = voxel_local(offset);
-      sums[r] = i < part.voxels ? OffsetSums::of(offset) : OffsetSums{0, 0, 0};
-    }
-    if (found.narrow) {
-      winners_at(winners, found.count, v, label);
-    } else {
-#pragma unroll
-      for (int r = 0; r < kRounds; ++r) label[r] = winner_at(winners, found.count, v[r], Normal8{0, 0, 0}, 0);
-    }
-    for (int c = 0; c < found.count; ++c) {
-      OffsetSums of_winner{0, 0, 0};
-#pragma unroll
-      for (int r = 0; r < kRounds; ++r)
-        if (label[r] == c) of_winner.add(sums[r]);
-      of_winner = {warp_sum(of_winner.count_x), warp_sum(of_winner.y_z), warp_sum(of_winner.squares)};
-      if (lane == c) mine.add(of_winner);
-    }
-  }
-  return mine;
-}
-
 struct ShellScratch {
   Winners winners;
   SearchScratch search;
+  Int128 energy[32];  ///< per lane
 };
 
-/// One warp's part; returns the lane's share of the energy.
-__device__ inline Int128 sum_shell_part(const ShellPass& pass, int64_t number, ShellScratch& scratch) {
-  const ShellPart& part = pass.part[number];
-  if (part.voxels == 0) return 0;
+/// What labelling the voxels of a part gives a lane.
+struct LabelledVoxels {
+  OffsetSums sums;  ///< of the winner of the lane's number
+  int64_t energy;   ///< of the voxels that the lane labelled
+  int64_t most;     ///< squared distance of the part's voxel that is farthest from its seed
+};
+
+__device__ inline LabelledVoxels label_voxels(const ShellPass& pass, const ShellPart& part, const SearchResult& found,
+                                              const Winners& winners) {
+  constexpr int kAtOnce = 2;
   const int lane = threadIdx.x & 31;
-  const PatchBox box = box_of(part);
-  const int32_t reach = pass.reach[number];
-  SearchResult found;
-  if (!PatchSearch(pass.search, box, scratch.search).find_near(reach, scratch.winners, found) ||
-      found.limit > int64_t(reach) * reach)
-    found = find_winners(pass.search, box, reach, scratch.search, scratch.winners, NoPenalty{});
-  if (lane == 0) pass.reach[number] = reach_of(found.limit) + pass.reach_slack;
-  if (found.count > kMaxWinners) return sum_part_directly(pass, number, found.limit);
-  OffsetSums sums = part.total;
-  if (found.count > 1) sums = sum_voxels(pass, part, found, scratch.winners);
-  if (lane >= found.count || sums.count_x == 0) return 0;
-  const Local a = scratch.winners.place[lane];
-  return add_to_shell_cell(pass.cell[scratch.winners.id[lane]], sums, {a.x, a.y, a.z});
+  LabelledVoxels out{{0, 0}, 0, 0};
+  for (int base = lane; base - lane < part.voxels; base += 32 * kAtOnce) {
+    int label[kAtOnce];
+    int32_t least[kAtOnce] = {};
+    Local v[kAtOnce];
+    OffsetSums sums[kAtOnce];
+#pragma unroll
+    for (int r = 0; r < kAtOnce; ++r) {
+      const bool in = base + 32 * r < part.voxels;
+      const int offset = in ? pass.offset[part.voxel_first + base + 32 * r] : 0;
+      v[r] = voxel_local(offset);
+      sums[r] = in ? OffsetSums::of(offset) : OffsetSums{0, 0};
+    }
+    if (found.narrow) winners_at(winners, found.count, v, label, least);
+    uint32_t used = 0;
+#pragma unroll
+    for (int r = 0; r < kAtOnce; ++r) {
+      int64_t cost = uint32_t(least[r]) + in_patch::square32(v[r]);
+      if (!found.narrow) {
+        const NearestWinner nearest = nearest_winner(winners, found.count, v[r], Normal8{0, 0, 0}, 0);
+        label[r] = nearest.number;
+        cost = nearest.cost;
+      }
+      if (base + 32 * r >= part.voxels) continue;
+      used |= 1u << label[r];
+      out.energy += cost;
+      out.most = max(out.most, cost);
+    }
+    for (uint32_t left = warp_or(used); left != 0; left &= left - 1) {
+      const int winner = __ffs(int(left)) - 1;
+      OffsetSums of_winner{0, 0};
+#pragma unroll
+      for (int r = 0; r < kAtOnce; ++r)
+        if (label[r] == winner) of_winner.add(sums[r]);
+      of_winner = {warp_sum(of_winner.count_x), warp_sum(of_winner.y_z)};
+      if (lane == winner) out.sums.add(of_winner);
+    }
+  }
+  out.most = warp_max(out.most);
+  return out;
 }
 
-__global__ void __launch_bounds__(kPartWarps * 32) sum_parts(const __grid_constant__ ShellPass pass) {
-  __shared__ ShellScratch scratch[kPartWarps];
+/// Adds the sums of a part to the cells of the winners that were found, and to the lanes' energies. False when a seed
+/// beyond what was looked at may be nearer to a voxel. `reach` becomes how far seeds may be that label the part.
+__device__ inline bool sum_winners(const ShellPass& pass, const ShellPart& part, const SearchResult& found,
+                                   ShellScratch& scratch, int32_t& reach) {
+  const Winners& winners = scratch.winners;
+  const int lane = threadIdx.x & 31;
+  const int64_t reach_sq = int64_t(found.reach) * found.reach;
+  if (found.count == 1 && found.limit <= reach_sq) {
+    if (lane == 0) {
+      const Vec64 a = {winners.place[0].x, winners.place[0].y, winners.place[0].z};
+      add_to_shell_cell(pass.cell[winners.id[0]], part.total, a);
+      scratch.energy[0] += int64_t(part.squares) * kOneVoxelQ8 * kOneVoxelQ8 -
+                           2 * kOneVoxelQ8 * dot(a, part.total.first()) + part.total.count() * dot(a, a);
+    }
+    reach = reach_of(found.limit);
+    return true;
+  }
+  const LabelledVoxels labelled = label_voxels(pass, part, found, winners);
+  reach = reach_of(labelled.most);
+  if (labelled.most > reach_sq) return false;
+  if (labelled.sums.count() != 0) {
+    const WinnerPlace a = winners.place[lane];
+    add_to_shell_cell(pass.cell[winners.id[lane]], labelled.sums, {a.x, a.y, a.z});
+  }
+  scratch.energy[lane] += labelled.energy;
+  return true;
+}
+
+/// A part with more winners than lists hold: each lane looks for the seeds of its voxels, first within `reach`. Returns
+/// the squared distance of the voxel that is farthest from its seed.
+__device__ inline int64_t sum_directly(const ShellPass& pass, const ShellPart& part, int32_t reach, int64_t limit,
+                                       ShellScratch& scratch) {
+  const PointQ8 origin = box_of(part).origin;
+  int64_t most = 0;
+  for (int i = threadIdx.x & 31; i < part.voxels; i += 32) {
+    const int offset = pass.offset[part.voxel_first + i];
+    const Local u = voxel_local(offset);
+    const PointQ8 p = {origin.x + u.x, origin.y + u.y, origin.z + u.z};
+    const PatchBox at = {p, {0, 0, 0}, {0, 0, 0}, 0, 0};
+    uint32_t id = label_directly(pass.search, at, reach, p, Normal8{0, 0, 0});
+    if (id == kNone || distance_sq_q16(p, pass.search.seed[id].position()) > int64_t(reach) * reach)
+      id = label_directly(pass.search, at, reach_of(limit), p, Normal8{0, 0, 0});
+    const PointQ8 seed = pass.search.seed[id].position();
+    add_to_shell_cell(pass.cell[id], OffsetSums::of(offset), difference(seed, origin));
+    const int64_t distance_sq = distance_sq_q16(p, seed);
+    scratch.energy[threadIdx.x & 31] += distance_sq;
+    most = max(most, distance_sq);
+  }
+  return warp_max(most);
+}
+
+/// Any part, whatever the seeds around it; see sum_part.
+__device__ __noinline__ inline int32_t sum_slowly(const ShellPass& pass, const ShellPart& part, int32_t reach,
+                                                  ShellScratch& scratch) {
+  const SearchResult found =
+      find_winners(pass.search, box_of(part), reach, scratch.search, scratch.winners, NoPenalty{});
+  if (found.count > kMaxWinners) return reach_of(sum_directly(pass, part, reach, found.limit, scratch));
+  sum_winners(pass, part, found, scratch, reach);
+  return reach;
+}
+
+/// One part, by one warp. Looks for seeds within `reach` first; returns how far seeds may be that label it.
+__device__ inline int32_t sum_part(const ShellPass& pass, const ShellPart& part, int32_t reach, ShellScratch& scratch) {
+  SearchResult found;
+  while (PatchSearch(pass.search, box_of(part), scratch.search).find_near(reach, scratch.winners, found))
+    if (sum_winners(pass, part, found, scratch, reach)) return reach;
+  return sum_slowly(pass, part, reach, scratch);
+}
+
+__global__ void __launch_bounds__(kPartWarps * 32, kPartBlocks) sum_parts(const __grid_constant__ ShellPass pass) {
+  __shared__ ShellScratch of_warp[kPartWarps];
   if (pass_is_over(pass.state, pass.progress)) return;
-  const int64_t part = int64_t(blockIdx.x) * kPartWarps + (threadIdx.x >> 5);
-  Int128 energy = 0;
-  if (part < pass.parts) energy = sum_shell_part(pass, part, scratch[threadIdx.x >> 5]);
-  end_block<kPartWarps>(pass.progress, energy, [&](View<const int64_t> total) {
+  const int warp = int(threadIdx.x) >> 5, lane = int(threadIdx.x) & 31;
+  ShellScratch& scratch = of_warp[warp];
+  scratch.energy[lane] = 0;
+  for (int64_t i = int64_t(blockIdx.x) * kPartWarps + warp; i < pass.parts; i += int64_t(gridDim.x) * kPartWarps) {
+    const int32_t reach = sum_part(pass, pass.part[i], pass.reach[i], scratch);
+    if (lane == 0) pass.reach[i] = reach + pass.reach_slack;
+    __syncwarp();  // all have read the scratch
+  }
+  end_block<kPartWarps>(pass.progress, scratch.energy[lane], [&](View<const int64_t> total) {
     relax_shell::FinishPass{{pass.state, 1}, total, pass.tolerance_ppb}(0);
   });
 }
@@ -194,53 +262,59 @@ __global__ void start_shell_seeds(ShellMove m, PassState* state, PassProgress* p
   m.record[i] = seed_record(m.move.position[i], {0, 0, 0});
 }
 
-/// The part at (x, y, z) of a leaf, by a warp: lists its voxels from `first` on.
-__device__ inline ShellPart describe_part(const LeafMask& mask, Voxel leaf, int edge, Voxel at, int64_t first,
-                                          uint16_t* offsets) {
-  const int lane = threadIdx.x & 31;
-  OffsetSums total{0, 0, 0};
-  int count = 0;
-  unsigned x = 0, y = 0, z = 0;
-  for (int base = 0; base < edge * edge * edge; base += 32) {
-    const int i = base + lane;
-    const int offset = (at.x + i / (edge * edge)) << 6 | (at.y + i / edge % edge) << 3 | (at.z + i % edge);
-    const bool in = i < edge * edge * edge && (mask.word[offset >> 6 & 7] >> (offset & 63) & 1);
-    const unsigned on = __ballot_sync(kWholeWarp, in);
-    if (in) {
-      offsets[first + count + lanes_before(on)] = uint16_t(offset);
-      total.add(OffsetSums::of(offset));
-      x |= 1u << (offset >> 6), y |= 1u << (offset >> 3 & 7), z |= 1u << (offset & 7);
-    }
-    count += __popc(on);
+/// How many parts of a leaf hold voxels.
+struct CountParts {
+  VoxelSetView voxels;
+  int of_leaf;
+  View<int64_t> count;
+  __device__ void operator()(int64_t leaf) const {
+    int64_t parts = 0;
+    for (int i = 0; i < of_leaf; ++i) parts += !part_of_leaf(voxels.mask[leaf], of_leaf, i).empty();
+    count[leaf] = parts;
   }
-  total = {warp_sum(total.count_x), warp_sum(total.y_z), warp_sum(total.squares)};
-  x = warp_or(x), y = warp_or(y), z = warp_or(z);
-  const auto lowest = [](unsigned w) { return w ? __ffs(int(w)) - 1 : 0; };
-  const auto highest = [](unsigned w) { return w ? 31 - __clz(int(w)) : 0; };
-  return {first,
-          leaf,
-          total,
-          uint16_t(lowest(x) << 6 | lowest(y) << 3 | lowest(z)),
-          uint16_t(highest(x) << 6 | highest(y) << 3 | highest(z)),
-          uint16_t(count)};
-}
+};
 
 /// One warp a leaf.
-__global__ void describe_parts(VoxelSetView voxels, int edge, ShellPart* out, uint16_t* offsets, int64_t spacing_q8,
-                               int32_t* reach) {
+__global__ void describe_parts(VoxelSetView voxels, int of_leaf, View<const int64_t> first_part, ShellPart* out,
+                               uint16_t* offsets) {
   const int64_t number = (int64_t(blockIdx.x) * blockDim.x + threadIdx.x) >> 5;
+  const int lane = threadIdx.x & 31;
   if (number >= voxels.leaf_key.size) return;
-  const Voxel leaf = leaf_of_key(voxels.leaf_key[number]);
-  const int along = 8 / edge, parts = along * along * along;
-  int64_t first = voxels.first[number];
-  for (int p = 0; p < parts; ++p) {
-    const Voxel at = {p / (along * along) * edge, p / along % along * edge, p % along * edge};
-    const ShellPart part = describe_part(voxels.mask[number], leaf, edge, at, first, offsets);
-    first += part.voxels;
-    if (threadIdx.x & 31) continue;
-    out[number * parts + p] = part;
-    const Local lo = voxel_local(part.lo), hi = voxel_local(part.hi);
-    reach[number * parts + p] = reach_of(square({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z})) + int32_t(spacing_q8 * 3 / 4);
+  int64_t voxel = voxels.first[number], part = first_part[number];
+  for (int i = 0; i < of_leaf; ++i) {
+    const LeafCube cube = part_of_leaf(voxels.mask[number], of_leaf, i);
+    OffsetSums total{0, 0};
+    uint32_t squares = 0;
+    int at = 0;
+    unsigned x = 0, y = 0, z = 0;
+    for (int base = 0; base < cube.edge * 64; base += 32) {
+      const int slice = (base + lane) >> 6, offset = (cube.x << 6) + base + lane;
+      const unsigned on = __ballot_sync(~0u, cube.row[slice] >> (offset & 63) & 1);
+      if (on >> lane & 1) {
+        offsets[voxel + at + lanes_before(on)] = uint16_t(offset);
+        total.add(OffsetSums::of(offset));
+        squares += square_of(offset);
+        x |= 1u << (offset >> 6), y |= 1u << (offset >> 3 & 7), z |= 1u << (offset & 7);
+      }
+      at += __popc(on);
+    }
+    if (at == 0) continue;
+    total = {warp_sum(total.count_x), warp_sum(total.y_z)};
+    squares = warp_sum(squares);
+    x = warp_or(x), y = warp_or(y), z = warp_or(z);
+    if (lane == 0) {
+      const auto corner = [](int cx, int cy, int cz) { return uint16_t(cx << 6 | cy << 3 | cz); };
+      const auto highest = [](unsigned w) { return 31 - __clz(int(w)); };
+      out[part] = {voxel,
+                   leaf_of_key(voxels.leaf_key[number]),
+                   total,
+                   squares,
+                   corner(lowest_bit(x), lowest_bit(y), lowest_bit(z)),
+                   corner(highest(x), highest(y), highest(z)),
+                   uint16_t(at)};
+    }
+    voxel += at;
+    ++part;
   }
 }
 

@@ -31,6 +31,13 @@ ISOSHELL_HD inline LeafCube cube_of_leaf(const LeafMask& mask, int edge, int x, 
   return block;
 }
 
+/// One of the eight halves along each axis.
+ISOSHELL_HD inline LeafCube octant_of(const LeafMask& mask, const LeafCube& cube, int number) {
+  const int half = cube.edge / 2;
+  return cube_of_leaf(mask, half, cube.x + (number >> 2) * half, cube.y + (number >> 1 & 1) * half,
+                      cube.z + (number & 1) * half);
+}
+
 /// Tight box of the centres of the block's active voxels, `origin` being the centre of the leaf's voxel 0. Not for an
 /// empty block.
 ISOSHELL_HD inline BoxQ8 box_of_centres(const LeafCube& block, PointQ8 origin) {

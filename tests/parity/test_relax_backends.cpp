@@ -55,6 +55,16 @@ SeedSet seeds_on(const Sheet& sheet, int64_t count) {
   return place_seeds(sheet, {count, 1}, cpu);
 }
 
+SeedSet first_of(const SeedSet& seeds, int64_t count) {
+  SeedSet out{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count)};
+  for (int64_t i = 0; i < count; ++i) {
+    out.position[i] = seeds.position[i];
+    out.normal[i] = seeds.normal[i];
+    out.home[i] = seeds.home[i];
+  }
+  return out;
+}
+
 void label_both(const Sheet& sheet, const SeedSet& start) {
   uint64_t digests[2];
   for (const Backend backend : {Backend::cpu, Backend::cuda}) {
@@ -143,16 +153,44 @@ TEST_CASE("relax on both: triangles too large for patches", "[relax][cuda]") {
   same_after({1, 2, 20}, seeds_on(sheet, 40), 0, on_sheet(sheet));
 }
 
-TEST_CASE("relax in shell on both: seeds of any density, all in one bucket, and left alone", "[relax_shell][cuda]") {
+TEST_CASE("relax in shell on both: seeds of any density, crowded, all in one bucket, and left alone",
+          "[relax_shell][cuda]") {
   Context cpu;
   cpu.backend = Backend::cpu;
   for (const int32_t band : {1, 3}) {
     const PaperSetup setup = paper_setup(ball_skin(20), band);
     for (const int64_t count : {4, 50, 600, 2500})
       same_after({1, 2, 20}, place_seeds(setup.sites, setup.samples, {count, 3}, cpu), 0, in_shell(setup));
+    // Whole leaves where seeds are far apart on average, and more of them than a list holds in some: 400 of 2500.
+    const SeedSet dense = place_seeds(setup.sites, setup.samples, {2500, 3}, cpu);
+    same_after({1, 2, 20}, first_of(dense, 400), 0, in_shell(setup));
     SeedSet seeds = place_seeds(setup.sites, setup.samples, {100, 3}, cpu);
     for (int64_t i = 0; i < 60; ++i) seeds.position[i] = seeds.position[i % 2], seeds.home[i] = seeds.home[i % 2];
     same_after({1, 2, 20}, seeds, 0, in_shell(setup));
     same_after({60}, seeds, 10000000, in_shell(setup));
+  }
+}
+
+TEST_CASE("relax in shell on both: seeds several leaves away, and beyond the short forms", "[relax_shell][cuda]") {
+  Context cpu;
+  cpu.backend = Backend::cpu;
+  const PaperSetup setup = paper_setup(ball_skin(100), 1);
+  for (const int64_t count : {4, 40}) {
+    const SeedSet seeds = place_seeds(setup.sites, setup.samples, {count, 3}, cpu);
+    same_after({1, 2, 20}, seeds, 0, in_shell(setup));
+    same_after({1, 2, 20}, first_of(seeds, 2), 0, in_shell(setup));
+  }
+}
+
+TEST_CASE("relax in shell on both: hashed buckets that overflow", "[relax_shell][cuda]") {
+  Context cpu;
+  cpu.backend = Backend::cpu;
+  const PaperSetup setup = paper_setup(ball_skin(100), 2);
+  // As far apart as in a run of many vertices; then as dense as seeds may be.
+  for (const int64_t share : {15, 2}) {
+    const int64_t count = setup.sites.voxels.voxel_count() / share;
+    SeedSet seeds = place_seeds(setup.sites, setup.samples, {count, 3}, cpu);
+    for (int64_t i = 0; i < 100; ++i) seeds.position[i] = seeds.position[i % 2], seeds.home[i] = seeds.home[i % 2];
+    same_after({1, 2, 20}, seeds, 0, in_shell(setup));
   }
 }

@@ -171,9 +171,11 @@ struct FinishPass {
 };
 
 /// Edge of a square that holds one seed, by the count of sites, which are about one a unit of area.
-inline int64_t spacing_vox(int64_t sites, int64_t seeds) {
-  return int64_t(isqrt(uint64_t(sites / (seeds > 0 ? seeds : 1)))) + 1;
+inline int64_t spacing_q8(int64_t sites, int64_t seeds) {
+  return int64_t(isqrt(uint64_t((sites << 2 * kFractionBits) / (seeds > 0 ? seeds : 1)))) + 1;
 }
+
+inline int64_t spacing_vox(int64_t sites, int64_t seeds) { return (spacing_q8(sites, seeds) >> kFractionBits) + 1; }
 
 /// See RelaxReport.
 inline double normalised_energy_factor(int64_t seeds, int64_t voxels, int64_t sites) {
