@@ -1,6 +1,6 @@
-// Which points can be the nearest one of some voxel in a block of a leaf: gathered once a block, so that a voxel
-// compares a handful of them. Exact: a point stays out only when others are strictly nearer, or as near with a smaller
-// id, at every voxel of the block.
+// Which points can be the nearest one of some voxel in a cube of a leaf: gathered once a leaf, then again and again for
+// smaller cubes of it among those that are left, so that a voxel compares a handful of them. Exact: a point stays out
+// only when another is nearer, or as near with a smaller id, at every voxel of the cube.
 #pragma once
 
 #include "voxel/leaf.h"
@@ -8,7 +8,7 @@
 
 namespace isoshell {
 
-constexpr int kMaxCandidates = 32;
+constexpr int kMaxNear = 256;  ///< points of a list
 
 /// A cube of voxels in a leaf and its active ones.
 struct LeafCube {
@@ -38,16 +38,15 @@ ISOSHELL_HD inline LeafCube octant_of(const LeafMask& mask, const LeafCube& cube
                       cube.z + (number & 1) * half);
 }
 
-/// Tight box of the centres of the block's active voxels, `origin` being the centre of the leaf's voxel 0. Not for an
-/// empty block.
-ISOSHELL_HD inline BoxQ8 box_of_centres(const LeafCube& block, PointQ8 origin) {
+/// Tight box of the centres of the cube's active voxels, from the centre of the leaf's voxel 0. Not for an empty cube.
+ISOSHELL_HD inline BoxQ8 box_of_centres(const LeafCube& cube) {
   int x_lo = 8, x_hi = 0, y_lo = 8, y_hi = 0;
   uint64_t all = 0;
-  for (int i = 0; i < block.edge; ++i)
-    if (block.row[i]) {
-      x_lo = x_lo < 8 ? x_lo : block.x + i;
-      x_hi = block.x + i;
-      all |= block.row[i];
+  for (int i = 0; i < cube.edge; ++i)
+    if (cube.row[i]) {
+      x_lo = x_lo < 8 ? x_lo : cube.x + i;
+      x_hi = cube.x + i;
+      all |= cube.row[i];
     }
   uint32_t line = 0;
   for (int y = 0; y < 8; ++y)
@@ -59,114 +58,98 @@ ISOSHELL_HD inline BoxQ8 box_of_centres(const LeafCube& block, PointQ8 origin) {
   const int z_lo = lowest_bit(line);
   int z_hi = z_lo;
   for (int z = z_lo; z < 8; ++z) z_hi = line >> z & 1 ? z : z_hi;
-  return {{origin.x + x_lo * kOneVoxelQ8, origin.y + y_lo * kOneVoxelQ8, origin.z + z_lo * kOneVoxelQ8},
-          {origin.x + x_hi * kOneVoxelQ8, origin.y + y_hi * kOneVoxelQ8, origin.z + z_hi * kOneVoxelQ8}};
+  return {{x_lo * kOneVoxelQ8, y_lo * kOneVoxelQ8, z_lo * kOneVoxelQ8},
+          {x_hi * kOneVoxelQ8, y_hi * kOneVoxelQ8, z_hi * kOneVoxelQ8}};
 }
 
-/// Points whose least distance to the box is at most the smallest greatest distance of any point; at most
-/// kMaxCandidates.
-struct Candidates {
-  BoxQ8 box;
-  int64_t bound = int64_t(1) << 62;  ///< smallest greatest squared distance so far
-  int count = 0;
-  bool overflow = false;
-  GridPoint point[kMaxCandidates];
-  int64_t least[kMaxCandidates];  ///< least squared distance to the box
+/// Points by their places from the centre of a leaf's voxel 0.
+struct PointList {
+  int count = 0;  ///< above kMaxNear: they do not fit
+  int32_t x[kMaxNear], y[kMaxNear], z[kMaxNear];
+  uint32_t id[kMaxNear];
+  int32_t number[kMaxNear];  ///< place in the list that this one was made from
 
-  ISOSHELL_HD explicit Candidates(const BoxQ8& b) : box(b) {}
-  ISOSHELL_HD int64_t bound_q16() const { return overflow ? -1 : bound; }
-
-  ISOSHELL_HD static void add_axis(int32_t lo, int32_t hi, int32_t p, int64_t& near_sq, int64_t& far_sq) {
-    const int64_t below = int64_t(lo) - p, above = int64_t(p) - hi;
-    const int64_t out = below > above ? below : above;
-    if (out > 0) near_sq += out * out;
-    const int64_t far_lo = below < 0 ? -below : below, far_hi = above < 0 ? -above : above;
-    const int64_t far = far_lo > far_hi ? far_lo : far_hi;
-    far_sq += far * far;
-  }
-
-  ISOSHELL_HD void operator()(const GridPoint& p) {
-    int64_t near_sq = 0, far_sq = 0;
-    add_axis(box.lo.x, box.hi.x, p.position.x, near_sq, far_sq);
-    add_axis(box.lo.y, box.hi.y, p.position.y, near_sq, far_sq);
-    add_axis(box.lo.z, box.hi.z, p.position.z, near_sq, far_sq);
-    if (near_sq > bound || overflow) return;
-    bound = far_sq < bound ? far_sq : bound;
-    if (count == kMaxCandidates) drop_far();
-    if (count == kMaxCandidates) {
-      overflow = true;
-      return;
+  ISOSHELL_HD void add(Vec64 place, uint32_t its_id) {
+    if (count < kMaxNear) {
+      x[count] = int32_t(place.x), y[count] = int32_t(place.y), z[count] = int32_t(place.z);
+      id[count] = its_id;
+      number[count] = count;
     }
-    least[count] = near_sq;
-    point[count++] = p;
+    ++count;
   }
+  ISOSHELL_HD void set(int to, const PointList& from, int i) {
+    x[to] = from.x[i], y[to] = from.y[i], z[to] = from.z[i];
+    id[to] = from.id[i];
+    number[to] = from.number[i];
+  }
+  ISOSHELL_HD Vec64 place(int i) const { return {x[i], y[i], z[i]}; }
 
-  ISOSHELL_HD void drop_far() {
-    int kept = 0;
-    for (int i = 0; i < count; ++i)
-      if (least[i] <= bound) {
-        least[kept] = least[i];
-        point[kept++] = point[i];
-      }
-    count = kept;
+  /// Squared distances between voxels of the leaf and points within 64 voxels on each axis fit 32 bits, and what is
+  /// made of them here does.
+  ISOSHELL_HD bool is_narrow() const {
+    constexpr int32_t kLimit = 64 * kOneVoxelQ8;
+    uint32_t bits = 0;
+    for (int i = 0; i < count; ++i) bits |= uint32_t(x[i] + kLimit) | uint32_t(y[i] + kLimit) | uint32_t(z[i] + kLimit);
+    return bits < 2 * kLimit;
   }
 };
 
-/// True when a beats b at every point of the box: the difference of their squared distances is linear, so its largest
-/// value is that of one corner.
-ISOSHELL_HD inline bool beats_in_box(const BoxQ8& box, const GridPoint& a, const GridPoint& b) {
-  const auto axis = [](int32_t lo, int32_t hi, int32_t pa, int32_t pb) {
-    const int64_t v = pb > pa ? hi : lo;
-    return (v - pa) * (v - pa) - (v - pb) * (v - pb);
-  };
-  const int64_t most = axis(box.lo.x, box.hi.x, a.position.x, b.position.x) +
-                       axis(box.lo.y, box.hi.y, a.position.y, b.position.y) +
-                       axis(box.lo.z, box.hi.z, a.position.z, b.position.z);
-  return most < 0 || (most == 0 && a.id < b.id);
-}
-
-/// Drops what the point that is nearest to the middle of the box beats everywhere: most of what goes, for one
-/// comparison a point.
-ISOSHELL_HD inline void drop_beaten_by_best(Candidates& out) {
-  const BoxQ8& box = out.box;
+/// Points of `from` that can be the nearest one somewhere in the box: those that the one of the smallest greatest
+/// distance does not beat everywhere. The difference of two squared distances is linear, so its largest value is that
+/// of a corner. Equal distances go to the smaller id.
+template <class T>
+ISOSHELL_HD inline void keep_winnable(const PointList& from, const BoxQ8& box, PointList& to) {
+  const auto farther_end = [](int32_t lo, int32_t hi, int32_t p) { return T(p - lo > hi - p ? p - lo : hi - p); };
+  T measure[kMaxNear];
+  for (int i = 0; i < from.count; ++i) {
+    const T x = farther_end(box.lo.x, box.hi.x, from.x[i]), y = farther_end(box.lo.y, box.hi.y, from.y[i]),
+            z = farther_end(box.lo.z, box.hi.z, from.z[i]);
+    measure[i] = x * x + y * y + z * z;
+  }
+  T least = measure[0];
+  for (int i = 1; i < from.count; ++i) least = measure[i] < least ? measure[i] : least;
   int best = 0;
-  int64_t nearest = int64_t(1) << 62;
-  for (int i = 0; i < out.count; ++i) {
-    const PointQ8 p = out.point[i].position;  // twice as far as the middle is
-    const int64_t x = 2 * int64_t(p.x) - box.lo.x - box.hi.x, y = 2 * int64_t(p.y) - box.lo.y - box.hi.y,
-                  z = 2 * int64_t(p.z) - box.lo.z - box.hi.z;
-    const int64_t d = x * x + y * y + z * z;
-    if (d < nearest) nearest = d, best = i;
+  while (measure[best] != least) ++best;
+  const int32_t best_x = from.x[best], best_y = from.y[best], best_z = from.z[best];
+  const uint32_t best_id = from.id[best];
+  const auto most = [](int32_t lo, int32_t hi, int32_t best_p, int32_t p) {
+    return T(p - best_p) * T(2 * (p > best_p ? hi : lo) - p - best_p);
+  };
+  for (int i = 0; i < from.count; ++i)
+    measure[i] = most(box.lo.x, box.hi.x, best_x, from.x[i]) + most(box.lo.y, box.hi.y, best_y, from.y[i]) +
+                 most(box.lo.z, box.hi.z, best_z, from.z[i]) + (from.id[i] <= best_id ? 1 : 0);
+  int32_t kept[kMaxNear];
+  to.count = 0;
+  for (int i = 0; i < from.count; ++i) {
+    kept[to.count] = i;
+    to.count += measure[i] > 0;
   }
-  const GridPoint first = out.point[best];
-  int kept = 0;
-  for (int i = 0; i < out.count; ++i)
-    if (i == best || !beats_in_box(box, first, out.point[i])) out.point[kept++] = out.point[i];
-  out.count = kept;
+  for (int i = 0; i < to.count; ++i) to.set(i, from, kept[i]);
 }
 
-/// Gathers, drops what others beat everywhere, sorts by id. The outcome does not depend on the order within grid cells.
-ISOSHELL_HD inline void gather_candidates(const PointGridView& grid, Candidates& out) {
-  visit_around(grid, out.box, out);
-  if (out.overflow) return;
-  out.drop_far();
-  drop_beaten_by_best(out);
-  // Beating is transitive, so comparing with points that are out themselves changes nothing.
-  bool beaten[kMaxCandidates];
-  for (int b = 0; b < out.count; ++b) {
-    beaten[b] = false;
-    for (int a = 0; a < out.count && !beaten[b]; ++a)
-      beaten[b] = a != b && beats_in_box(out.box, out.point[a], out.point[b]);
-  }
-  int kept = 0;
-  for (int i = 0; i < out.count; ++i) {
-    if (beaten[i]) continue;
-    const GridPoint p = out.point[i];
-    int at = kept++;
-    for (; at > 0 && out.point[at - 1].id > p.id; --at) out.point[at] = out.point[at - 1];
-    out.point[at] = p;
-  }
-  out.count = kept;
+/// The same points by ascending id.
+ISOSHELL_HD inline void sort_by_id(const PointList& from, PointList& to) {
+  int32_t place[kMaxNear];
+  for (int i = 0; i < from.count; ++i) place[i] = 0;
+  for (int j = 0; j < from.count; ++j)
+    for (int i = 0; i < from.count; ++i) place[i] += from.id[j] < from.id[i] ? 1 : 0;
+  for (int i = 0; i < from.count; ++i) to.set(place[i], from, i);
+  to.count = from.count;
+}
+
+/// Gathers the points that are within reach of a box on every axis: those that the nearest one of a voxel is among
+/// while it is no farther than that. The box is from `origin`, the centre of the leaf's voxel 0.
+ISOSHELL_HD inline void gather_near(const PointGridView& grid, PointQ8 origin, const BoxQ8& box, int32_t reach_q8,
+                                    PointList& out) {
+  const PointQ8 lo = {origin.x + box.lo.x - reach_q8, origin.y + box.lo.y - reach_q8, origin.z + box.lo.z - reach_q8},
+                hi = {origin.x + box.hi.x + reach_q8, origin.y + box.hi.y + reach_q8, origin.z + box.hi.z + reach_q8};
+  out.count = 0;
+  const auto add = [&](const GridPoint& p) {
+    const PointQ8 at = p.position;
+    if (at.x >= lo.x && at.x <= hi.x && at.y >= lo.y && at.y <= hi.y && at.z >= lo.z && at.z <= hi.z)
+      out.add(difference(at, origin), p.id);
+  };
+  visit_box(grid, {lo, hi}, add);
 }
 
 }  // namespace isoshell

@@ -13,19 +13,18 @@ using namespace isoshell;
 
 namespace {
 
-std::vector<uint32_t> labels_of(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int64_t spacing, int edge) {
+std::vector<uint32_t> labels_of(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int64_t spacing) {
   TestContext context;
   PlainExecutor exec(context, "test");
   PointGrid grid = make_point_grid(exec, voxels.block_dims, spacing, int64_t(seeds.size()));
   std::vector<PointQ8> copy = seeds;
-  const Buffer<uint32_t> label = label_nearest(exec, voxels, grid, {copy.data(), int64_t(copy.size())}, edge);
+  const Buffer<uint32_t> label = label_nearest(exec, voxels, grid, {copy.data(), int64_t(copy.size())});
   return {label.data(), label.data() + label.size()};
 }
 
 void check_labels(const VoxelSet& voxels, const std::vector<PointQ8>& seeds) {
   const std::vector<uint32_t> expect = oracle::nearest_seeds(voxels, seeds);
-  for (const int edge : {8, 4, 2})
-    for (const int64_t spacing : {1, 5, 40}) CHECK(labels_of(voxels, seeds, spacing, edge) == expect);
+  for (const int64_t spacing : {1, 5, 40}) CHECK(labels_of(voxels, seeds, spacing) == expect);
 }
 
 /// How many cubes of this edge have too many candidates for a list.
@@ -42,11 +41,33 @@ int64_t overflows(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int
         for (int z = 0; z < 8; z += edge) {
           const LeafCube cube = cube_of_leaf(voxels.mask[l], edge, x, y, z);
           if (cube.empty()) continue;
-          Candidates candidates(box_of_centres(cube, voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[l]), 0))));
-          gather_candidates(grid.view(), candidates);
-          count += candidates.overflow;
+          PointList near;
+          const PointQ8 origin = voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[l]), 0));
+          gather_near(grid.view(), origin, box_of_centres(cube), kOneVoxelQ8, near);
+          count += near.count > kMaxNear;
         }
   return count;
+}
+
+/// Seeds at random in the voxels 116 to 123 of each axis: the most are more than the voxels of a shell there.
+std::vector<PointQ8> crowd(int count) {
+  std::vector<PointQ8> out;
+  for (int i = 0; i < count; ++i) {
+    const uint64_t r = random_bits(5, uint64_t(i));
+    const auto coordinate = [&](int shift) { return 116 * kOneVoxelQ8 + int32_t(r >> shift & 0x7ff); };
+    out.push_back({coordinate(0), coordinate(11), coordinate(22)});
+  }
+  return out;
+}
+
+/// Seeds with a home where a pass needs one.
+SeedSet seeds_on(const PaperSetup& setup, const std::vector<PointQ8>& positions) {
+  SeedSet seeds = seeds_at(positions);
+  for (int64_t i = 0; i < seeds.size(); ++i) {
+    const int64_t voxel = find_voxel(setup.shell.voxels.view(), voxel_of(seeds.position[i]));
+    if (voxel >= 0) seeds.home[i] = setup.shell.closest_site[voxel];
+  }
+  return seeds;
 }
 
 }  // namespace
@@ -71,11 +92,12 @@ TEST_CASE("nearest seed: exact where candidate lists overflow", "[relax_shell][s
   const PaperSetup setup = paper_setup(ball_skin(14), 2);
   std::vector<PointQ8> dense;
   for (Voxel v : voxels_of(setup.sites.voxels)) dense.push_back(voxel_centre(v));
-  CHECK(overflows(setup.shell.voxels, dense, 8) > 0);
   check_labels(setup.shell.voxels, dense);
+  CHECK(overflows(setup.shell.voxels, crowd(3000), 8) > 0);
+  check_labels(setup.shell.voxels, crowd(3000));
   // A heap of seeds in one place, and rings at the same distance of one voxel: nothing can be dropped.
-  std::vector<PointQ8> heap(2 * kMaxCandidates, voxel_centre({128, 128, 114}));
-  for (int i = 0; i < 2 * kMaxCandidates; ++i) heap.push_back({heap[0].x + i, heap[0].y - i * i, heap[0].z});
+  std::vector<PointQ8> heap(2 * kMaxNear, voxel_centre({128, 128, 114}));
+  for (int i = 0; i < 2 * kMaxNear; ++i) heap.push_back({heap[0].x + i, heap[0].y - i * i, heap[0].z});
   CHECK(overflows(setup.shell.voxels, heap, 4) > 0);
   check_labels(setup.shell.voxels, heap);
 }
@@ -87,39 +109,65 @@ TEST_CASE("nearest seed: exact when seeds are hundreds of voxels away", "[relax_
   check_labels(setup.shell.voxels, {{65536, 65536, 15000}, {65530, 65540, 15100}, {65540, 65536, 15100}});
 }
 
+TEST_CASE("nearest seed: exact for any number of seeds in a leaf", "[relax_shell][stage]") {
+  const PaperSetup setup = paper_setup(ball_skin(10), 2);
+  for (const int count : {1, 3, 9, 33, 70, kMaxNear, kMaxNear + 1, 900}) check_labels(setup.shell.voxels, crowd(count));
+}
+
+namespace {
+
+/// Relaxes for one pass and compares with sums over all voxels and seeds.
+void check_one_pass(const PaperSetup& setup, SeedSet seeds, int32_t most) {
+  TestContext context;
+  const std::vector<PointQ8> before = positions(seeds);
+  const std::vector<oracle::Cell> cells = oracle::cells(setup.shell.voxels, before);
+  const RelaxReport report = relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, {1, 0, most}, context);
+  int64_t energy = 0;
+  for (int64_t i = 0; i < seeds.size(); ++i) {
+    const oracle::Cell& cell = cells[size_t(i)];
+    const PointQ8 p = before[size_t(i)];
+    energy += cell.energy_q16;
+    if (cell.count == 0) {
+      CHECK(seeds.position[i] == p);
+      continue;
+    }
+    const Vec64 step = {round_div(cell.moment.x, cell.count), round_div(cell.moment.y, cell.count),
+                        round_div(cell.moment.z, cell.count)};
+    const Vec64 made = difference(seeds.position[i], p);
+    const PointQ8 centre = {p.x + int32_t(step.x), p.y + int32_t(step.y), p.z + int32_t(step.z)};
+    const bool stays = find_voxel(setup.shell.voxels.view(), voxel_of(centre)) >= 0;
+    if (dot(step, step) <= int64_t(most) * most) {
+      CHECK((!stays || seeds.position[i] == centre));
+    } else if (find_voxel(setup.shell.voxels.view(), voxel_of(seeds.position[i])) >= 0 && most < 256) {
+      CHECK(dot(made, made) <= int64_t(most + 1) * (most + 1));
+      CHECK(dot(made, made) >= int64_t(most - 2) * (most - 2));
+      CHECK(dot(made, step) > 0);
+    }
+    CHECK(find_voxel(setup.shell.voxels.view(), voxel_of(seeds.position[i])) >= 0);
+  }
+  CHECK(report.energy[0] == double(energy >> 8));
+}
+
+}  // namespace
+
 TEST_CASE("relax in shell: one pass moves every seed to the mean of its voxels, at most u", "[relax_shell][stage]") {
   TestContext context;
   for (const auto& shape : {ball_skin(17), voxel_shapes::all(20)[1]}) {
     const PaperSetup setup = paper_setup(shape, 3);
-    for (const int32_t most : {1 << 20, 256, 40}) {
-      SeedSet seeds = place_seeds(setup.sites, setup.samples, {40, 9}, context);
-      const std::vector<PointQ8> before = positions(seeds);
-      const std::vector<oracle::Cell> cells = oracle::cells(setup.shell.voxels, before);
-      RelaxReport report = relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, {1, 0, most}, context);
-      int64_t energy = 0;
-      for (int64_t i = 0; i < seeds.size(); ++i) {
-        const oracle::Cell& cell = cells[size_t(i)];
-        energy += cell.energy_q16;
-        const Vec64 step = {round_div(cell.moment.x, cell.count), round_div(cell.moment.y, cell.count),
-                            round_div(cell.moment.z, cell.count)};
-        const PointQ8 p = before[size_t(i)];
-        const Vec64 made = difference(seeds.position[i], p);
-        const PointQ8 centre = {p.x + int32_t(step.x), p.y + int32_t(step.y), p.z + int32_t(step.z)};
-        const bool stays = find_voxel(setup.shell.voxels.view(), voxel_of(centre)) >= 0;
-        if (dot(step, step) <= int64_t(most) * most) {
-          CHECK((!stays || seeds.position[i] == centre));
-        } else if (find_voxel(setup.shell.voxels.view(), voxel_of(seeds.position[i])) >= 0 && most < 256) {
-          CHECK(dot(made, made) <= int64_t(most + 1) * (most + 1));
-          CHECK(dot(made, made) >= int64_t(most - 2) * (most - 2));
-          CHECK(dot(made, step) > 0);
-        }
-        CHECK(find_voxel(setup.shell.voxels.view(), voxel_of(seeds.position[i])) >= 0);
-      }
-      // Each leaf's share of a cell is cut to 1/256 voxel^2 once.
-      CHECK(report.energy[0] <= double(energy) / 256);
-      CHECK(report.energy[0] > double(energy) / 256 - double(40 * setup.shell.voxels.leaf_count()));
-    }
+    for (const int32_t most : {1 << 20, 256, 40})
+      check_one_pass(setup, place_seeds(setup.sites, setup.samples, {40, 9}, context), most);
   }
+}
+
+TEST_CASE("relax in shell: one pass is right for crowds of seeds, in one place, and leaves away from most voxels",
+          "[relax_shell][stage]") {
+  const PaperSetup setup = paper_setup(ball_skin(17), 2);
+  for (const int count : {4, 40, 400, 3000}) check_one_pass(setup, seeds_on(setup, crowd(count)), 1 << 20);
+  std::vector<PointQ8> heap = crowd(50);
+  for (size_t i = 10; i < heap.size(); ++i) heap[i] = heap[i % 3];
+  check_one_pass(setup, seeds_on(setup, heap), 1 << 20);
+  const PaperSetup large = paper_setup(ball_skin(70), 2);
+  check_one_pass(large, seeds_on(large, {voxel_centre({58, 128, 128}), voxel_centre({128, 198, 128})}), 1 << 20);
 }
 
 TEST_CASE("relax in shell: a seed that leaves the shell goes to a sample of a site near by", "[relax_shell][stage]") {

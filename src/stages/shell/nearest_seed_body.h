@@ -1,6 +1,5 @@
-// Nearest seed of every active voxel (paper section 3.2), by cubes of voxels: a list of candidates a cube, eighths of
-// the cube where the list does not fit, and one search a voxel where seeds are as dense as voxels. All give the same
-// labels.
+// Nearest seed of every active voxel (paper section 3.2), by leaves: one list of the seeds near a leaf, shorter ones
+// for its smaller cubes, and one search a voxel where seeds are too many for a list. All give the same labels.
 #pragma once
 
 #include "stages/sparse/point_grid_body.h"
@@ -8,30 +7,57 @@
 
 namespace isoshell {
 
-/// Which of `count` candidates is nearest to the voxel at (x, y, z) of a leaf, as the smallest linear form
-/// |a|^2 - 2 a.v, a from the centre of the leaf's voxel 0. T = int32_t holds it while every |a| < 64 voxels on each
-/// axis.
+/// The active voxels of a cube, by their places from the centre of the leaf's voxel 0, and what labelling finds.
 template <class T>
-struct CandidateForms {
-  T constant[kMaxCandidates], per_x[kMaxCandidates], per_y[kMaxCandidates], per_z[kMaxCandidates];
+struct LabelledVoxels {
+  int count = 0;
+  int32_t offset[512];
+  T x[512], y[512], z[512];
+  T distance_sq_q16[512];
+  int32_t nearest[512];  ///< place in the list
 
-  ISOSHELL_HD CandidateForms(const Candidates& candidates, PointQ8 origin) {
-    for (int c = 0; c < candidates.count; ++c) {
-      const Vec64 a = difference(candidates.point[c].position, origin);
-      constant[c] = T(dot(a, a));
-      per_x[c] = T(-2 * kOneVoxelQ8 * a.x);
-      per_y[c] = T(-2 * kOneVoxelQ8 * a.y);
-      per_z[c] = T(-2 * kOneVoxelQ8 * a.z);
+  ISOSHELL_HD explicit LabelledVoxels(const LeafCube& cube) {
+    for (int i = 0; i < cube.edge; ++i)
+      for (uint64_t bits = cube.row[i]; bits; bits &= bits - 1) offset[count++] = (cube.x + i) << 6 | lowest_bit(bits);
+    int whole = count;
+    while (whole % 4 != 0) offset[whole++] = 0;
+    for (int i = 0; i < whole; ++i) {
+      x[i] = (offset[i] >> 6) * kOneVoxelQ8;
+      y[i] = (offset[i] >> 3 & 7) * kOneVoxelQ8;
+      z[i] = (offset[i] & 7) * kOneVoxelQ8;
     }
   }
-  ISOSHELL_HD static bool fits(const Candidates& candidates, PointQ8 origin) {
-    if (sizeof(T) == 8) return true;
-    for (int c = 0; c < candidates.count; ++c) {
-      const Vec64 a = difference(candidates.point[c].position, origin);
-      const int64_t limit = 64 * kOneVoxelQ8;
-      if (a.x <= -limit || a.x >= limit || a.y <= -limit || a.y >= limit || a.z <= -limit || a.z >= limit) return false;
+
+  ISOSHELL_HD T most_distance_sq_q16() const {
+    T most = 0;
+    for (int i = 0; i < count; ++i) most = distance_sq_q16[i] > most ? distance_sq_q16[i] : most;
+    return most;
+  }
+
+  /// Equal distances go to the first.
+  ISOSHELL_HD void find_nearest(const PointList& points) {
+    const int whole = (count + 3) / 4 * 4;
+    offer_first(points.place(0), whole);
+    for (int c = 1; c < points.count; ++c) offer(points.place(c), c, whole);
+  }
+
+ private:
+  ISOSHELL_HD T to(Vec64 p, int i) const {
+    const T dx = x[i] - T(p.x), dy = y[i] - T(p.y), dz = z[i] - T(p.z);
+    return dx * dx + dy * dy + dz * dz;
+  }
+  ISOSHELL_HD void offer_first(Vec64 p, int whole) {
+    for (int i = 0; i < whole; ++i) {
+      distance_sq_q16[i] = to(p, i);
+      nearest[i] = 0;
     }
-    return true;
+  }
+  ISOSHELL_HD void offer(Vec64 p, int c, int whole) {
+    for (int i = 0; i < whole; ++i) {
+      const T here = to(p, i);
+      nearest[i] = here < distance_sq_q16[i] ? c : nearest[i];
+      distance_sq_q16[i] = here < distance_sq_q16[i] ? here : distance_sq_q16[i];
+    }
   }
 };
 
@@ -40,66 +66,18 @@ struct WriteLabels {
   VoxelSetView voxels;
   View<uint32_t> label;
 
-  struct Block {
+  struct Cube {
     const WriteLabels& to;
     int64_t leaf;
-    const Candidates& candidates;
-    ISOSHELL_HD void run(int candidate, int x, int y, int z, int count) const {
-      for (int i = z; i < z + count; ++i) to.voxel(leaf, x << 6 | y << 3 | i, candidates.point[candidate].id);
-    }
+    const PointList& near;
+    ISOSHELL_HD void voxel(int number, int offset, int64_t) const { to.voxel(leaf, offset, near.id[number]); }
     ISOSHELL_HD void finish() const {}
   };
-  ISOSHELL_HD Block open(int64_t leaf, const Candidates& candidates) const { return {*this, leaf, candidates}; }
+  ISOSHELL_HD Cube open(int64_t leaf, const PointList& near) const { return {*this, leaf, near}; }
   ISOSHELL_HD void voxel(int64_t leaf, int offset, uint32_t seed) const {
     label[voxels.first[leaf] + rank_in_leaf(voxels.mask[leaf], offset)] = seed;
   }
 };
-
-/// Number of the smallest form at z, the first of equals. `line`: the forms at z = 0 of a row.
-template <class T>
-ISOSHELL_HD inline int smallest_form(const CandidateForms<T>& form, const T* line, int count, int z) {
-  int best = 0;
-  T least = T(line[0] + z * form.per_z[0]);
-  for (int c = 1; c < count; ++c) {
-    const T here = T(line[c] + z * form.per_z[c]);
-    best = here < least ? c : best;
-    least = here < least ? here : least;
-  }
-  return best;
-}
-
-/// Labels the rows of a cube. A cell is convex, ties included, so a run of voxels whose ends share a label has that
-/// label.
-template <class T, class Sink>
-ISOSHELL_HD inline void label_block_as(const Candidates& candidates, const LeafCube& block, PointQ8 origin,
-                                       Sink& sink) {
-  const CandidateForms<T> form(candidates, origin);
-  T line[kMaxCandidates];
-  for (int x = block.x; x < block.x + block.edge; ++x)
-    for (int y = block.y; y < block.y + block.edge; ++y) {
-      uint32_t bits = uint32_t(block.row[x - block.x] >> (8 * y)) & 255;
-      if (bits == 0) continue;
-      for (int c = 0; c < candidates.count; ++c) line[c] = T(form.constant[c] + x * form.per_x[c] + y * form.per_y[c]);
-      while (bits) {
-        const int z = lowest_bit(bits), length = lowest_bit(~(bits >> z));
-        bits &= ~uint32_t(0) << (z + length);
-        const int first = smallest_form(form, line, candidates.count, z);
-        const int last = length == 1 ? first : smallest_form(form, line, candidates.count, z + length - 1);
-        if (first == last) {
-          sink.run(first, x, y, z, length);
-          continue;
-        }
-        sink.run(first, x, y, z, 1);
-        for (int i = z + 1; i < z + length - 1; ++i)
-          sink.run(smallest_form(form, line, candidates.count, i), x, y, i, 1);
-        sink.run(last, x, y, z + length - 1, 1);
-      }
-    }
-}
-
-/// Edge of the cubes that get one candidate list each: a leaf, or a part of one when seeds are closer, so that lists
-/// stay short and a voxel costs about the same whatever the number of seeds.
-inline int cube_edge_for(int64_t seed_spacing_vox) { return seed_spacing_vox >= 6 ? 8 : seed_spacing_vox >= 3 ? 4 : 2; }
 
 /// One leaf: label its active voxels and hand the labels to the sink.
 template <class Sink>
@@ -107,57 +85,97 @@ struct LabelLeaf {
   VoxelSetView voxels;
   PointGridView grid;
   Sink sink;
-  int first_edge;  ///< see cube_edge_for
+  View<int32_t> reach_q8;  ///< per leaf: how far to look first. Labels do not depend on it; they set it for next time
+  int32_t slack_q8;        ///< how much farther than labels were
 
-  ISOSHELL_HD void operator()(int64_t leaf) const { label_cube<8>(leaf, 0, 0, 0); }
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    const int64_t most = label(leaf, cube_of_leaf(voxels.mask[leaf], 8, 0, 0, 0), reach_q8[leaf]);
+    reach_q8[leaf] = reach_of(most) + slack_q8;
+  }
 
-  /// By one list, or by eighths.
-  template <int kEdge>
-  ISOSHELL_HD void label_cube(int64_t leaf, int x, int y, int z) const {
-    const LeafCube cube = cube_of_leaf(voxels.mask[leaf], kEdge, x, y, z);
-    if (cube.empty() || (kEdge <= first_edge && label(leaf, cube))) return;
-    if constexpr (kEdge > 2) {
-      constexpr int kHalf = kEdge / 2;
-      for (int octant = 0; octant < 8; ++octant)
-        label_cube<kHalf>(leaf, x + (octant >> 2) * kHalf, y + (octant >> 1 & 1) * kHalf, z + (octant & 1) * kHalf);
-    } else {
-      label_each(leaf, cube);
+ private:
+  ISOSHELL_HD static int32_t reach_of(int64_t distance_sq_q16) { return int32_t(isqrt(uint64_t(distance_sq_q16))) + 1; }
+
+  /// Lists the seeds within reach of the cube, and looks again where a label is farther than that. Returns the largest
+  /// squared distance of a voxel from its seed.
+  ISOSHELL_HD int64_t label(int64_t leaf, const LeafCube& cube, int32_t reach) const {
+    if (cube.empty()) return 0;
+    const PointQ8 origin = voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[leaf]), 0));
+    const BoxQ8 box = box_of_centres(cube);
+    for (PointList near;;) {
+      gather_near(grid, origin, box, reach, near);
+      if (near.count > kMaxNear) return label_parts(leaf, cube, reach);
+      if (near.count == 0) {
+        reach *= 2;
+        continue;
+      }
+      auto into = sink.open(leaf, near);
+      const int64_t most =
+          near.is_narrow() ? divide<int32_t>(leaf, cube, near, into) : divide<int64_t>(leaf, cube, near, into);
+      if (most <= int64_t(reach) * reach) {
+        into.finish();
+        return most;
+      }
+      reach = reach_of(most);
     }
   }
 
-  /// False when the candidates do not fit; nothing was handed over then.
-  ISOSHELL_HD bool label(int64_t leaf, const LeafCube& block) const {
-    const PointQ8 origin = voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[leaf]), 0));
-    Candidates candidates(box_of_centres(block, origin));
-    gather_candidates(grid, candidates);
-    if (candidates.overflow || candidates.count == 0) return false;
-    auto into = sink.open(leaf, candidates);
-    if (CandidateForms<int32_t>::fits(candidates, origin))
-      label_block_as<int32_t>(candidates, block, origin, into);
-    else
-      label_block_as<int64_t>(candidates, block, origin, into);
-    into.finish();
-    return true;
+  /// Of a cube with more seeds around it than a list holds: its octants; a voxel looks for its seed by itself.
+  ISOSHELL_HD int64_t label_parts(int64_t leaf, const LeafCube& cube, int32_t reach) const {
+    if (cube.edge == 1) {
+      const int offset = cube.x << 6 | cube.y << 3 | cube.z;
+      const NearestPoint nearest =
+          nearest_point(grid, voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[leaf]), offset)));
+      sink.voxel(leaf, offset, nearest.id);
+      return nearest.distance_sq_q16;
+    }
+    int64_t most = 0;
+    for (int i = 0; i < 8; ++i) {
+      const int64_t here = label(leaf, octant_of(voxels.mask[leaf], cube, i), reach);
+      most = here > most ? here : most;
+    }
+    return most;
   }
 
-  ISOSHELL_HD void label_each(int64_t leaf, const LeafCube& block) const {
-    const Voxel at = leaf_of_key(voxels.leaf_key[leaf]);
-    for (int x = 0; x < block.edge; ++x)
-      for (uint64_t bits = block.row[x]; bits; bits &= bits - 1) {
-        const int offset = (block.x + x) << 6 | lowest_bit(bits);
-        sink.voxel(leaf, offset, nearest_point(grid, voxel_centre(voxel_at(at, offset))).id);
-      }
+  /// Labels from those of the seeds that can win in the cube; where they are many, by octants.
+  template <class T, class Into>
+  ISOSHELL_HD int64_t divide(int64_t leaf, const LeafCube& cube, const PointList& seeds, Into& into) const {
+    constexpr int kMany = 4096;  // of voxels and seeds in pairs: then shorter lists save more than they cost
+    PointList winnable;
+    keep_winnable<T>(seeds, box_of_centres(cube), winnable);
+    if (winnable.count * cube.edge * cube.edge * cube.edge <= kMany) return label_voxels<T>(cube, winnable, into);
+    int64_t most = 0;
+    for (int i = 0; i < 8; ++i) {
+      const LeafCube octant = octant_of(voxels.mask[leaf], cube, i);
+      if (octant.empty()) continue;
+      const int64_t here = divide<T>(leaf, octant, winnable, into);
+      most = here > most ? here : most;
+    }
+    return most;
+  }
+
+  template <class T, class Into>
+  ISOSHELL_HD static int64_t label_voxels(const LeafCube& cube, const PointList& seeds, Into& into) {
+    PointList sorted;
+    sort_by_id(seeds, sorted);
+    LabelledVoxels<T> voxels(cube);
+    voxels.find_nearest(sorted);
+    for (int i = 0; i < voxels.count; ++i)
+      into.voxel(sorted.number[voxels.nearest[i]], voxels.offset[i], voxels.distance_sq_q16[i]);
+    return voxels.most_distance_sq_q16();
   }
 };
 
 /// Per active voxel the seed of the smallest (squared distance from the voxel's centre, seed id).
 template <class Exec>
-Buffer<uint32_t> label_nearest(Exec& exec, const VoxelSet& voxels, PointGrid& grid, View<const PointQ8> seeds,
-                               int edge) {
+Buffer<uint32_t> label_nearest(Exec& exec, const VoxelSet& voxels, PointGrid& grid, View<const PointQ8> seeds) {
   Buffer<uint32_t> label = exec.template make<uint32_t>(voxels.voxel_count());
+  Buffer<int32_t> reach_q8 = exec.template make<int32_t>(voxels.leaf_count());
+  exec.fill(reach_q8.view(), int32_t(1) << grid.shift);
   fill_point_grid(exec, grid, seeds);
-  exec.for_each("nearest seed", voxels.leaf_count(),
-                LabelLeaf<WriteLabels>{voxels.view(), grid.view(), WriteLabels{voxels.view(), label.view()}, edge});
+  exec.for_each(
+      "nearest seed", voxels.leaf_count(),
+      LabelLeaf<WriteLabels>{voxels.view(), grid.view(), WriteLabels{voxels.view(), label.view()}, reach_q8.view(), 0});
   return label;
 }
 

@@ -23,53 +23,58 @@ struct CellSums {
   int64_t count, x, y, z;
 };
 
-/// What labelling does with its labels: adds them up per cube and candidate, then once per cube to the cells.
+/// What labelling does with its labels: adds them up per cube and seed near it, then once per cube to the cells.
 struct SumCells {
   VoxelSetView voxels;
   View<const PointQ8> position;
   View<CellSums> cells;
   View<SplitSum> energy;  ///< per leaf, zero at first
 
-  /// count, x, y, z (voxels from the leaf's voxel 0) in 16 bits each: 512 * 7 fits.
+  /// Sums over voxels by their offsets from the leaf's voxel 0: count, x, y, z in 16 bits each, 512 * 7 fits.
   struct Cube {
     const SumCells& to;
     int64_t leaf;
-    const Candidates& candidates;
-    uint64_t sums[kMaxCandidates] = {};
-    uint32_t squares[kMaxCandidates] = {};
+    const PointList& near;
+    int64_t energy = 0;
+    uint64_t sums[kMaxNear];
 
-    /// The voxels z .. z + n - 1 of a row; both sums over z are exact in integers.
-    ISOSHELL_HD void run(int candidate, int x, int y, int z, int n) {
-      const int first = n * z + n * (n - 1) / 2;
-      const int second = n * z * z + z * n * (n - 1) + (n - 1) * n * (2 * n - 1) / 6;
-      sums[candidate] += uint64_t(n) | uint64_t(n * x) << 16 | uint64_t(n * y) << 32 | uint64_t(first) << 48;
-      squares[candidate] += uint32_t(n * (x * x + y * y) + second);
+    ISOSHELL_HD Cube(const SumCells& sink, int64_t of_leaf, const PointList& around)
+        : to(sink), leaf(of_leaf), near(around) {
+      for (int i = 0; i < near.count; ++i) sums[i] = 0;
+    }
+    ISOSHELL_HD void voxel(int number, int offset, int64_t distance_sq_q16) {
+      sums[number] += one_voxel(offset);
+      energy += distance_sq_q16;
     }
     ISOSHELL_HD void finish() const {
-      for (int c = 0; c < candidates.count; ++c)
-        if (sums[c]) to.add(leaf, candidates.point[c], sums[c], squares[c]);
+      for (int i = 0; i < near.count; ++i)
+        if (sums[i]) add(to.cells[near.id[i]], near.place(i), sums[i]);
+      to.add_energy(leaf, energy);
     }
   };
-  ISOSHELL_HD Cube open(int64_t leaf, const Candidates& candidates) const { return {*this, leaf, candidates}; }
+  ISOSHELL_HD Cube open(int64_t leaf, const PointList& near) const { return {*this, leaf, near}; }
 
   ISOSHELL_HD void voxel(int64_t leaf, int offset, uint32_t seed) const {
-    const uint32_t x = uint32_t(offset) >> 6, y = uint32_t(offset) >> 3 & 7, z = uint32_t(offset) & 7;
-    add(leaf, {position[seed], seed}, uint64_t(1) | uint64_t(x) << 16 | uint64_t(y) << 32 | uint64_t(z) << 48,
-        x * x + y * y + z * z);
+    const Voxel at = leaf_of_key(voxels.leaf_key[leaf]);
+    add(cells[seed], difference(position[seed], voxel_centre(voxel_at(at, 0))), one_voxel(offset));
+    add_energy(leaf, distance_sq_q16(position[seed], voxel_centre(voxel_at(at, offset))));
   }
 
-  ISOSHELL_HD void add(int64_t leaf, const GridPoint& seed, uint64_t sums, uint32_t squares) const {
-    const Vec64 a = difference(seed.position, voxel_centre(voxel_at(leaf_of_key(voxels.leaf_key[leaf]), 0)));
+  ISOSHELL_HD static uint64_t one_voxel(int offset) {
+    const uint64_t x = uint64_t(offset) >> 6, y = uint64_t(offset) >> 3 & 7, z = uint64_t(offset) & 7;
+    return 1 | x << 16 | y << 32 | z << 48;
+  }
+  /// To the cell of a seed that is at `a` from the centre of the leaf's voxel 0.
+  ISOSHELL_HD static void add(CellSums& cell, Vec64 a, uint64_t sums) {
     const int64_t n = int64_t(sums & 0xffff);
     const Vec64 first = {int64_t(sums >> 16 & 0xffff), int64_t(sums >> 32 & 0xffff), int64_t(sums >> 48)};
     const Vec64 moment = first * kOneVoxelQ8 - a * n;
-    const int64_t share =
-        int64_t(squares) * kOneVoxelQ8 * kOneVoxelQ8 - 2 * kOneVoxelQ8 * dot(a, first) + n * dot(a, a);
-    CellSums& cell = cells[seed.id];
     atomic_add(cell.count, n);
     atomic_add(cell.x, moment.x);
     atomic_add(cell.y, moment.y);
     atomic_add(cell.z, moment.z);
+  }
+  ISOSHELL_HD void add_energy(int64_t leaf, int64_t share) const {
     const SplitSum parts = SplitSum::of(share);
     energy[leaf].high += parts.high;
     energy[leaf].low += parts.low;
@@ -175,8 +180,6 @@ inline int64_t spacing_q8(int64_t sites, int64_t seeds) {
   return int64_t(isqrt(uint64_t((sites << 2 * kFractionBits) / (seeds > 0 ? seeds : 1)))) + 1;
 }
 
-inline int64_t spacing_vox(int64_t sites, int64_t seeds) { return (spacing_q8(sites, seeds) >> kFractionBits) + 1; }
-
 /// See RelaxReport.
 inline double normalised_energy_factor(int64_t seeds, int64_t voxels, int64_t sites) {
   return double(seeds) / (double(1 << (2 * kFractionBits - kEnergyShift)) * double(voxels) * double(sites));
@@ -188,16 +191,22 @@ template <class Exec>
 RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& sites, const SiteSamples& samples,
                                 SeedSet& seeds, const RelaxOptions& options) {
   using namespace relax_shell;
-  const int64_t k = seeds.size(), spacing = spacing_vox(sites.voxels.voxel_count(), k);
+  const int64_t k = seeds.size(), leaves = shell.voxels.leaf_count();
+  const int64_t spacing = spacing_q8(sites.voxels.voxel_count(), k);
   const VoxelSetView voxels = shell.voxels.view();
-  PointGrid grid = make_point_grid(exec, shell.voxels.block_dims, spacing, k);
+  PointGrid grid = make_point_grid(exec, shell.voxels.block_dims, (spacing >> kFractionBits) + 1, k);
   Buffer<CellSums> cells = exec.template make<CellSums>(k);
-  Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(shell.voxels.leaf_count());
+  Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(leaves);
+  Buffer<int32_t> reach_q8 = exec.template make<int32_t>(leaves);
   Buffer<int64_t> energy = exec.template make<int64_t>(2);
   Buffer<PassState> state = exec.template make<PassState>(1);
   exec.for_each("start passes", 1, StartPasses{state.view()});
-  const LabelLeaf<SumCells> sum_leaf{
-      voxels, grid.view(), {voxels, seeds.position.view(), cells.view(), leaf_energy.view()}, cube_edge_for(spacing)};
+  exec.fill(reach_q8.view(), int32_t(spacing * 5 / 4));
+  const LabelLeaf<SumCells> sum_leaf{voxels,
+                                     grid.view(),
+                                     {voxels, seeds.position.view(), cells.view(), leaf_energy.view()},
+                                     reach_q8.view(),
+                                     int32_t(spacing / 8)};
   const MoveSeed move{voxels,
                       shell.closest_site.view(),
                       sites.voxels.view(),
@@ -213,7 +222,7 @@ RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& s
     fill_point_grid(exec, grid, View<const PointQ8>(seeds.position.view()));
     exec.fill(cells.view(), CellSums{});
     exec.fill(leaf_energy.view(), SplitSum{0, 0});
-    exec.for_each("sum cells", shell.voxels.leaf_count(), sum_leaf);
+    exec.for_each("sum cells", leaves, sum_leaf);
     exec.for_each("move seeds", k, move);
     sum_split_into(exec, energy.view(), leaf_energy.view());
     exec.for_each("finish pass", 1, finish);
