@@ -1,4 +1,4 @@
-// Microseconds per relaxation pass on the device, and whether it gives what the CPU gives.
+// Milliseconds per relaxation pass on the device, of both methods, and whether they give what the CPU gives.
 //   bench_cuda_relax MESH [--check] [--no-time] [--no-shell] rRESOLUTION K [K ...] [rRESOLUTION K [K ...]] ...
 #include <algorithm>
 #include <chrono>
@@ -174,9 +174,10 @@ int main(int argc, char** argv) {
       if (want_time) shell = measure(sites, in_shell);
     }
     all_same &= same;
-    std::printf("%-16s V %9lld k %8lld  sheet %8.1f us (+ %.0f)  shell %8.1f us (+ %.0f)  %s\n", name.c_str(),
-                (long long)setup.sheet.vertex_count(), (long long)k, sheet.pass_us, sheet.start_us, shell.pass_us,
-                shell.start_us, want_check ? same ? "same as the CPU" : "DIFFERS" : "");
+    std::printf("%-16s k %8lld  sheet V %9lld %8.4f ms (+ %.2f)  shell voxels %9lld %8.4f ms (+ %.2f)  %s\n",
+                name.c_str(), (long long)k, (long long)setup.sheet.vertex_count(), sheet.pass_us / 1000,
+                sheet.start_us / 1000, (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0),
+                shell.pass_us / 1000, shell.start_us / 1000, want_check ? same ? "same as the CPU" : "DIFFERS" : "");
     std::fflush(stdout);
   }
   return all_same ? 0 : 1;
