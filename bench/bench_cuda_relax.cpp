@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
       const double before = now_us();
       setup = prepare(soup, std::atoi(argv[a] + 1), want_shell);
       std::printf("%s %s: %lld sheet vertices, %lld leaves, %lld shell voxels, prepared in %.0f ms\n", name.c_str(),
-                  argv[a], (long long)setup.sheet.vertex_count(), (long long)setup.sheet.corners.leaf_count(),
+                  argv[a], (long long)setup.sheet.vertex_count(), (long long)setup.sheet.blocks.count(),
                   (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0), (now_us() - before) / 1000);
       continue;
     }

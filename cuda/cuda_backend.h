@@ -19,23 +19,24 @@ class CudaBackend final : public BackendTable {
   SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const override;
   SiteSet coarsen_sites(const SiteSet&, Context&) const override;
   Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const override;
-  void set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const override;
-  void smooth_edge_lengths(Sheet&, int32_t rounds, Context&) const override;
-  int64_t seed_shares(const Sheet&, Context&) const override;
-  void copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context&) const override;
-  Buffer<uint32_t> measure_curvature(const Sheet&, int32_t rounds, Context&) const override;
-  SeedSet place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&) const override;
+  void set_edge_lengths(SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const override;
+  void smooth_edge_lengths(SurfaceMesh&, int32_t rounds, Context&) const override;
+  int64_t seed_shares(const SurfaceMesh&, Context&) const override;
+  void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context&) const override;
+  Buffer<uint32_t> measure_curvature(const SurfaceMesh&, int32_t rounds, Context&) const override;
+  SeedSet place_seeds_on_surface(const SurfaceMesh&, const SeedOptions&, Context&) const override;
   SeedSet place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&) const override;
-  RelaxReport relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&) const override;
+  RelaxReport relax_on_sheet(const SurfaceMesh&, SeedSet&, const RelaxOptions&, Context&) const override;
   RelaxReport relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
                              Context&) const override;
-  void attach_to_sheet(const Sheet&, SeedSet&, int, Context&) const override;
+  void attach_to_sheet(const SurfaceMesh&, SeedSet&, int, Context&) const override;
   VoronoiLabels flood_shell(const Shell&, const SeedSet&, Context&) const override;
-  DualMesh triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&) const override;
-  SeedSet subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&) const override;
-  OptimizeReport optimize_mesh(const Sheet&, const OptimizeOptions&, SeedSet&, DualMesh&, Context&) const override;
-  int64_t six_volume_vox(const Sheet&, Context&) const override;
-  void collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const override;
+  DualMesh triangulate_dual(const SurfaceMesh&, SeedSet&, const DualOptions&, DualReport&, Context&) const override;
+  SeedSet subdivide_seeds(const SurfaceMesh&, const DualMesh&, const SeedSet&, int64_t, Context&) const override;
+  OptimizeReport optimize_mesh(const SurfaceMesh&, const OptimizeOptions&, SeedSet&, DualMesh&,
+                               Context&) const override;
+  int64_t six_volume_vox(const SurfaceMesh&, Context&) const override;
+  void collapse_edges(const SurfaceMesh&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const override;
   int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const override;
   void finish_stages(Context&) const override;
 };

@@ -50,7 +50,7 @@ struct Spread;
 }  // namespace flood
 namespace label {
 template <int kCapacity>
-struct LabelLeaf;
+struct LabelBlock;
 }
 namespace sample_cooperative {
 struct CountMet;
@@ -111,8 +111,8 @@ struct CudaKernels {
       attach_seeds::AttachSeed,
       // flood_cooperative.cuh: a warp a leaf; what it reads of its 26 neighbours lies in shared memory.
       flood::FindNeighbours, flood::ListReached, flood::Spread,
-      // label_cooperative.cuh: a warp a leaf, which gathers the leaf's candidates together.
-      label::LabelLeaf<256>,
+      // label_cooperative.cuh: a warp a block of vertices, which gathers the block's candidates together.
+      label::LabelBlock<256>,
       // sample_cooperative.cuh: a warp a leaf, a lane a site.
       SortLeafTriangles, SampleSites, sample_cooperative::CountMet, sample_cooperative::FillMet,
       // sheet_components.cuh: a warp a leaf, a lane a vertex.

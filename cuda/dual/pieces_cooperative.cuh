@@ -53,7 +53,7 @@ struct CooperativeKernel<dual::DecideDisconnectedPiece>
     pieces_cooperative::Nearest nearest;
     bool largest = true;
     for (int64_t m = disconnected_pieces.first[s] + lane; m < disconnected_pieces.first[s + 1]; m += 32)
-      step.graph.for_each_corner(disconnected_pieces.vertex(m), [&](uint32_t w, uint32_t) {
+      step.graph.for_each_neighbour(disconnected_pieces.vertex(m), [&](uint32_t w) {
         const uint32_t other = step.piece[w];
         if (other == root) return;
         const uint32_t owner = step.label[w];

@@ -54,7 +54,7 @@ struct ListNeighbours {
     const uint32_t v = split.queue[at], id = split.label[v];
     uint32_t* const slot = &scratch.neighbour[at * kSlots];
     int count = 0;
-    split.graph.for_each_corner(v, [&](uint32_t w, uint32_t) {
+    split.graph.for_each_neighbour(v, [&](uint32_t w) {
       if (split.label[w] != id) return;
       if (count < kSlots) slot[count] = scratch.place_of[w];
       ++count;
@@ -82,7 +82,7 @@ struct Work {
     const uint32_t* const slot = &scratch.neighbour[(first + p) * kSlots];
     bool found = false;
     if (slot[0] == kMany) {
-      split.graph.for_each_corner(vertex(p), [&](uint32_t w, uint32_t) {
+      split.graph.for_each_neighbour(vertex(p), [&](uint32_t w) {
         if (split.label[w] == id) found = found || visit(scratch.place_of[w]);
       });
       return found;
@@ -93,7 +93,7 @@ struct Work {
   }
   __device__ bool touches(uint32_t v, uint32_t other) const {
     bool found = false;
-    split.graph.for_each_corner(v, [&](uint32_t w, uint32_t) { found = found || split.label[w] == other; });
+    split.graph.for_each_neighbour(v, [&](uint32_t w) { found = found || split.label[w] == other; });
     return found;
   }
 };

@@ -7,10 +7,10 @@
 
 namespace isoshell {
 
-OptimizeReport CudaBackend::optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds,
+OptimizeReport CudaBackend::optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds,
                                           DualMesh& mesh, Context& context) const {
   CudaExecutor exec(context, "post");
-  return optimize_mesh_body(exec, *OnDevice<Sheet>(exec, sheet), options, on_device(exec, seeds),
+  return optimize_mesh_body(exec, *OnDevice<SurfaceMesh>(exec, surface), options, on_device(exec, seeds),
                             on_device(exec, mesh));
 }
 

@@ -31,8 +31,8 @@ struct CooperativeKernel<attach_seeds::AttachSeed> : FormOf<attach_seeds::Attach
     const uint32_t vertex = attach_cooperative::nearest_point(step.vertices, p, lane).id;
     if (lane != 0) return;
     step.home[i] = vertex;
-    step.normal[i] = step.sheet.normal[vertex];
-    step.position[i] = step.sheet.closest_around(vertex, p);
+    step.normal[i] = step.walk.normal[vertex];
+    step.position[i] = step.walk.closest_around(vertex, p);
   }
 };
 

@@ -6,9 +6,9 @@
 
 namespace isoshell {
 
-void CudaBackend::attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) const {
+void CudaBackend::attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, int halvings, Context& context) const {
   CudaExecutor exec(context, "attach");
-  attach_to_sheet_body(exec, *OnDevice<Sheet>(exec, sheet), on_device(exec, seeds), halvings);
+  attach_to_sheet_body(exec, *OnDevice<SurfaceMesh>(exec, surface), on_device(exec, seeds), halvings);
 }
 
 }  // namespace isoshell

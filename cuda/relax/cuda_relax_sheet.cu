@@ -35,10 +35,10 @@ PassKernels kernels_for(int64_t patches, int processors) {
   return {label_patches<24>, sum_patches<16>, move_seeds<8>, 24, 16, true};
 }
 
-RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const SheetPatches& patches,
+RelaxReport relax_by_patches(CudaExecutor& exec, const SurfaceMesh& surface, const SheetPatches& patches,
                              const SeedSpacing& spacing, SeedSet& seeds, const RelaxOptions& options) {
   const int64_t count = seeds.size(), parts = patches.patch.size();
-  SeedBuckets buckets = make_seed_buckets(exec, sheet.corners.block_dims, 2 * spacing.h_q8, count, 2);
+  SeedBuckets buckets = make_seed_buckets(exec, surface.extent_vox, 2 * spacing.h_q8, count, 2);
   Buffer<SeedRecord> records = exec.make<SeedRecord>(count);
   Buffer<PointQ8> last = exec.make<PointQ8>(count);
   Buffer<relax_sheet::CellSum> cells = exec.make<relax_sheet::CellSum>(count);
@@ -47,7 +47,7 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
   Buffer<PassState> state = exec.make<PassState>(1);
   Buffer<PassProgress> progress = exec.make<PassProgress>(1);
 
-  const WalkOntoSheet walk = walk_onto(sheet);
+  const WalkOntoSheet walk = walk_onto(surface);
   const relax_sheet::MovingSeeds moving = relax_sheet::moving_seeds(walk, seeds, last.view(), spacing, options);
   SheetPass pass{patches.view(),
                  {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},
@@ -84,10 +84,10 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const Sheet& sheet, const Sheet
 
 }  // namespace
 
-RelaxReport CudaBackend::relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options,
+RelaxReport CudaBackend::relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options,
                                         Context& context) const {
   CudaExecutor exec(context, "relax_sheet");
-  const OnDevice<Sheet> here(exec, sheet);
+  const OnDevice<SurfaceMesh> here(exec, surface);
   on_device(exec, seeds);
   const SeedSpacing spacing = seed_spacing(exec, *here, seeds.size());
   const SheetPatches patches =

@@ -5,9 +5,10 @@
 
 namespace isoshell {
 
-SeedSet CudaBackend::place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) const {
+SeedSet CudaBackend::place_seeds_on_surface(const SurfaceMesh& surface, const SeedOptions& options,
+                                            Context& context) const {
   CudaExecutor exec(context, "seeds");
-  return place_seeds_body(exec, *OnDevice<Sheet>(exec, sheet), options);
+  return place_seeds_body(exec, *OnDevice<SurfaceMesh>(exec, surface), options);
 }
 
 SeedSet CudaBackend::place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,

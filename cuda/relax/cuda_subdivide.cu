@@ -6,17 +6,17 @@
 
 namespace isoshell {
 
-SeedSet CudaBackend::subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
-                                     Context& context) const {
+SeedSet CudaBackend::subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds,
+                                     int64_t target, Context& context) const {
   CudaExecutor exec(context, "subdivide");
-  return subdivide_seeds_body(exec, *OnDevice<Sheet>(exec, sheet), *OnDevice<DualMesh>(exec, mesh),
+  return subdivide_seeds_body(exec, *OnDevice<SurfaceMesh>(exec, surface), *OnDevice<DualMesh>(exec, mesh),
                               *OnDevice<SeedSet>(exec, seeds), target);
 }
 
-void CudaBackend::collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
-                                 bool keep_apart) const {
+void CudaBackend::collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
+                                 Context& context, bool keep_apart) const {
   CudaExecutor exec(context, "collapse");
-  collapse_edges_body(exec, *OnDevice<Sheet>(exec, sheet), {target, keep_apart}, on_device(exec, seeds),
+  collapse_edges_body(exec, *OnDevice<SurfaceMesh>(exec, surface), {target, keep_apart}, on_device(exec, seeds),
                       on_device(exec, mesh));
 }
 

@@ -1,4 +1,4 @@
-// Form of the step that labels a sheet: a warp a leaf. Lanes gather the seeds near the leaf, then label its vertices.
+// Form of the step that labels a sheet: a warp a block. Lanes gather the seeds near the block, then label its vertices.
 #pragma once
 
 #include "cuda/runtime/cooperative_kernel.cuh"
@@ -7,23 +7,23 @@
 namespace isoshell {
 namespace label_cooperative {
 
-constexpr int kCapacity = 128;  ///< seeds of a leaf; more take the exact slow path
+constexpr int kCapacity = 128;  ///< seeds of a block; more take the exact slow path
 
 struct Candidates {
   label::LabelSeed seed[kCapacity];
 };
 
-/// One leaf and the warp that labels it.
-class LeafLabeller {
+/// One block and the warp that labels it.
+class BlockLabeller {
  public:
-  __device__ LeafLabeller(const label::LabelLeaf<>& step, int64_t leaf, Candidates& candidates, int lane)
+  __device__ BlockLabeller(const label::LabelBlock<>& step, int64_t block, Candidates& candidates, int lane)
       : step_(step),
         candidates_(candidates),
         lane_(lane),
-        begin_(step.corners.first[leaf]),
-        end_(step.corners.first[leaf + 1]) {}
+        begin_(step.blocks.first[block]),
+        end_(step.blocks.first[block + 1]) {}
 
-  /// Looks among the seeds within reach of the leaf's bounds. When the dearest label costs no more than a seed beyond
+  /// Looks among the seeds within reach of the block's bounds. When the dearest label costs no more than a seed beyond
   /// would, the labels are right; else that cost says how far to look.
   __device__ void run() {
     find_bounds();
@@ -132,7 +132,7 @@ class LeafLabeller {
     return best;
   }
 
-  const label::LabelLeaf<>& step_;
+  const label::LabelBlock<>& step_;
   Candidates& candidates_;
   const int lane_;
   const int64_t begin_, end_;
@@ -142,10 +142,10 @@ class LeafLabeller {
 }  // namespace label_cooperative
 
 template <>
-struct CooperativeKernel<label::LabelLeaf<>> : FormOf<label::LabelLeaf<>> {
+struct CooperativeKernel<label::LabelBlock<>> : FormOf<label::LabelBlock<>> {
   using Shared = label_cooperative::Candidates;
-  static __device__ void run(const label::LabelLeaf<>& step, int64_t leaf, Shared& candidates, int lane) {
-    label_cooperative::LeafLabeller(step, leaf, candidates, lane).run();
+  static __device__ void run(const label::LabelBlock<>& step, int64_t block, Shared& candidates, int lane) {
+    label_cooperative::BlockLabeller(step, block, candidates, lane).run();
   }
 };
 

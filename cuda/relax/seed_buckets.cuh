@@ -78,12 +78,12 @@ struct SeedBuckets {
   BucketTable table(int which) { return {bucket[which].data(), spill[which].data()}; }
 };
 
-/// Cells of edge `edge_q8` over a lattice of `blocks`, for `seeds` seeds. Empty.
-inline SeedBuckets make_seed_buckets(CudaExecutor& exec, const int32_t blocks[3], int64_t edge_q8, int64_t seeds,
+/// Cells of edge `edge_q8` over a lattice of this extent, for `seeds` seeds. Empty.
+inline SeedBuckets make_seed_buckets(CudaExecutor& exec, const int32_t extent_vox[3], int64_t edge_q8, int64_t seeds,
                                      int tables) {
   SeedBuckets out;
-  const int64_t lattice_q8[3] = {int64_t(blocks[0]) * 128 * kOneVoxelQ8, int64_t(blocks[1]) * 128 * kOneVoxelQ8,
-                                 int64_t(blocks[2]) * 128 * kOneVoxelQ8};
+  const int64_t lattice_q8[3] = {int64_t(extent_vox[0]) * kOneVoxelQ8, int64_t(extent_vox[1]) * kOneVoxelQ8,
+                                 int64_t(extent_vox[2]) * kOneVoxelQ8};
   int64_t cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
     out.grid.dims[axis] = int32_t(lattice_q8[axis] / edge_q8) + 1;

@@ -10,28 +10,28 @@ constexpr int kWarps = 2;
 constexpr int kHashSlots = 2048;
 
 struct PatchSource {
-  VoxelSetView corners;
+  VertexBlocksView blocks;
   View<const PointQ8> position;
   View<const Normal8> normal;
   View<const TriangleIndices> triangles;
   View<const int64_t> vertex_first;
   View<const uint32_t> vertex_triangles;
   EdgeLengthsView lengths;
-  const int64_t* patch_first;  ///< of each leaf, and in the end how many there are
+  const int64_t* patch_first;  ///< of each block, and in the end how many there are
   int64_t patches;
 
   /// Vertices of a patch.
   struct Part {
-    int64_t leaf, begin, end;
+    int64_t block, begin, end;
   };
   __device__ Part part(int64_t patch) const {
-    int64_t lo = 0, hi = corners.leaf_key.size;
+    int64_t lo = 0, hi = blocks.centre.size;
     while (hi - lo > 1) {
       const int64_t middle = (lo + hi) / 2;
       (patch_first[middle] <= patch ? lo : hi) = middle;
     }
     const int64_t number = patch - patch_first[lo], parts = patch_first[lo + 1] - patch_first[lo];
-    const int64_t begin = corners.first[lo], count = corners.first[lo + 1] - begin;
+    const int64_t begin = blocks.first[lo], count = blocks.first[lo + 1] - begin;
     return {lo, begin + count * number / parts, begin + count * (number + 1) / parts};
   }
 
@@ -89,9 +89,9 @@ struct CountParts {
   View<const int64_t> first;
   View<int64_t> parts;
   int max_own;
-  __device__ void operator()(int64_t leaf) const {
-    const int64_t own = leaf + 1 < first.size ? first[leaf + 1] - first[leaf] : 0;
-    parts[leaf] = (own + max_own - 1) / max_own;
+  __device__ void operator()(int64_t block) const {
+    const int64_t own = block + 1 < first.size ? first[block + 1] - first[block] : 0;
+    parts[block] = (own + max_own - 1) / max_own;
   }
 };
 
@@ -149,7 +149,7 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   source.for_each_triangle(part, lane, [&](TriangleIndices t) { foreign.insert_corners(t, own_end); });
   __syncwarp();
 
-  const PointQ8 origin = relax_sheet::leaf_origin(source.corners.leaf_key[part.leaf]);
+  const PointQ8 origin = source.blocks.centre[part.block];
   const int64_t first = to.first.vertices[number];
   label::Bounds bounds = label::empty_bounds();
   bool fits = true;
@@ -226,15 +226,15 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
 
 }  // namespace
 
-SheetPatches make_sheet_patches(CudaExecutor& exec, const Sheet& sheet, int max_own) {
-  const int64_t leaves = sheet.corners.leaf_count();
-  Buffer<int64_t> patch_first = exec.make<int64_t>(leaves + 1);
-  exec.for_each("count patches of leaves", leaves + 1,
-                CountParts{View<const int64_t>(sheet.corners.first.view()), patch_first.view(), max_own});
+SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, int max_own) {
+  const Buffer<int64_t>& block_first = surface.blocks.first;
+  Buffer<int64_t> patch_first = exec.make<int64_t>(block_first.size());
+  exec.for_each("count patches of blocks", block_first.size(),
+                CountParts{block_first.view(), patch_first.view(), max_own});
   const int64_t count = exec.exclusive_scan(patch_first.view());
-  const PatchSource source{sheet.corners.view(),   sheet.position.view(),     sheet.normal.view(),
-                           sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
-                           lengths_of(sheet),      patch_first.data(),        count};
+  const PatchSource source{surface.blocks.view(),    surface.position.view(),     surface.normal.view(),
+                           surface.triangles.view(), surface.vertex_first.view(), surface.vertex_triangles.view(),
+                           lengths_of(surface),      patch_first.data(),          count};
   const unsigned blocks = unsigned((count + kWarps - 1) / kWarps);
   SheetPatches out;
   Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),

@@ -1,11 +1,11 @@
-// The sheet cut into patches, parts of a leaf of about the same size, each with all that a pass reads of it: copies of
+// The sheet cut into patches, parts of a block of about the same size, each with all that a pass reads of it: copies of
 // its vertices and of those around it that its triangles use, triangles by their places among these, bounds, and the
 // moments of the whole and of each of its own vertices. A triangle is its smallest vertex's own.
 #pragma once
 
 #include "cuda/relax/label_sums.cuh"
 #include "cuda/runtime/executor_cuda.cuh"
-#include "isoshell/sheet.h"
+#include "isoshell/surface_mesh.h"
 #include "stages/relax/relax_sheet_body.h"
 #include "voxel/cell_sum.h"
 
@@ -14,7 +14,7 @@ namespace isoshell::cuda_relax {
 constexpr int kMaxPatchVertices = 1024;  ///< of its own and around them
 constexpr int kMaxLocal = 1 << 13;       ///< bound of a local coordinate: the budget of voxel/cell_sum.h
 
-/// A vertex relative to the middle of the patch's leaf, q8.
+/// A vertex relative to the middle of the patch's block, q8.
 struct alignas(8) PatchVertex {
   int16_t x, y, z, unused;
   __device__ Local local() const { return {x, y, z}; }
@@ -65,6 +65,6 @@ struct SheetPatches {
 };
 
 /// Makes the patches of a sheet in device memory, with at most so many vertices of their own.
-SheetPatches make_sheet_patches(CudaExecutor& exec, const Sheet& sheet, int max_own);
+SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, int max_own);
 
 }  // namespace isoshell::cuda_relax

@@ -205,7 +205,7 @@ class CudaExecutor {
   /// Whether steps may use a product as it lies: made in this stream, so in the order of its work.
   template <class Product>
   bool owns(const Product& product) const {
-    return &memory_of(product) == &stream_;
+    return lies_where(product, [&](const Memory& memory) { return &memory == &stream_; });
   }
 
   /// A copy of any Buffer in this stream's memory. The owner of the Buffer may free it right away: another stream of

@@ -32,9 +32,9 @@ Sheet CudaBackend::build_proxy(const SiteSet& sites, const LatticeFrame& frame, 
   return build_proxy_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
 }
 
-int64_t CudaBackend::six_volume_vox(const Sheet& sheet, Context& context) const {
+int64_t CudaBackend::six_volume_vox(const SurfaceMesh& surface, Context& context) const {
   CudaExecutor exec(context, "sheet");
-  return six_volume_vox_body(exec, *OnDevice<Sheet>(exec, sheet));
+  return six_volume_vox_body(exec, *OnDevice<SurfaceMesh>(exec, surface));
 }
 
 }  // namespace isoshell

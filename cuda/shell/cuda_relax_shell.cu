@@ -1,6 +1,7 @@
 // CUDA's relax_in_shell: passes of two kernels.
 #include "cuda/cuda_backend.h"
 #include "cuda/shell/relax_shell_pass.cuh"
+#include "stages/sparse/drop_empty_leaves.h"
 
 namespace isoshell {
 namespace {
@@ -19,7 +20,7 @@ RelaxReport relax_by_parts(CudaExecutor& exec, const Shell& shell, const SiteSet
   exec.for_each("count parts", leaves, CountParts{voxels, of_leaf, first_part.view()});
   const int64_t parts = exec.exclusive_scan(first_part.view());
   // Cells that hold about five seeds, so that two in a bucket rarely overfill it.
-  SeedBuckets buckets = make_seed_buckets(exec, shell.voxels.block_dims, 7 * spacing_q8 / 4, k, 2);
+  SeedBuckets buckets = make_seed_buckets(exec, BlockExtent(shell.voxels.view()).vox, 7 * spacing_q8 / 4, k, 2);
   Buffer<SeedRecord> records = exec.make<SeedRecord>(k);
   Buffer<relax_shell::CellSums> cells = exec.make<relax_shell::CellSums>(k);
   Buffer<ShellPart> descriptions = exec.make<ShellPart>(parts);

@@ -14,9 +14,10 @@ using MendReport [[deprecated("RepairReport")]] = RepairReport;
 using UniteOptions [[deprecated("UnionOptions")]] = UnionOptions;
 using UniteReport [[deprecated("UnionReport")]] = UnionReport;
 
-[[deprecated("optimize_mesh")]] inline OptimizeReport improve_mesh(const Sheet& sheet, const OptimizeOptions& options,
-                                                                   SeedSet& seeds, DualMesh& mesh, Context& context) {
-  return optimize_mesh(sheet, options, seeds, mesh, context);
+[[deprecated("optimize_mesh")]] inline OptimizeReport improve_mesh(const SurfaceMesh& surface,
+                                                                   const OptimizeOptions& options, SeedSet& seeds,
+                                                                   DualMesh& mesh, Context& context) {
+  return optimize_mesh(surface, options, seeds, mesh, context);
 }
 [[deprecated("build_proxy")]] inline Sheet build_outline(const SiteSet& sites, const LatticeFrame& frame,
                                                          const SheetOptions& options, Context& context) {

@@ -1,7 +1,7 @@
 // The sheet: the closed 2-manifold that bounds the solid inside the shell, laid onto the surface.
 #pragma once
 
-#include "isoshell/lattice_surface.h"
+#include "isoshell/surface_mesh.h"
 #include "isoshell/voxel_set.h"
 
 namespace isoshell {
@@ -15,29 +15,15 @@ struct SheetTopology {
   int64_t cut_handles = 0;         ///< false ones, where near parts of the surface share voxels
 };
 
-/// Edge lengths to aim at, where they vary. Only ratios count: the number of seeds decides the rest.
-struct EdgeLengths {
-  Buffer<uint32_t> at;  ///< per sheet vertex; empty: the same everywhere
-  uint32_t least = 0, largest = 0;
-};
-
-/// Result: vertex i is lattice corner i of `corners` in canonical order. Triangles come from the boundary faces of the
-/// solid, two a face, in the order of (solid voxel, face), oriented outward.
-struct Sheet {
+/// The mesh, and the lattice that it comes from. Result: vertex i is lattice corner i of `corners` in canonical order,
+/// and a block has the vertices of a leaf. Triangles come from the boundary faces of the solid, two a face, in the
+/// order of (solid voxel, face), oriented outward. Positions are on the input surface, or on a smooth bridge over a
+/// gap.
+struct Sheet : SurfaceMesh {
   LatticeFrame frame;
   VoxelSet corners;
-  Buffer<PointQ8> position;          ///< on the input surface, or a smooth bridge over a gap
-  Buffer<Normal8> normal;            ///< outward, per vertex
   Buffer<uint32_t> source_triangle;  ///< of the surface, nearest to the vertex; kNone on a bridge
-  Buffer<TriangleIndices> triangles;
-  Buffer<int64_t> vertex_first;       ///< vertex_count + 1 offsets into vertex_triangles
-  Buffer<uint32_t> vertex_triangles;  ///< ascending per vertex
-  Buffer<PointQ8> missed;             ///< points of a closed surface that are 1/2 to 4 voxels off the sheet
-  Buffer<uint32_t> missed_vertex;     ///< the vertex nearest to each
   SheetTopology topology;
-  EdgeLengths lengths;  ///< empty as built; see set_edge_lengths
-
-  int64_t vertex_count() const { return position.size(); }
 };
 
 }  // namespace isoshell

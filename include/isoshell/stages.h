@@ -1,4 +1,6 @@
 // The stages, each a pure function from products to the next product. Their order is the order of this file.
+//
+// What takes a SurfaceMesh takes one with borders too, unless it says that it needs a closed one: then it throws usage.
 #pragma once
 
 #include <vector>
@@ -63,31 +65,33 @@ SiteSet coarsen_sites(const SiteSet& sites, Context& context);
 /// two sides would lie on each other.
 Sheet build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options, Context& context);
 
-/// Six times the volume inside a sheet, in whole voxels, rounded down once.
-int64_t six_volume_vox(const Sheet& sheet, Context& context);
+/// Six times the volume inside a surface, in whole voxels, rounded down once. Needs a closed surface.
+int64_t six_volume_vox(const SurfaceMesh& surface, Context& context);
 
 constexpr int64_t kMostLengthSlopeQ16 = int64_t(1) << 24;
 
-/// Gives a sheet edge lengths to aim at: the largest that are nowhere above `raw`, one a vertex in 1/256 voxel, and
+/// Gives a surface edge lengths to aim at: the largest that are nowhere above `raw`, one a vertex in 1/256 voxel, and
 /// grow by at most slope_q16 / 65536 of every edge's length. They are unique. Throws: usage.
-void set_edge_lengths(Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16, Context& context);
+void set_edge_lengths(SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16, Context& context);
 /// So many rounds in which every length becomes the mean of its own and its neighbours', rounded. Throws: usage.
-void smooth_edge_lengths(Sheet& sheet, int32_t rounds, Context& context);
-/// Doubled area of the sheet, that of each triangle over the square of its length, the least length being 1; q16.
-int64_t seed_shares_q16(const Sheet& sheet, Context& context);
-/// Gives a coarse proxy the lengths of the sheet it stands for, those of the nearest vertices. `halvings`: how many
+void smooth_edge_lengths(SurfaceMesh& surface, int32_t rounds, Context& context);
+/// Doubled area of the surface, that of each triangle over the square of its length, the least length being 1; q16.
+int64_t seed_shares_q16(const SurfaceMesh& surface, Context& context);
+/// Gives a coarse proxy the lengths of the surface it stands for, those of the nearest vertices. `halvings`: how many
 /// times the edge of its voxels was doubled.
-void copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context& context);
+void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context& context);
 /// Per vertex how much normals turn a voxel, in 1/65536: the root of the mean square over its edges, of normals that
 /// became the mean of their neighbours' in so many rounds, and smoothed in two thirds as many.
-Buffer<uint32_t> measure_curvature(const Sheet& sheet, int32_t rounds, Context& context);
+Buffer<uint32_t> measure_curvature(const SurfaceMesh& surface, int32_t rounds, Context& context);
 
 struct SeedOptions {
   int64_t count = 0;  ///< k
   uint64_t seed = 0;  ///< start of the counter-based generator
 };
-/// k seeds spread over the sheet, one at random in each of k strata of equal area along the canonical order.
-/// Throws: usage when k is below 4 a component or above half the sheet's vertices (names the resolution that would do).
+/// k seeds spread over the surface, one at random in each of k strata of equal area along the order of its triangles.
+/// Throws: usage when k is below 4 or above half the surface's vertices.
+SeedSet place_seeds(const SurfaceMesh& surface, const SeedOptions& options, Context& context);
+/// The same. Throws: usage when k is below 4 a component, too; names the resolution that would do.
 SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& context);
 /// The same for method shell: one site at random in each of k strata of equal count.
 SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options, Context& context);
@@ -106,16 +110,16 @@ struct RelaxReport {
   /// seed over the sites per seed, without dimension. 0 where the method has none.
   double normalised_energy_factor = 0;
 };
-/// Centroidal Voronoi tessellation of the sheet with clipped cells and momentum.
-RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context);
+/// Centroidal Voronoi tessellation of the surface with clipped cells and momentum.
+RelaxReport relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options, Context& context);
 /// The paper's Lloyd loop over the active voxels of the shell, sections 3.2 and 3.3.
 RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
                            const RelaxOptions& options, Context& context);
 
-/// Moves seeds onto a sheet: nearest point of the sheet, its home vertex and outward normal. `halvings`: how many times
-/// the voxels of the seeds' lattice must be halved to give the sheet's; above 0 seeds come from a coarse proxy, from
+/// Moves seeds onto a surface: its nearest point, its home vertex and outward normal. `halvings`: how many times the
+/// voxels of the seeds' lattice must be halved to give the surface's; above 0 seeds come from a coarse proxy, from
 /// half a voxel of theirs outside of it.
-void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context, int halvings = 0);
+void attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, Context& context, int halvings = 0);
 
 /// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in
 /// space but far along the shell never share a cell. Result: a seed starts in its voxel, or in the active voxel of the
@@ -141,29 +145,29 @@ struct DualOptions {
   int32_t max_repair_rounds = 64;     ///< 0 only checks
   int64_t most_against_crossing = 0;  ///< seeds put in where triangles of the dual intersect; 0: not looked for
 };
-/// DualTriangulation(V_k) on the sheet: a sheet triangle whose vertices carry three labels is a face. Four checks
+/// DualTriangulation(V_k) on the surface: a triangle whose vertices carry three labels is a face. Four checks
 /// (cells in one piece, cells are disks, pairs meet in one arc, four cells a component) are repaired by splitting
 /// cells; ids are kept, and a seed that owns nothing moves to the next split before seeds are appended. Result: when
-/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the sheet that uses every seed. Where asked
-/// to, it then splits the cells of triangles that intersect, and puts the seeds of both halves in their middles, until
-/// no triangles do or no more seeds may be put in; on a sheet without intersections enough seeds always end them. Cost:
-/// labels, then O(sheet) and O(split cells) a round; 14 bytes a sheet vertex. Throws: usage when there are no seeds or
-/// more than sheet vertices.
-DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
+/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the surface that uses every seed. Where
+/// asked to, it then splits the cells of triangles that intersect, and puts the seeds of both halves in their middles,
+/// until no triangles do or no more seeds may be put in; on a surface without intersections enough seeds always end
+/// them. Cost: labels, then O(surface) and O(split cells) a round; 14 bytes a vertex of the surface. Needs a closed
+/// surface. Throws: usage when there are no seeds or more than vertices.
+DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options, DualReport& report,
                           Context& context);
 
 /// Seeds of the next finer level: the given ones, the middles of the dual's edges (the longest, if there are more than
 /// needed) in canonical order, then the middles of the largest triangles. `target` seeds in all, at most
-/// seeds + edges + triangles.
-SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+/// seeds + edges + triangles. Needs a closed surface, and a closed mesh.
+SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                         Context& context);
 
 /// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
 /// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The
 /// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. With `keep_apart` no
 /// edge is taken where triangles would intersect then. Cost: a sort of the edges a round, then one step for each looked
-/// at.
-void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
+/// at. Needs a closed surface. Throws: usage when the mesh has a border.
+void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
                     bool keep_apart = false);
 
 /// Takes the vertices of a sheet's triangles that intersect back towards their lattice corners, where no triangles do,
@@ -193,9 +197,9 @@ struct OptimizeReport {
 };
 /// Valence flips, shape matching, a fit to the surface and searches around the worst triangles of a closed mesh whose
 /// vertices are the seeds; homes and positions of the seeds follow. Where triangles intersect in the end, exactly
-/// tested, the vertices around go back to where they were on the sheet, then to where they began. Result: still closed
-/// and 2-manifold, same genus.
-OptimizeReport optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
+/// tested, the vertices around go back to where they were on the surface, then to where they began. Result: still
+/// closed and 2-manifold, same genus. Needs a closed surface. Throws: usage when the mesh has a border.
+OptimizeReport optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
                              Context& context);
 
 /// Final positions in the world.

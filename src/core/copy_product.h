@@ -36,19 +36,24 @@ Shell copy_product(const Shell& s, Copy copy) {
   return {copy_product(s.voxels, copy), s.band_vox, copy(s.closest_site), copy(s.distance_sq_vox)};
 }
 template <class Copy>
-Sheet copy_product(const Sheet& s, Copy copy) {
-  return {s.frame,
-          copy_product(s.corners, copy),
+SurfaceMesh copy_product(const SurfaceMesh& s, Copy copy) {
+  return {{s.extent_vox[0], s.extent_vox[1], s.extent_vox[2]},
           copy(s.position),
           copy(s.normal),
-          copy(s.source_triangle),
           copy(s.triangles),
           copy(s.vertex_first),
           copy(s.vertex_triangles),
+          copy(s.border_before),
+          {copy(s.blocks.first), copy(s.blocks.centre)},
+          {copy(s.chains.first), copy(s.chains.vertex), copy(s.chains.kind), copy(s.chains.is_loop)},
+          {copy(s.lengths.at), s.lengths.least, s.lengths.largest},
           copy(s.missed),
-          copy(s.missed_vertex),
-          s.topology,
-          {copy(s.lengths.at), s.lengths.least, s.lengths.largest}};
+          copy(s.missed_vertex)};
+}
+template <class Copy>
+Sheet copy_product(const Sheet& s, Copy copy) {
+  return {copy_product(static_cast<const SurfaceMesh&>(s), copy), s.frame, copy_product(s.corners, copy),
+          copy(s.source_triangle), s.topology};
 }
 template <class Copy>
 SeedSet copy_product(const SeedSet& s, Copy copy) {
@@ -69,10 +74,25 @@ inline Memory& memory_of(const LatticeSurface& s) { return s.points.memory(); }
 inline Memory& memory_of(const SiteSet& s) { return memory_of(s.voxels); }
 inline Memory& memory_of(const SiteSamples& s) { return s.sample.memory(); }
 inline Memory& memory_of(const Shell& s) { return memory_of(s.voxels); }
-inline Memory& memory_of(const Sheet& s) { return s.position.memory(); }
+inline Memory& memory_of(const SurfaceMesh& s) { return s.position.memory(); }
 inline Memory& memory_of(const SeedSet& s) { return s.position.memory(); }
 inline Memory& memory_of(const VoronoiLabels& l) { return l.voxel_seed.memory(); }
 inline Memory& memory_of(const DualMesh& m) { return m.position.memory(); }
+
+/// Whether all arrays of a product lie in a memory that `is_here` is true of.
+template <class Product, class IsHere>
+bool lies_where(const Product& product, IsHere is_here) {
+  return is_here(memory_of(product));
+}
+/// The surface of a sheet and its lattice may lie apart: what changes the surface brings only that over.
+template <class IsHere>
+bool lies_where(const Sheet& sheet, IsHere is_here) {
+  return is_here(memory_of(static_cast<const SurfaceMesh&>(sheet))) && is_here(memory_of(sheet.corners));
+}
+template <class Product>
+bool lies_on_host(const Product& product) {
+  return lies_where(product, [](const Memory& memory) { return memory.space() == MemorySpace::host; });
+}
 
 template <class Product>
 Product host_copy(const Product& product) {
@@ -82,7 +102,7 @@ Product host_copy(const Product& product) {
 /// Brings a product that a stage changes to the host.
 template <class Product>
 Product& on_host(Product& product) {
-  if (memory_of(product).space() != MemorySpace::host) product = host_copy(product);
+  if (!lies_on_host(product)) product = host_copy(product);
   return product;
 }
 
@@ -91,7 +111,7 @@ template <class Product>
 class OnHost {
  public:
   explicit OnHost(const Product& product) : product_(&product) {
-    if (memory_of(product).space() == MemorySpace::host) return;
+    if (lies_on_host(product)) return;
     copy_ = host_copy(product);
     product_ = &copy_;
   }

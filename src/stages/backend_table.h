@@ -24,23 +24,24 @@ class BackendTable {
   virtual SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const = 0;
   virtual SiteSet coarsen_sites(const SiteSet&, Context&) const = 0;
   virtual Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const = 0;
-  virtual void set_edge_lengths(Sheet&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const = 0;
-  virtual void smooth_edge_lengths(Sheet&, int32_t rounds, Context&) const = 0;
-  virtual int64_t seed_shares(const Sheet&, Context&) const = 0;
-  virtual void copy_edge_lengths(const Sheet& from, int halvings, Sheet& to, Context&) const = 0;
-  virtual Buffer<uint32_t> measure_curvature(const Sheet&, int32_t rounds, Context&) const = 0;
-  virtual SeedSet place_seeds_on_sheet(const Sheet&, const SeedOptions&, Context&) const = 0;
+  virtual void set_edge_lengths(SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const = 0;
+  virtual void smooth_edge_lengths(SurfaceMesh&, int32_t rounds, Context&) const = 0;
+  virtual int64_t seed_shares(const SurfaceMesh&, Context&) const = 0;
+  virtual void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context&) const = 0;
+  virtual Buffer<uint32_t> measure_curvature(const SurfaceMesh&, int32_t rounds, Context&) const = 0;
+  virtual SeedSet place_seeds_on_surface(const SurfaceMesh&, const SeedOptions&, Context&) const = 0;
   virtual SeedSet place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&) const = 0;
-  virtual RelaxReport relax_on_sheet(const Sheet&, SeedSet&, const RelaxOptions&, Context&) const = 0;
+  virtual RelaxReport relax_on_sheet(const SurfaceMesh&, SeedSet&, const RelaxOptions&, Context&) const = 0;
   virtual RelaxReport relax_in_shell(const Shell&, const SiteSet&, const SiteSamples&, SeedSet&, const RelaxOptions&,
                                      Context&) const = 0;
-  virtual void attach_to_sheet(const Sheet&, SeedSet&, int, Context&) const = 0;
+  virtual void attach_to_sheet(const SurfaceMesh&, SeedSet&, int, Context&) const = 0;
   virtual VoronoiLabels flood_shell(const Shell&, const SeedSet&, Context&) const = 0;
-  virtual DualMesh triangulate_dual(const Sheet&, SeedSet&, const DualOptions&, DualReport&, Context&) const = 0;
-  virtual SeedSet subdivide_seeds(const Sheet&, const DualMesh&, const SeedSet&, int64_t, Context&) const = 0;
-  virtual OptimizeReport optimize_mesh(const Sheet&, const OptimizeOptions&, SeedSet&, DualMesh&, Context&) const = 0;
-  virtual int64_t six_volume_vox(const Sheet&, Context&) const = 0;
-  virtual void collapse_edges(const Sheet&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const = 0;
+  virtual DualMesh triangulate_dual(const SurfaceMesh&, SeedSet&, const DualOptions&, DualReport&, Context&) const = 0;
+  virtual SeedSet subdivide_seeds(const SurfaceMesh&, const DualMesh&, const SeedSet&, int64_t, Context&) const = 0;
+  virtual OptimizeReport optimize_mesh(const SurfaceMesh&, const OptimizeOptions&, SeedSet&, DualMesh&,
+                                       Context&) const = 0;
+  virtual int64_t six_volume_vox(const SurfaceMesh&, Context&) const = 0;
+  virtual void collapse_edges(const SurfaceMesh&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const = 0;
   virtual int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const = 0;
   virtual void finish_stages(Context&) const = 0;
 

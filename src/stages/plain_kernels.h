@@ -58,7 +58,7 @@ struct PlainKernels {
   using SplitCells = dual::PlainSplitCells;  ///< dual_split_body.h
 
   // optimize_mesh
-  using StepWork = optimize::PlainStepWork;          ///< smoothing and fit: optimize_body.h
+  using StepWork = optimize::PlainStepWork;          ///< smoothing and fit: optimize_steps.h
   using FlipEdges = optimize::PlainFlipEdges;        ///< in independent sets: optimize_flips.h
   using UndoHarm = optimize::PlainUndoHarm;          ///< of a step, to a fixed point: optimize_guard.h
   using SearchPlaces = optimize::PlainSearchPlaces;  ///< for poor vertices: optimize_search.h

@@ -218,9 +218,9 @@ std::pair<int64_t, std::vector<uint32_t>> found_in(const std::vector<TriangleInd
   const Buffer<TriangleIndices> t = to_buffer(triangles);
   const Buffer<PointQ8> p = to_buffer(position);
   Buffer<uint32_t> marked(p.size());
-  const int32_t blocks[3] = {16, 16, 16};
+  const int32_t extent_vox[3] = {2048, 2048, 2048};
   const int64_t pairs = run_with_threads(context, [&] {
-    return optimize::find_intersections(exec, {t.view(), p.view()}, blocks, spacing_vox, marked.view());
+    return optimize::find_intersections(exec, {t.view(), p.view()}, extent_vox, spacing_vox, marked.view());
   });
   return {pairs, {marked.begin(), marked.end()}};
 }
@@ -315,9 +315,9 @@ TEST_CASE("intersections: every pair of a mesh is found, with any number of thre
         const Buffer<TriangleIndices> t = to_buffer(triangles);
         const Buffer<PointQ8> p = to_buffer(position);
         Buffer<uint32_t> marked(p.size());
-        const int32_t blocks[3] = {2, 2, 2};
+        const int32_t extent_vox[3] = {256, 256, 256};
         const int64_t pairs = run_with_threads(context, [&] {
-          return optimize::find_intersections(exec, {t.view(), p.view()}, blocks, 4, marked.view());
+          return optimize::find_intersections(exec, {t.view(), p.view()}, extent_vox, 4, marked.view());
         });
         CHECK(pairs == expected.first);
         CHECK(std::equal(marked.begin(), marked.end(), expected.second.begin()));

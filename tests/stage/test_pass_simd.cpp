@@ -44,13 +44,13 @@ void check_labels(const Sheet& sheet, SeedSet seeds) {
   }
 }
 
-/// What a pass measures: the cells, and the energy of every leaf.
+/// What a pass measures: the cells, and the energy of every block.
 template <class Exec>
 std::vector<int64_t> measured(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
   Exec exec(context, "test");
   typename Exec::Kernels::PassWork work(exec, sheet, seed_spacing(exec, sheet, seeds.size()));
   Buffer<relax_sheet::CellSum> cells(seeds.size());
-  Buffer<SplitSum> energy(sheet.corners.leaf_count());
+  Buffer<SplitSum> energy(sheet.blocks.count());
   Buffer<PassState> state(1);
   exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0});
   exec.for_each("start", 1, relax_sheet::StartPasses{state.view()});

@@ -23,14 +23,14 @@ std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& se
   PlainExecutor exec(context, "test");
   const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
   std::vector<uint32_t> labels(size_t(sheet.vertex_count()));
-  exec.for_each("label", sheet.corners.leaf_count(),
-                label::LabelLeaf<kCapacity>{sheet.corners.view(),
-                                            sheet.position.view(),
-                                            sheet.normal.view(),
-                                            grid.view(),
-                                            seeds.normal.view(),
-                                            spacing,
-                                            {labels.data(), int64_t(labels.size())}});
+  exec.for_each("label", sheet.blocks.count(),
+                label::LabelBlock<kCapacity>{sheet.blocks.view(),
+                                             sheet.position.view(),
+                                             sheet.normal.view(),
+                                             grid.view(),
+                                             seeds.normal.view(),
+                                             spacing,
+                                             {labels.data(), int64_t(labels.size())}});
   return labels;
 }
 
@@ -148,11 +148,11 @@ TEST_CASE("relax: full tables of local sums change nothing, and the cells add up
   PlainKernels::LabelSheet::run(exec, sheet, seeds, spacing_of(sheet, seeds, context), labels.view());
   const auto sums = [&](auto like) {
     Buffer<relax_sheet::CellSum> cells(seeds.size());
-    Buffer<SplitSum> energy(sheet.corners.leaf_count());
+    Buffer<SplitSum> energy(sheet.blocks.count());
     Buffer<PassState> state(1);
     exec.fill(cells.view(), relax_sheet::CellSum{0, 0, 0, 0});
     exec.for_each("start", 1, relax_sheet::StartPasses{state.view()});
-    like = {sheet.corners.leaf_key.view(),
+    like = {sheet.blocks.centre.view(),
             patches.first.view(),
             patches.triangles.view(),
             sheet.position.view(),
@@ -161,14 +161,14 @@ TEST_CASE("relax: full tables of local sums change nothing, and the cells add up
             cells.view(),
             energy.view(),
             state.view()};
-    exec.for_each("sum", sheet.corners.leaf_count(), like);
+    exec.for_each("sum", sheet.blocks.count(), like);
     std::vector<int64_t> out;
     for (const auto& c : cells) out.insert(out.end(), {c.mass, c.first_x, c.first_y, c.first_z});
     for (const auto& e : energy) out.insert(out.end(), {e.high, e.low});
     return out;
   };
-  const std::vector<int64_t> wide = sums(relax_sheet::SumLeaf<64>{});
-  CHECK(sums(relax_sheet::SumLeaf<2>{}) == wide);
+  const std::vector<int64_t> wide = sums(relax_sheet::SumBlock<64>{});
+  CHECK(sums(relax_sheet::SumBlock<2>{}) == wide);
   int64_t total = 0;
   for (size_t i = 0; i < size_t(4 * seeds.size()); i += 4) total += wide[i];
   CHECK(std::abs(total - doubled_area_q16(exec, sheet)) < 8 * sheet.triangles.size());

@@ -16,7 +16,7 @@ namespace {
 std::vector<uint32_t> labels_of(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int64_t spacing) {
   TestContext context;
   PlainExecutor exec(context, "test");
-  PointGrid grid = make_point_grid(exec, voxels.block_dims, spacing, int64_t(seeds.size()));
+  PointGrid grid = make_point_grid(exec, BlockExtent(voxels.view()).vox, spacing, int64_t(seeds.size()));
   std::vector<PointQ8> copy = seeds;
   const Buffer<uint32_t> label = label_nearest(exec, voxels, grid, {copy.data(), int64_t(copy.size())});
   return {label.data(), label.data() + label.size()};
@@ -31,7 +31,7 @@ void check_labels(const VoxelSet& voxels, const std::vector<PointQ8>& seeds) {
 int64_t overflows(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int edge) {
   TestContext context;
   PlainExecutor exec(context, "test");
-  PointGrid grid = make_point_grid(exec, voxels.block_dims, 4, int64_t(seeds.size()));
+  PointGrid grid = make_point_grid(exec, BlockExtent(voxels.view()).vox, 4, int64_t(seeds.size()));
   std::vector<PointQ8> copy = seeds;
   fill_point_grid(exec, grid, {copy.data(), int64_t(copy.size())});
   int64_t count = 0;

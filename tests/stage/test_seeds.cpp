@@ -3,6 +3,7 @@
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
+#include "support/soup_sheet.h"
 #include "support/test_context.h"
 #include "voxel/closest_point.h"
 #include "voxel/proxy_depth.h"
@@ -62,6 +63,7 @@ TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex th
   std::vector<Voxel> voxels;
   for (PointQ8 p : corner) voxels.push_back(voxel_of(p));
   sheet.corners = std::move(make_site_set(voxels, {128, 128, 128}).voxels);
+  cut_into_blocks(sheet.corners, sheet);
   sheet.position = Buffer<PointQ8>(4);
   sheet.normal = Buffer<Normal8>(4);
   sheet.triangles = Buffer<TriangleIndices>(4);

@@ -22,8 +22,7 @@ int64_t count_intersections(const Sheet& sheet, const Buffer<TriangleIndices>& t
   PlainExecutor exec(context, "test");
   Buffer<uint32_t> marked(position.size());
   return run_with_threads(context, [&] {
-    return optimize::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, 4,
-                                        marked.view());
+    return optimize::find_intersections(exec, {triangles.view(), position.view()}, sheet.extent_vox, 4, marked.view());
   });
 }
 

@@ -54,15 +54,17 @@ inline Sheet plate_sheet() {
   return sheet_of_soup(s, 120, 2, 0);
 }
 
-/// The label of every sheet vertex by its definition.
-inline std::vector<uint32_t> brute_force_labels(const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing) {
+/// The label of every vertex by its definition.
+inline std::vector<uint32_t> brute_force_labels(const SurfaceMesh& surface, const SeedSet& seeds,
+                                                const SeedSpacing& spacing) {
   std::vector<uint32_t> labels;
-  for (int64_t v = 0; v < sheet.vertex_count(); ++v) {
+  for (int64_t v = 0; v < surface.vertex_count(); ++v) {
     int64_t best = INT64_MAX;
     uint32_t id = kNone;
     for (int64_t s = 0; s < seeds.size(); ++s) {
-      const bool opposite = 4 * dot(sheet.normal[v], seeds.normal[s]) < -127 * 127;
-      const int64_t cost = distance_sq_q16(sheet.position[v], seeds.position[s]) + (opposite ? spacing.penalty_q16 : 0);
+      const bool opposite = 4 * dot(surface.normal[v], seeds.normal[s]) < -127 * 127;
+      const int64_t cost =
+          distance_sq_q16(surface.position[v], seeds.position[s]) + (opposite ? spacing.penalty_q16 : 0);
       if (cost < best) best = cost, id = uint32_t(s);
     }
     labels.push_back(id);

@@ -22,6 +22,17 @@ Buffer<T> to_buffer(const std::vector<T>& values) {
   return out;
 }
 
+/// Blocks and extent of a surface whose vertices are the voxels of a set.
+inline void cut_into_blocks(const VoxelSet& corners, SurfaceMesh& surface) {
+  for (int axis = 0; axis < 3; ++axis) surface.extent_vox[axis] = corners.block_dims[axis] * 128;
+  surface.blocks.first = corners.first.to_host();
+  surface.blocks.centre = Buffer<PointQ8>(corners.leaf_count());
+  for (int64_t l = 0; l < corners.leaf_count(); ++l) {
+    const Voxel leaf = leaf_of_key(corners.leaf_key[l]);
+    surface.blocks.centre[l] = {leaf.x * 2048 + 1024, leaf.y * 2048 + 1024, leaf.z * 2048 + 1024};
+  }
+}
+
 /// Sheet of `soup` on a lattice of this resolution. Components and genus are the caller's to say.
 inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t components, int64_t genus) {
   WorldPoint lo = soup.vertices[0], hi = lo;
@@ -59,6 +70,7 @@ inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t
   sheet.corners.leaf_key = to_buffer(keys);
   sheet.corners.mask = to_buffer(masks);
   index_host_leaves(sheet.corners, sheet.frame.extent_vox);
+  cut_into_blocks(sheet.corners, sheet);
 
   const int64_t count = int64_t(order.size());
   sheet.position = Buffer<PointQ8>(count);

@@ -43,6 +43,9 @@ inline Sheet build_proxy(const SiteSet& sites, const LatticeFrame& frame, const 
                          TestContext& context) {
   return to_host(build_proxy(sites, frame, options, context.plain()));
 }
+inline SeedSet place_seeds(const SurfaceMesh& surface, const SeedOptions& options, TestContext& context) {
+  return to_host(place_seeds(surface, options, context.plain()));
+}
 inline SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, TestContext& context) {
   return to_host(place_seeds(sheet, options, context.plain()));
 }
@@ -50,9 +53,9 @@ inline SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, con
                            TestContext& context) {
   return to_host(place_seeds(sites, samples, options, context.plain()));
 }
-inline RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options,
+inline RelaxReport relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options,
                                   TestContext& context) {
-  RelaxReport report = relax_on_sheet(sheet, seeds, options, context.plain());
+  RelaxReport report = relax_on_sheet(surface, seeds, options, context.plain());
   seeds = to_host(seeds);
   return report;
 }
@@ -62,31 +65,32 @@ inline RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, cons
   seeds = to_host(seeds);
   return report;
 }
-inline void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, TestContext& context, int halvings = 0) {
-  attach_to_sheet(sheet, seeds, context.plain(), halvings);
+inline void attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, TestContext& context, int halvings = 0) {
+  attach_to_sheet(surface, seeds, context.plain(), halvings);
   seeds = to_host(seeds);
 }
 inline VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, TestContext& context) {
   return to_host(flood_shell(shell, seeds, context.plain()));
 }
-inline DualMesh triangulate_dual(const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report,
-                                 TestContext& context) {
-  DualMesh mesh = to_host(triangulate_dual(sheet, seeds, options, report, context.plain()));
+inline DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options,
+                                 DualReport& report, TestContext& context) {
+  DualMesh mesh = to_host(triangulate_dual(surface, seeds, options, report, context.plain()));
   seeds = to_host(seeds);
   return mesh;
 }
-inline SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+inline SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                                TestContext& context) {
-  return to_host(subdivide_seeds(sheet, mesh, seeds, target, context.plain()));
+  return to_host(subdivide_seeds(surface, mesh, seeds, target, context.plain()));
 }
-inline void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, TestContext& context) {
-  collapse_edges(sheet, target, seeds, mesh, context.plain());
+inline void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
+                           TestContext& context) {
+  collapse_edges(surface, target, seeds, mesh, context.plain());
   seeds = to_host(seeds);
   mesh = to_host(mesh);
 }
-inline OptimizeReport optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
-                                    TestContext& context) {
-  const OptimizeReport report = optimize_mesh(sheet, options, seeds, mesh, context.plain());
+inline OptimizeReport optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds,
+                                    DualMesh& mesh, TestContext& context) {
+  const OptimizeReport report = optimize_mesh(surface, options, seeds, mesh, context.plain());
   seeds = to_host(seeds);
   mesh = to_host(mesh);
   return report;

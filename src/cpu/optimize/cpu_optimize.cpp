@@ -9,11 +9,11 @@
 
 namespace isoshell {
 
-OptimizeReport CpuBackend::optimize_mesh(const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds,
+OptimizeReport CpuBackend::optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds,
                                          DualMesh& mesh, Context& context) const {
   CpuExecutor exec(context, "post");
   return run_with_threads(
-      context, [&] { return optimize_mesh_body(exec, *OnHost(sheet), options, on_host(seeds), on_host(mesh)); });
+      context, [&] { return optimize_mesh_body(exec, *OnHost(surface), options, on_host(seeds), on_host(mesh)); });
 }
 
 }  // namespace isoshell

@@ -26,11 +26,10 @@ struct ListTrianglesAround {
   View<const uint32_t> first;
   View<TrianglesAround::Triangle> triangles;
   void operator()(int64_t v) const {
-    uint32_t h = mesh.outgoing[v];
-    for (uint32_t at = first[v]; at < first[v + 1]; ++at) {
-      triangles[at] = {mesh.to(h), mesh.opposite(h), h};
-      h = mesh.twin[previous_half_edge(h)];
-    }
+    uint32_t at = first[v];
+    for_each_half_edge_around(mesh, uint32_t(v), [&](uint32_t h) {
+      triangles[at++] = {mesh.to(h), mesh.opposite(h), h};
+    });
   }
 };
 

@@ -6,9 +6,9 @@
 
 namespace isoshell {
 
-void CpuBackend::attach_to_sheet(const Sheet& sheet, SeedSet& seeds, int halvings, Context& context) const {
+void CpuBackend::attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, int halvings, Context& context) const {
   CpuExecutor exec(context, "attach");
-  run_with_threads(context, [&] { attach_to_sheet_body(exec, *OnHost(sheet), on_host(seeds), halvings); });
+  run_with_threads(context, [&] { attach_to_sheet_body(exec, *OnHost(surface), on_host(seeds), halvings); });
 }
 
 }  // namespace isoshell

@@ -8,10 +8,11 @@
 
 namespace isoshell {
 
-RelaxReport CpuBackend::relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options,
+RelaxReport CpuBackend::relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options,
                                        Context& context) const {
   CpuExecutor exec(context, "relax_sheet");
-  return run_with_threads(context, [&] { return relax_on_sheet_body(exec, *OnHost(sheet), on_host(seeds), options); });
+  return run_with_threads(context,
+                          [&] { return relax_on_sheet_body(exec, *OnHost(surface), on_host(seeds), options); });
 }
 
 }  // namespace isoshell

@@ -6,9 +6,10 @@
 
 namespace isoshell {
 
-SeedSet CpuBackend::place_seeds_on_sheet(const Sheet& sheet, const SeedOptions& options, Context& context) const {
+SeedSet CpuBackend::place_seeds_on_surface(const SurfaceMesh& surface, const SeedOptions& options,
+                                           Context& context) const {
   CpuExecutor exec(context, "seeds");
-  return run_with_threads(context, [&] { return place_seeds_body(exec, *OnHost(sheet), options); });
+  return run_with_threads(context, [&] { return place_seeds_body(exec, *OnHost(surface), options); });
 }
 
 SeedSet CpuBackend::place_seeds_on_sites(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options,

@@ -7,18 +7,18 @@
 
 namespace isoshell {
 
-SeedSet CpuBackend::subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
-                                    Context& context) const {
+SeedSet CpuBackend::subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds,
+                                    int64_t target, Context& context) const {
   CpuExecutor exec(context, "subdivide");
   return run_with_threads(
-      context, [&] { return subdivide_seeds_body(exec, *OnHost(sheet), *OnHost(mesh), *OnHost(seeds), target); });
+      context, [&] { return subdivide_seeds_body(exec, *OnHost(surface), *OnHost(mesh), *OnHost(seeds), target); });
 }
 
-void CpuBackend::collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
-                                bool keep_apart) const {
+void CpuBackend::collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
+                                Context& context, bool keep_apart) const {
   CpuExecutor exec(context, "collapse");
   run_with_threads(context, [&] {
-    collapse_edges_body(exec, *OnHost(sheet), {target, keep_apart}, on_host(seeds), on_host(mesh));
+    collapse_edges_body(exec, *OnHost(surface), {target, keep_apart}, on_host(seeds), on_host(mesh));
   });
 }
 

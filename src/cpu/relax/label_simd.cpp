@@ -6,12 +6,12 @@
 namespace isoshell {
 namespace {
 
-constexpr int kLeafVoxels = 512;
+constexpr int kMostVertices = VertexBlocks::kMostVertices;
 
-/// Vertices of a leaf, from the smallest of their coordinates on.
+/// Vertices of a block, from the smallest of their coordinates on.
 struct VertexSimd {
-  alignas(32) int32_t x[kLeafVoxels], y[kLeafVoxels], z[kLeafVoxels];
-  alignas(32) int32_t normal_x[kLeafVoxels], normal_y[kLeafVoxels], normal_z[kLeafVoxels];
+  alignas(32) int32_t x[kMostVertices], y[kMostVertices], z[kMostVertices];
+  alignas(32) int32_t normal_x[kMostVertices], normal_y[kMostVertices], normal_z[kMostVertices];
 };
 
 /// What a seed costs: |s|^2 - 2 s.v, its squared distance up to |v|^2, and the penalty where normals oppose.
@@ -46,7 +46,7 @@ ISOSHELL_VECTOR_VERSIONS void find_cheapest(const VertexSimd& v, int count, cons
   }
 }
 
-/// Seeds near a leaf, from the smallest of its vertices' coordinates on.
+/// Seeds near a block, from the smallest of its vertices' coordinates on.
 struct NearSeeds {
   static constexpr int kMost = 1024;
 
@@ -97,10 +97,10 @@ ISOSHELL_VECTOR_VERSIONS void rank(const uint32_t* number, int count, uint32_t* 
     for (int i = 0; i < count; ++i) place[i] += number[j] < number[i] ? 1 : 0;
 }
 
-/// The seeds that can win in a leaf, by their numbers.
-class LeafSeeds {
+/// The seeds that can win in a block, by their numbers.
+class BlockSeeds {
  public:
-  LeafSeeds(const label::Bounds& bounds, View<const Normal8> normal, int64_t penalty_q16)
+  BlockSeeds(const label::Bounds& bounds, View<const Normal8> normal, int64_t penalty_q16)
       : bounds_(bounds), size_(local(bounds.hi, bounds.lo)), normal_(normal), penalty_q16_(penalty_q16) {}
 
   /// False where distances may not fit 32 bits: forms stay below 3 * 2^28 + 2 * 3 * 2^27, the penalty below 2^28.
@@ -135,7 +135,7 @@ class LeafSeeds {
 
   /// Labels vertex_at(0) to vertex_at(count - 1).
   template <class VerticesAt>
-  void label(const label::LabelLeaf<>& plain, VerticesAt vertex_at, int count) const {
+  void label(const label::LabelBlock<>& plain, VerticesAt vertex_at, int count) const {
     bool normals_matter = false;
     for (int s = 0; s < count_; ++s) normals_matter |= form_[s].penalty != 0;
     VertexSimd v;
@@ -150,7 +150,7 @@ class LeafSeeds {
       }
     for (int i = count; i % kWidth != 0; ++i)
       v.x[i] = v.y[i] = v.z[i] = v.normal_x[i] = v.normal_y[i] = v.normal_z[i] = 0;
-    alignas(32) int32_t cheapest[kLeafVoxels];
+    alignas(32) int32_t cheapest[kMostVertices];
     find_cheapest(v, count, form_, count_, cheapest);
     for (int i = 0; i < count; ++i) plain.out[vertex_at(i)] = id_[cheapest[i]];
   }
@@ -190,15 +190,15 @@ class LeafSeeds {
 };
 
 struct FindBounds {
-  VoxelSetView corners;
+  VertexBlocksView blocks;
   View<const PointQ8> position;
   View<const Normal8> normal;
   View<label::Bounds> out;
-  void operator()(int64_t leaf) const {
+  void operator()(int64_t block) const {
     label::Bounds bounds = label::empty_bounds();
-    for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v)
+    for (int64_t v = blocks.first[block]; v < blocks.first[block + 1]; ++v)
       label::include(bounds, position[v], normal[v]);
-    out[leaf] = bounds;
+    out[block] = bounds;
   }
 };
 
@@ -209,36 +209,36 @@ int side_of(Normal8 n) {
   return y >= z ? 2 + (n.y < 0) : 4 + (n.z < 0);
 }
 
-struct LabelLeafSimd {
-  label::LabelLeaf<> plain;
-  View<const label::Bounds> leaf_bounds;
+struct LabelBlockSimd {
+  label::LabelBlock<> plain;
+  View<const label::Bounds> block_bounds;
   View<const PointQ8> seed_position;
   View<uint32_t> middle;
 
-  void operator()(int64_t leaf) const {
-    const label::Bounds& bounds = leaf_bounds[leaf];
-    const int64_t begin = plain.corners.first[leaf], end = plain.corners.first[leaf + 1];
+  void operator()(int64_t block) const {
+    const label::Bounds& bounds = block_bounds[block];
+    const int64_t begin = plain.blocks.first[block], end = plain.blocks.first[block + 1];
     NearSeeds near;
     const int64_t limit =
-        middle[leaf] == kNone ? gather_first(bounds, begin, near) : gather_as_far_as(middle[leaf], bounds, near);
-    LeafSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
+        middle[block] == kNone ? gather_first(bounds, begin, near) : gather_as_far_as(middle[block], bounds, near);
+    BlockSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
     const bool are_few = near.count <= NearSeeds::kMost, fit = are_few && seeds.fit(near) && seeds.cut_penalty(limit);
     if (!fit || !seeds.take(near)) {
       if (limit >= plain.spacing.penalty_q16) return label_by_sides(begin, end);
-      return are_few && !fit ? plain(leaf) : plain.label_directly(limit, begin, end);
+      return are_few && !fit ? plain(block) : plain.label_directly(limit, begin, end);
     }
-    middle[leaf] = seeds.middle();
+    middle[block] = seeds.middle();
     seeds.label(
         plain, [begin](int i) { return begin + i; }, int(end - begin));
   }
 
  private:
-  /// Where a leaf holds both sides of walls, seeds of either may win far beyond the wall, so many can. For one side at
+  /// Where a block holds both sides of walls, seeds of either may win far beyond the wall, so many can. For one side at
   /// a time they are few, also where walls lie close together.
   void label_by_sides(int64_t begin, int64_t end) const {
     for (int side = 0; side < 6; ++side) {
       label::Bounds bounds = label::empty_bounds();
-      int64_t member[kLeafVoxels];
+      int64_t member[kMostVertices];
       int count = 0;
       for (int64_t v = begin; v < end; ++v)
         if (side_of(plain.normal[v]) == side) {
@@ -251,7 +251,7 @@ struct LabelLeafSimd {
   void label_side(const label::Bounds& bounds, const int64_t* member, int count) const {
     NearSeeds near;
     const int64_t limit = gather_first(bounds, member[0], near);
-    LeafSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
+    BlockSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
     if (near.count <= NearSeeds::kMost && seeds.fit(near) && seeds.cut_penalty(limit) && seeds.take(near))
       return seeds.label(
           plain, [member](int i) { return member[i]; }, count);
@@ -286,21 +286,21 @@ struct LabelLeafSimd {
 
 }  // namespace
 
-LabelSimd::LabelSimd(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
-    : sheet_(sheet), spacing_(spacing), bounds_(sheet.corners.leaf_count()), middle_(sheet.corners.leaf_count()) {
+LabelSimd::LabelSimd(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSpacing& spacing)
+    : surface_(surface), spacing_(spacing), bounds_(surface.blocks.count()), middle_(surface.blocks.count()) {
   exec.fill(middle_.view(), kNone);
-  exec.for_each("bounds of leaves", bounds_.size(),
-                FindBounds{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), bounds_.view()});
+  exec.for_each("bounds of blocks", bounds_.size(),
+                FindBounds{surface.blocks.view(), surface.position.view(), surface.normal.view(), bounds_.view()});
 }
 
 void LabelSimd::label(CpuExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) {
-  const PointGrid grid = grid_of_seeds(exec, sheet_, seeds, spacing_);
-  exec.for_each("label sheet vertices", sheet_.corners.leaf_count(),
-                LabelLeafSimd{{sheet_.corners.view(), sheet_.position.view(), sheet_.normal.view(), grid.view(),
-                               seeds.normal.view(), spacing_, labels},
-                              bounds_.view(),
-                              seeds.position.view(),
-                              middle_.view()});
+  const PointGrid grid = grid_of_seeds(exec, surface_, seeds, spacing_);
+  exec.for_each("label sheet vertices", surface_.blocks.count(),
+                LabelBlockSimd{{surface_.blocks.view(), surface_.position.view(), surface_.normal.view(), grid.view(),
+                                seeds.normal.view(), spacing_, labels},
+                               bounds_.view(),
+                               seeds.position.view(),
+                               middle_.view()});
 }
 
 }  // namespace isoshell

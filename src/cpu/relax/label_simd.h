@@ -1,4 +1,4 @@
-// Labels on the CPU: the definition of stages/labels/label_body.h, all vertices of a leaf against one seed after the
+// Labels on the CPU: the definition of stages/labels/label_body.h, all vertices of a block against one seed after the
 // other.
 #pragma once
 
@@ -7,24 +7,24 @@
 
 namespace isoshell {
 
-/// Labels one sheet for seeds that move: what does not change is found once, and the seeds in the middle of leaves say
+/// Labels one sheet for seeds that move: what does not change is found once, and the seeds in the middle of blocks say
 /// how far to look the next time.
 class LabelSimd {
  public:
-  LabelSimd(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
+  LabelSimd(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSpacing& spacing);
 
   void label(CpuExecutor& exec, const SeedSet& seeds, View<uint32_t> labels);
 
   /// Once, for CpuKernels.
-  static void run(CpuExecutor& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+  static void run(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSet& seeds, const SeedSpacing& spacing,
                   View<uint32_t> labels) {
-    LabelSimd(exec, sheet, spacing).label(exec, seeds, labels);
+    LabelSimd(exec, surface, spacing).label(exec, seeds, labels);
   }
 
  private:
-  const Sheet& sheet_;
+  const SurfaceMesh& surface_;
   const SeedSpacing spacing_;
-  Buffer<label::Bounds> bounds_;  ///< of every leaf's vertices
+  Buffer<label::Bounds> bounds_;  ///< of every block's vertices
   Buffer<uint32_t> middle_;       ///< the seed that was nearest to the middle of the bounds, kNone at first
 };
 

@@ -10,18 +10,18 @@ namespace {
 
 using namespace relax_sheet;
 
-struct FillLeafPatch {
+struct FillBlockPatch {
   VisitPatch patch;
   View<const PointQ8> position;
   EdgeLengthsView lengths;
   View<const int64_t> first;
-  View<LeafPatches::Triangle> triangles;
+  View<BlockPatches::Triangle> triangles;
   View<PieceSum> of_vertex;
-  void operator()(int64_t leaf) const {
-    int64_t at = first[leaf];
-    const PointQ8 origin = leaf_origin(patch.corners.leaf_key[leaf]);
-    for (int64_t v = patch.corners.first[leaf]; v < patch.corners.first[leaf + 1]; ++v) of_vertex[v] = {};
-    patch.visit(leaf, [&](TriangleIndices t) {
+  void operator()(int64_t block) const {
+    int64_t at = first[block];
+    const PointQ8 origin = patch.blocks.centre[block];
+    for (int64_t v = patch.blocks.first[block]; v < patch.blocks.first[block + 1]; ++v) of_vertex[v] = {};
+    patch.visit(block, [&](TriangleIndices t) {
       const PointQ8 a = position[t.a], b = position[t.b], c = position[t.c];
       const Vec64 n = cross(difference(b, a), difference(c, a));
       const uint32_t area2 = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
@@ -32,10 +32,10 @@ struct FillLeafPatch {
   }
 };
 
-/// Sums of one leaf by cells.
-class LeafSums {
+/// Sums of one block by cells.
+class BlockSums {
  public:
-  LeafSums(PointQ8 origin, View<const PointQ8> seed, View<CellSum> cell) : origin_(origin), seed_(seed), cell_(cell) {}
+  BlockSums(PointQ8 origin, View<const PointQ8> seed, View<CellSum> cell) : origin_(origin), seed_(seed), cell_(cell) {}
 
   void add(uint32_t id, const PieceSum& piece) {
     if (PieceSum* sum = sums_.of(id))
@@ -65,10 +65,10 @@ class LeafSums {
   Int128 energy_ = 0;
 };
 
-struct SumLeafSimd {
-  VoxelSetView corners;
+struct SumBlockSimd {
+  VertexBlocksView blocks;
   View<const int64_t> first;
-  View<const LeafPatches::Triangle> triangles;
+  View<const BlockPatches::Triangle> triangles;
   View<const PieceSum> of_vertex;
   View<const PointQ8> position;
   View<const uint32_t> label;
@@ -77,17 +77,17 @@ struct SumLeafSimd {
   View<SplitSum> energy;
   View<const PassState> state;
 
-  void operator()(int64_t leaf) const {
+  void operator()(int64_t block) const {
     if (state[0].converged) return;
-    const PointQ8 origin = leaf_origin(corners.leaf_key[leaf]);
-    LeafSums sums(origin, seed, cell);
-    add_vertices(leaf, sums);
+    const PointQ8 origin = blocks.centre[block];
+    BlockSums sums(origin, seed, cell);
+    add_vertices(block, sums);
     CutSimd lanes;
     ThreeCellSimd meeting;
     constexpr int64_t kChunk = 256;
-    for (int64_t begin = first[leaf]; begin < first[leaf + 1]; begin += kChunk) {
+    for (int64_t begin = first[block]; begin < first[block + 1]; begin += kChunk) {
       CutTriangles<kChunk> cut;
-      list_cut(begin, std::min(begin + kChunk, first[leaf + 1]), cut);
+      list_cut(begin, std::min(begin + kChunk, first[block + 1]), cut);
       for (int i = 0; i < cut.two_count; ++i) {
         add_lane(triangles[cut.two[i]], origin, lanes);
         if (lanes.count == CutSimd::kLanes) empty(lanes, sums);
@@ -99,13 +99,13 @@ struct SumLeafSimd {
     }
     empty(lanes, sums);
     empty(meeting, sums);
-    energy[leaf] = SplitSum::of(sums.finish());
+    energy[block] = SplitSum::of(sums.finish());
   }
 
  private:
-  void add_vertices(int64_t leaf, LeafSums& sums) const {
-    int64_t v = corners.first[leaf];
-    const int64_t end = corners.first[leaf + 1];
+  void add_vertices(int64_t block, BlockSums& sums) const {
+    int64_t v = blocks.first[block];
+    const int64_t end = blocks.first[block + 1];
     while (v < end) {
       const uint32_t id = label[v];
       PieceSum run = of_vertex[v++];
@@ -135,7 +135,7 @@ struct SumLeafSimd {
 
   Local here(uint32_t vertex, PointQ8 origin) const { return local(position[vertex], origin); }
 
-  void add_lane(const LeafPatches::Triangle& t, PointQ8 origin, ThreeCellSimd& lanes) const {
+  void add_lane(const BlockPatches::Triangle& t, PointQ8 origin, ThreeCellSimd& lanes) const {
     const int i = lanes.count++;
     const uint32_t vertices[3] = {t.a, t.b, t.c}, smallest = std::min({t.a, t.b, t.c});
     for (int k = 0; k < 3; ++k) {
@@ -148,7 +148,7 @@ struct SumLeafSimd {
     lanes.area2[i] = t.area2;
   }
 
-  void add_lane(const LeafPatches::Triangle& t, PointQ8 origin, CutSimd& lanes) const {
+  void add_lane(const BlockPatches::Triangle& t, PointQ8 origin, CutSimd& lanes) const {
     const int i = lanes.count++;
     const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
     const uint32_t p = b == c ? t.a : (c == a ? t.b : t.c), q = b == c ? t.b : (c == a ? t.c : t.a),
@@ -166,7 +166,7 @@ struct SumLeafSimd {
     lanes.to[i] = all_is_at_p ? other : alone;
   }
 
-  static void empty(CutSimd& lanes, LeafSums& sums) {
+  static void empty(CutSimd& lanes, BlockSums& sums) {
     lanes.cut();
     for (int i = 0; i < lanes.count; ++i) {
       sums.take(lanes.from[i], lanes.moved(i));
@@ -174,7 +174,7 @@ struct SumLeafSimd {
     }
     lanes.count = 0;
   }
-  static void empty(ThreeCellSimd& lanes, LeafSums& sums) {
+  static void empty(ThreeCellSimd& lanes, BlockSums& sums) {
     lanes.split();
     for (int i = 0; i < lanes.count; ++i)
       for (int k = 0; k < 3; ++k) sums.add(lanes.cell[k][i], lanes.gained(k, i));
@@ -184,28 +184,28 @@ struct SumLeafSimd {
 
 }  // namespace
 
-CpuPassSimd::CpuPassSimd(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing)
-    : sheet_(sheet), labels_(exec, sheet, spacing), label_(sheet.vertex_count()) {
-  const int64_t leaves = sheet.corners.leaf_count();
-  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-                         sheet.vertex_triangles.view()};
-  patches_ = {Buffer<int64_t>(leaves + 1), Buffer<LeafPatches::Triangle>(sheet.triangles.size()),
-              Buffer<PieceSum>(sheet.vertex_count())};
-  exec.fill(patches_.first.view().part(leaves, 1), int64_t(0));
-  exec.for_each("count patch triangles", leaves, CountPatch{visit, patches_.first.view()});
+CpuPassSimd::CpuPassSimd(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSpacing& spacing)
+    : surface_(surface), labels_(exec, surface, spacing), label_(surface.vertex_count()) {
+  const int64_t blocks = surface.blocks.count();
+  const VisitPatch visit{surface.blocks.view(), surface.triangles.view(), surface.vertex_first.view(),
+                         surface.vertex_triangles.view()};
+  patches_ = {Buffer<int64_t>(blocks + 1), Buffer<BlockPatches::Triangle>(surface.triangles.size()),
+              Buffer<PieceSum>(surface.vertex_count())};
+  exec.fill(patches_.first.view().part(blocks, 1), int64_t(0));
+  exec.for_each("count patch triangles", blocks, CountPatch{visit, patches_.first.view()});
   exec.exclusive_scan(patches_.first.view());
-  exec.for_each("fill patches", leaves,
-                FillLeafPatch{visit, sheet.position.view(), lengths_of(sheet), patches_.first.view(),
-                              patches_.triangles.view(), patches_.of_vertex.view()});
+  exec.for_each("fill patches", blocks,
+                FillBlockPatch{visit, surface.position.view(), lengths_of(surface), patches_.first.view(),
+                               patches_.triangles.view(), patches_.of_vertex.view()});
 }
 
-void CpuPassSimd::measure(CpuExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
+void CpuPassSimd::measure(CpuExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> block_energy,
                           View<const PassState> state) {
   labels_.label(exec, seeds, label_.view());
   exec.for_each(
-      "sum cells", sheet_.corners.leaf_count(),
-      SumLeafSimd{sheet_.corners.view(), patches_.first.view(), patches_.triangles.view(), patches_.of_vertex.view(),
-                  sheet_.position.view(), label_.view(), seeds.position.view(), cells, leaf_energy, state});
+      "sum cells", surface_.blocks.count(),
+      SumBlockSimd{surface_.blocks.view(), patches_.first.view(), patches_.triangles.view(), patches_.of_vertex.view(),
+                   surface_.position.view(), label_.view(), seeds.position.view(), cells, block_energy, state});
 }
 
 }  // namespace isoshell

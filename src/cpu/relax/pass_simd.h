@@ -8,12 +8,13 @@
 
 namespace isoshell {
 
-/// Triangles by the leaf of their smallest vertex, and the moments about the leaf's origin of each vertex's triangles.
-struct LeafPatches {
+/// Triangles by the block of their smallest vertex, and the moments about the block's origin of each vertex's
+/// triangles.
+struct BlockPatches {
   struct Triangle {
     uint32_t a, b, c, area2;
   };
-  Buffer<int64_t> first;  ///< leaf_count + 1
+  Buffer<int64_t> first;  ///< block_count + 1
   Buffer<Triangle> triangles;
   Buffer<PieceSum> of_vertex;  ///< sum over the triangles whose smallest vertex it is
 };
@@ -21,15 +22,15 @@ struct LeafPatches {
 /// relax_sheet::PlainPassWork in lanes.
 class CpuPassSimd {
  public:
-  CpuPassSimd(CpuExecutor& exec, const Sheet& sheet, const SeedSpacing& spacing);
+  CpuPassSimd(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSpacing& spacing);
 
-  void measure(CpuExecutor& exec, const SeedSet& seeds, View<relax_sheet::CellSum> cells, View<SplitSum> leaf_energy,
+  void measure(CpuExecutor& exec, const SeedSet& seeds, View<relax_sheet::CellSum> cells, View<SplitSum> block_energy,
                View<const PassState> state);
 
  private:
-  const Sheet& sheet_;
+  const SurfaceMesh& surface_;
   LabelSimd labels_;
-  LeafPatches patches_;
+  BlockPatches patches_;
   Buffer<uint32_t> label_;
 };
 

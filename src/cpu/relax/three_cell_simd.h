@@ -7,7 +7,7 @@ namespace isoshell {
 
 /// Triangles whose corners lie in three cells, one of which has the whole triangle so far, and what each cell gains.
 struct ThreeCellSimd {
-  static constexpr int kLanes = 8;  ///< as a leaf has few of them; all are worked on
+  static constexpr int kLanes = 8;  ///< as a block has few of them; all are worked on
   using Corner = LocalLanes<kLanes>;
 
   int count = 0;  ///< lanes that are used

@@ -70,6 +70,11 @@ class WalksSimd {
         const bool nearer = (d < best) | ((d == best) & (v < next));
         best = nearer ? d : best, next = nearer ? v : next;
       }
+      if (walk_.is_on_border(from)) {
+        const uint32_t v = walk_.border_before[from];
+        const int64_t d = distance_sq_q16(walk_.position[v], p);
+        if (d < best || (d == best && v < next)) best = d, next = v;
+      }
       if (next == from) return from;
       from = next;
     }

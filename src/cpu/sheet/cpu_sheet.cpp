@@ -28,9 +28,9 @@ Sheet CpuBackend::build_proxy(const SiteSet& sites, const LatticeFrame& frame, c
   return run_with_threads(context, [&] { return build_proxy_body(exec, *OnHost(sites), frame, options); });
 }
 
-int64_t CpuBackend::six_volume_vox(const Sheet& sheet, Context& context) const {
+int64_t CpuBackend::six_volume_vox(const SurfaceMesh& surface, Context& context) const {
   CpuExecutor exec(context, "sheet");
-  return run_with_threads(context, [&] { return six_volume_vox_body(exec, *OnHost(sheet)); });
+  return run_with_threads(context, [&] { return six_volume_vox_body(exec, *OnHost(surface)); });
 }
 
 }  // namespace isoshell

@@ -56,11 +56,11 @@ struct ChooseEdges {
  private:
   ISOSHELL_HD bool any_taken_around(uint32_t v) const {
     bool any = false;
-    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { any = any || taken[p]; });
+    optimize::for_each_neighbour(mesh, v, [&](uint32_t p) { any = any || taken[p]; });
     return any;
   }
   ISOSHELL_HD void take_around(uint32_t v) const {
-    optimize::for_each_triangle_around(mesh, v, [&](uint32_t p, uint32_t) { taken[p] = 1; });
+    optimize::for_each_neighbour(mesh, v, [&](uint32_t p) { taken[p] = 1; });
   }
 };
 
@@ -153,10 +153,10 @@ struct CopyKeptTriangle {
 
 /// Takes back, of the chosen edges, those that take part in intersections, until none does. Returns how many.
 template <class Exec>
-int64_t part_crossing(Exec& exec, const Sheet& sheet, const WalkOntoSheet& walk, const SeedSet& seeds,
+int64_t part_crossing(Exec& exec, const SurfaceMesh& surface, const WalkOntoSheet& walk, const SeedSet& seeds,
                       const DualMesh& mesh, View<uint32_t> merged_into, View<uint8_t> blocked) {
   const int64_t vertices = seeds.size(), chosen = exec.sum(vertices, IsMerged{merged_into});
-  const int64_t spacing_vox = seed_spacing(exec, sheet, vertices).h_q8 / kOneVoxelQ8 + 1;
+  const int64_t spacing_vox = seed_spacing(exec, surface, vertices).h_q8 / kOneVoxelQ8 + 1;
   Buffer<PointQ8> position = exec.template make<PointQ8>(vertices);
   Buffer<Normal8> normal = exec.template make<Normal8>(vertices);
   Buffer<uint32_t> home = exec.template make<uint32_t>(vertices), marked = exec.template make<uint32_t>(vertices);
@@ -171,7 +171,7 @@ int64_t part_crossing(Exec& exec, const Sheet& sheet, const WalkOntoSheet& walk,
     Buffer<TriangleIndices> triangles = exec.template make<TriangleIndices>(kept.size());
     exec.for_each("merge triangles", kept.size(),
                   MergeTriangle{kept.view(), merged_into, mesh.triangles.view(), triangles.view()});
-    optimize::find_intersections(exec, {triangles.view(), position.view()}, sheet.corners.block_dims, spacing_vox,
+    optimize::find_intersections(exec, {triangles.view(), position.view()}, surface.extent_vox, spacing_vox,
                                  marked.view());
     exec.for_each("part crossing", vertices, PartCrossing{marked.view(), merged_into, blocked});
     left = exec.sum(vertices, IsMerged{merged_into});
@@ -216,16 +216,17 @@ void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, Dual
 }  // namespace collapse
 
 template <class Exec>
-void collapse_edges_body(Exec& exec, const Sheet& sheet, const collapse::CollapseOptions& options, SeedSet& seeds,
-                         DualMesh& mesh) {
+void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const collapse::CollapseOptions& options,
+                         SeedSet& seeds, DualMesh& mesh) {
   using namespace collapse;
-  const WalkOntoSheet walk = walk_onto(sheet);
+  const WalkOntoSheet walk = walk_onto(surface);
   Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
   exec.fill(blocked.view(), uint8_t(0));
   for (bool any = true; any && seeds.size() > options.target;) {
     const int64_t before = seeds.size();
     optimize::Connections connections(exec, mesh);
-    const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(sheet)};
+    connections.require_closed(exec, "collapse");
+    const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(surface)};
     const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
     Buffer<Candidate> candidates = exec.template make<Candidate>(half_edges.size());
     exec.for_each("make candidates", candidates.size(), MakeCandidate{cost, half_edges.view(), candidates.view()});
@@ -238,7 +239,7 @@ void collapse_edges_body(Exec& exec, const Sheet& sheet, const collapse::Collaps
                   ChooseEdges{cost.mesh, candidates.view(), before - options.target, taken.view(), merged_into.view()});
     int64_t taken_back = 0;
     if (options.keep_apart)
-      taken_back = part_crossing(exec, sheet, walk, seeds, mesh, merged_into.view(), blocked.view());
+      taken_back = part_crossing(exec, surface, walk, seeds, mesh, merged_into.view(), blocked.view());
     exec.for_each(
         "move to the middle", before,
         MoveToMiddle{walk, merged_into.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()});

@@ -32,25 +32,25 @@ struct TakeIds {
 template <class Exec>
 class Partition {
  public:
-  Partition(Exec& exec, const Sheet& sheet, SeedSet& seeds, const DualOptions& options, DualReport& report)
+  Partition(Exec& exec, const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options, DualReport& report)
       : exec_(exec),
-        sheet_(sheet),
+        surface_(surface),
         seeds_(seeds),
         report_(report),
         rounds_left_(options.max_repair_rounds),
         first_count_(seeds.size()),
         most_against_crossing_(options.most_against_crossing),
-        spacing_(seed_spacing(exec, sheet, seeds.size())),
-        label_(exec.template make<uint32_t>(sheet.vertex_count())) {
+        spacing_(seed_spacing(exec, surface, seeds.size())),
+        label_(exec.template make<uint32_t>(surface.vertex_count())) {
     report_ = {};
-    Exec::Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label_.view());
+    Exec::Kernels::LabelSheet::run(exec_, surface_, seeds_, spacing_, label_.view());
     grow(exec_, cells_, seeds_.size());
   }
 
   /// Repairs as far as the rounds allow; returns the faces, not sorted.
   Buffer<TriangleIndices> repair() {
     const int64_t disconnected_pieces = resolve_disconnected_pieces();
-    measure_euler(exec_, sheet_, label_.view(), cells_);
+    measure_euler(exec_, surface_, label_.view(), cells_);
     Buffer<TriangleIndices> faces;
     for (;;) {
       const Buffer<uint32_t> failing = find_failing(faces);
@@ -94,7 +94,7 @@ class Partition {
 
   /// Leaves every cell in one piece. Returns the number of disconnected pieces that are left.
   int64_t resolve_disconnected_pieces() {
-    Pieces pieces = find_pieces(exec_, sheet_, label_.view(), cells_);
+    Pieces pieces = find_pieces(exec_, surface_, label_.view(), cells_);
     const DisconnectedPieces disconnected_pieces = list_disconnected_pieces(exec_, pieces, label_.view(), cells_);
     Buffer<uint32_t> waiting = exec_.template make<uint32_t>(disconnected_pieces.count());
     exec_.for_each("all strays wait", disconnected_pieces.count(), StartAlone{waiting.view()});
@@ -109,9 +109,9 @@ class Partition {
     Buffer<uint32_t> decision = exec_.template make<uint32_t>(waiting.size);
     exec_.for_each(
         "decide strays", waiting.size,
-        DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(sheet_), pieces.piece.view(),
-                                pieces.size.view(), label_.view(), cells_.root.view(), sheet_.position.view(),
-                                seeds_.position.view(), sheet_.vertex_count(), first_count_, decision.view()});
+        DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(surface_), pieces.piece.view(),
+                                pieces.size.view(), label_.view(), cells_.root.view(), surface_.position.view(),
+                                seeds_.position.view(), surface_.vertex_count(), first_count_, decision.view()});
     const Buffer<uint32_t> joining = exec_.select(waiting.size, IsJoining{decision.view()});
     Buffer<uint32_t> founding = exec_.select(waiting.size, DecisionIs{decision.view(), kNewCell});
     uint32_t resolved = kNewCell;
@@ -127,7 +127,7 @@ class Partition {
     const Buffer<uint32_t> ids = founding.empty() ? Buffer<uint32_t>() : new_ids(founding.size(), unused_seeds());
     exec_.for_each("found cells", founding.size(),
                    FoundCell{disconnected_pieces.view(), waiting, founding.view(), ids.view(), label_.view(),
-                             cells_.view(), writer_of(sheet_, seeds_)});
+                             cells_.view(), writer_of(surface_, seeds_)});
     const Buffer<uint32_t> rest = exec_.select(waiting.size, StillWaits{decision.view(), resolved});
     Buffer<uint32_t> out = exec_.template make<uint32_t>(rest.size());
     exec_.for_each("gather waiting", rest.size(), GatherWaiting{waiting, rest.view(), out.view()});
@@ -150,8 +150,8 @@ class Partition {
 
   /// Splits keep the list of the faces' triangles up to date: the sheet is searched for them only once.
   Buffer<TriangleIndices> faces_now() {
-    if (face_triangle_.empty()) face_triangle_ = select_face_triangles(exec_, sheet_, label_.view());
-    return make_faces(exec_, sheet_, label_.view(), face_triangle_.view());
+    if (face_triangle_.empty()) face_triangle_ = select_face_triangles(exec_, surface_, label_.view());
+    return make_faces(exec_, surface_, label_.view(), face_triangle_.view());
   }
 
   Buffer<uint32_t> largest_cells(int64_t count) {
@@ -165,7 +165,7 @@ class Partition {
     if (most_against_crossing_ == 0) return false;
     Buffer<uint32_t> marked = exec_.template make<uint32_t>(seeds_.size());
     const int64_t pairs =
-        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view()}, sheet_.corners.block_dims,
+        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view()}, surface_.extent_vox,
                                      spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
     if (pairs == 0) return false;
     exec_.for_each("request crossing cells", cells_.count(),
@@ -173,7 +173,7 @@ class Partition {
     const Buffer<uint32_t> crossing = requested();
     Buffer<int64_t> moved = exec_.template make<int64_t>(cells_.count());
     exec_.for_each("settle crossing cells", cells_.count(),
-                   SettleCrossing{marked.view(), cells_.view(), writer_of(sheet_, seeds_), moved.view()});
+                   SettleCrossing{marked.view(), cells_.view(), writer_of(surface_, seeds_), moved.view()});
     const int64_t settled = exec_.sum(cells_.count(), MovedSeeds{moved.view()});
     if (crossing.size() + settled == 0 || crossing.size() > most_against_crossing_ || !take_round()) return false;
     most_against_crossing_ -= crossing.size();
@@ -188,27 +188,27 @@ class Partition {
     Buffer<uint32_t> queue = exec_.template make<uint32_t>(exec_.exclusive_scan(first.view()));
     Buffer<Half> half = exec_.template make<Half>(count);
     if (mark_.empty()) {
-      mark_ = exec_.template make<uint8_t>(sheet_.vertex_count());
+      mark_ = exec_.template make<uint8_t>(surface_.vertex_count());
       exec_.fill(mark_.view(), uint8_t(SplitCell::kClear));
     }
     const Buffer<uint32_t> ids = new_ids(count, unused);
-    Exec::Kernels::SplitCells::run(
-        exec_, count,
-        SplitCell{graph_of(sheet_), label_.view(), cell.view(), request_.view(), first.view(), sheet_.position.view(),
-                  seeds_.position.view(), cells_.view(), queue.view(), mark_.view(), half.view()},
-        ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(), label_.view(), cells_.view(),
-                   writer_of(sheet_, seeds_)});
+    Exec::Kernels::SplitCells::run(exec_, count,
+                                   SplitCell{graph_of(surface_), label_.view(), cell.view(), request_.view(),
+                                             first.view(), surface_.position.view(), seeds_.position.view(),
+                                             cells_.view(), queue.view(), mark_.view(), half.view()},
+                                   ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(),
+                                              label_.view(), cells_.view(), writer_of(surface_, seeds_)});
     if (to_middles)
       exec_.for_each("seeds to middles", count,
                      SeedsToMiddles{cell.view(), ids.view(), queue.view(), first.view(), label_.view(),
-                                    sheet_.position.view(), writer_of(sheet_, seeds_)});
+                                    surface_.position.view(), writer_of(surface_, seeds_)});
     if (!face_triangle_.empty())
-      add_new_faces(exec_, {graph_of(sheet_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
+      add_new_faces(exec_, {graph_of(surface_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
                     cell.view(), cells_.count(), face_triangle_);
   }
 
   Exec& exec_;
-  const Sheet& sheet_;
+  const SurfaceMesh& surface_;
   SeedSet& seeds_;
   DualReport& report_;
   int64_t rounds_left_;
@@ -225,9 +225,9 @@ class Partition {
 }  // namespace dual
 
 template <class Exec>
-DualMesh triangulate_dual_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const DualOptions& options,
+DualMesh triangulate_dual_body(Exec& exec, const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options,
                                DualReport& report) {
-  dual::Partition<Exec> partition(exec, sheet, seeds, options, report);
+  dual::Partition<Exec> partition(exec, surface, seeds, options, report);
   DualMesh mesh;
   mesh.triangles = partition.repair();
   exec.sort(mesh.triangles.view(), ByIndices{});

@@ -84,8 +84,9 @@ struct SeedWriter {
     home[id] = vertex;
   }
 };
-inline SeedWriter writer_of(const Sheet& sheet, SeedSet& seeds) {
-  return {sheet.position.view(), sheet.normal.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()};
+inline SeedWriter writer_of(const SurfaceMesh& surface, SeedSet& seeds) {
+  return {surface.position.view(), surface.normal.view(), seeds.position.view(), seeds.normal.view(),
+          seeds.home.view()};
 }
 
 /// Hooks the ends of every edge with one label. Each edge is seen twice; the triangle that runs up it counts.
@@ -156,12 +157,12 @@ struct Pieces {
   Buffer<uint32_t> size;
 };
 template <class Exec>
-Pieces find_pieces(Exec& exec, const Sheet& sheet, View<const uint32_t> label, Cells& cells) {
-  const int64_t n = sheet.vertex_count();
+Pieces find_pieces(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label, Cells& cells) {
+  const int64_t n = surface.vertex_count();
   Pieces pieces{exec.template make<uint32_t>(n), exec.template make<uint32_t>(n)};
   exec.for_each("start pieces", n, StartAlone{pieces.piece.view()});
-  exec.for_each("hook pieces", sheet.triangles.size(),
-                HookEqualLabels{sheet.triangles.view(), label, pieces.piece.view()});
+  exec.for_each("hook pieces", surface.triangles.size(),
+                HookEqualLabels{surface.triangles.view(), label, pieces.piece.view()});
   exec.for_each("root pieces", n, PointAtRoot{pieces.piece.view()});
   count_groups(exec, "count pieces", View<const uint32_t>(pieces.piece.view()), pieces.size.view());
   Buffer<uint64_t> best = exec.template make<uint64_t>(cells.count());
@@ -190,10 +191,10 @@ struct AddTrianglesToEuler {
   }
 };
 template <class Exec>
-void measure_euler(Exec& exec, const Sheet& sheet, View<const uint32_t> label, Cells& cells) {
+void measure_euler(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label, Cells& cells) {
   count_groups(exec, "count vertices of cells", label, cells.euler.view());
-  exec.for_each("count edges and faces of cells", sheet.triangles.size(),
-                AddTrianglesToEuler{sheet.triangles.view(), label, cells.euler.view()});
+  exec.for_each("count edges and faces of cells", surface.triangles.size(),
+                AddTrianglesToEuler{surface.triangles.view(), label, cells.euler.view()});
 }
 
 struct OwnsNothing {

@@ -18,14 +18,14 @@ struct MakeFace {
   }
 };
 template <class Exec>
-Buffer<uint32_t> select_face_triangles(Exec& exec, const Sheet& sheet, View<const uint32_t> label) {
-  return exec.select(sheet.triangles.size(), HasThreeLabels{sheet.triangles.view(), label});
+Buffer<uint32_t> select_face_triangles(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label) {
+  return exec.select(surface.triangles.size(), HasThreeLabels{surface.triangles.view(), label});
 }
 template <class Exec>
-Buffer<TriangleIndices> make_faces(Exec& exec, const Sheet& sheet, View<const uint32_t> label,
+Buffer<TriangleIndices> make_faces(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label,
                                    View<const uint32_t> selected) {
   Buffer<TriangleIndices> faces = exec.template make<TriangleIndices>(selected.size);
-  exec.for_each("make faces", selected.size, MakeFace{sheet.triangles.view(), label, selected, faces.view()});
+  exec.for_each("make faces", selected.size, MakeFace{surface.triangles.view(), label, selected, faces.view()});
   return faces;
 }
 

@@ -107,7 +107,7 @@ struct DecideDisconnectedPiece {
     uint32_t best = kNone;
     bool largest = true;
     for (int64_t m = disconnected_pieces.first[s]; m < disconnected_pieces.first[s + 1]; ++m)
-      graph.for_each_corner(disconnected_pieces.vertex(m), [&](uint32_t w, uint32_t) {
+      graph.for_each_neighbour(disconnected_pieces.vertex(m), [&](uint32_t w) {
         const uint32_t other = piece[w];
         if (other == root) return;
         const uint32_t owner = label[w];

@@ -53,7 +53,7 @@ struct SplitCell {
                              MarkFrom mark_from) const {
     for (int64_t at = 0; at < count; ++at) {
       const uint32_t v = places[at];
-      graph.for_each_corner(v, [&](uint32_t w, uint32_t) {
+      graph.for_each_neighbour(v, [&](uint32_t w) {
         if (label[w] != id || mark[w] != fresh) return;
         mark[w] = mark_from(v);
         places[count++] = w;
@@ -77,7 +77,7 @@ struct SplitCell {
 
   ISOSHELL_HD bool touches(uint32_t v, uint32_t other) const {
     bool found = false;
-    graph.for_each_corner(v, [&](uint32_t w, uint32_t) { found = found || label[w] == other; });
+    graph.for_each_neighbour(v, [&](uint32_t w) { found = found || label[w] == other; });
     return found;
   }
 
@@ -92,7 +92,7 @@ struct SplitCell {
         const uint32_t v = places[at];
         if (v < level_anywhere) level_anywhere = v;
         if (touching != kSplitAnywhere && v != source && v < level_at_other && touches(v, touching)) level_at_other = v;
-        graph.for_each_corner(v, [&](uint32_t w, uint32_t) {
+        graph.for_each_neighbour(v, [&](uint32_t w) {
           if (label[w] != id || mark[w] != kSeen) return;
           mark[w] = kMeasured;
           places[count++] = w;

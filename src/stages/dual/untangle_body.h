@@ -45,7 +45,7 @@ int64_t untangle_sheet_body(Exec& exec, Sheet& sheet, SeedSet& seeds) {
   Buffer<uint32_t> marked = exec.template make<uint32_t>(sheet.vertex_count());
   for (int round = 0;; ++round) {
     const int64_t pairs = optimize::find_intersections(exec, {sheet.triangles.view(), sheet.position.view()},
-                                                       sheet.corners.block_dims, 1, marked.view());
+                                                       sheet.extent_vox, 1, marked.view());
     if (pairs == 0 || round == kRounds) {
       const WalkOntoSheet walk = walk_onto(sheet);
       exec.for_each("follow the sheet", seeds.size(), FollowSheet{walk, seeds.home.view(), seeds.position.view()});

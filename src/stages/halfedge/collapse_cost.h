@@ -41,7 +41,7 @@ struct CollapseCost {
   /// A third one would be joined to the merged vertex by two edges.
   ISOSHELL_HD bool share_two_neighbours(uint32_t a, uint32_t b) const {
     int shared = 0;
-    optimize::for_each_triangle_around(mesh, a, [&](uint32_t v, uint32_t) { shared += mesh.are_neighbours(v, b); });
+    optimize::for_each_neighbour(mesh, a, [&](uint32_t v) { shared += mesh.are_neighbours(v, b); });
     return shared == 2;
   }
 

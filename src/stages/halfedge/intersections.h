@@ -113,12 +113,12 @@ struct FoundHere {
 /// Boxes up to so many times the usual edge are ordinary; each class of larger ones reaches twice as far as the last.
 constexpr int64_t kOrdinaryExtent = 4;
 
-/// Pairs of triangles that intersect; `marked` becomes 1 at the corners of those triangles, 0 elsewhere. `blocks`: see
-/// VoxelSetView::block_dims; `spacing_vox`: about the length of an edge. Triangles look for others of their own class
+/// Pairs of triangles that intersect; `marked` becomes 1 at the corners of those triangles, 0 elsewhere. `extent_vox`:
+/// see SurfaceMesh; `spacing_vox`: about the length of an edge. Triangles look for others of their own class
 /// and of larger ones, so that few large ones do not widen the search of all. Cost: O(triangles) where edges are of
 /// even length, and again for each class that some larger ones are in.
 template <class Exec>
-int64_t find_intersections(Exec& exec, const TrianglesView& mesh, const int32_t blocks[3], int64_t spacing_vox,
+int64_t find_intersections(Exec& exec, const TrianglesView& mesh, const int32_t extent_vox[3], int64_t spacing_vox,
                            View<uint32_t> marked) {
   const int64_t triangles = mesh.triangles.size;
   Buffer<PointQ8> middle = exec.template make<PointQ8>(triangles);
@@ -130,7 +130,7 @@ int64_t find_intersections(Exec& exec, const TrianglesView& mesh, const int32_t 
   exec.fill(marked, 0u);
   const auto find_among = [&](ExtentClass extents, View<const PointQ8> middles, View<const uint32_t> of_class,
                               int64_t cell_vox) {
-    PointGrid grid = make_point_grid(exec, blocks, cell_vox, middles.size);
+    PointGrid grid = make_point_grid(exec, extent_vox, cell_vox, middles.size);
     fill_point_grid(exec, grid, middles);
     exec.for_each("find intersections", triangles,
                   FindIntersections{mesh, extents, grid.view(), of_class, marked, found.view()});

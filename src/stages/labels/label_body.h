@@ -1,10 +1,10 @@
-// Nearest seed of every sheet vertex, exact (paper section 3.2, on the sheet).
+// Nearest seed of every vertex of a surface, exact (paper section 3.2, on the surface).
 //
 // Result: label = minimum of (squared distance + penalty, seed id). The penalty, 16 h^2, is paid by a seed that sits on
 // the other side of a thin wall (normals at more than about 104 degrees), so that each side keeps its own seeds.
-// A leaf gathers the seeds that can win inside its box, each 4^3 octant keeps those that can win inside its own box,
-// and its vertices compare those. A seed can win when its smallest cost over the box is not above the smallest of the
-// seeds' largest costs.
+// A block gathers the seeds that can win inside its box, each of its octants keeps those that can win inside its own
+// box, and its vertices compare those. A seed can win when its smallest cost over the box is not above the smallest of
+// the seeds' largest costs.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,12 @@
 #include "isoshell/seed_set.h"
 #include "stages/sheet/edge_lengths.h"
 #include "stages/sparse/point_grid_body.h"
-#include "voxel/leaf.h"
 
 namespace isoshell {
 
-/// Sum of the doubled areas of the sheet's triangles, q16.
+/// Sum of the doubled areas of the surface's triangles, q16.
 template <class Exec>
-int64_t doubled_area_q16(Exec& exec, const Sheet& sheet);
+int64_t doubled_area_q16(Exec& exec, const SurfaceMesh& surface);
 
 /// Seed spacing and what follows from it. Where lengths vary it is that of the least length.
 struct SeedSpacing {
@@ -26,18 +25,19 @@ struct SeedSpacing {
   int64_t h_q8;         ///< its square root
   int64_t penalty_q16;  ///< 16 h^2; 16 times the least h times the largest where they vary
   int64_t largest_h_q8;
-  int64_t area2_q16;  ///< of the sheet, doubled
+  int64_t area2_q16;  ///< of the surface, doubled
   EdgeLengthsView lengths;
 
   ISOSHELL_HD int64_t h_at(uint32_t vertex) const { return lengths.scaled(h_q8, vertex); }
 };
 template <class Exec>
-SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds);
+SeedSpacing seed_spacing(Exec& exec, const SurfaceMesh& surface, int64_t seeds);
 
 namespace label {
 
 constexpr int32_t kOpposite = -127 * 127 / 4;  ///< dot products below this are opposite sides
-constexpr int kMaxCandidates = 256;            ///< per leaf; more take the exact slow path
+constexpr int kMaxCandidates = 256;            ///< per block; more take the exact slow path
+constexpr int kMembers = 64;                   ///< vertices of an octant that are compared together
 
 /// Smallest and largest of the vertices' positions and normals.
 struct Bounds {
@@ -103,10 +103,10 @@ ISOSHELL_HD inline int64_t cost(PointQ8 v, Normal8 n, const LabelSeed& s, int64_
   return distance_sq_q16(v, s.position) + (dot(n, s.normal) < kOpposite ? penalty : 0);
 }
 
-/// Labels the vertices of one leaf.
+/// Labels the vertices of one block.
 template <int kCapacity = kMaxCandidates>
-struct LabelLeaf {
-  VoxelSetView corners;
+struct LabelBlock {
+  VertexBlocksView blocks;
   View<const PointQ8> position;
   View<const Normal8> normal;
   PointGridView grid;
@@ -114,15 +114,15 @@ struct LabelLeaf {
   SeedSpacing spacing;
   View<uint32_t> out;
 
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    const int64_t begin = corners.first[leaf], end = corners.first[leaf + 1];
+  ISOSHELL_HD void operator()(int64_t block) const {
+    const int64_t begin = blocks.first[block], end = blocks.first[block + 1];
     Bounds bounds = empty_bounds();
     for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
     LabelSeed candidates[kCapacity];
     int64_t limit;
     const int count = gather(bounds, spacing.h_at(uint32_t(begin)), candidates, limit);
     if (count > kCapacity) return label_directly(limit, begin, end);
-    label_from(leaf, candidates, count);
+    label_from(block, candidates, count);
   }
 
   /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
@@ -153,13 +153,13 @@ struct LabelLeaf {
   }
 
   /// Labels from all the candidates; sorts them.
-  ISOSHELL_HD void label_from(int64_t leaf, LabelSeed* candidates, int count) const {
+  ISOSHELL_HD void label_from(int64_t block, LabelSeed* candidates, int count) const {
     if (count == 1) {
-      for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v) out[v] = candidates[0].id;
+      for (int64_t v = blocks.first[block]; v < blocks.first[block + 1]; ++v) out[v] = candidates[0].id;
       return;
     }
     sort_by_id(candidates, count);
-    label_octants(leaf, candidates, count);
+    label_octants(block, candidates, count);
   }
 
   ISOSHELL_HD static void sort_by_id(LabelSeed* c, int count) {
@@ -171,7 +171,7 @@ struct LabelLeaf {
     }
   }
 
-  /// The exact path without lists, where too many seeds can win somewhere in the leaf: each vertex looks for its own,
+  /// The exact path without lists, where too many seeds can win somewhere in the block: each vertex looks for its own,
   /// farther until the best one is nearer than it looked. No label costs more than the limit.
   ISOSHELL_HD void label_directly(int64_t limit, int64_t begin, int64_t end) const {
     for (int64_t v = begin; v < end; ++v) {
@@ -209,25 +209,24 @@ struct LabelLeaf {
     return kept;
   }
 
-  /// The eight 4^3 octants of the leaf in turn.
-  ISOSHELL_HD void label_octants(int64_t leaf, const LabelSeed* candidates, int count) const {
-    for (int q = 0; q < 8; ++q) {
-      int64_t member[64];
+  /// The eight octants around the block's centre in turn, so many of their vertices at a time.
+  ISOSHELL_HD void label_octants(int64_t block, const LabelSeed* candidates, int count) const {
+    const PointQ8 centre = blocks.centre[block];
+    for (int octant = 0; octant < 8; ++octant) {
+      int64_t member[kMembers];
       int members = 0;
-      const int x0 = q >> 2 << 2, y0 = (q >> 1 & 1) << 2, z0 = (q & 1) << 2;
-      const uint64_t rows = uint64_t(0x0f0f0f0f) << (y0 * 8) << z0;
-      int64_t word_first = corners.first[leaf];
-      for (int x = 0; x < 8; ++x) {
-        const uint64_t word = corners.mask[leaf].word[x];
-        if (x >= x0 && x < x0 + 4)
-          for (uint64_t bits = word & rows; bits; bits &= bits - 1) {
-            const uint64_t bit = bits & (~bits + 1);
-            member[members++] = word_first + popcount64(word & (bit - 1));
-          }
-        word_first += popcount64(word);
+      for (int64_t v = blocks.first[block]; v < blocks.first[block + 1]; ++v) {
+        if (octant_of(position[v], centre) != octant) continue;
+        member[members++] = v;
+        if (members < kMembers) continue;
+        label_octant(member, members, candidates, count);
+        members = 0;
       }
       if (members) label_octant(member, members, candidates, count);
     }
+  }
+  ISOSHELL_HD static int octant_of(PointQ8 p, PointQ8 centre) {
+    return (p.x >= centre.x) * 4 + (p.y >= centre.y) * 2 + (p.z >= centre.z);
   }
 
   ISOSHELL_HD void label_octant(const int64_t* member, int members, const LabelSeed* candidates, int count) const {
@@ -269,7 +268,7 @@ struct LabelLeaf {
 
   ISOSHELL_HD void label_narrow(const int64_t* member, int members, const LabelSeed* candidates, int count,
                                 const int64_t* least, int64_t limit, PointQ8 origin) const {
-    uint32_t x[64], y[64], z[64], best[64], id[64];
+    uint32_t x[kMembers], y[kMembers], z[kMembers], best[kMembers], id[kMembers];
     for (int m = 0; m < members; ++m) {
       const PointQ8 p = position[member[m]];
       x[m] = uint32_t(p.x - origin.x);
@@ -313,18 +312,18 @@ struct ShareOfSeeds {
 }  // namespace label
 
 template <class Exec>
-int64_t doubled_area_q16(Exec& exec, const Sheet& sheet) {
-  return exec.sum(sheet.triangles.size(), label::DoubledArea{sheet.position.view(), sheet.triangles.view()});
+int64_t doubled_area_q16(Exec& exec, const SurfaceMesh& surface) {
+  return exec.sum(surface.triangles.size(), label::DoubledArea{surface.position.view(), surface.triangles.view()});
 }
 
 template <class Exec>
-SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds) {
-  const EdgeLengthsView lengths = lengths_of(sheet);
-  const int64_t area2 = doubled_area_q16(exec, sheet);
-  const int64_t shares = lengths.vary()
-                             ? exec.sum(sheet.triangles.size(),
-                                        label::ShareOfSeeds{{sheet.position.view(), sheet.triangles.view()}, lengths})
-                             : area2;
+SeedSpacing seed_spacing(Exec& exec, const SurfaceMesh& surface, int64_t seeds) {
+  const EdgeLengthsView lengths = lengths_of(surface);
+  const int64_t area2 = doubled_area_q16(exec, surface);
+  const int64_t shares =
+      lengths.vary() ? exec.sum(surface.triangles.size(),
+                                label::ShareOfSeeds{{surface.position.view(), surface.triangles.view()}, lengths})
+                     : area2;
   const int64_t h_sq = shares / 2 / (seeds > 0 ? seeds : 1), h = int64_t(isqrt(uint64_t(h_sq))) + 1;
   if (!lengths.vary()) return {h_sq, h, 16 * h_sq, h, area2, lengths};
   constexpr int64_t kMostPenalty = (int64_t(1) << 28) - 1;  // beyond, labels take slower ways
@@ -334,23 +333,23 @@ SeedSpacing seed_spacing(Exec& exec, const Sheet& sheet, int64_t seeds) {
 
 /// Grid of the current seeds, with cells about as wide as seeds are apart; twice that where lengths vary.
 template <class Exec>
-PointGrid grid_of_seeds(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing) {
+PointGrid grid_of_seeds(Exec& exec, const SurfaceMesh& surface, const SeedSet& seeds, const SeedSpacing& spacing) {
   const int64_t edge_q8 = std::min(2 * spacing.h_q8, spacing.largest_h_q8);
   const int64_t spacing_vox = (edge_q8 + kOneVoxelQ8 - 1) / kOneVoxelQ8;
-  PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, spacing_vox, seeds.size());
+  PointGrid grid = make_point_grid(exec, surface.extent_vox, spacing_vox, seeds.size());
   fill_point_grid(exec, grid, seeds.position.view());
   return grid;
 }
 
-/// Labels of all sheet vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
+/// Labels of all vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
 struct PlainLabelSheet {
   template <class Exec>
-  static void run(Exec& exec, const Sheet& sheet, const SeedSet& seeds, const SeedSpacing& spacing,
+  static void run(Exec& exec, const SurfaceMesh& surface, const SeedSet& seeds, const SeedSpacing& spacing,
                   View<uint32_t> labels) {
-    const PointGrid grid = grid_of_seeds(exec, sheet, seeds, spacing);
-    exec.for_each("label sheet vertices", sheet.corners.leaf_count(),
-                  label::LabelLeaf<>{sheet.corners.view(), sheet.position.view(), sheet.normal.view(), grid.view(),
-                                     seeds.normal.view(), spacing, labels});
+    const PointGrid grid = grid_of_seeds(exec, surface, seeds, spacing);
+    exec.for_each("label sheet vertices", surface.blocks.count(),
+                  label::LabelBlock<>{surface.blocks.view(), surface.position.view(), surface.normal.view(),
+                                      grid.view(), seeds.normal.view(), spacing, labels});
   }
 };
 

@@ -3,441 +3,86 @@
 // set, so the order of the work cannot show.
 #pragma once
 
-#include <algorithm>
-
 #include "isoshell/stages.h"
-#include "stages/halfedge/intersections.h"
-#include "stages/labels/label_body.h"
-#include "stages/optimize/optimize_chords.h"
-#include "stages/optimize/optimize_fit.h"
-#include "stages/optimize/optimize_flips.h"
-#include "stages/optimize/optimize_guard.h"
-#include "stages/optimize/optimize_relocate.h"
-#include "stages/optimize/optimize_search.h"
-#include "stages/optimize/optimize_smooth.h"
+#include "stages/optimize/optimization_body.h"
 
 namespace isoshell {
 namespace optimize {
 
-constexpr int kStepsOffSheet = 8;
-constexpr int kUndoRounds = 3;           ///< back to the sheet
-constexpr int kUndoRoundsInAll = 12;     ///< the others back to where vertices began
-constexpr int kBlockedFlips = 8;         ///< tries to flip fewer edges before none is flipped
-constexpr int kSamplesPerTriangle = 12;  ///< fewer miss tips, more change little
-constexpr double kStiffness = 0.5;       ///< less is nearer to the surface, more has better triangles
-constexpr double kFitMomentum = 0.7;
+// No step may make a triangle below its bound worse; bounds rise to where the search begins, kGoodQuality. What flips
+// make poor is smoothed after them.
+constexpr double kFlippedQuality = 0.7, kPoorQuality = 0.8, kFairQuality = 0.9;
+
+// Smoothing. The first one goes far: with much momentum, and held to the planes of the triangles, since it would slide
+// vertices off tips and ridges. The second one only repairs around flips, in few steps, and is free.
 constexpr double kHold = 64;  ///< 16 to 256 differ by little; 0 wears tips down
-// No step may make a triangle below its bound worse; bounds rise to where the search begins. What flips make poor is
-// smoothed after them.
-constexpr double kFlippedQuality = 0.7, kPoorQuality = 0.8, kFairQuality = 0.9, kGoodQuality = 1;
-constexpr double kUniformEvenness = 6;  ///< weight of the size to aim at against a triangle's own: shapes want none
+constexpr double kSmoothingMomentum = 0.95, kRepairMomentum = 0.5;
+constexpr int kSmoothingStepsPerRepair = 8;
 
-/// Seeds go where the vertices are: position, home and normal.
-struct UpdateSeed {
-  WalkOntoSheet walk;
-  View<const PointQ8> vertex;
-  View<PointQ8> position;
-  View<Normal8> normal;
-  View<uint32_t> home;
-  ISOSHELL_HD void operator()(int64_t v) const {
-    position[v] = vertex[v];
-    home[v] = walk.nearest_vertex(home[v], vertex[v]);
-    normal[v] = walk.normal[home[v]];
-  }
-};
+// The fit. It starts with whole moves, from vertices that are all on the surface and so far from where the mesh
+// straddles it. Then it is damped: neighbours move at once, and whole moves would go too far together.
+constexpr double kFirstDamping = 1, kDamping = 0.6;
+constexpr int kFirstFitSteps = 5;      ///< until samples show which edges are chords
+constexpr int kChordFitSteps = 3;      ///< around flipped chords, which may be poor
+constexpr int kFairFitSteps = 4;       ///< before the search, within a higher bound
+constexpr int kLastFitSteps = 3;       ///< the fit has the last word, within the bound of the search
+constexpr int kRelocatedFitSteps = 5;  ///< around relocated vertices, as at the start
 
-/// Marks the neighbours of marked vertices too.
-struct SpreadMarks {
-  MeshView mesh;
-  View<const uint32_t> marked;
-  View<uint32_t> spread;
-  ISOSHELL_HD void operator()(int64_t v) const {
-    uint32_t any = marked[v];
-    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t) { any |= marked[b]; });
-    spread[v] = any;
-  }
-};
-struct ReturnMarked {
-  View<const uint32_t> marked;
-  View<const PointQ8> to;
-  View<PointQ8> position;
-  ISOSHELL_HD void operator()(int64_t v) const {
-    if (marked[v]) position[v] = to[v];
-  }
-};
-struct IsMarked {
-  View<const uint32_t> marked;
-  ISOSHELL_HD int64_t operator()(int64_t v) const { return marked[v]; }
-};
+// Searches, in OptimizeOptions::search_rounds. Most are held to the planes; the last ones are free, as in smoothing.
+constexpr int kHeldSearches = 3, kFreeSearches = 1;
+constexpr int kRelocatedSearches = 5;  ///< stars of relocated vertices begin worse than what smoothing leaves
+constexpr int kUndoneSearches = 3;     ///< what went back may be poor
 
-struct BlockMarked {
-  View<const uint32_t> marked;
-  View<uint32_t> blocked;
-  ISOSHELL_HD void operator()(int64_t v) const { blocked[v] |= marked[v]; }
-};
-
-struct RotateTriangle {
-  View<TriangleIndices> triangles;
-  ISOSHELL_HD void operator()(int64_t i) const { triangles[i] = smallest_first(triangles[i]); }
-};
-
-/// The steps that take the time, each as it is defined.
-struct PlainStepWork {
-  /// Before steps between which the triangles stay.
-  template <class Exec>
-  void begin(Exec&, const MeshView&) {}
-  template <class Exec>
-  void smooth(Exec& exec, const SmoothVertex& step) {
-    if (step.options.onto_sheet)
-      Exec::Kernels::Walks::for_each(exec, "smooth", step.walk, step.home, step);
-    else
-      exec.for_each("smooth", step.to.size, step);
-  }
-  /// Before they are pulled: samples may take another order.
-  template <class Exec>
-  void sort(Exec&, int64_t /*triangles*/, View<FitSample>) {}
-  template <class Exec>
-  void pull(Exec& exec, const PullCorners& step) {
-    exec.for_each("pull corners", step.sample.size, step);
-  }
-  template <class Exec>
-  void fit(Exec& exec, const FitVertex& step) {
-    Exec::Kernels::Walks::for_each(exec, "fit", step.walk, step.home, step);
-  }
-};
-
-/// The mesh and its scratch while it is improved.
+/// Moves the mesh to where it straddles the surface.
 template <class Exec>
-class Optimization {
-  using Kernels = typename Exec::Kernels;
+void fit_to_surface(Optimization<Exec>& work, OptimizeReport& report) {
+  work.attach_samples();
+  work.fit(kFirstFitSteps, kFirstDamping, kPoorQuality);
+  report.flips += work.flip_chords();
+  work.fit(kChordFitSteps, kDamping, kPoorQuality);
+  work.fit(kFairFitSteps, kDamping, kFairQuality);
+}
 
- public:
-  Optimization(Exec& exec, const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh)
-      : exec_(exec),
-        sheet_(sheet),
-        evenness_(options.uniform_area ? kUniformEvenness : 0),
-        seeds_(seeds),
-        mesh_(mesh),
-        vertices_(mesh.position.size()),
-        half_edges_(3 * mesh.triangles.size()),
-        spacing_(seed_spacing(exec, sheet, vertices_)),
-        walk_(walk_onto(sheet)),
-        connections_(exec, mesh),
-        keep_apart_(options.keep_apart) {
-    claim_ = exec.template make<uint64_t>(vertices_);
-    moved_ = exec.template make<PointQ8>(vertices_);
-    previous_ = exec.template make<PointQ8>(vertices_);
-    on_sheet_ = exec.template make<PointQ8>(vertices_);
-    begin_ = exec.template make<PointQ8>(vertices_);
-    exec.copy(View<const PointQ8>(mesh.position.view()), begin_.view());
-    moved_home_ = exec.template make<uint32_t>(vertices_);
-    harmed_ = exec.template make<uint32_t>(vertices_);
-    measure_size();
-  }
-
-  /// Flips until none is left or `rounds` are done. Returns how many were made.
-  int64_t flip(int rounds, double least_quality) {
-    return flip_by([&] { return FlipKey{view(), mesh_.position.view(), least_quality}; }, rounds);
-  }
-
-  /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where eight
-  /// did harm, vertices return to where they last were on the sheet.
-  void smooth(int steps, double momentum, double hold, double least_quality) {
-    SmoothOptions options = smooth_options(0.2);
-    options.momentum = momentum;
-    options.hold = hold;
-    exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
-    exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
-    work_.begin(exec_, view());
-    for (int left = steps - 1; left >= 0; --left) {
-      options.onto_sheet = left % kStepsOffSheet == 0;
-      exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      work_.smooth(
-          exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(), moved_.view()});
-      if (options.onto_sheet) restore_harmed(least_quality, on_sheet_.view());
-      take_step();
-      if (options.onto_sheet) exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
-    }
-  }
-
-  /// Attaches samples of the sheet, and what it misses, to the triangles around the vertices that they are nearest to.
-  void attach_samples() {
-    update_seeds();
-    Buffer<uint32_t> label = exec_.template make<uint32_t>(sheet_.vertex_count());
-    Kernels::LabelSheet::run(exec_, sheet_, seeds_, spacing_, label.view());
-    const auto smallest = int64_t(smallest_fit_ * double(mesh_.triangles.size()));
-    samples_of_sheet_ = std::min(sheet_.vertex_count(), kSamplesPerTriangle * smallest);
-    const int64_t count = samples_of_sheet_ + sheet_.missed.size();
-    sample_ = exec_.template make<FitSample>(count);
-    rest_sq_ = exec_.template make<int64_t>(count);
-    triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
-    vertex_pull_ = exec_.template make<VertexPull>(vertices_);
-    exec_.for_each("attach samples", count,
-                   AttachSample{view(), mesh_.position.view(), sheet_.position.view(), sheet_.normal.view(),
-                                label.view(), sheet_.missed.view(), sheet_.missed_vertex.view(), sample_.view()});
-  }
-
-  /// Steps towards the samples.
-  void fit(int steps, double damping, double least_quality) {
-    FitOptions options;
-    options.smooth = smooth_options(0.1);
-    options.smooth.momentum = kFitMomentum;
-    options.stiffness = kStiffness * double(samples_of_sheet_) / (smallest_fit_ * double(vertices_));
-    options.damping = damping;
-    exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
-    work_.begin(exec_, view());
-    work_.sort(exec_, mesh_.triangles.size(), sample_.view().part(0, samples_of_sheet_));
-    for (int s = 0; s < steps; ++s) {
-      exec_.fill(triangle_pull_.view(), TrianglePull{});
-      exec_.fill(vertex_pull_.view(), VertexPull{});
-      work_.pull(exec_, {view(),
-                         mesh_.position.view(),
-                         {rms_q8_, 0.1 * size_.edge_q8, size_.lengths.vary() ? kSizedTailOfRms : kTailOfRms,
-                          size_.lengths.vary()},
-                         sample_.view(),
-                         triangle_pull_.view(),
-                         vertex_pull_.view(),
-                         rest_sq_.view()});
-      options.rms_q8 = rms_q8_ =
-          rounded_sqrt(double(exec_.sum(samples_of_sheet_, RestSq{rest_sq_.view()})) / double(samples_of_sheet_));
-      exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      work_.fit(exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
-                        vertex_pull_.view(), moved_home_.view(), moved_.view()});
-      restore_harmed(least_quality, mesh_.position.view());
-      take_step();
-    }
-  }
-
-  /// Flips edges that cross what they should follow, as the samples of the last step of the fit show it.
-  int64_t flip_chords() {
-    Buffer<uint32_t> far = exec_.template make<uint32_t>(mesh_.triangles.size());
-    Buffer<uint32_t> now = exec_.template make<uint32_t>(half_edges_),
-                     flipped = exec_.template make<uint32_t>(half_edges_);
-    exec_.fill(far.view(), 0u);
-    exec_.fill(now.view(), 0u);
-    exec_.fill(flipped.view(), 0u);
-    const ChordGaps gaps{now.view(), flipped.view()};
-    exec_.for_each("mark far triangles", sample_.size(),
-                   MarkFarTriangles{sample_.view(), rest_sq_.view(), kFarTriangle * size_.edge_q8, far.view()});
-    exec_.for_each("measure samples", sample_.size(),
-                   MeasureSamples{view(), mesh_.position.view(), sample_.view(), far.view(), gaps});
-    exec_.for_each("measure middles", half_edges_,
-                   MeasureMiddles{view(), walk_, mesh_.position.view(), seeds_.home.view(), gaps});
-    return flip_by([&] { return ChordKey{view(), mesh_.position.view(), gaps}; }, 1);
-  }
-
-  /// Takes vertices from flat places to triangles that the samples of the last step of the fit are far from, by edges.
-  /// Returns how many.
-  int64_t relocate(double least_edges) {
-    const int64_t triangles = mesh_.triangles.size();
-    Buffer<uint32_t> distance = exec_.template make<uint32_t>(triangles);
-    Buffer<uint64_t> offset = exec_.template make<uint64_t>(triangles);
-    exec_.fill(distance.view(), 0u);
-    exec_.fill(offset.view(), uint64_t(0));
-    exec_.fill(claim_.view(), uint64_t(0));
-    const FarSamples far_samples{distance.view(), offset.view()};
-    exec_.for_each("find distances", sample_.size(), FindDistances{sample_.view(), rest_sq_.view(), far_samples});
-    exec_.for_each("find farthest", sample_.size(),
-                   FindFarthest{view(), mesh_.position.view(), sample_.view(), rest_sq_.view(),
-                                least_edges * size_.edge_q8, far_samples});
-    const FarPlace places{view(), mesh_.position.view(), seeds_.home.view(), size_, far_samples, least_edges};
-    const Buffer<uint64_t> far = choose_apart(exec_, places, triangles, claim_.view());
-    if (far.empty()) return 0;
-    const int64_t most = std::min(far.size(), 1 + vertices_ / kVerticesPerMove);
-    exec_.fill(claim_.view(), uint64_t(0));
-    exec_.for_each("block far places", most, BlockPlaces{places, far.view(), claim_.view()});
-    const SpareEdge edges{{view(), mesh_.position.view(), seeds_.home.view(), size_.lengths}, distance.view(), size_};
-    const Buffer<uint64_t> spare = choose_apart(exec_, edges, half_edges_, claim_.view());
-    const int64_t moves = std::min(most, spare.size());
-    Buffer<uint32_t> heir = exec_.template make<uint32_t>(triangles);
-    exec_.fill(heir.view(), kNone);
-    exec_.for_each("relocate vertices", moves,
-                   RelocateVertex{places, walk_, far.view(), spare.view(), mesh_.position.view(), on_sheet_.view(),
-                                  begin_.view(), seeds_.home.view(), heir.view()});
-    exec_.for_each("inherit samples", sample_.size(), InheritSamples{heir.view(), sample_.view()});
-    return moves;
-  }
-
-  /// Most of the memory, which the test for intersections needs.
-  void drop_samples() {
-    sample_ = {};
-    rest_sq_ = {};
-    triangle_pull_ = {};
-    vertex_pull_ = {};
-  }
-
-  /// Looks for better places for the corners of triangles below kGoodQuality.
-  void search(int rounds, double hold, bool onto_sheet) {
-    Kernels::SearchPlaces::run(exec_, view(), walk_, {rounds, kGoodQuality, size_, hold, onto_sheet},
-                               mesh_.position.view(), seeds_.home.view(), harmed_.view());
-  }
-
-  /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are
-  /// done: first to the sheet, then to where they began. A round that does not help takes more vertices in the next;
-  /// when none did in the end, the best one counts.
-  void undo_intersections(OptimizeReport& report) {
-    Buffer<uint32_t> spread = exec_.template make<uint32_t>(vertices_);
-    Buffer<PointQ8> best = exec_.template make<PointQ8>(vertices_);
-    int64_t fewest = INT64_MAX;
-    for (int round = 0;; ++round) {
-      report.self_intersections = intersections_at(mesh_.position);
-      if (report.self_intersections == 0) return;
-      if (report.self_intersections < fewest) {
-        fewest = report.self_intersections;
-        exec_.copy(View<const PointQ8>(mesh_.position.view()), best.view());
-      }
-      if (round == kUndoRoundsInAll) break;
-      for (int rings = round % kUndoRounds; rings >= 0; --rings) {
-        exec_.for_each("spread marks", vertices_, SpreadMarks{view(), harmed_.view(), spread.view()});
-        std::swap(harmed_, spread);
-      }
-      report.undone_vertices += exec_.sum(vertices_, IsMarked{harmed_.view()});
-      exec_.for_each(
-          "return marked", vertices_,
-          ReturnMarked{harmed_.view(), round < kUndoRounds ? on_sheet_.view() : begin_.view(), mesh_.position.view()});
-    }
-    report.self_intersections = fewest;
-    std::swap(mesh_.position, best);
-  }
-
-  void finish() {
-    exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
-    exec_.sort(mesh_.triangles.view(), ByIndices{});
-    update_seeds();
-  }
-
- private:
-  MeshView view() { return connections_.view(mesh_); }
-
-  /// Of flips that would keep vertices from going back to where they began, none is made that is near to one.
-  template <class MakeKey>
-  int64_t flip_by(MakeKey make_key, int rounds) {
-    if (!keep_apart_) return Kernels::FlipEdges::run(exec_, make_key(), claim_.view(), rounds);
-    Buffer<TriangleIndices> before = exec_.template make<TriangleIndices>(mesh_.triangles.size());
-    exec_.copy(View<const TriangleIndices>(mesh_.triangles.view()), before.view());
-    Buffer<uint32_t> blocked = exec_.template make<uint32_t>(vertices_);
-    exec_.fill(blocked.view(), 0u);
-    const int64_t pairs = intersections_at(begin_);
-    for (int tries = kBlockedFlips;; --tries) {
-      const int64_t flips =
-          Kernels::FlipEdges::run(exec_, UnblockedFlip{make_key(), blocked.view()}, claim_.view(), rounds);
-      if (flips == 0 || intersections_at(begin_) <= pairs) return flips;
-      exec_.copy(View<const TriangleIndices>(before.view()), mesh_.triangles.view());
-      connections_ = Connections(exec_, mesh_);
-      if (tries == 0) return 0;
-      exec_.for_each("block flips", vertices_, BlockMarked{harmed_.view(), blocked.view()});
-    }
-  }
-
-  /// Pairs of triangles; their corners are marked as harmed.
-  int64_t intersections_at(const Buffer<PointQ8>& position) {
-    return find_intersections(exec_, {mesh_.triangles.view(), position.view()}, sheet_.corners.block_dims,
-                              int64_t(size_.edge_q8) / kOneVoxelQ8 + 1, harmed_.view());
-  }
-
-  SmoothOptions smooth_options(double most_edges) const {
-    SmoothOptions options;
-    options.evenness = evenness_;
-    options.size = size_;
-    options.most_edges = most_edges;
-    return options;
-  }
-
-  /// Where lengths vary, edges are those of equilateral triangles around the vertices' cells.
-  void measure_size() {
-    constexpr double kEdgeSqOfCell = 1.1547005383792515;
-    size_.lengths = spacing_.lengths;
-    if (spacing_.lengths.vary()) {
-      size_.edge_q8 = rounded_sqrt(kEdgeSqOfCell * double(spacing_.h_sq_q16));
-      smallest_fit_ = double(spacing_.area2_q16 / 2) / (double(spacing_.h_sq_q16) * double(vertices_));
-    } else {
-      size_.edge_q8 = double(exec_.sum(half_edges_, EdgeLength{view(), mesh_.position.view()})) / double(half_edges_);
-    }
-  }
-
-  void update_seeds() {
-    Kernels::Walks::for_each(
-        exec_, "update seeds", walk_, seeds_.home.view(),
-        UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(), seeds_.home.view()});
-  }
-
-  /// Where what was moved would harm, `before` takes its place.
-  void restore_harmed(double least_quality, View<const PointQ8> before) {
-    Kernels::UndoHarm::run(
-        exec_, mesh_.triangles.view(), least_quality,
-        RestoreHarmed{before, seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
-  }
-
-  void take_step() {
-    std::swap(previous_, mesh_.position);
-    std::swap(mesh_.position, moved_);
-    std::swap(seeds_.home, moved_home_);
-  }
-
-  Exec& exec_;
-  const Sheet& sheet_;
-  double evenness_;
-  SeedSet& seeds_;
-  DualMesh& mesh_;
-  int64_t vertices_, half_edges_;
-  SeedSpacing spacing_;
-  WalkOntoSheet walk_;
-  Connections connections_;
-  bool keep_apart_;
-  typename Kernels::StepWork work_;
-  EdgeSize size_;
-  double smallest_fit_ = 1;  ///< how many times the mesh's triangles fit onto the sheet when they are all smallest
-  double rms_q8_ = 0;        ///< of the samples' residuals, 0 before they were first looked at
-  Buffer<uint32_t> moved_home_, harmed_;
-  Buffer<uint64_t> claim_;
-  Buffer<PointQ8> moved_, previous_, on_sheet_, begin_;
-  int64_t samples_of_sheet_ = 0;  ///< off-surface points come after them
-  Buffer<FitSample> sample_;
-  Buffer<int64_t> rest_sq_;
-  Buffer<TrianglePull> triangle_pull_;
-  Buffer<VertexPull> vertex_pull_;
-};
+/// Brings vertices to where the surface is far from the mesh, after the search: only among good triangles can those of
+/// a star be good.
+template <class Exec>
+void relocate_to_far_places(Optimization<Exec>& work, const OptimizeOptions& options) {
+  if (work.relocate(kFarPlace) == 0) return;
+  work.fit(kRelocatedFitSteps, kDamping, kPoorQuality);
+  if (work.relocate(kVeryFarPlace) > 0) work.fit(kRelocatedFitSteps, kDamping, kPoorQuality);
+  work.search(kRelocatedSearches * options.search_rounds, 0, false);
+  work.fit(kLastFitSteps, kDamping, kGoodQuality);
+}
 
 }  // namespace optimize
 
 template <class Exec>
-OptimizeReport optimize_mesh_body(Exec& exec, const Sheet& sheet, const OptimizeOptions& options, SeedSet& seeds,
-                                  DualMesh& mesh) {
+OptimizeReport optimize_mesh_body(Exec& exec, const SurfaceMesh& surface, const OptimizeOptions& options,
+                                  SeedSet& seeds, DualMesh& mesh) {
   using namespace optimize;
   if (mesh.triangles.empty()) return {};
-  Optimization<Exec> work(exec, sheet, options, seeds, mesh);
+  Optimization<Exec> work(exec, surface, options, seeds, mesh);
   OptimizeReport report;
   const bool flips_only = options.smoothing_steps == 0;
   report.flips = work.flip(options.flip_rounds, kPoorQuality);
   if (!flips_only) {
-    work.smooth(options.smoothing_steps, 0.95, kHold, kPoorQuality);
+    work.smooth(options.smoothing_steps, kSmoothingMomentum, kHold, kPoorQuality);
     report.flips += work.flip(options.flip_rounds, kFlippedQuality);
-    work.smooth(options.smoothing_steps / 8, 0.5, 0, kFairQuality);
+    work.smooth(options.smoothing_steps / kSmoothingStepsPerRepair, kRepairMomentum, 0, kFairQuality);
   }
   if (!flips_only && !options.for_seeds) {
     const bool balanced = options.fit == Fit::balanced;
+    if (balanced) fit_to_surface(work, report);
+    work.search(kHeldSearches * options.search_rounds, kHold, !balanced);
+    work.search(kFreeSearches * options.search_rounds, 0, !balanced);
     if (balanced) {
-      work.attach_samples();
-      work.fit(5, 1, kPoorQuality);
-      report.flips += work.flip_chords();
-      work.fit(3, 0.6, kPoorQuality);
-      work.fit(4, 0.6, kFairQuality);
-    }
-    work.search(3 * options.search_rounds, kHold, !balanced);
-    work.search(options.search_rounds, 0, !balanced);
-    if (balanced) {
-      work.fit(3, 0.6, kGoodQuality);
-      if (!options.uniform_area && !options.keep_apart && work.relocate(kFarPlace) > 0) {
-        work.fit(5, 0.6, kPoorQuality);
-        if (work.relocate(kVeryFarPlace) > 0) work.fit(5, 0.6, kPoorQuality);
-        work.search(5 * options.search_rounds, 0, false);
-        work.fit(3, 0.6, kGoodQuality);
-      }
+      work.fit(kLastFitSteps, kDamping, kGoodQuality);
+      if (!options.uniform_area && !options.keep_apart) relocate_to_far_places(work, options);
       work.drop_samples();
     }
     work.undo_intersections(report);
-    if (report.undone_vertices > 0) {  // what went back may be poor
-      work.search(3 * options.search_rounds, 0, true);
+    if (report.undone_vertices > 0) {
+      work.search(kUndoneSearches * options.search_rounds, 0, true);
       work.undo_intersections(report);
     }
   }

@@ -40,9 +40,7 @@ struct FitVertex {
     const PointQ8 p = from[v];
     const double radius = radius_q8(v);
     FitSums sums;
-    const uint32_t start = mesh.outgoing[v];
-    uint32_t h = start;
-    do {
+    for_each_half_edge_around(mesh, uint32_t(v), [&](uint32_t h) {
       const PointQ8 b = from[mesh.to(h)], c = from[mesh.opposite(h)];
       sums.corners = sums.corners + to_equilateral_corner(p, b, c, options.smooth.evenness, radius);
       const Vector n = normal_of(p, b, c), d = unit(n);
@@ -50,8 +48,7 @@ struct FitVertex {
       const TrianglePull& asked = triangle_pull[h / 3];
       sums.planes.add(double(asked.weight[h % 3]), d);
       sums.pull = sums.pull + double(asked.pull[h % 3]) * d;
-      h = mesh.twin[previous_half_edge(h)];
-    } while (h != start);
+    });
     to[v] = place(v, sums);
   }
 

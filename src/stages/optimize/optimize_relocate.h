@@ -162,22 +162,20 @@ struct SpareEdge {
   /// The neighbours of both ends, which are neighbours.
   template <class Visit>
   ISOSHELL_HD void for_each_vertex(uint32_t h, Visit visit) const {
-    for_each_triangle_around(cost.mesh, cost.mesh.from(h), [&](uint32_t v, uint32_t) { visit(v); });
-    for_each_triangle_around(cost.mesh, cost.mesh.to(h), [&](uint32_t v, uint32_t) { visit(v); });
+    for_each_neighbour(cost.mesh, cost.mesh.from(h), visit);
+    for_each_neighbour(cost.mesh, cost.mesh.to(h), visit);
   }
 
  private:
   ISOSHELL_HD bool is_flat(uint32_t v) const {
     const MeshView& mesh = cost.mesh;
     const double most_q8 = kFlatPlace * size.at(cost.home[v]);
-    const uint32_t start = mesh.outgoing[v];
-    uint32_t h = start;
     Vector sum = {0, 0, 0};
-    do {
-      if (double(distance_q8[h / 3]) > most_q8) return false;
+    const bool any_far = mesh.any_from(mesh.outgoing[v], [&](uint32_t h) {
       sum = sum + unit(normal_of(cost.position[v], cost.position[mesh.to(h)], cost.position[mesh.opposite(h)]));
-      h = mesh.twin[previous_half_edge(h)];
-    } while (h != start);
+      return double(distance_q8[h / 3]) > most_q8;
+    });
+    if (any_far) return false;
     const double least = kFlatNormal * double(mesh.valence[v]);
     return dot(sum, sum) > least * least;
   }
@@ -282,10 +280,11 @@ struct RelocateVertex {
     const uint32_t g = mesh.twin[h], a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
     const uint32_t bc = mesh.twin[next_half_edge(h)], ca = mesh.twin[previous_half_edge(h)];
     const uint32_t ad = mesh.twin[next_half_edge(g)], db = mesh.twin[previous_half_edge(g)];
-    for (uint32_t k = g; k != next_half_edge(h); k = mesh.twin[previous_half_edge(k)]) {
+    mesh.any_from(g, [&](uint32_t k) {
       TriangleIndices& t = mesh.triangles[k / 3];
       (k % 3 == 0 ? t.a : (k % 3 == 1 ? t.b : t.c)) = a;
-    }
+      return false;
+    });
     mesh.join(bc, ca);
     mesh.join(ad, db);
     heir[h / 3] = ca / 3;

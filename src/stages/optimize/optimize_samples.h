@@ -65,17 +65,14 @@ struct AttachSample {
     FitSample out{is_off_surface ? missed[off_surface_number] : sheet_position[s], sheet_normal[s], is_off_surface,
                   kNone};
     double best = 0;
-    const uint32_t start = mesh.outgoing[label[s]];
-    uint32_t h = start;
-    do {
+    for_each_half_edge_around(mesh, label[s], [&](uint32_t h) {
       const TriangleIndices t = mesh.triangles[h / 3];
       const PointQ8 a = position[t.a], b = position[t.b], c = position[t.c];
       const Vector rest = foot_on_triangle(out.position, a, b, c).rest;
       const double distance_sq = dot(rest, rest);
       if ((out.triangle == kNone || distance_sq < best) && faces(out.normal, normal_of(a, b, c)))
         out.triangle = h / 3, best = distance_sq;
-      h = mesh.twin[previous_half_edge(h)];
-    } while (h != start);
+    });
     sample[i] = out;
   }
   ISOSHELL_HD static bool faces(Normal8 n, Vector normal) {
@@ -160,9 +157,10 @@ struct PullCorners {
     const bool at[3] = {foot.weight[0] > 0, foot.weight[1] > 0, foot.weight[2] > 0};
     for (uint32_t k = 0; k < 3; ++k) {
       if (!far && !at[k]) continue;
-      const uint32_t start = own * 3 + k;
-      for (uint32_t h = mesh.twin[previous_half_edge(start)]; h != start; h = mesh.twin[previous_half_edge(h)])
-        consider(h / 3);
+      mesh.any_from(own * 3 + k, [&](uint32_t h) {
+        if (h / 3 != own) consider(h / 3);
+        return false;
+      });
     }
     return s.triangle != own;
   }

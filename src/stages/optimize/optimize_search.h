@@ -33,7 +33,7 @@ struct MayMove {
     if (!poor[v]) return false;
     const uint64_t mine = random_bits(round, uint64_t(v));
     bool largest = true;
-    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t) {
+    for_each_neighbour(mesh, uint32_t(v), [&](uint32_t b) {
       if (!poor[b]) return;
       const uint64_t other = random_bits(round, b);
       if (other > mine || (other == mine && b > uint32_t(v))) largest = false;

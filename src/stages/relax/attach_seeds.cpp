@@ -4,10 +4,10 @@
 
 namespace isoshell {
 
-void attach_to_sheet(const Sheet& sheet, SeedSet& seeds, Context& context, int halvings) {
-  if (sheet.vertex_count() == 0)
+void attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, Context& context, int halvings) {
+  if (surface.vertex_count() == 0)
     throw Error(ErrorCode::usage, "attach", "the sheet has no vertices; seeds need at least one to sit on");
-  backend_for(context).attach_to_sheet(sheet, seeds, halvings, context);
+  backend_for(context).attach_to_sheet(surface, seeds, halvings, context);
 }
 
 }  // namespace isoshell

@@ -13,7 +13,7 @@ constexpr int32_t kCellVox = 4;  ///< edge of the grid's cells: about 16 sheet v
 
 struct AttachSeed {
   PointGridView vertices;
-  WalkOntoSheet sheet;
+  WalkOntoSheet walk;
   int halvings;
   View<PointQ8> position;
   View<Normal8> normal;
@@ -22,8 +22,8 @@ struct AttachSeed {
     const PointQ8 p = where_from(i);
     const uint32_t vertex = nearest_point(vertices, p).id;
     home[i] = vertex;
-    normal[i] = sheet.normal[vertex];
-    position[i] = sheet.closest_around(vertex, p);
+    normal[i] = walk.normal[vertex];
+    position[i] = walk.closest_around(vertex, p);
   }
   /// Seeds of a coarse proxy come from outside, so that they find the right side of a thin wall.
   ISOSHELL_HD PointQ8 where_from(int64_t i) const {
@@ -35,10 +35,10 @@ struct AttachSeed {
 }  // namespace attach_seeds
 
 template <class Exec>
-void attach_to_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, int halvings) {
-  PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, attach_seeds::kCellVox, sheet.vertex_count());
-  fill_point_grid(exec, grid, sheet.position.view());
-  const WalkOntoSheet walk = walk_onto(sheet);
+void attach_to_sheet_body(Exec& exec, const SurfaceMesh& surface, SeedSet& seeds, int halvings) {
+  PointGrid grid = make_point_grid(exec, surface.extent_vox, attach_seeds::kCellVox, surface.vertex_count());
+  fill_point_grid(exec, grid, surface.position.view());
+  const WalkOntoSheet walk = walk_onto(surface);
   exec.for_each("attach seeds", seeds.size(),
                 attach_seeds::AttachSeed{grid.view(), walk, halvings, seeds.position.view(), seeds.normal.view(),
                                          seeds.home.view()});

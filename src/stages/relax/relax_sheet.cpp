@@ -2,14 +2,16 @@
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
 #include "stages/relax/relax_options.h"
+#include "stages/require_surface.h"
 
 namespace isoshell {
 
-RelaxReport relax_on_sheet(const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options, Context& context) {
+RelaxReport relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options, Context& context) {
   if (seeds.size() == 0)
     throw Error(ErrorCode::usage, "relax", "there are 0 seeds; relaxation needs at least 1: see place_seeds");
   require_relax_options(options);
-  return backend_for(context).relax_on_sheet(sheet, seeds, options, context);
+  require_blocks(surface, "relax");
+  return backend_for(context).relax_on_sheet(surface, seeds, options, context);
 }
 
 }  // namespace isoshell

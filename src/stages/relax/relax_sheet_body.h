@@ -8,19 +8,12 @@
 
 #include "isoshell/stages.h"
 #include "stages/labels/label_body.h"
+#include "stages/relax/cell_sums_body.h"
 #include "stages/relax/pass_state.h"
 #include "stages/sheet/sheet_walk.h"
-#include "voxel/atomic.h"
-#include "voxel/cell_sum.h"
 
 namespace isoshell {
 namespace relax_sheet {
-
-/// Area and centre of a cell relative to its seed: mass is the doubled area (q16), first three times the doubled first
-/// moment.
-struct CellSum {
-  int64_t mass, first_x, first_y, first_z;
-};
 
 /// Bits that the energy loses at last (twelve times the doubled second moments of all cells about their seeds, summed
 /// exactly), so that it (about 2^6 times area times h^2 at the worst) stays below 2^60: 12 on all but the largest
@@ -33,190 +26,6 @@ inline int energy_shift(const SeedSpacing& spacing) {
   for (int64_t rest = largest_h_sq; rest > 0; rest >>= 1) ++bits;
   return bits - 60 > 12 ? bits - 60 : 12;
 }
-
-/// Centre of a leaf: origin of its local coordinates.
-ISOSHELL_HD inline PointQ8 leaf_origin(uint64_t key) {
-  const Voxel v = leaf_of_key(key);
-  return {(v.x * 8 + 4) << kFractionBits, (v.y * 8 + 4) << kFractionBits, (v.z * 8 + 4) << kFractionBits};
-}
-
-/// A sheet triangle with its doubled area, times the density where lengths vary, and what its moments about the leaf's
-/// origin are made of: most triangles lie in one cell, and need no more.
-struct PatchTriangle {
-  uint32_t a, b, c, area2;
-  Local corner_sum;
-  int64_t squares;
-
-  ISOSHELL_HD PieceSum whole() const {
-    return {area2, int64_t(area2) * corner_sum.x, int64_t(area2) * corner_sum.y, int64_t(area2) * corner_sum.z,
-            area2 * squares};
-  }
-};
-
-/// Triangles by the leaf of their smallest vertex: so all of a leaf's triangles are close to it.
-struct Patches {
-  Buffer<int64_t> first;  ///< leaf_count + 1
-  Buffer<PatchTriangle> triangles;
-};
-
-struct VisitPatch {
-  VoxelSetView corners;
-  View<const TriangleIndices> triangles;
-  View<const int64_t> vertex_first;
-  View<const uint32_t> vertex_triangles;
-
-  template <class Visit>
-  ISOSHELL_HD void visit(int64_t leaf, Visit each) const {
-    for (int64_t v = corners.first[leaf]; v < corners.first[leaf + 1]; ++v)
-      for (int64_t n = vertex_first[v]; n < vertex_first[v + 1]; ++n) {
-        const TriangleIndices t = triangles[vertex_triangles[n]];
-        if (t.a >= v && t.b >= v && t.c >= v) each(t);
-      }
-  }
-};
-
-struct CountPatch {
-  VisitPatch patch;
-  View<int64_t> count;
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    int64_t n = 0;
-    patch.visit(leaf, [&](TriangleIndices) { ++n; });
-    count[leaf] = n;
-  }
-};
-
-struct FillPatch {
-  VisitPatch patch;
-  View<const PointQ8> position;
-  EdgeLengthsView lengths;
-  View<const int64_t> first;
-  View<PatchTriangle> out;
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    int64_t at = first[leaf];
-    const PointQ8 origin = leaf_origin(patch.corners.leaf_key[leaf]);
-    patch.visit(leaf, [&](TriangleIndices t) {
-      const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
-      const Local a = local(position[t.a], origin), b = local(position[t.b], origin), c = local(position[t.c], origin);
-      const uint32_t mass = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
-      out[at++] = {t.a, t.b, t.c, mass, corner_sum(a, b, c), sum_of_squares(a, b, c)};
-    });
-  }
-};
-
-template <class Exec>
-Patches make_patches(Exec& exec, const Sheet& sheet) {
-  const int64_t leaves = sheet.corners.leaf_count();
-  const VisitPatch visit{sheet.corners.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-                         sheet.vertex_triangles.view()};
-  Patches patches;
-  patches.first = exec.template make<int64_t>(leaves + 1);
-  exec.fill(patches.first.view().part(leaves, 1), int64_t(0));
-  exec.for_each("count patch triangles", leaves, CountPatch{visit, patches.first.view()});
-  exec.exclusive_scan(patches.first.view());
-  patches.triangles = exec.template make<PatchTriangle>(sheet.triangles.size());
-  exec.for_each(
-      "fill patch triangles", leaves,
-      FillPatch{visit, sheet.position.view(), lengths_of(sheet), patches.first.view(), patches.triangles.view()});
-  return patches;
-}
-
-/// Sums of a few cells while a leaf is worked on; what does not fit goes straight to the cell.
-template <int kSlots>
-class LocalSums {
- public:
-  ISOSHELL_HD LocalSums() {
-    for (int i = 0; i < kSlots; ++i) label_[i] = kNone;
-  }
-  /// Null when every slot is taken by other labels.
-  ISOSHELL_HD PieceSum* of(uint32_t label) {
-    for (int probe = 0; probe < kSlots; ++probe) {
-      const int slot = int((label * 2654435761u >> 16) + uint32_t(probe)) & (kSlots - 1);
-      if (label_[slot] == label) return &sum_[slot];
-      if (label_[slot] == kNone) {
-        label_[slot] = label;
-        sum_[slot] = {0, 0, 0, 0, 0};
-        return &sum_[slot];
-      }
-    }
-    return nullptr;
-  }
-  template <class Visit>
-  ISOSHELL_HD void for_each(Visit visit) const {
-    for (int i = 0; i < kSlots; ++i)
-      if (label_[i] != kNone) visit(label_[i], sum_[i]);
-  }
-
- private:
-  uint32_t label_[kSlots];
-  PieceSum sum_[kSlots];
-};
-
-/// Moves sums from an origin to the seed at `d` from it, adds them to the seed's cell, and returns their energy. Far
-/// seeds take that past 64 bits.
-ISOSHELL_HD inline Int128 add_to_cell(CellSum& cell, const PieceSum& s, Local d) {
-  atomic_add(cell.mass, s.mass);
-  atomic_add(cell.first_x, s.first_x - 3 * s.mass * d.x);
-  atomic_add(cell.first_y, s.first_y - 3 * s.mass * d.y);
-  atomic_add(cell.first_z, s.first_z - 3 * s.mass * d.z);
-  return Int128(s.second) - 8 * (Int128(s.first_x) * d.x + Int128(s.first_y) * d.y + Int128(s.first_z) * d.z) +
-         Int128(12 * square(d)) * s.mass;
-}
-
-/// Adds the pieces of one leaf's triangles to their cells, and writes the leaf's part of the energy.
-template <int kSlots = 64>
-struct SumLeaf {
-  View<const uint64_t> leaf_key;
-  View<const int64_t> first;
-  View<const PatchTriangle> triangles;
-  View<const PointQ8> position;
-  View<const uint32_t> label;
-  View<const PointQ8> seed;
-  View<CellSum> cell;
-  View<SplitSum> energy;
-  View<const PassState> state;
-
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    if (state[0].converged) return;
-    const PointQ8 origin = leaf_origin(leaf_key[leaf]);
-    LocalSums<kSlots> sums;
-    uint32_t last = kNone;
-    PieceSum* last_sum = nullptr;
-    Int128 leaf_energy = 0;
-    const auto flush = [&](uint32_t id, const PieceSum& sum) {
-      leaf_energy += add_to_cell(cell[id], sum, local(seed[id], origin));
-    };
-    const auto add = [&](uint32_t id, const PieceSum& piece) {
-      if (id != last) last = id, last_sum = sums.of(id);
-      if (last_sum)
-        *last_sum = *last_sum + piece;
-      else
-        flush(id, piece);
-    };
-    for (int64_t t = first[leaf]; t < first[leaf + 1]; ++t) add_triangle(triangles[t], origin, add);
-    sums.for_each(flush);
-    energy[leaf] = SplitSum::of(leaf_energy);
-  }
-
- private:
-  template <class Add>
-  ISOSHELL_HD void add_triangle(const PatchTriangle& t, PointQ8 origin, Add add) const {
-    const uint32_t id[3] = {label[t.a], label[t.b], label[t.c]};
-    if (id[0] == id[1] && id[1] == id[2]) return add(id[0], t.whole());
-    const Local p[3] = {local(position[t.a], origin), local(position[t.b], origin), local(position[t.c], origin)};
-    const SplitTriangle split{{p[0], p[1], p[2]},
-                              {local(seed[id[0]], origin), local(seed[id[1]], origin), local(seed[id[2]], origin)},
-                              t.area2};
-    const auto add_piece = [&](int corner, const PieceSum& piece) { add(id[corner], piece); };
-    if (id[1] == id[2])
-      split.two_cells(0, add_piece);
-    else if (id[2] == id[0])
-      split.two_cells(1, add_piece);
-    else if (id[0] == id[1])
-      split.two_cells(2, add_piece);
-    else
-      split.three_cells(add_piece);
-  }
-};
 
 /// Seeds while they move. `here` is where the cells are measured, `last` the outcome of the pass before.
 struct MovingSeeds {
@@ -351,25 +160,26 @@ struct FinishPass {
 class PlainPassWork {
  public:
   template <class Exec>
-  PlainPassWork(Exec& exec, const Sheet& sheet, const SeedSpacing& spacing)
-      : sheet_(sheet),
+  PlainPassWork(Exec& exec, const SurfaceMesh& surface, const SeedSpacing& spacing)
+      : surface_(surface),
         spacing_(spacing),
-        patches_(make_patches(exec, sheet)),
-        labels_(exec.template make<uint32_t>(sheet.vertex_count())) {}
+        patches_(make_patches(exec, surface)),
+        labels_(exec.template make<uint32_t>(surface.vertex_count())) {}
 
-  /// Labels the sheet, adds to the cells, and writes each leaf's part of the energy. Nothing counts once the passes
+  /// Labels the sheet, adds to the cells, and writes each block's part of the energy. Nothing counts once the passes
   /// have converged.
   template <class Exec>
-  void measure(Exec& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> leaf_energy,
+  void measure(Exec& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> block_energy,
                View<const PassState> state) {
-    Exec::Kernels::LabelSheet::run(exec, sheet_, seeds, spacing_, labels_.view());
-    exec.for_each("sum cells", sheet_.corners.leaf_count(),
-                  SumLeaf<>{sheet_.corners.leaf_key.view(), patches_.first.view(), patches_.triangles.view(),
-                            sheet_.position.view(), labels_.view(), seeds.position.view(), cells, leaf_energy, state});
+    Exec::Kernels::LabelSheet::run(exec, surface_, seeds, spacing_, labels_.view());
+    exec.for_each(
+        "sum cells", surface_.blocks.count(),
+        SumBlock<>{surface_.blocks.centre.view(), patches_.first.view(), patches_.triangles.view(),
+                   surface_.position.view(), labels_.view(), seeds.position.view(), cells, block_energy, state});
   }
 
  private:
-  const Sheet& sheet_;
+  const SurfaceMesh& surface_;
   const SeedSpacing spacing_;
   const Patches patches_;
   Buffer<uint32_t> labels_;
@@ -378,31 +188,31 @@ class PlainPassWork {
 }  // namespace relax_sheet
 
 template <class Exec>
-RelaxReport relax_on_sheet_body(Exec& exec, const Sheet& sheet, SeedSet& seeds, const RelaxOptions& options) {
+RelaxReport relax_on_sheet_body(Exec& exec, const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options) {
   using namespace relax_sheet;
   using Kernels = typename Exec::Kernels;
   const int64_t count = seeds.size();
-  const SeedSpacing spacing = seed_spacing(exec, sheet, count);
-  typename Kernels::PassWork pass(exec, sheet, spacing);
+  const SeedSpacing spacing = seed_spacing(exec, surface, count);
+  typename Kernels::PassWork pass(exec, surface, spacing);
   Buffer<PointQ8> last = exec.template make<PointQ8>(count);
   Buffer<CellSum> cells = exec.template make<CellSum>(count);
-  Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(sheet.corners.leaf_count());
+  Buffer<SplitSum> block_energy = exec.template make<SplitSum>(surface.blocks.count());
   Buffer<int64_t> energy = exec.template make<int64_t>(2);
   Buffer<PassState> state = exec.template make<PassState>(1);
   exec.copy(View<const PointQ8>(seeds.position.view()), last.view());
   exec.for_each("start passes", 1, StartPasses{state.view()});
 
-  const WalkOntoSheet walk = walk_onto(sheet);
+  const WalkOntoSheet walk = walk_onto(surface);
   const MovingSeeds moving = moving_seeds(walk, seeds, last.view(), spacing, options);
   const FinishPass finish{state.view(), energy.view(), energy_shift(spacing), options.tolerance_ppb};
 
   return run_passes(exec, state.view(), options.max_passes, [&] {
     Kernels::Walks::to_targets(exec, "look ahead", walk, seeds.home.view(), LookAhead{moving, state.view()});
     exec.fill(cells.view(), CellSum{0, 0, 0, 0});
-    pass.measure(exec, seeds, cells.view(), leaf_energy.view(), state.view());
+    pass.measure(exec, seeds, cells.view(), block_energy.view(), state.view());
     Kernels::Walks::to_targets(exec, "move past centre", walk, seeds.home.view(),
                                MovePastCentre{moving, cells.view(), state.view()});
-    sum_split_into(exec, energy.view(), leaf_energy.view());
+    sum_split_into(exec, energy.view(), block_energy.view());
     exec.for_each("finish pass", 1, finish);
   });
 }

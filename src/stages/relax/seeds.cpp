@@ -32,9 +32,19 @@ int32_t resolution_of(const VoxelSet& voxels) {
 
 }  // namespace
 
+SeedSet place_seeds(const SurfaceMesh& surface, const SeedOptions& options, Context& context) {
+  const int64_t most = surface.vertex_count() / 2;
+  if (options.count < 4 || options.count > most)
+    throw Error(ErrorCode::usage, "seeds",
+                std::to_string(options.count) + " seeds for a surface of " + std::to_string(surface.vertex_count()) +
+                    " vertices; there must be 4 to half as many as vertices, " + std::to_string(most) +
+                    ": use a finer surface or fewer seeds");
+  return backend_for(context).place_seeds_on_surface(surface, options, context);
+}
+
 SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& context) {
   require_seed_count(sheet, options.count);
-  return backend_for(context).place_seeds_on_sheet(sheet, options, context);
+  return backend_for(context).place_seeds_on_surface(sheet, options, context);
 }
 
 SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options, Context& context) {

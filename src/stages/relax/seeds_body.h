@@ -6,6 +6,7 @@
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "stages/labels/label_body.h"
+#include "voxel/leaf.h"
 #include "voxel/random.h"
 
 namespace isoshell {
@@ -71,12 +72,12 @@ struct PlaceOnSheet {
 }  // namespace seeds
 
 template <class Exec>
-SeedSet place_seeds_body(Exec& exec, const Sheet& sheet, const SeedOptions& options) {
-  const int64_t triangles = sheet.triangles.size();
+SeedSet place_seeds_body(Exec& exec, const SurfaceMesh& surface, const SeedOptions& options) {
+  const int64_t triangles = surface.triangles.size();
   Buffer<int64_t> area_before = exec.template make<int64_t>(triangles);
   exec.for_each(
       "areas", triangles,
-      seeds::FillShare{{{sheet.position.view(), sheet.triangles.view()}, lengths_of(sheet)}, area_before.view()});
+      seeds::FillShare{{{surface.position.view(), surface.triangles.view()}, lengths_of(surface)}, area_before.view()});
   const int64_t total = exec.exclusive_scan(area_before.view());
   SeedSet out;
   out.position = exec.template make<PointQ8>(options.count);
@@ -84,8 +85,8 @@ SeedSet place_seeds_body(Exec& exec, const Sheet& sheet, const SeedOptions& opti
   out.home = exec.template make<uint32_t>(options.count);
   exec.for_each(
       "place seeds", options.count,
-      seeds::PlaceOnSheet{sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), area_before.view(), total,
-                          options.count, options.seed, out.position.view(), out.normal.view(), out.home.view()});
+      seeds::PlaceOnSheet{surface.position.view(), surface.normal.view(), surface.triangles.view(), area_before.view(),
+                          total, options.count, options.seed, out.position.view(), out.normal.view(), out.home.view()});
   return out;
 }
 

@@ -1,22 +1,25 @@
 // subdivide_seeds: checks its arguments, then runs on the backend that the context asks for.
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
+#include "stages/require_surface.h"
 
 namespace isoshell {
 
-SeedSet subdivide_seeds(const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
+SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                         Context& context) {
+  require_closed(surface, "subdivide");
   const int64_t most = seeds.size() + mesh.triangles.size() / 2 * 5;
   if (target < seeds.size() || target > most)
     throw Error(ErrorCode::usage, "subdivide",
                 "target is " + std::to_string(target) + "; it must be " + std::to_string(seeds.size()) + " to " +
                     std::to_string(most) + " for this mesh");
-  return backend_for(context).subdivide_seeds(sheet, mesh, seeds, target, context);
+  return backend_for(context).subdivide_seeds(surface, mesh, seeds, target, context);
 }
 
-void collapse_edges(const Sheet& sheet, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
+void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
                     bool keep_apart) {
-  backend_for(context).collapse_edges(sheet, target, seeds, mesh, context, keep_apart);
+  require_closed(surface, "collapse");
+  backend_for(context).collapse_edges(surface, target, seeds, mesh, context, keep_apart);
 }
 
 }  // namespace isoshell

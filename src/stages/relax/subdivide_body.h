@@ -126,7 +126,7 @@ struct PutInTriangle {
 }  // namespace subdivide
 
 template <class Exec>
-SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mesh, const SeedSet& seeds,
+SeedSet subdivide_seeds_body(Exec& exec, const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds,
                              int64_t target) {
   using namespace subdivide;
   const StandsForEdge stands{mesh.triangles.view()};
@@ -139,13 +139,13 @@ SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mes
   out.position = exec.template make<PointQ8>(target);
   out.normal = exec.template make<Normal8>(target);
   out.home = exec.template make<uint32_t>(target);
-  const WalkOntoSheet walk = walk_onto(sheet);
+  const WalkOntoSheet walk = walk_onto(surface);
   const NewSeeds put{walk, out.position.view(), out.normal.view(), out.home.view()};
   exec.for_each("keep seeds", old, KeepSeed{seeds.position.view(), seeds.normal.view(), seeds.home.view(), put});
 
   Buffer<Place> edges = exec.template make<Place>(half_edges.size());
   exec.for_each("measure edges", edges.size(),
-                MeasureEdge{stands, half_edges.view(), seeds.position.view(), seeds.home.view(), lengths_of(sheet),
+                MeasureEdge{stands, half_edges.view(), seeds.position.view(), seeds.home.view(), lengths_of(surface),
                             edges.view()});
   if (on_edges < edges.size()) exec.sort(edges.view(), LargestFirst{});
   const View<Place> chosen{edges.data(), on_edges};
@@ -155,7 +155,7 @@ SeedSet subdivide_seeds_body(Exec& exec, const Sheet& sheet, const DualMesh& mes
   if (in_triangles > 0) {
     Buffer<Place> triangles = exec.template make<Place>(mesh.triangles.size());
     exec.for_each("measure triangles", triangles.size(),
-                  MeasureTriangle{mesh.triangles.view(), seeds.position.view(), seeds.home.view(), lengths_of(sheet),
+                  MeasureTriangle{mesh.triangles.view(), seeds.position.view(), seeds.home.view(), lengths_of(surface),
                                   triangles.view()});
     exec.sort(triangles.view(), LargestFirst{});
     exec.for_each("seeds in triangles", in_triangles,

@@ -2,7 +2,7 @@
 // takes a density of L^-4 and L^-2 seeds an area.
 #pragma once
 
-#include "isoshell/sheet.h"
+#include "isoshell/surface_mesh.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -46,8 +46,8 @@ struct EdgeLengthsView {
   }
 };
 
-inline EdgeLengthsView lengths_of(const Sheet& sheet) {
-  return {sheet.lengths.at.view(), sheet.lengths.least, sheet.lengths.largest};
+inline EdgeLengthsView lengths_of(const SurfaceMesh& surface) {
+  return {surface.lengths.at.view(), surface.lengths.least, surface.lengths.largest};
 }
 
 }  // namespace isoshell

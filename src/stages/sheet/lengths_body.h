@@ -13,12 +13,12 @@
 namespace isoshell {
 namespace lengths {
 
-/// Lowers the lengths of a leaf's own vertices until they obey the limit towards one another and towards the vertices
-/// of other leaves, whose lengths are those of the round before; then wakes the leaves that this concerns. The limit is
-/// a shortest path over the sheet's edges: it has one fixed point, in whatever order leaves come to it.
-struct LimitLeaf {
+/// Lowers the lengths of a block's own vertices until they obey the limit towards one another and towards the vertices
+/// of other blocks, whose lengths are those of the round before; then wakes the blocks that this concerns. The limit is
+/// a shortest path over the sheet's edges: it has one fixed point, in whatever order blocks come to it.
+struct LimitBlock {
   SheetGraph graph;
-  View<const int64_t> leaf_first;
+  View<const int64_t> block_first;
   View<const PointQ8> position;
   int64_t slope_q16;
   View<const uint32_t> from;
@@ -33,7 +33,7 @@ struct LimitLeaf {
   }
   ISOSHELL_HD bool lower(uint32_t v, int64_t begin, int64_t end) const {
     uint32_t least = to[v];
-    graph.for_each_corner(v, [&](uint32_t u, uint32_t) {
+    graph.for_each_neighbour(v, [&](uint32_t u) {
       const uint32_t here = beyond(u >= begin && u < end ? to[u] : from[u], u, v);
       least = here < least ? here : least;
     });
@@ -41,17 +41,17 @@ struct LimitLeaf {
     to[v] = least;
     return lowered;
   }
-  ISOSHELL_HD int64_t leaf_of(int64_t v) const {
-    int64_t lo = 0, hi = leaf_first.size - 1;
+  ISOSHELL_HD int64_t block_of(int64_t v) const {
+    int64_t lo = 0, hi = block_first.size - 1;
     while (hi - lo > 1) {
       const int64_t mid = (lo + hi) / 2;
-      (leaf_first[mid] <= v ? lo : hi) = mid;
+      (block_first[mid] <= v ? lo : hi) = mid;
     }
     return lo;
   }
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    if (!awake[leaf]) return;
-    const int64_t begin = leaf_first[leaf], end = leaf_first[leaf + 1];
+  ISOSHELL_HD void operator()(int64_t block) const {
+    if (!awake[block]) return;
+    const int64_t begin = block_first[block], end = block_first[block + 1];
     for (bool lowered = true; lowered;) {
       lowered = false;
       for (int64_t v = begin; v < end; ++v) lowered |= lower(uint32_t(v), begin, end);
@@ -59,15 +59,15 @@ struct LimitLeaf {
     }
     for (int64_t v = begin; v < end; ++v) {
       if (to[v] == from[v]) continue;
-      graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) {
-        if ((u < begin || u >= end) && beyond(to[v], uint32_t(v), u) < from[u]) atomic_or(wake[leaf_of(u)], 1u);
+      graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) {
+        if ((u < begin || u >= end) && beyond(to[v], uint32_t(v), u) < from[u]) atomic_or(wake[block_of(u)], 1u);
       });
     }
   }
 };
 struct IsAwake {
   View<const uint32_t> awake;
-  ISOSHELL_HD int64_t operator()(int64_t leaf) const { return awake[leaf]; }
+  ISOSHELL_HD int64_t operator()(int64_t block) const { return awake[block]; }
 };
 struct FindRange {
   View<const uint32_t> at;
@@ -108,7 +108,7 @@ struct MeanNormal {
   ISOSHELL_HD void operator()(int64_t v) const {
     PointQ8 sum = from[v];
     int32_t count = 1;
-    graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) {
+    graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) {
       sum = {sum.x + from[u].x, sum.y + from[u].y, sum.z + from[u].z};
       ++count;
     });
@@ -132,7 +132,7 @@ struct TurnOfNormal {
   View<uint32_t> out;
   ISOSHELL_HD void operator()(int64_t v) const {
     uint64_t turn_sq = 0, way_sq = 0;
-    graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) {
+    graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) {
       turn_sq += uint64_t(distance_sq_q16(normal[u], normal[v]));
       way_sq += uint64_t(distance_sq_q16(position[u], position[v]));
     });
@@ -146,21 +146,21 @@ struct MeanValue {
   View<uint32_t> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     uint64_t sum = from[v], count = 1;
-    graph.for_each_corner(uint32_t(v), [&](uint32_t u, uint32_t) { sum += from[u], ++count; });
+    graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) { sum += from[u], ++count; });
     to[v] = uint32_t((sum + count / 2) / count);
   }
 };
 
 /// Takes the lengths to the sheet.
 template <class Exec>
-void keep_lengths(Exec& exec, Buffer<uint32_t> at, Sheet& sheet) {
+void keep_lengths(Exec& exec, Buffer<uint32_t> at, SurfaceMesh& surface) {
   Buffer<uint32_t> range = exec.template make<uint32_t>(2);
   exec.fill(range.view().part(0, 1), UINT32_MAX);
   exec.fill(range.view().part(1, 1), 0u);
   exec.for_each("range of lengths", at.size(), FindRange{at.view(), range.view()});
-  sheet.lengths.least = exec.value(View<const uint32_t>(range.view()), 0);
-  sheet.lengths.largest = exec.value(View<const uint32_t>(range.view()), 1);
-  sheet.lengths.at = std::move(at);
+  surface.lengths.least = exec.value(View<const uint32_t>(range.view()), 0);
+  surface.lengths.largest = exec.value(View<const uint32_t>(range.view()), 1);
+  surface.lengths.at = std::move(at);
 }
 
 /// The means, so many times.
@@ -177,42 +177,42 @@ void smooth_values(Exec& exec, const SheetGraph& graph, int32_t rounds, Buffer<u
 
 /// `raw` lies in the executor's memory.
 template <class Exec>
-void set_edge_lengths_body(Exec& exec, Sheet& sheet, Buffer<uint32_t> raw, int64_t slope_q16) {
+void set_edge_lengths_body(Exec& exec, SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16) {
   using namespace lengths;
-  const int64_t leaves = sheet.corners.leaf_count(), vertices = sheet.vertex_count();
+  const int64_t blocks = surface.blocks.count(), vertices = surface.vertex_count();
   Buffer<uint32_t> next = exec.template make<uint32_t>(vertices);
-  Buffer<uint32_t> awake = exec.template make<uint32_t>(leaves), wake = exec.template make<uint32_t>(leaves);
+  Buffer<uint32_t> awake = exec.template make<uint32_t>(blocks), wake = exec.template make<uint32_t>(blocks);
   exec.fill(awake.view(), 1u);
   do {
     exec.fill(wake.view(), 0u);
     exec.copy(View<const uint32_t>(raw.view()), next.view());
-    exec.for_each("limit lengths", leaves,
-                  LimitLeaf{graph_of(sheet), sheet.corners.first.view(), sheet.position.view(), slope_q16, raw.view(),
-                            next.view(), awake.view(), wake.view()});
+    exec.for_each("limit lengths", blocks,
+                  LimitBlock{graph_of(surface), surface.blocks.first.view(), surface.position.view(), slope_q16,
+                             raw.view(), next.view(), awake.view(), wake.view()});
     std::swap(raw, next);
     std::swap(awake, wake);
-  } while (exec.sum(leaves, IsAwake{awake.view()}) > 0);
-  keep_lengths(exec, std::move(raw), sheet);
+  } while (exec.sum(blocks, IsAwake{awake.view()}) > 0);
+  keep_lengths(exec, std::move(raw), surface);
 }
 
 template <class Exec>
-void smooth_edge_lengths_body(Exec& exec, Sheet& sheet, int32_t rounds) {
+void smooth_edge_lengths_body(Exec& exec, SurfaceMesh& surface, int32_t rounds) {
   using namespace lengths;
-  Buffer<uint32_t> at = std::move(sheet.lengths.at);
-  smooth_values(exec, graph_of(sheet), rounds, at);
-  keep_lengths(exec, std::move(at), sheet);
+  Buffer<uint32_t> at = std::move(surface.lengths.at);
+  smooth_values(exec, graph_of(surface), rounds, at);
+  keep_lengths(exec, std::move(at), surface);
 }
 
 template <class Exec>
-int64_t seed_shares_body(Exec& exec, const Sheet& sheet) {
-  return exec.sum(sheet.triangles.size(),
-                  label::ShareOfSeeds{{sheet.position.view(), sheet.triangles.view()}, lengths_of(sheet)});
+int64_t seed_shares_body(Exec& exec, const SurfaceMesh& surface) {
+  return exec.sum(surface.triangles.size(),
+                  label::ShareOfSeeds{{surface.position.view(), surface.triangles.view()}, lengths_of(surface)});
 }
 
 template <class Exec>
-void copy_edge_lengths_body(Exec& exec, const Sheet& from, int halvings, Sheet& to) {
+void copy_edge_lengths_body(Exec& exec, const SurfaceMesh& from, int halvings, SurfaceMesh& to) {
   constexpr int32_t kCellVox = 4;
-  PointGrid grid = make_point_grid(exec, from.corners.block_dims, kCellVox, from.vertex_count());
+  PointGrid grid = make_point_grid(exec, from.extent_vox, kCellVox, from.vertex_count());
   fill_point_grid(exec, grid, from.position.view());
   to.lengths.at = exec.template make<uint32_t>(to.vertex_count());
   to.lengths.least = from.lengths.least;
@@ -223,19 +223,19 @@ void copy_edge_lengths_body(Exec& exec, const Sheet& from, int halvings, Sheet& 
 }
 
 template <class Exec>
-Buffer<uint32_t> measure_curvature_body(Exec& exec, const Sheet& sheet, int32_t rounds) {
+Buffer<uint32_t> measure_curvature_body(Exec& exec, const SurfaceMesh& surface, int32_t rounds) {
   using namespace lengths;
-  const int64_t vertices = sheet.vertex_count();
-  const SheetGraph graph = graph_of(sheet);
+  const int64_t vertices = surface.vertex_count();
+  const SheetGraph graph = graph_of(surface);
   Buffer<PointQ8> normal = exec.template make<PointQ8>(vertices), mean = exec.template make<PointQ8>(vertices);
-  exec.for_each("start normals", vertices, StartNormal{sheet.normal.view(), normal.view()});
+  exec.for_each("start normals", vertices, StartNormal{surface.normal.view(), normal.view()});
   for (int32_t r = 0; r < rounds; ++r) {
     exec.for_each("mean normals", vertices, MeanNormal{graph, normal.view(), mean.view()});
     std::swap(normal, mean);
   }
   exec.for_each("unit normals", vertices, UnitNormal{normal.view()});
   Buffer<uint32_t> turn = exec.template make<uint32_t>(vertices);
-  exec.for_each("turn of normals", vertices, TurnOfNormal{graph, sheet.position.view(), normal.view(), turn.view()});
+  exec.for_each("turn of normals", vertices, TurnOfNormal{graph, surface.position.view(), normal.view(), turn.view()});
   smooth_values(exec, graph, rounds * 2 / 3, turn);
   return turn;
 }

@@ -3,6 +3,7 @@
 
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
+#include "stages/require_surface.h"
 
 namespace isoshell {
 
@@ -45,8 +46,9 @@ Sheet build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOp
   return backend_for(context).build_proxy(sites, frame, options, context);
 }
 
-int64_t six_volume_vox(const Sheet& sheet, Context& context) {
-  return backend_for(context).six_volume_vox(sheet, context);
+int64_t six_volume_vox(const SurfaceMesh& surface, Context& context) {
+  require_closed(surface, "sheet");
+  return backend_for(context).six_volume_vox(surface, context);
 }
 
 }  // namespace isoshell

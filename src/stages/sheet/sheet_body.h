@@ -9,6 +9,7 @@
 #include "stages/sheet/sheet_project_body.h"
 #include "stages/sheet/sheet_quads_body.h"
 #include "stages/sheet/sheet_repair_body.h"
+#include "stages/sparse/drop_empty_leaves.h"
 #include "voxel/proxy_depth.h"
 
 namespace isoshell {
@@ -96,8 +97,32 @@ struct MoveIn {
   }
 };
 
+/// A block's centre is that of its leaf's voxels.
+struct PlaceBlock {
+  View<const uint64_t> leaf_key;
+  View<PointQ8> centre;
+  ISOSHELL_HD void operator()(int64_t leaf) const {
+    constexpr int32_t kHalfLeafVox = 4;
+    const Voxel l = leaf_of_key(leaf_key[leaf]);
+    const auto middle = [](int32_t leaf_coordinate) { return (leaf_coordinate * 8 + kHalfLeafVox) * kOneVoxelQ8; };
+    centre[leaf] = {middle(l.x), middle(l.y), middle(l.z)};
+  }
+};
+
+/// Cuts the vertices into blocks, the leaves of their lattice corners.
 template <class Exec>
-void list_triangles_around(Exec& exec, Sheet& sheet) {
+void cut_into_blocks(Exec& exec, Sheet& sheet) {
+  const BlockExtent extent(sheet.corners.view());
+  for (int axis = 0; axis < 3; ++axis) sheet.extent_vox[axis] = extent.vox[axis];
+  const int64_t leaves = sheet.corners.leaf_count();
+  sheet.blocks.first = exec.template make<int64_t>(leaves + 1);
+  exec.copy(View<const int64_t>(sheet.corners.first.view()), sheet.blocks.first.view());
+  sheet.blocks.centre = exec.template make<PointQ8>(leaves);
+  exec.for_each("place blocks", leaves, PlaceBlock{sheet.corners.leaf_key.view(), sheet.blocks.centre.view()});
+}
+
+template <class Exec>
+void list_triangles_around(Exec& exec, SurfaceMesh& sheet) {
   const int64_t vertices = sheet.vertex_count();
   Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
   exec.fill(count.view(), 0u);
@@ -142,6 +167,7 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMes
   Sheet sheet;
   sheet.frame = frame;
   sheet.corners = std::move(mesh.corners);
+  cut_into_blocks(exec, sheet);
   sheet.position = std::move(laid.position);
   sheet.source_triangle = std::move(laid.source_triangle);
   sheet.triangles = exec.template make<TriangleIndices>(2 * mesh.quads.size());

@@ -1,7 +1,7 @@
-// The sheet's edge graph as steps see it.
+// The edge graph of a surface as steps see it.
 #pragma once
 
-#include "isoshell/sheet.h"
+#include "isoshell/surface_mesh.h"
 
 namespace isoshell {
 
@@ -9,9 +9,16 @@ struct SheetGraph {
   View<const TriangleIndices> triangles;
   View<const int64_t> first;
   View<const uint32_t> incident;
+  View<const uint32_t> border_before;
 
-  /// visit(next, last) for every triangle (v, next, last) around v. On a closed, oriented sheet `next` runs over every
-  /// neighbour of v exactly once.
+  /// visit(u) for every neighbour u of v: each is the next one in one triangle around v, but for the one before a
+  /// border vertex on its border.
+  template <class Visit>
+  ISOSHELL_HD void for_each_neighbour(uint32_t v, Visit visit) const {
+    for_each_corner(v, [&](uint32_t next, uint32_t) { visit(next); });
+    if (border_before.size > 0 && border_before[v] != kNone) visit(border_before[v]);
+  }
+  /// visit(next, last) for every triangle (v, next, last) around v.
   template <class Visit>
   ISOSHELL_HD void for_each_corner(uint32_t v, Visit visit) const {
     for (int64_t n = first[v]; n < first[v + 1]; ++n) {
@@ -26,8 +33,9 @@ struct SheetGraph {
   }
 };
 
-inline SheetGraph graph_of(const Sheet& sheet) {
-  return {sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view()};
+inline SheetGraph graph_of(const SurfaceMesh& surface) {
+  return {surface.triangles.view(), surface.vertex_first.view(), surface.vertex_triangles.view(),
+          surface.border_before.view()};
 }
 
 }  // namespace isoshell

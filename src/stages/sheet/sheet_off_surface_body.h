@@ -48,9 +48,9 @@ struct CopyOffSurface {
 }  // namespace sheet_steps
 
 template <class Exec>
-void find_off_surface(Exec& exec, const LatticeSurface& surface, Sheet& sheet) {
+void find_off_surface(Exec& exec, const LatticeSurface& surface, SurfaceMesh& sheet) {
   using namespace sheet_steps;
-  PointGrid grid = make_point_grid(exec, sheet.corners.block_dims, kOffSurfaceCellVox, sheet.vertex_count());
+  PointGrid grid = make_point_grid(exec, sheet.extent_vox, kOffSurfaceCellVox, sheet.vertex_count());
   fill_point_grid(exec, grid, View<const PointQ8>(sheet.position.view()));
   const WalkOntoSheet walk = walk_onto(sheet);
   Buffer<uint32_t> near = exec.template make<uint32_t>(surface.points.size());

@@ -1,7 +1,7 @@
 // The volume inside a sheet, over an executor: it decides the closing.
 #pragma once
 
-#include "isoshell/sheet.h"
+#include "isoshell/surface_mesh.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -28,11 +28,11 @@ struct SixVolume {
 
 /// Six times the volume inside the sheet, in whole voxels. Exact up to that last rounding.
 template <class Exec>
-int64_t six_volume_vox_body(Exec& exec, const Sheet& sheet) {
+int64_t six_volume_vox_body(Exec& exec, const SurfaceMesh& surface) {
   using sheet_volume::SixVolume;
-  const int64_t triangles = sheet.triangles.size();
-  const int64_t whole = exec.sum(triangles, SixVolume{sheet.position.view(), sheet.triangles.view(), false});
-  const int64_t rest = exec.sum(triangles, SixVolume{sheet.position.view(), sheet.triangles.view(), true});
+  const int64_t triangles = surface.triangles.size();
+  const int64_t whole = exec.sum(triangles, SixVolume{surface.position.view(), surface.triangles.view(), false});
+  const int64_t rest = exec.sum(triangles, SixVolume{surface.position.view(), surface.triangles.view(), true});
   return whole + (rest >> (3 * kFractionBits));
 }
 

@@ -1,7 +1,7 @@
-// Moving along the sheet: how seeds and vertices get back onto it after a step.
+// Moving along the surface: how seeds and vertices get back onto it after a step.
 #pragma once
 
-#include "isoshell/sheet.h"
+#include "isoshell/surface_mesh.h"
 #include "voxel/closest_point.h"
 #include "voxel/exact_int.h"
 
@@ -16,7 +16,9 @@ struct WalkOntoSheet {
   View<const TriangleIndices> triangles;
   View<const int64_t> vertex_first;
   View<const uint32_t> vertex_triangles;
+  View<const uint32_t> border_before;
 
+  ISOSHELL_HD bool is_on_border(uint32_t v) const { return border_before.size > 0 && border_before[v] != kNone; }
   ISOSHELL_HD uint32_t nearest_vertex(uint32_t from, PointQ8 p) const {
     int64_t best = distance_sq_q16(position[from], p);
     for (;;) {
@@ -29,6 +31,7 @@ struct WalkOntoSheet {
         const TriangleIndices t = triangles[vertex_triangles[n]];
         consider(t.a == from ? t.b : (t.b == from ? t.c : t.a));  // each neighbour follows in one triangle
       }
+      if (is_on_border(from)) consider(border_before[from]);  // but this one
       if (next == from) return from;
       from = next;
     }
@@ -46,9 +49,9 @@ struct WalkOntoSheet {
   }
 };
 
-inline WalkOntoSheet walk_onto(const Sheet& sheet) {
-  return {sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-          sheet.vertex_triangles.view()};
+inline WalkOntoSheet walk_onto(const SurfaceMesh& surface) {
+  return {surface.position.view(),     surface.normal.view(),           surface.triangles.view(),
+          surface.vertex_first.view(), surface.vertex_triangles.view(), surface.border_before.view()};
 }
 
 /// Takes element i, where step.aims(i, target) says so, from vertex home[i] to the target, and tells the step the

@@ -11,6 +11,7 @@
 #include "isoshell/stages.h"
 #include "stages/relax/pass_state.h"
 #include "stages/shell/nearest_seed_body.h"
+#include "stages/sparse/drop_empty_leaves.h"
 
 namespace isoshell {
 namespace relax_shell {
@@ -194,7 +195,7 @@ RelaxReport relax_in_shell_body(Exec& exec, const Shell& shell, const SiteSet& s
   const int64_t k = seeds.size(), leaves = shell.voxels.leaf_count();
   const int64_t spacing = spacing_q8(sites.voxels.voxel_count(), k);
   const VoxelSetView voxels = shell.voxels.view();
-  PointGrid grid = make_point_grid(exec, shell.voxels.block_dims, (spacing >> kFractionBits) + 1, k);
+  PointGrid grid = make_point_grid(exec, BlockExtent(shell.voxels.view()).vox, (spacing >> kFractionBits) + 1, k);
   Buffer<CellSums> cells = exec.template make<CellSums>(k);
   Buffer<SplitSum> leaf_energy = exec.template make<SplitSum>(leaves);
   Buffer<int32_t> reach_q8 = exec.template make<int32_t>(leaves);

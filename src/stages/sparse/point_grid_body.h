@@ -34,17 +34,17 @@ struct PlaceGridPoint {
   }
 };
 
-/// Room for `count` points over a lattice of `blocks` (VoxelSetView::block_dims). The edge of a cell is the smallest
-/// power of two voxels that is at least `spacing_vox` and gives at most max(2^20, 32 count) cells.
+/// Room for `count` points between 0 and `extent_vox`; others count as in its outermost cells. The edge of a cell is
+/// the smallest power of two voxels that is at least `spacing_vox` and gives at most max(2^20, 32 count) cells.
 template <class Exec>
-PointGrid make_point_grid(Exec& exec, const int32_t blocks[3], int64_t spacing_vox, int64_t count) {
+PointGrid make_point_grid(Exec& exec, const int32_t extent_vox[3], int64_t spacing_vox, int64_t count) {
   PointGrid grid;
   const int64_t most = 32 * count > (1 << 20) ? 32 * count : 1 << 20;
   int64_t cells = 0;
   for (int32_t log2 = 0;; ++log2) {
     cells = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const int32_t size = ((blocks[axis] * 128 - 1) >> log2) + 1;
+      const int32_t size = ((extent_vox[axis] - 1) >> log2) + 1;
       grid.dims[axis] = size;
       cells *= size;
     }
