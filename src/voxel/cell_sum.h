@@ -3,7 +3,7 @@
 // A piece of triangle with corners u0, u1, u2 (q8, relative to a local origin) and doubled area A contributes
 //   mass += A,  first += A (u0 + u1 + u2),  second += A (|u0|^2 + |u1|^2 + |u2|^2 + |u0 + u1 + u2|^2),
 // so that, up to the common factor 1/2, the integral of 1 is mass, of x is first / 3 and of |x|^2 is second / 12.
-// Budget: |u| < 2^13 (a leaf and its triangles' reach), A < 2^32: second < 2^63 for up to 2^2 such extremes; a leaf of
+// Budget: |u| < 2^13 (VertexBlocks::kReachQ8), A < 2^32: second < 2^63 for up to 2^2 such extremes; a block of
 // ordinary triangles (A about 2^16) stays below 2^52.
 #pragma once
 
