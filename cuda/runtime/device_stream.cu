@@ -1,6 +1,7 @@
 // Streams and device memory.
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -64,17 +65,21 @@ DevicePool& pool_of(int device) {
   return *pool;
 }
 
+/// The last idle stream that holds nothing, or null. What an earlier context left in a stream would count towards the
+/// limit of the next one, and when it is freed, give it room above the limit.
+DeviceStream* take_idle_stream(DevicePool& pool) {
+  const std::lock_guard<std::mutex> lock(pool.idle_mutex);
+  const auto found = std::find_if(pool.idle.rbegin(), pool.idle.rend(),
+                                  [](const DeviceStream* stream) { return stream->held_bytes() == 0; });
+  if (found == pool.idle.rend()) return nullptr;
+  DeviceStream* const taken = *found;
+  pool.idle.erase(std::next(found).base());
+  return taken;
+}
+
 DeviceStream* take_stream(int device) {
   DevicePool& pool = pool_of(device);
-  {
-    const std::lock_guard<std::mutex> lock(pool.idle_mutex);
-    if (!pool.idle.empty()) {
-      DeviceStream* taken = pool.idle.back();
-      pool.idle.pop_back();
-      taken->start_counting();
-      return taken;
-    }
-  }
+  if (DeviceStream* const idle = take_idle_stream(pool)) return idle;
   int processors = 0;
   require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
                   "cudaDeviceGetAttribute");
@@ -106,6 +111,7 @@ void require_code(int device) {
 
 void return_stream(void* stream) {
   auto* idle = static_cast<DeviceStream*>(stream);
+  if (idle->held_bytes() > 0) idle->release_kept();  // the next context takes another stream
   DevicePool& pool = pool_of(idle->device());
   const std::lock_guard<std::mutex> lock(pool.idle_mutex);
   pool.idle.push_back(idle);
@@ -210,13 +216,13 @@ void DeviceStream::release_kept() noexcept {
 
 void* DeviceStream::allocate(int64_t bytes) {
   if (bytes <= 0) return nullptr;
-  const int64_t own = std::max<int64_t>(held_bytes_ - held_before_, 0);
-  const bool allowed = limit_ <= 0 || own + bytes <= limit_;
+  const int64_t held_before = held_bytes_;
+  const bool allowed = limit_ <= 0 || held_before + bytes <= limit_;
   void* data = allowed ? take(rounded(bytes)) : nullptr;
   if (!data) {
     throw Error(ErrorCode::out_of_memory, "memory",
                 "out of device memory: " + std::to_string(bytes >> 20) + " MiB more than the " +
-                    std::to_string(own >> 20) + " MiB in use were refused" +
+                    std::to_string(held_before >> 20) + " MiB in use were refused" +
                     (allowed ? "; lower the resolution or use --device cpu"
                              : " by the limit of " + std::to_string(limit_ >> 20) +
                                    " MiB; lower the resolution, raise --max-memory or use --device cpu"));

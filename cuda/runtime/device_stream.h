@@ -57,12 +57,13 @@ class DeviceStream final : public Memory {
   /// A few words of pinned host memory for read-backs.
   static constexpr int64_t kPinnedBytes = 4096;
   void* pinned() const { return pinned_; }
-  /// What is allocated from now on counts towards the context's limit; what the stream holds already is another's.
-  void start_counting() { held_before_ = held_bytes_; }
+  /// Bytes of the Buffers that the stream serves. A context is given a stream that serves none: they are its own.
+  int64_t held_bytes() const { return held_bytes_; }
+  /// Gives the small blocks that were kept back to the device's pool.
+  void release_kept() noexcept;
 
  private:
   void* take(int64_t bytes);
-  void release_kept() noexcept;
 
   DevicePool& pool_;
   int processors_;
@@ -71,7 +72,6 @@ class DeviceStream final : public Memory {
   void* pinned_;
   int64_t limit_ = 0;  ///< of the context that uses the stream, in bytes; 0 means none
   std::atomic<int64_t> held_bytes_{0};
-  int64_t held_before_ = 0;                               ///< bytes, by contexts that used the stream before
   std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread
   std::unordered_map<int64_t, std::vector<void*>> kept_;  ///< by their sizes
 };

@@ -9,6 +9,7 @@
 #include "isoshell/error.h"
 #include "isoshell/isoshell.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/source_folder.h"
 #include "support/test_context.h"
@@ -106,6 +107,11 @@ std::map<std::string, int> run_side_by_side(int threads, int runs_a_thread, bool
   return wrong;
 }
 
+SiteSet sites_at(int32_t resolution, Context& context) {
+  static const TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 64);
+  return voxelize(snap_surface(soup, LatticeFrame::around({-1, -1, -1}, {1, 1, 1}, resolution), context), context);
+}
+
 std::vector<int> thread_counts() { return on_device() ? std::vector<int>{2, 8, 16} : std::vector<int>{3}; }
 int runs_a_thread() { return on_device() ? 20 : 2; }
 const std::map<std::string, int> kNothing;
@@ -131,14 +137,32 @@ TEST_CASE("contexts: cancelled and capped runs leave those beside them alone", "
 TEST_CASE("contexts: a memory limit counts what the context itself takes", "[contexts]") {
   if (!on_device()) return;  // a limit is the host's, or the device's where it runs there
   TestContext large, small;
-  const TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 64);
-  const auto sites_at = [&](int32_t resolution, Context& context) {
-    return voxelize(snap_surface(soup, LatticeFrame::around({-1, -1, -1}, {1, 1, 1}, resolution), context), context);
-  };
   const SiteSet held = sites_at(1000, large);
   REQUIRE(device_memory_peak_bytes(large.device) > int64_t(32) << 20);
   small.memory_limit_bytes = int64_t(16) << 20;
   CHECK(sites_at(100, small).voxels.voxel_count() > 0);
+}
+
+TEST_CASE("contexts: a product that an earlier context left behind gives no room above a limit", "[contexts]") {
+  if (!on_device()) return;
+  const auto peak_bytes_from_now = [](const auto& run) {
+    reset_device_memory_peak(0);
+    const int64_t before = device_memory_peak_bytes(0);
+    run();
+    return device_memory_peak_bytes(0) - before;
+  };
+  SiteSet left;
+  const int64_t needed_bytes = peak_bytes_from_now([&] {
+    TestContext earlier;
+    left = sites_at(1000, earlier);
+  });
+  const int64_t left_bytes = left.voxels.leaf_key.size_bytes() + left.voxels.mask.size_bytes();
+  REQUIRE(left_bytes > int64_t(1) << 20);
+  TestContext next;
+  CHECK(sites_at(100, next).voxels.voxel_count() > 0);
+  left = {};
+  next.memory_limit_bytes = needed_bytes - left_bytes / 2;
+  CHECK(error_of([&] { sites_at(1000, next); }).code() == ErrorCode::out_of_memory);
 }
 
 TEST_CASE("contexts: the device's memory stays as it is after the first round", "[contexts]") {
