@@ -120,9 +120,11 @@ SiteSet sites_of_flaps(const SiteSet& sites, const Sheet& sheet) {
   return {voxel_set_of(leaves, sites.voxels)};
 }
 
-/// Lays vertices onto the surface as `laid` has them, but those at `grown` voxels.
-void lay_as(const Sheet& laid, const VoxelSet& grown, Sheet& sheet) {
+/// Lays vertices onto the surface as `laid` has them, but those at `grown` voxels. Returns the vertex that each one of
+/// `laid` is now, kNone where there is none.
+std::vector<uint32_t> lay_as(const Sheet& laid, const VoxelSet& grown, Sheet& sheet) {
   const VoxelSetView laid_corners = laid.corners.view(), grown_voxels = grown.view();
+  std::vector<uint32_t> now(size_t(laid.vertex_count()), kNone);
   for_each_corner(sheet, [&](int64_t v, Voxel c) {
     bool is_grown = false;
     for_each_voxel_around(c, [&](Voxel o) { is_grown |= find_voxel(grown_voxels, o) >= 0; });
@@ -131,7 +133,22 @@ void lay_as(const Sheet& laid, const VoxelSet& grown, Sheet& sheet) {
     sheet.position[v] = laid.position[w];
     sheet.normal[v] = laid.normal[w];
     sheet.source_triangle[v] = laid.source_triangle[w];
+    now[size_t(w)] = uint32_t(v);
   });
+  return now;
+}
+
+/// Off-surface points stay with the vertices that are laid. Those at flaps go: the walls are grown away from them.
+void keep_off_surface(const Sheet& laid, const std::vector<uint32_t>& now, Sheet& sheet) {
+  std::vector<int64_t> kept;
+  for (int64_t i = 0; i < laid.missed.size(); ++i)
+    if (now[laid.missed_vertex[i]] != kNone) kept.push_back(i);
+  sheet.missed = Buffer<PointQ8>(int64_t(kept.size()));
+  sheet.missed_vertex = Buffer<uint32_t>(int64_t(kept.size()));
+  for (size_t k = 0; k < kept.size(); ++k) {
+    sheet.missed[int64_t(k)] = laid.missed[kept[k]];
+    sheet.missed_vertex[int64_t(k)] = now[laid.missed_vertex[kept[k]]];
+  }
 }
 
 }  // namespace
@@ -151,7 +168,8 @@ bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, 
   p.sheet = {};
   p.sheet =
       build_proxy(p.walls, p.surface.frame, {closing_of_solid(p), smallest_component_q16, kNoGenus, false}, context);
-  lay_as(laid, grown, on_host(p.sheet));
+  const std::vector<uint32_t> now = lay_as(laid, grown, on_host(p.sheet));
+  keep_off_surface(laid, now, p.sheet);
   p.sheet.topology.bridged_vertices = laid.topology.bridged_vertices;  // the proxy has no sources of its own
   return true;
 }

@@ -7,7 +7,8 @@
 namespace isoshell {
 
 /// Gives a prepared surface that has flaps the sheet of its solid together with all voxels within `grown_vox` of a
-/// flap: laid onto the surface but for the flaps, which it follows at that distance. Returns whether there are any.
+/// flap: laid onto the surface but for the flaps, which it follows at that distance. Off-surface points stay but for
+/// those at flaps. Returns whether there are any flaps.
 bool grow_flaps(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 }  // namespace isoshell

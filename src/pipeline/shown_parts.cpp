@@ -62,9 +62,9 @@ int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology
 
 void warn_of_topology(const Prepared& p, const InputTopology& input, const RemeshOptions& options,
                       RemeshReport& report) {
-  if (p.grown_vox > 0)
-    warn_of_grown_solid(p, input, report);
-  else if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
+  if (p.grown_vox > 0) warn_of_grown_solid(p, input, report);
+  if (p.grown_vox > 0 && !p.only_flaps_grown) return;  // all of the solid is another one than the input's
+  if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
     report.warnings.push_back(std::to_string(input.components) +
                               " components and their handles are more than so few vertices can show: those smaller "
                               "than four cells were left out, " +

@@ -58,6 +58,32 @@ TriangleSoup slotted_ball(double width) {
   return soup;
 }
 
+/// A unit ball's surface with a hole below and a brim around that: a cap of the hole lies on the brim.
+TriangleSoup hat() {
+  constexpr uint32_t kAround = 96, kRows = 40, kAcross = 8;
+  constexpr double kLowest = 2.7;  // angle from the pole
+  TriangleSoup soup;
+  for (uint32_t j = 1; j <= kRows + kAcross; ++j) {
+    const double angle = kLowest * std::min(j, kRows) / kRows, brim = j <= kRows ? 0 : .25 * (j - kRows) / kAcross;
+    for (uint32_t i = 0; i < kAround; ++i) {
+      const double around = 6.283185307179586 * i / kAround, radius = std::sin(angle) + brim;
+      soup.vertices.push_back({radius * std::cos(around), radius * std::sin(around), std::cos(angle)});
+    }
+  }
+  const uint32_t top = uint32_t(soup.vertices.size());
+  soup.vertices.push_back({0, 0, 1});
+  for (uint32_t i = 0; i < kAround; ++i) {
+    const uint32_t next = (i + 1) % kAround;
+    shapes::add_triangle(soup, top, i, next);
+    for (uint32_t j = 0; j + 1 < kRows + kAcross; ++j) {
+      const uint32_t a = j * kAround + i, b = j * kAround + next;
+      shapes::add_triangle(soup, a, a + kAround, b + kAround);
+      shapes::add_triangle(soup, a, b + kAround, b);
+    }
+  }
+  return soup;
+}
+
 }  // namespace
 
 TEST_CASE("prepare: balls through each other are one body, on the first grid; balls apart stay two", "[prepare]") {
@@ -311,6 +337,46 @@ TEST_CASE("prepare: open parts of a solid get walls that edges turn around, the 
   CHECK(measure_quality(result.mesh).q_avg > .92);
   for (const WorldPoint& p : result.mesh.vertices)
     if (p.x < .8) CHECK(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) == Approx(1).epsilon(.01));
+}
+
+TEST_CASE("prepare: a solid with flaps keeps the points that its sheet misses", "[prepare]") {
+  TriangleSoup crown = hat();
+  WorldPoint& pit = crown.vertices[700];
+  REQUIRE(pit.z > .6);
+  pit = {.95 * pit.x, .95 * pit.y, .95 * pit.z};
+  RemeshOptions options;
+  options.vertices = 2000;
+  options.resolution = 100;
+  const Run run = prepare_with(crown, options);
+  CHECK(run.report.mend.capped_loops == 1);
+  REQUIRE(run.prepared.only_flaps_grown);
+  const Sheet sheet = to_host(run.prepared.sheet);
+  const PointQ8 bottom = sheet.frame.snap(pit);
+  int64_t at_pit = 0, on_brim = 0;
+  for (int64_t i = 0; i < sheet.missed.size(); ++i) {
+    at_pit += sheet.missed[i] == bottom;
+    const WorldPoint p = sheet.frame.to_world(sheet.missed[i]),
+                     v = sheet.frame.to_world(sheet.position[sheet.missed_vertex[i]]);
+    CHECK(std::hypot(std::hypot(p.x - v.x, p.y - v.y), p.z - v.z) < 5 * sheet.frame.voxel_size);
+    on_brim += p.z < -.85;
+  }
+  CHECK(at_pit == 1);
+  CHECK(on_brim == 0);
+}
+
+TEST_CASE("prepare: a solid with flaps whose topology is not the input's says both", "[prepare]") {
+  TriangleSoup ring = shapes::torus(1, .99, 96, 48);
+  for (WorldPoint& p : ring.vertices) p.z += 4;
+  RemeshOptions options;
+  options.vertices = 2000;
+  options.resolution = 150;
+  const Run run = prepare_with(shapes::together(hat(), ring), options);
+  REQUIRE(run.prepared.only_flaps_grown);
+  REQUIRE(run.report.topology_compared);
+  REQUIRE(run.report.sheet.genus == 0);
+  REQUIRE(run.report.warnings.size() == 2);
+  CHECK(run.report.warnings[0].find("open and bound nothing") != std::string::npos);
+  CHECK(run.report.warnings[1].find("2 components and genus 0, the input 2 and 1") != std::string::npos);
 }
 
 TEST_CASE("prepare: walls of what the widest closing does not close grow too", "[prepare]") {
