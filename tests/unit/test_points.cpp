@@ -150,16 +150,21 @@ TEST_CASE("points: a PLY of which no face has area is a cloud, one with a face t
     const TemporaryFolder folder;
     put_file(folder / "a.ply",
              "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-             "element face " +
+             "property float nx\nproperty float ny\nproperty float nz\nelement face " +
                  std::to_string(count) +
-                 "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n2 0 0\nnan 1 0\n" + faces);
+                 "\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 2\n2 0 0 0 0 3\n"
+                 "nan 1 0 0 0 4\n" +
+                 faces);
     return read_ply_content(folder / "a.ply");
   };
   const PlyContent cloud = content_of("3 0 1 1\n3 0 1 2\n2 0 1\n3 0 1 3\n", 4);
   CHECK(cloud.is_points);
   CHECK(cloud.mesh.vertices.empty());
   CHECK(cloud.points.position.size() == 3);
+  REQUIRE(cloud.points.normal.size() == 3);
+  CHECK(cloud.points.normal[2].z == 3);
   CHECK(cloud.unusable_faces == 4);
+  CHECK(cloud.points.dirt.unreferenced_vertices == 0);
   CHECK(cloud.points.dirt.degenerate_faces == 2);
   CHECK(cloud.points.dirt.short_faces == 1);
   CHECK(cloud.points.dirt.dropped_faces_nonfinite == 1);
@@ -167,6 +172,7 @@ TEST_CASE("points: a PLY of which no face has area is a cloud, one with a face t
   CHECK_THROWS_AS(content_of("3 0 1 4\n", 1), Error);  // a face that lies is no cloud's
   const PlyContent no_faces = content_of("", 0);
   CHECK(no_faces.is_points);
+  CHECK(no_faces.points.normal.size() == 3);
   CHECK(no_faces.unusable_faces == 0);
   CHECK_FALSE(read_ply_content(source_folder() + "/tests/data/nefertiti.ply").is_points);
 }

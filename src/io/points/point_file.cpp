@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "core/world_vector.h"
 #include "io/mesh/face_collector.h"
@@ -20,6 +21,9 @@ constexpr int kMaxColumns = 16;
 constexpr double kUnitTolerance = 0.02;
 constexpr double kMostOdd = 0.02;  // rows without a unit vector among those of a column of normals
 
+constexpr const char* kPosition[3] = {"x", "y", "z"};
+constexpr const char* kNormal[3] = {"nx", "ny", "nz"};
+
 PlyBody ply_vectors(const MeshSource& source, const PlyHeader& header, const char* const names[3]) {
   PlyBody body(source);
   PlyMeshLayout layout;
@@ -30,6 +34,11 @@ PlyBody ply_vectors(const MeshSource& source, const PlyHeader& header, const cha
   }
   read_ply_body(source, header, layout, body);
   return body;
+}
+
+/// Empty, without a look at the rows, when the header names none.
+std::vector<WorldPoint> read_ply_normals(const MeshSource& source, const PlyHeader& header) {
+  return std::move(ply_vectors(source, header, kNormal).vertices.points);
 }
 
 /// Whether three columns from `first` on hold unit vectors.
@@ -69,8 +78,6 @@ void drop_nonfinite(PointCloud& cloud) {
 
 PointCloud read_ply_points(const MeshSource& source) {
   const PlyHeader header = read_ply_header(source);
-  constexpr const char* kPosition[3] = {"x", "y", "z"};
-  constexpr const char* kNormal[3] = {"nx", "ny", "nz"};
   PointCloud cloud;
   PlyBody body = ply_vectors(source, header, kPosition);
   cloud.position = std::move(body.vertices.points);
@@ -78,7 +85,7 @@ PointCloud read_ply_points(const MeshSource& source) {
   const PlyElement* const vertices = header.find("vertex");
   if (cloud.position.empty() && vertices && vertices->count > 0)
     source.refuse_line_at(vertices->header_line, "element vertex has no numbers named x, y and z");
-  cloud.normal = std::move(ply_vectors(source, header, kNormal).vertices.points);
+  cloud.normal = read_ply_normals(source, header);
   return cloud;
 }
 
@@ -119,10 +126,8 @@ PointCloud read_xyz(const MeshSource& source) {
 
 namespace {
 
-PointCloud points_of(const MeshSource& source, PointFormat format) {
-  PointCloud cloud = format == PointFormat::ply   ? read_ply_points(source)
-                     : format == PointFormat::xyz ? read_xyz(source)
-                                                  : read_pcd(source);
+/// What every format gives: finite points, at least one.
+PointCloud finished(const MeshSource& source, PointCloud cloud) {
   drop_nonfinite(cloud);
   if (cloud.position.empty()) source.nothing_to_mesh("holds no finite point");
   return cloud;
@@ -141,16 +146,14 @@ bool has_area(const TriangleSoup& soup) {
   });
 }
 
-/// What became of the faces of a file whose points are its content: the soup's counts go to the cloud.
-void count_unusable(PlyContent& content) {
-  const DirtCounts& faces = content.mesh.dirt;
-  DirtCounts& dirt = content.points.dirt;
-  content.unusable_faces = content.mesh.faces_in_file;
-  dirt.short_faces = faces.short_faces;
-  dirt.dropped_faces_nonfinite = faces.dropped_faces_nonfinite;
-  dirt.degenerate_faces = faces.degenerate_faces + int64_t(content.mesh.triangles.size());
-  dirt.long_rows = faces.long_rows;  // of vertices and faces
-  content.mesh = {};
+/// The vertices of a mesh whose faces span no area, and what became of those; nothing of the mesh is kept beside them.
+PointCloud vertices_of(TriangleSoup mesh) {
+  PointCloud cloud;
+  cloud.position = std::move(mesh.vertices);
+  cloud.dirt = mesh.dirt;
+  cloud.dirt.degenerate_faces += int64_t(mesh.triangles.size());
+  cloud.dirt.unreferenced_vertices = 0;
+  return cloud;
 }
 
 template <class Read>
@@ -168,7 +171,11 @@ auto read_or_say_why(const MeshSource& source, const char* what, Read read) {
 
 PointCloud read_points(const std::string& path, PointFormat format) {
   const MeshSource source(path);
-  return read_or_say_why(source, "points", [&] { return points_of(source, format); });
+  return read_or_say_why(source, "points", [&] {
+    return finished(source, format == PointFormat::ply   ? read_ply_points(source)
+                            : format == PointFormat::xyz ? read_xyz(source)
+                                                         : read_pcd(source));
+  });
 }
 
 PlyContent read_ply_content(const std::string& path) {
@@ -177,11 +184,18 @@ PlyContent read_ply_content(const std::string& path) {
     const PlyHeader header = read_ply_header(source);
     if (!holds_rows(header, "vertex")) return PlyContent{false, read_ply(source), {}, 0};
     PlyContent content;
-    if (holds_rows(header, "face") || holds_rows(header, "tristrips")) content.mesh = read_ply_faces(source);
-    if (has_area(content.mesh)) return content;
+    PointCloud cloud;
+    if (holds_rows(header, "face") || holds_rows(header, "tristrips")) {
+      content.mesh = read_ply_faces(source);
+      if (has_area(content.mesh)) return content;
+      content.unusable_faces = content.mesh.faces_in_file;
+      cloud = vertices_of(std::exchange(content.mesh, {}));
+      cloud.normal = read_ply_normals(source, header);  // a second look at the rows, once it is known that they count
+    } else {
+      cloud = read_ply_points(source);
+    }
     content.is_points = true;
-    content.points = points_of(source, PointFormat::ply);
-    if (content.mesh.faces_in_file > 0) count_unusable(content);
+    content.points = finished(source, std::move(cloud));
     return content;
   });
 }
