@@ -120,7 +120,7 @@ struct CudaKernels {
       // sheet_cooperative.cuh: a warp a leaf; the voxels around it lie in shared memory.
       sheet_steps::FindAdditions, sheet_steps::WantCornerLeaves, sheet_steps::MarkCorners, sheet_steps::DescribeCorners,
       sheet_steps::CountFaces, sheet_steps::ListFaces, sheet_steps::SmoothCorners,
-      // pieces_cooperative.cuh: a warp a disconnected piece piece, a lane a vertex of it.
+      // pieces_cooperative.cuh: a warp a disconnected piece, a lane a vertex of it.
       dual::DecideDisconnectedPiece, dual::JoinDisconnectedPiece, dual::FoundCell,
       // surface_cooperative.cuh: a block a run of faces, whose areas one thread then adds in order.
       topology_steps::AddAreas>;

@@ -28,7 +28,7 @@ SiteSet CudaBackend::coarsen_sites(const SiteSet& sites, Context& context) const
 
 Sheet CudaBackend::build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
                                Context& context) const {
-  CudaExecutor exec(context, "outline");
+  CudaExecutor exec(context, "coarse proxy");
   return build_proxy_body(exec, *OnDevice<SiteSet>(exec, sites), frame, options);
 }
 

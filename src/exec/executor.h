@@ -15,8 +15,8 @@
 //   template <class Term> void sum_into(View<int64_t> out, int64_t count, Term term);   // the same, to out[0]
 //   static constexpr int kPassBatch;                                 // passes of a loop between two looks at its state
 //
-// Before they begin, all but make, copy and value throw Error{interrupted} when the context was cancelled, so no work
-// is left to a device that nobody waits for.
+// All but make, value and a device's copy throw Error{interrupted} before they begin when the context was cancelled: no
+// work is left to a device that nobody waits for. They may throw it at their end, too: for_each then skipped elements.
 //
 // Every operation has one mathematical answer, so no schedule can change a byte. Steps are functors named for what they
 // do. A step may write only to its own elements, or through the integer atomics of voxel/atomic.h.

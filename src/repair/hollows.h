@@ -10,7 +10,7 @@ namespace isoshell {
 
 /// One voxel in the hollow of each component whose normals point into it: the middle of the longest way from one of its
 /// sites, along the axis nearest to the normal, to the next site. Components that look inward lie in others (see
-/// unite). Products in host memory. Cost: a few thousand ways a component.
+/// boolean_union). Products in host memory. Cost: a few thousand ways a component.
 std::vector<Voxel> find_hollows(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples);
 
 }  // namespace isoshell

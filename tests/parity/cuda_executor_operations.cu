@@ -1,4 +1,4 @@
-// The words of the CUDA executor.
+// The operations of the CUDA executor.
 #include "cuda/runtime/executor_cuda.cuh"
 
 namespace isoshell::parity {

@@ -1,6 +1,6 @@
-// Every word of an executor (exec/executor.h) with arguments a test can make up, so that one test asks all backends.
-// The bodies are in executor_operations_body.h; tbb_executor_operations.cpp and cuda_executor_operations.cu instantiate
-// them.
+// Every operation of an executor (exec/executor.h) with arguments a test can make up, so that one test asks all
+// backends. The bodies are in executor_operations_body.h; tbb_executor_operations.cpp and cuda_executor_operations.cu
+// instantiate them.
 #pragma once
 
 #include <cstdint>

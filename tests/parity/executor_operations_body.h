@@ -1,5 +1,5 @@
-// The words of executor_operations.h over any executor. Includers say by to_executor(executor, Buffer) how a host array
-// gets to where the executor works.
+// The operations of executor_operations.h over any executor. Includers say by to_executor(executor, Buffer) how a host
+// array gets to where the executor works.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ struct OddKeyOrder {
 template <class Executor>
 class OperationsOf : public ExecutorOperations {
  public:
-  explicit OperationsOf(Context& context) : exec_(context, "words") {}
+  explicit OperationsOf(Context& context) : exec_(context, "operations") {}
 
   std::vector<uint32_t> fill(int64_t count, uint32_t value) override {
     auto out = exec_.template make<uint32_t>(count);

@@ -1,4 +1,4 @@
-// The words of the CPU's executor.
+// The operations of the CPU's executor.
 #include "cpu/executor_tbb.h"
 
 namespace isoshell::parity {

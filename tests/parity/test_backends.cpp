@@ -168,7 +168,7 @@ void proxy_of_coarse_sites(SideBySide& both) {
   if (!both.stage("coarse sites", &Products::coarse_sites,
                   [](const Products& p, Context& c) { return made(coarsen_sites(p.sites, c)); }))
     return;
-  both.stage("outline", &Products::proxy, [](const Products& p, Context& c) {
+  both.stage("coarse proxy", &Products::proxy, [](const Products& p, Context& c) {
     Sheet proxy = build_proxy(p.coarse_sites, p.surface.frame, {}, c);
     const std::string facts = text_of(proxy.topology);
     return made(std::move(proxy), facts);

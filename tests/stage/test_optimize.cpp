@@ -128,7 +128,7 @@ TEST_CASE("optimize: triangles get better on average, and the worst one no worse
     const MeshQuality before = measure_quality(to_world(s.mesh, s.sheet.frame));
     optimize_mesh(s.sheet, {}, s.seeds, s.mesh, context);
     const MeshQuality after = measure_quality(to_world(s.mesh, s.sheet.frame));
-    INFO(s.name << ": least merit " << least << " -> " << least_quality(s.mesh));
+    INFO(s.name << ": least quality " << least << " -> " << least_quality(s.mesh));
     CHECK(least_quality(s.mesh) >= least);
     CHECK(after.q_avg > before.q_avg);
     CHECK(after.irregular_ratio <= before.irregular_ratio);

@@ -421,7 +421,7 @@ TEST_CASE("sheet: a coarse site holds at least one site, and every site lies in 
   }
 }
 
-TEST_CASE("sheet: an outline has the sheet's vertices and topology, is within a voxel of it, and as large",
+TEST_CASE("sheet: a coarse proxy has the sheet's vertices and topology, is within a voxel of it, and as large",
           "[sheet][stage]") {
   TestContext context;
   const Pipeline p = sites_of(shapes::torus(2, .7, 60, 30), 96, context);
@@ -436,7 +436,7 @@ TEST_CASE("sheet: an outline has the sheet's vertices and topology, is within a 
   CHECK(std::abs(six_volume_vox(proxy, context) - volume) < volume / 100);
 }
 
-TEST_CASE("sheet: smoothing an outline takes less than a hundredth of a small ball", "[sheet][stage]") {
+TEST_CASE("sheet: smoothing a coarse proxy takes less than a hundredth of a small ball", "[sheet][stage]") {
   TestContext context;
   for (const int resolution : {24, 48}) {
     const Pipeline p = sites_of(shapes::sphere({0, 0, 0}, 1, 24), resolution, context);

@@ -24,7 +24,7 @@ SiteSet CpuBackend::coarsen_sites(const SiteSet& sites, Context& context) const 
 
 Sheet CpuBackend::build_proxy(const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options,
                               Context& context) const {
-  CpuExecutor exec(context, "outline");
+  CpuExecutor exec(context, "coarse proxy");
   return run_with_threads(context, [&] { return build_proxy_body(exec, *OnHost(sites), frame, options); });
 }
 
