@@ -114,17 +114,11 @@ struct ListBridgeNeighbours {
   View<const uint32_t> bridges;
   View<uint32_t> neighbours;
   ISOSHELL_HD void operator()(int64_t i) const {
-    // The leaf is the last one that starts at or before the vertex.
-    int64_t lo = 0, hi = corners.leaf_key.size;
-    while (hi - lo > 1) {
-      const int64_t middle = (lo + hi) / 2;
-      (corners.first[middle] <= int64_t(bridges[i]) ? lo : hi) = middle;
-    }
+    const Voxel corner = voxel_of_index(corners, bridges[i]);
     int count = 0;
-    for_each_active(corners, lo, [&](int offset, int64_t v) {
-      if (v != int64_t(bridges[i])) return;
-      for_each_neighbour(corners, lo, offset, v, edges[v], [&](uint32_t n) { neighbours[6 * i + count++] = n; });
-    });
+    for (int f = 0; f < 6; ++f)
+      if (edges[bridges[i]] >> f & 1)
+        neighbours[6 * i + count++] = uint32_t(find_voxel(corners, step_through(corner, f)));
     while (count < 6) neighbours[6 * i + count++] = kNone;
   }
 };
