@@ -83,17 +83,19 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: bench_ablation MESH [--vertices K] [--threads T]\n");
     return 2;
   }
+  int64_t vertices = 10000;
   RemeshOptions options;
   Context context;
   for (int i = 2; i + 1 < argc; i += 2) {
     const std::string key = argv[i];
-    if (key == "--vertices") options.vertices = std::atol(argv[i + 1]);
+    if (key == "--vertices") vertices = std::atol(argv[i + 1]);
     if (key == "--threads") context.threads = std::atoi(argv[i + 1]);
   }
+  options.vertices = vertices;
   RemeshReport report;
   const TriangleSoup soup = read_mesh(argv[1]);
   const Prepared prepared = prepare(soup, options, report, context);
-  const Bench bench{prepared, {options.vertices, options.seed}, context};
+  const Bench bench{prepared, {vertices, options.seed}, context};
 
   const SeedSet levels = bench.from_levels(0), strata = bench.from_strata();
   json curves = {{"all", bench.curve(levels, &Bench::relax, 40)},
@@ -127,7 +129,7 @@ int main(int argc, char** argv) {
 
   const json out = {{"machine", bench::machine()},
                     {"mesh", argv[1]},
-                    {"vertices", options.vertices},
+                    {"vertices", vertices},
                     {"sheet_vertices", prepared.sheet.vertex_count()},
                     {"curves", curves},
                     {"final", finals}};

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,18 +21,19 @@ enum class Method {
   shell,  ///< the paper's Lloyd loop on shell voxels
 };
 
+/// What has no value is chosen by the run. The numbers that stood for that before, 0 or -1 by option, mean it still.
 struct RemeshOptions {
-  int64_t vertices = 10000;      ///< target count; ignored when edge_length_world is set; 0: as `sizing` asks for
-  double edge_length_world = 0;  ///< 0 means by vertices
-  int32_t resolution = 0;        ///< voxels along the longest side; 0 chooses
-  double voxel_size_world = 0;   ///< 0 means by resolution
-  int32_t band_vox = 2;          ///< d
-  int32_t closing_vox = -1;      ///< r; -1 chooses (0 for a closed surface)
-  double closing_world = -1;     ///< width of gaps to close, world units; -1 means by closing_vox
+  std::optional<int64_t> vertices = 10000;  ///< target count; without it as `sizing` asks for, or 10000
+  std::optional<double> edge_length_world;  ///< target edge length, instead of `vertices`
+  std::optional<int32_t> resolution;        ///< voxels along the longest side
+  std::optional<double> voxel_size_world;   ///< instead of `resolution`
+  int32_t band_vox = 2;                     ///< d
+  std::optional<int32_t> closing_vox;       ///< r; without it 0 for a closed surface, else as much as closes leaks
+  std::optional<double> closing_world;      ///< width of gaps to close, world units, instead of closing_vox
   Method method = Method::sheet;
-  int32_t max_passes = 0;   ///< of the finest level of seeds; 0 means the method's own
-  double tolerance = -1;    ///< relative fall of the energy a pass; -1 means the method's own
-  double max_step_vox = 0;  ///< u; 0 means the method's own
+  std::optional<int32_t> max_passes;   ///< of the finest level of seeds; without it the method's own
+  std::optional<double> tolerance;     ///< relative fall of the energy a pass; without it the method's own
+  std::optional<double> max_step_vox;  ///< u; without it the method's own
   uint64_t seed = 0;
   std::shared_ptr<const SizingField> sizing;  ///< edge lengths to aim at; null: the same everywhere
   double adaptivity = 0;                      ///< part of the vertices that goes by curvature, 0 to 1
@@ -74,6 +76,16 @@ struct RemeshReport {
   std::vector<std::string> warnings;
 };
 
+/// What a sheet bounds instead of the solid of the sites, where edges could not follow both sides of the surface's
+/// walls: voxels up to a distance from them.
+struct GrownSolid {
+  int32_t distance_vox = 0;  ///< from a site; 0: nothing was grown
+  bool only_flaps = false;   ///< grown are only the sites of parts that bound nothing, and the others are as they were
+  SiteSet voxels;            ///< the sites and what was grown
+
+  explicit operator bool() const { return distance_vox > 0; }
+};
+
 /// Products up to the sheet.
 struct Prepared {
   LatticeSurface surface;
@@ -82,10 +94,8 @@ struct Prepared {
   Shell shell;  ///< empty unless the method or want_shell asks for it
   Sheet sheet;  ///< with edge lengths where they vary
   int32_t closing_vox = 0;
-  int32_t grown_vox = 0;  ///< above 0: the sheet bounds all within so many voxels of a site, see `walls`
-  SiteSet walls;          ///< those voxels, where edges could not follow both sides of the surface's walls; else empty
-  bool only_flaps_grown = false;  ///< walls hold the sites, and voxels around those of open parts
-  int64_t vertices = 0;           ///< as many as the sizing field asks for; 0: as the options say
+  std::optional<int64_t> vertices;  ///< as many as the sizing field asks for; without it as the options say
+  GrownSolid grown;                 ///< for the stages that follow
 };
 
 /// Repairs the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for.

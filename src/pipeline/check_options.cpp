@@ -18,9 +18,15 @@ std::string number_text(double value) {
   return text.str();
 }
 
-/// `unset` stands for an option that the run chooses itself.
-void check(const char* option, double value, const OptionRange& range, double unset = NAN) {
-  if (value != unset && !range.holds(value)) throw Error(ErrorCode::usage, "options", range.refusal(option, value));
+void check(const char* option, double value, const OptionRange& range) {
+  if (!range.holds(value)) throw Error(ErrorCode::usage, "options", range.refusal(option, value));
+}
+
+/// `former` stood for an option that was not given.
+template <class T>
+void check(const char* option, std::optional<T>& value, const OptionRange& range, T former) {
+  if (value == former) value.reset();
+  if (value) check(option, double(*value), range);
 }
 
 }  // namespace
@@ -35,22 +41,23 @@ std::string OptionRange::refusal(const std::string& option, double value) const 
   return text;
 }
 
-void check_options(const RemeshOptions& o) {
-  check("vertices", double(o.vertices), option_range::vertices, 0);
-  check("edge_length_world", o.edge_length_world, option_range::length, 0);
-  check("resolution", o.resolution, option_range::resolution, 0);
-  check("voxel_size_world", o.voxel_size_world, option_range::length, 0);
+RemeshOptions checked(RemeshOptions o) {
+  check<int64_t>("vertices", o.vertices, option_range::vertices, 0);
+  check<double>("edge_length_world", o.edge_length_world, option_range::length, 0);
+  check<int32_t>("resolution", o.resolution, option_range::resolution, 0);
+  check<double>("voxel_size_world", o.voxel_size_world, option_range::length, 0);
   check("band_vox", o.band_vox, option_range::band);
-  check("closing_vox", o.closing_vox, option_range::closing, -1);
-  check("closing_world", o.closing_world, OptionRange{}, -1);
-  check("max_passes", o.max_passes, option_range::iterations, 0);
-  check("tolerance", o.tolerance, option_range::tolerance, -1);
-  check("max_step_vox", o.max_step_vox, option_range::step, 0);
+  check<int32_t>("closing_vox", o.closing_vox, option_range::closing, -1);
+  check<double>("closing_world", o.closing_world, OptionRange{}, -1);
+  check<int32_t>("max_passes", o.max_passes, option_range::iterations, 0);
+  check<double>("tolerance", o.tolerance, option_range::tolerance, -1);
+  check<double>("max_step_vox", o.max_step_vox, option_range::step, 0);
   check("adaptivity", o.adaptivity, option_range::adaptivity);
   check("gradation", o.gradation, option_range::gradation);
   if (o.method == Method::shell && (o.sizing || o.adaptivity > 0))
     throw Error(ErrorCode::usage, "options",
                 "a sizing field and adaptivity need the method sheet: the paper's loop on the shell has even cells");
+  return o;
 }
 
 }  // namespace isoshell

@@ -5,7 +5,8 @@
 
 namespace isoshell {
 
-/// Throws usage that names the option, its value and the limits.
-void check_options(const RemeshOptions& options);
+/// The options without the numbers that stood for "not given" before options had no value: 0, and -1 of closings and
+/// the tolerance. Throws: usage that names the option, its value and the limits.
+RemeshOptions checked(RemeshOptions options);
 
 }  // namespace isoshell

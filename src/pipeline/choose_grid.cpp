@@ -43,22 +43,22 @@ int32_t asked_voxel_resolution(double longest, double voxel_size) {
 }  // namespace
 
 int64_t vertex_target(const RemeshOptions& options, double area_world) {
-  if (options.edge_length_world <= 0) return options.vertices > 0 ? options.vertices : kUsualVertices;
-  const double per_vertex = kAreaPerEdgeSq * options.edge_length_world * options.edge_length_world;
+  if (!options.edge_length_world) return options.vertices.value_or(kUsualVertices);
+  const double edge_world = *options.edge_length_world, per_vertex = kAreaPerEdgeSq * edge_world * edge_world;
   const double vertices = area_world / per_vertex;
   if (!(vertices <= double(kMaxVertices))) {  // a tiny length squares to 0
     std::ostringstream text;
-    text << "an edge length of " << options.edge_length_world << " asks for more than " << kMaxVertices
-         << " vertices; use at least " << std::sqrt(area_world / double(kMaxVertices) / kAreaPerEdgeSq);
+    text << "an edge length of " << edge_world << " asks for more than " << kMaxVertices << " vertices; use at least "
+         << std::sqrt(area_world / double(kMaxVertices) / kAreaPerEdgeSq);
     throw Error(ErrorCode::usage, "grid", text.str());
   }
   return std::max<int64_t>(4, std::llround(vertices));
 }
 
 int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint lo, WorldPoint hi) {
-  if (options.resolution > 0) return options.resolution;
+  if (options.resolution) return *options.resolution;
   const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
-  if (options.voxel_size_world > 0) return asked_voxel_resolution(longest, options.voxel_size_world);
+  if (options.voxel_size_world) return asked_voxel_resolution(longest, *options.voxel_size_world);
   const int64_t vertices = vertex_target(options, area_world);
   const double spacing = std::sqrt(area_world / double(vertices));
   return spacing > 0 ? resolution_for_cell(longest, spacing, vertices) : kMinDefaultResolution;
@@ -70,7 +70,7 @@ int32_t resolution_for_cell(double longest_world, double cell_world, int64_t ver
 }
 
 double usual_edge_length(const RemeshOptions& options, double area_world) {
-  if (options.edge_length_world > 0) return options.edge_length_world;
+  if (options.edge_length_world) return *options.edge_length_world;
   return std::sqrt(area_world / double(vertex_target(options, area_world)) / kAreaPerEdgeSq);
 }
 

@@ -162,12 +162,10 @@ bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, 
   LeafMasks leaves;
   add(leaves, sites.voxels);
   add(leaves, grown);
-  p.walls = {voxel_set_of(leaves, sites.voxels), sites.hollows.to_host()};
-  p.grown_vox = grown_vox;
-  p.only_flaps_grown = true;
+  p.grown = {grown_vox, true, {voxel_set_of(leaves, sites.voxels), sites.hollows.to_host()}};
   p.sheet = {};
-  p.sheet =
-      build_proxy(p.walls, p.surface.frame, {closing_of_solid(p), smallest_component_q16, kNoGenus, false}, context);
+  const SheetOptions options{closing_of_solid(p), smallest_component_q16, kNoGenus, false};
+  p.sheet = build_proxy(p.grown.voxels, p.surface.frame, options, context);
   const std::vector<uint32_t> now = lay_as(laid, grown, on_host(p.sheet));
   keep_off_surface(laid, now, p.sheet);
   p.sheet.topology.bridged_vertices = laid.topology.bridged_vertices;  // the proxy has no sources of its own

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
 
 namespace isoshell {
@@ -20,8 +21,9 @@ constexpr double kFixedBytes = 64 << 20;  // lookup tables, thread-local scratch
 
 }  // namespace
 
-RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& asked,
                          int32_t resolution) {
+  const RemeshOptions options = checked(asked);
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
   RunEstimate e;

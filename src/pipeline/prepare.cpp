@@ -33,7 +33,7 @@ class Preparation {
   Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
       : options_(options), report_(report), context_(context) {}
 
-  Prepared from(LatticeSurface surface, int32_t closing_vox) {
+  Prepared from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
     Prepared p;
     p.surface = std::move(surface);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
@@ -47,9 +47,9 @@ class Preparation {
       grow(p, grown);
       return p;
     }
-    if (closing_vox >= 0) {
-      p.closing_vox = closing_vox;
-      p.sheet = sheet(p, closing_vox);
+    if (closing_vox) {
+      p.closing_vox = *closing_vox;
+      p.sheet = sheet(p, p.closing_vox);
     } else {
       close_leaks(p);
     }
@@ -166,18 +166,20 @@ int64_t topology_gap(const Prepared& p) {
   return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
 }
 
-int32_t asked_closing(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
-  if (options.closing_world >= 0) {
-    const double r = std::ceil(options.closing_world / frame.voxel_size / 2);
+/// None when the run finds it.
+std::optional<int32_t> asked_closing(const RemeshOptions& options, const InputTopology& input,
+                                     const LatticeFrame& frame) {
+  if (options.closing_world) {
+    const double r = std::ceil(*options.closing_world / frame.voxel_size / 2);
     if (r > kMaxClosingVox) {
       std::ostringstream text;
-      text << "a gap of " << options.closing_world << " is " << 2 * r << " voxels wide on this grid; at most "
+      text << "a gap of " << *options.closing_world << " is " << 2 * r << " voxels wide on this grid; at most "
            << 2 * kMaxClosingVox << " can be closed: lower the resolution";
       throw Error(ErrorCode::usage, "close-gaps", text.str());
     }
     return int32_t(r);
   }
-  return options.closing_vox < 0 && input.closed ? 0 : options.closing_vox;
+  return !options.closing_vox && input.closed ? 0 : options.closing_vox;
 }
 
 /// A surface of slivers alone gives a sheet around a line, not a mesh that anyone asked for.
@@ -232,7 +234,7 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.frame = p.surface.frame;
   report.band_vox = options.band_vox;
   report.closing_vox = p.closing_vox;
-  report.grown_vox = p.grown_vox;
+  report.grown_vox = p.grown.distance_vox;
   report.sites = p.sites.voxels.voxel_count();
   report.sheet_vertices = p.sheet.vertex_count();
   report.sheet = p.sheet.topology;
@@ -247,7 +249,7 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
 
 /// A field of one length that decides the count is an edge length.
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
-  if (options.sizing && options.vertices <= 0 && options.adaptivity <= 0)
+  if (options.sizing && !options.vertices && options.adaptivity <= 0)
     if (const double length = even_length_world(*options.sizing, soup); length > 0) options.edge_length_world = length;
   return options;
 }
@@ -280,7 +282,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
                               RemeshReport& report, Context& context) {
   WorldPoint lo, hi;
   bounding_box(soup, lo, hi);
-  const bool free_grid = options.resolution <= 0 && options.voxel_size_world <= 0;
+  const bool free_grid = !options.resolution && !options.voxel_size_world;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
   const int32_t first = free_grid && wants_lengths(options)
                             ? resolution_for_lengths(soup, input, options, usual, report, context)
@@ -320,17 +322,18 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
 
 }  // namespace
 
-Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, RemeshReport& report,
+Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& asked, RemeshReport& report,
                  Context& context) {
-  check_options(options);
-  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+  const RemeshOptions options = checked(asked);
+  std::optional<int32_t> closing;
+  if (closing_vox >= 0) closing = closing_vox;
+  Prepared p = Preparation(options, report, context).from(std::move(surface), closing);
   finish(p, options, report, context);
   return p;
 }
 
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
-  check_options(asked);
-  const RemeshOptions options = with_even_length(asked, soup);
+  const RemeshOptions options = with_even_length(checked(asked), soup);
   report.dirt = soup.dirt;
   const InputTopology given =
       timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
@@ -344,7 +347,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
     return measure_topology(*current, counted_already, context);
   };
   if (!given.closed || !given.oriented) {
-    const bool closing_chosen = options.closing_vox < 0 && options.closing_world < 0;
+    const bool closing_chosen = !options.closing_vox && !options.closing_world;
     changed = timed(report, "mend", context, [&] { return repair_soup(soup, {closing_chosen}, report.mend); });
     current = &changed;
     input = timed(report, "topology", context, measure);

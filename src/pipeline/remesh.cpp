@@ -2,8 +2,6 @@
 // triangulate (11). Line 10, flood_shell, makes the Voronoi volume that is saved; the dual is taken on the sheet.
 #include "isoshell/remesh.h"
 
-#include <algorithm>
-
 #include "core/copy_product.h"
 #include "isoshell/to_host.h"
 #include "pipeline/check_options.h"
@@ -24,12 +22,9 @@ constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relax
 
 RelaxOptions relax_options(const RemeshOptions& options) {
   RelaxOptions relax;
-  if (options.max_passes > 0)
-    relax.max_passes = options.max_passes;
-  else
-    relax.max_passes = options.method == Method::shell ? 200 : 100;
-  if (options.tolerance >= 0) relax.tolerance_ppb = int32_t(std::min(options.tolerance, 1.0) * 1e9);
-  relax.max_step_q8 = int32_t(options.max_step_vox * kOneVoxelQ8);
+  relax.max_passes = options.max_passes.value_or(options.method == Method::shell ? 200 : 100);
+  if (options.tolerance) relax.tolerance_ppb = int32_t(*options.tolerance * 1e9);
+  if (options.max_step_vox) relax.max_step_q8 = int32_t(*options.max_step_vox * kOneVoxelQ8);
   return relax;
 }
 
@@ -42,7 +37,7 @@ void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::
 
 /// A vertex lies in a gap when its home does. Where all walls were grown, they lie off the surface everywhere.
 void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
-  if (p.grown_vox > 0 && !p.only_flaps_grown) return;
+  if (p.grown && !p.grown.only_flaps) return;
   std::vector<uint8_t> bridges;
   if (p.closing_vox > 0) {
     bridges = find_bridges(solid_voxels_of(p), p.sheet);
@@ -50,7 +45,7 @@ void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapR
     if (report.bridges == 0) bridges.clear();
   }
   std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet, bridges);
-  if (p.only_flaps_grown) leave_out_grown(p.sheet, bridges, gaps);
+  if (p.grown.only_flaps) leave_out_grown(p.sheet, bridges, gaps);
   if (gaps.empty()) return;
   const OnHost<SeedSet> here(seeds);
   mesh.gap.resize(mesh.vertices.size());
@@ -60,15 +55,16 @@ void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapR
 
 }  // namespace
 
-SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
-  check_options(options);
-  const double area_world = options.edge_length_world > 0 ? sheet_area_world(p.sheet) : 0;
-  const int64_t target = p.vertices > 0 ? p.vertices : vertex_target(options, area_world);
+SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+  const RemeshOptions options = checked(asked);
+  const double area_world = options.edge_length_world ? sheet_area_world(p.sheet) : 0;
+  const int64_t target = p.vertices ? *p.vertices : vertex_target(options, area_world);
   const SeedOptions seed_options{target, options.seed};
   SeedSet seeds;
   if (options.method == Method::sheet) {
     seeds = timed(report, "relax", context, [&] {
-      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance >= 0, report.relax, context);
+      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), report.relax,
+                             context);
     });
   } else {
     seeds = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });

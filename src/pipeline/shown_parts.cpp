@@ -22,8 +22,8 @@ std::string length_text(double world) {
 
 void warn_of_grown_solid(const Prepared& p, const InputTopology& input, RemeshReport& report) {
   const double voxel = p.surface.frame.voxel_size;
-  const std::string thickness = length_text((2 * p.grown_vox + 1) * voxel);
-  if (p.only_flaps_grown) {
+  const std::string thickness = length_text((2 * p.grown.distance_vox + 1) * voxel);
+  if (p.grown.only_flaps) {
     report.warnings.push_back(
         "parts of the surface are open and bound nothing: the result follows both of their sides, about " + thickness +
         " apart");
@@ -62,8 +62,8 @@ int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology
 
 void warn_of_topology(const Prepared& p, const InputTopology& input, const RemeshOptions& options,
                       RemeshReport& report) {
-  if (p.grown_vox > 0) warn_of_grown_solid(p, input, report);
-  if (p.grown_vox > 0 && !p.only_flaps_grown) return;  // all of the solid is another one than the input's
+  if (p.grown) warn_of_grown_solid(p, input, report);
+  if (p.grown && !p.grown.only_flaps) return;  // all of the solid is another one than the input's
   if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
     report.warnings.push_back(std::to_string(input.components) +
                               " components and their handles are more than so few vertices can show: those smaller "

@@ -20,7 +20,7 @@ constexpr int64_t kMostLengthSmoothing = 128;
 constexpr double kLeastDensity = 1.0 / 16;  // of vertices where nothing is curved, over the mean
 
 /// Whether the field says how many vertices there are.
-bool field_decides(const RemeshOptions& options) { return options.sizing && options.vertices <= 0; }
+bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
 
 /// Rounds of smoothing that spread a normal over most of an edge: each spreads it by half a voxel squared. More blunt
 /// sharp bends, fewer take noise for curvature.
@@ -172,7 +172,7 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
 }
 
 double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Context& context) {
-  const int64_t vertices = p.vertices > 0 ? p.vertices : vertex_target(options, sheet_area_world(p.sheet));
+  const int64_t vertices = p.vertices ? *p.vertices : vertex_target(options, sheet_area_world(p.sheet));
   return cell_of_length(p.sheet, vertices, context) * double(p.sheet.lengths.least) / kOneVoxelQ8;
 }
 

@@ -16,10 +16,10 @@ int32_t growth_for_edge(double edge_vox) {
 
 void grow_solid(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
   p.sheet = {};
-  p.grown_vox = grown_vox;
-  p.walls.voxels = build_shell(p.sites, {grown_vox}, context).voxels;
+  p.grown.distance_vox = grown_vox;
+  p.grown.voxels.voxels = build_shell(p.sites, {grown_vox}, context).voxels;
   const SheetOptions options{closing_of_solid(p), smallest_component_q16, kNoGenus, false};
-  p.sheet = build_proxy(p.walls, p.surface.frame, options, context);
+  p.sheet = build_proxy(p.grown.voxels, p.surface.frame, options, context);
   p.sheet.topology.bridged_vertices = 0;  // a coarse proxy has no sources
 }
 

@@ -15,10 +15,10 @@ int32_t growth_for_edge(double edge_vox);
 void grow_solid(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 /// The voxels whose solid the sheet bounds, and by how much that is closed.
-inline const SiteSet& solid_voxels_of(const Prepared& p) { return p.grown_vox > 0 ? p.walls : p.sites; }
+inline const SiteSet& solid_voxels_of(const Prepared& p) { return p.grown ? p.grown.voxels : p.sites; }
 inline int32_t closing_of_solid(const Prepared& p) {
-  if (p.only_flaps_grown) return p.closing_vox;
-  return p.closing_vox > p.grown_vox ? p.closing_vox - p.grown_vox : 0;
+  if (p.grown.only_flaps) return p.closing_vox;
+  return p.closing_vox > p.grown.distance_vox ? p.closing_vox - p.grown.distance_vox : 0;
 }
 
 }  // namespace isoshell

@@ -18,6 +18,8 @@ Arguments arguments(std::vector<const char*> options) {
   return *parse(std::move(options)).run;
 }
 
+RemeshOptions values(std::vector<const char*> options) { return arguments(std::move(options)).run.options.values; }
+
 /// The message of the usage error that these words give; empty when they are accepted.
 std::string refusal(std::vector<const char*> words) {
   try {
@@ -35,34 +37,35 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 TEST_CASE("args: two files are enough, and every option has a default", "[cli][args]") {
   const Arguments a = arguments({});
-  CHECK(a.input == "in.obj");
-  CHECK(a.input_format == "obj");
-  CHECK(a.output_format == "ply");
-  CHECK(a.remesh.vertices == 10000);
-  CHECK(a.remesh.resolution == 0);
-  CHECK(a.remesh.band_vox == 2);
-  CHECK(a.remesh.closing_vox == -1);
+  CHECK(a.run.input.path == "in.obj");
+  CHECK(a.run.input.format == "obj");
+  CHECK(a.run.output.format == "ply");
+  CHECK(a.run.options.values.vertices == 10000);
+  CHECK_FALSE(a.run.options.values.resolution);
+  CHECK(a.run.options.values.band_vox == 2);
+  CHECK_FALSE(a.run.options.values.closing_vox);
+  CHECK_FALSE(a.run.options.values.closing_world);
   CHECK(a.backend == Backend::best);
-  CHECK(a.given.empty());
-  CHECK_FALSE(a.gates.any());
+  CHECK(a.run.options.given.empty());
+  CHECK_FALSE(a.run.gates.any());
 }
 
 TEST_CASE("args: options reach the library with their units", "[cli][args]") {
-  CHECK(arguments({"--vertices", "500"}).remesh.vertices == 500);
-  CHECK(arguments({"--edge-length=0.25"}).remesh.edge_length_world == 0.25);
-  CHECK(arguments({"--resolution", "256"}).remesh.resolution == 256);
-  CHECK(arguments({"--voxel-size", "0.5"}).remesh.voxel_size_world == 0.5);
-  CHECK(arguments({"--method", "shell"}).remesh.method == Method::shell);
-  CHECK(arguments({"--fit", "surface"}).remesh.fit == Fit::surface);
-  CHECK(arguments({}).remesh.fit == Fit::balanced);
-  CHECK(arguments({"--uniform-area"}).remesh.uniform_area);
-  CHECK(arguments({"--seed", "18446744073709551615"}).remesh.seed == 18446744073709551615ull);
-  CHECK(arguments({"--tolerance", "0"}).remesh.tolerance == 0);
-  CHECK(arguments({"--close-gaps", "0"}).remesh.closing_vox == 0);
-  CHECK(arguments({"--close-gaps", "auto"}).remesh.closing_vox == -1);
-  CHECK(arguments({"--close-gaps", "4vox"}).remesh.closing_vox == 2);
-  CHECK(arguments({"--close-gaps", "5vox"}).remesh.closing_vox == 3);
-  CHECK(arguments({"--close-gaps", "0.7"}).remesh.closing_world == 0.7);
+  CHECK(values({"--vertices", "500"}).vertices == 500);
+  CHECK(values({"--edge-length=0.25"}).edge_length_world == 0.25);
+  CHECK(values({"--resolution", "256"}).resolution == 256);
+  CHECK(values({"--voxel-size", "0.5"}).voxel_size_world == 0.5);
+  CHECK(values({"--method", "shell"}).method == Method::shell);
+  CHECK(values({"--fit", "surface"}).fit == Fit::surface);
+  CHECK(values({}).fit == Fit::balanced);
+  CHECK(values({"--uniform-area"}).uniform_area);
+  CHECK(values({"--seed", "18446744073709551615"}).seed == 18446744073709551615ull);
+  CHECK(values({"--tolerance", "0"}).tolerance == 0);
+  CHECK(values({"--close-gaps", "0"}).closing_vox == 0);
+  CHECK_FALSE(values({"--close-gaps", "auto"}).closing_vox);
+  CHECK(values({"--close-gaps", "4vox"}).closing_vox == 2);
+  CHECK(values({"--close-gaps", "5vox"}).closing_vox == 3);
+  CHECK(values({"--close-gaps", "0.7"}).closing_world == 0.7);
   CHECK(arguments({"--device", "cuda:2"}).device == 2);
   CHECK(arguments({"--device", "cuda:2"}).backend == Backend::cuda);
   CHECK(arguments({"--threads", "3"}).threads == 3);
@@ -75,7 +78,7 @@ TEST_CASE("args: gates are a list", "[cli][args]") {
   const Gates g =
       arguments(
           {"--require", "closed,manifold,no-self-intersections,genus=3,components=2,min-angle=20.5,max-deviation=0.1"})
-          .gates;
+          .run.gates;
   CHECK(g.closed);
   CHECK(g.manifold);
   CHECK(g.no_self_intersections);
@@ -152,9 +155,9 @@ TEST_CASE("args: files must say what they are", "[cli][args]") {
   CHECK(contains(refusal({"a.obj", "b"}), "ply, obj, stl, off"));
   CHECK(contains(refusal({"a.obj", "b.vdb"}), "ply, obj, stl, off"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--stop-after", "shell"}), ".vdb"));
-  CHECK(parse({"-", "-", "--input-format", "OBJ", "--output-format", ".STL"}).run->output_format == "stl");
+  CHECK(parse({"-", "-", "--input-format", "OBJ", "--output-format", ".STL"}).run->run.output.format == "stl");
   CHECK(parse({"a.obj", "--dry-run"}).run->dry_run);
-  CHECK(parse({"dir.x/a.OBJ", "b.Ply"}).run->input_format == "obj");
+  CHECK(parse({"dir.x/a.OBJ", "b.Ply"}).run->run.input.format == "obj");
 }
 
 TEST_CASE("args: help and version answer under every name", "[cli][args]") {

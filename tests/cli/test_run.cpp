@@ -316,7 +316,7 @@ TEST_CASE("run: options that a stage file has fixed are refused where they diffe
   for (const char* differs :
        {"--vertices 200", "--edge-length 1", "--adaptivity 1", "--gradation 1.5", "--method shell", "--iterations 3",
         "--tolerance 0.1", "--step 1", "--seed 1", "--resolution 64", "--voxel-size 0.3", "--band 3",
-        "--close-gaps 4vox", "--close-gaps 1e300", "--close-gaps auto", "--outer-only"}) {
+        "--close-gaps 4vox", "--close-gaps 1e300", "--outer-only"}) {
     const auto r = folder.run(std::string("voronoi.vdb no.ply ") + differs);
     INFO(differs << ": " << r.err);
     CHECK(r.status == 2);
@@ -325,6 +325,8 @@ TEST_CASE("run: options that a stage file has fixed are refused where they diffe
   CHECK(contains(folder.run("voronoi.vdb no.ply --vertices 200").err, "it was 300; leave it out"));
   CHECK(contains(folder.run("voronoi.vdb no.ply --edge-length 1").err, "it was not given; leave it out"));
   CHECK(contains(folder.run("shell.vdb no.ply --close-gaps 4vox").err, "it was 0vox; leave it out"));
+  REQUIRE(folder.run("ball.off closed.vdb --stop-after shell --close-gaps 0" + kQuick).status == 0);
+  CHECK(contains(folder.run("closed.vdb no.ply --close-gaps auto").err, "it was 0vox; leave it out"));
   CHECK_FALSE(folder.has("no.ply"));
 }
 
@@ -349,6 +351,8 @@ TEST_CASE("run: options that a stage file has fixed may be given as they were", 
   CHECK(folder.run("e.vdb again.ply --vertices " + std::to_string(vertices)).status == 0);
   CHECK(folder.content("e.ply") == folder.content("again.ply"));
   CHECK(folder.run("e.vdb usual.ply --vertices 10000").status == 2);
+  CHECK(folder.run("e.vdb auto.ply --close-gaps auto").status == 0);
+  CHECK(folder.content("e.ply") == folder.content("auto.ply"));
 }
 #endif
 

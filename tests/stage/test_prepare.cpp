@@ -294,7 +294,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const Run run = prepare_with(bowl, options);
-  CHECK(run.prepared.grown_vox > 0);
+  CHECK(run.prepared.grown.distance_vox > 0);
   REQUIRE(run.report.warnings.size() == 1);
   CHECK(run.report.warnings[0].find("both of its sides") != std::string::npos);
   CHECK(run.report.sheet.components == 1);
@@ -307,7 +307,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   CHECK(measure_quality(result.mesh).theta_min_deg > 30);
   CHECK(measure_quality(result.mesh).q_avg > .92);
   const Run ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
-  CHECK(ball.prepared.grown_vox == 0);
+  CHECK(ball.prepared.grown.distance_vox == 0);
 }
 
 TEST_CASE("prepare: open parts of a solid get walls that edges turn around, the solid stays where it is", "[prepare]") {
@@ -349,7 +349,7 @@ TEST_CASE("prepare: a solid with flaps keeps the points that its sheet misses", 
   options.resolution = 100;
   const Run run = prepare_with(crown, options);
   CHECK(run.report.mend.capped_loops == 1);
-  REQUIRE(run.prepared.only_flaps_grown);
+  REQUIRE(run.prepared.grown.only_flaps);
   const Sheet sheet = to_host(run.prepared.sheet);
   const PointQ8 bottom = sheet.frame.snap(pit);
   int64_t at_pit = 0, on_brim = 0;
@@ -371,7 +371,7 @@ TEST_CASE("prepare: a solid with flaps whose topology is not the input's says bo
   options.vertices = 2000;
   options.resolution = 150;
   const Run run = prepare_with(shapes::together(hat(), ring), options);
-  REQUIRE(run.prepared.only_flaps_grown);
+  REQUIRE(run.prepared.grown.only_flaps);
   REQUIRE(run.report.topology_compared);
   REQUIRE(run.report.sheet.genus == 0);
   REQUIRE(run.report.warnings.size() == 2);
@@ -388,7 +388,7 @@ TEST_CASE("prepare: walls of what the widest closing does not close grow too", "
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const Run run = prepare_with(bowl, options);
   CHECK(run.report.closing_vox == kMaxClosingVox);
-  CHECK(run.prepared.grown_vox > 2);
+  CHECK(run.prepared.grown.distance_vox > 2);
   CHECK(run.report.sheet.components == 1);
   CHECK(run.report.sheet.genus == 0);
 }

@@ -37,11 +37,4 @@ class Console {
   std::chrono::steady_clock::time_point start_, last_drawn_;
 };
 
-/// 1234567 as "1,234,567".
-std::string with_commas(int64_t count);
-/// "1 face", "3 faces"; `plural` where an s will not do.
-std::string counted(int64_t count, const std::string& noun, const std::string& plural = "");
-/// Bytes as "1.5 GiB".
-std::string readable_bytes(int64_t bytes);
-
 }  // namespace isoshell::tool

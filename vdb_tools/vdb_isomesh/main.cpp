@@ -1,21 +1,29 @@
 // vdb_isomesh: the command. Turns exceptions into exit statuses.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
 #include "isoshell/error.h"
 #include "vdb_isomesh/interrupt.h"
-#include "vdb_isomesh/output.h"
 #include "vdb_isomesh/run.h"
 
 namespace {
 
 isoshell::Context context;
 
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw isoshell::Error(isoshell::ErrorCode::unwritable_output, "write",
+                          std::string("standard output: ") + std::strerror(errno));
+}
+
 int run_command(int argc, char* argv[]) {
   using namespace isoshell;
   const tool::CommandLine command = tool::parse_command_line(argc, argv);
   if (!command.run) {
-    tool::write_text("-", command.text);
+    print(command.text);
     return 0;
   }
   const tool::Arguments& a = *command.run;

@@ -1,8 +1,6 @@
 // Reads what the system says about memory.
 #include "vdb_isomesh/memory.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <fstream>
 
@@ -42,11 +40,6 @@ int64_t default_memory_limit_bytes(const std::string& group) {
     free_bytes = free_bytes > 0 ? std::min(free_bytes, left) : left;
   }
   return free_bytes > 0 ? std::max<int64_t>(free_bytes / 5 * 4, 1) : 0;
-}
-
-int64_t process_peak_bytes() {
-  rusage usage{};
-  return getrusage(RUSAGE_SELF, &usage) == 0 ? int64_t(usage.ru_maxrss) * 1024 : 0;
 }
 
 }  // namespace isoshell::tool

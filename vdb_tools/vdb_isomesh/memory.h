@@ -10,7 +10,4 @@ namespace isoshell::tool {
 /// if that is less. At least 1, or 0 where the system does not tell.
 int64_t default_memory_limit_bytes(const std::string& group = "/sys/fs/cgroup");
 
-/// Most memory the process held at any time, code and libraries included.
-int64_t process_peak_bytes();
-
 }  // namespace isoshell::tool

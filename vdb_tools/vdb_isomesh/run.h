@@ -1,4 +1,4 @@
-// One run, from INPUT to OUTPUT.
+// One run, from INPUT to OUTPUT, with what a person reads of it.
 #pragma once
 
 #include "isoshell/backend.h"

@@ -1,12 +1,11 @@
 // Everything measured in a run, as JSON.
-#include "vdb_isomesh/stats.h"
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "vdb_isomesh/stage_options.h"
+#include "isoshell/run/options_json.h"
+#include "isoshell/run/record.h"
 
-namespace isoshell::tool {
+namespace isoshell {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -54,9 +53,16 @@ Json union_json(const UnionReport& u) {
           {"cut_faces", u.cut_faces}};
 }
 
-Json input_json(const Arguments& a, const RunRecord& r) {
+/// Schema 1 says under "grid" what came of the options that choose it.
+Json options_of_schema(const RemeshOptions& options) {
+  Json j = Json::parse(options_json(options));
+  for (const char* name : {"resolution", "voxel-size", "close-gaps"}) j.erase(name);
+  return j;
+}
+
+Json input_json(const RunRecord& r) {
   const InputTopology& t = r.report.input;
-  return {{"path", a.input},
+  return {{"path", r.input.path},
           {"kind", kind_name(r.input.kind)},
           {"vertices", known(r.input.vertices)},
           {"faces", known(r.input.faces)},
@@ -186,13 +192,13 @@ Json device_json(const DeviceInfo& d) {
 
 }  // namespace
 
-std::string stats_json(const Arguments& a, const RunRecord& r) {
+std::string statistics_json(const RunRecord& r) {
   Json j;
   j["schema"] = 1;
-  j["version"] = VDB_ISOMESH_VERSION;
-  j["options"] = Json::parse(options_json(a.remesh));
-  j["input"] = input_json(a, r);
-  j["output"] = {{"path", a.output}, {"format", a.output_format}};
+  j["version"] = ISOSHELL_VERSION;
+  j["options"] = options_of_schema(r.options);
+  j["input"] = input_json(r);
+  j["output"] = {{"path", r.output.path}, {"format", r.output.format}};
   j["grid"] = grid_json(r.report);
   j["counts"] = counts_json(r);
   j["gaps"] = gaps_json(r);
@@ -213,4 +219,4 @@ std::string stats_json(const Arguments& a, const RunRecord& r) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace isoshell::tool
+}  // namespace isoshell

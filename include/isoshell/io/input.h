@@ -1,0 +1,61 @@
+// Whatever a run can start from, read by one call: a mesh, points, a volume or a stage file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "isoshell/io/point_file.h"
+#include "isoshell/io/vdb_file.h"
+#include "isoshell/message.h"
+#include "isoshell/surface_source.h"
+
+namespace isoshell {
+
+enum class InputKind { mesh, points, volume, stage };
+
+/// "mesh", "points", "volume" or "stage".
+const char* kind_name(InputKind kind);
+
+/// A file and what is needed to read it.
+struct InputRequest {
+  std::string path;           ///< "-" is standard input
+  std::string format;         ///< lower case, without a dot; empty: by the path
+  std::string grid;           ///< of a volume, as in VolumeReadOptions; empty: the only one
+  std::optional<double> iso;  ///< of a volume
+};
+
+/// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or
+/// with a dot is the same. Throws: usage when nothing says the format of standard input, or a colon names no grid.
+InputRequest named_input(const std::string& name, const std::string& format = "");
+
+/// What is known of an input before the first stage.
+struct InputFacts {
+  std::string path;  ///< as in the request
+  InputKind kind = InputKind::mesh;
+  int64_t vertices = -1, faces = -1;  ///< as in the file, of points the different ones; -1: of a stage file not known
+  std::optional<WorldPoint> box_min, box_max;  ///< of the surface, world units; of a stage file not known
+
+  /// As messages call it.
+  std::string name() const { return path == "-" ? "standard input" : path; }
+};
+
+/// Either a surface or the products of an earlier run.
+struct Input {
+  InputFacts facts;
+  TriangleSoup soup;               ///< empty when there is a stage file
+  std::optional<StageFile> stage;  ///< its options are for the run to read
+};
+
+/// Reads a file of any kind, and makes a surface of points and volumes. Tells what was read, and warns of what of it
+/// could not be used. Throws: unreadable_input when the file is missing or of no known kind, usage for an isovalue of
+/// what is no volume, and as the readers of each kind do (mesh_file.h, point_file.h, volume_file.h, vdb_file.h);
+/// out_of_memory over `memory_limit_bytes`, if above 0.
+Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell = {});
+
+/// A surface and points that are in memory already, under the name that messages and statistics call them by. Throws:
+/// nothing_to_mesh, and as surface_of_points does.
+Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell = {});
+Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {});
+
+}  // namespace isoshell

@@ -1,0 +1,50 @@
+// Values of options from text, as a command line, a keyword or a job gives them. Every refusal names the option, what
+// was given and what may be.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "isoshell/error.h"
+#include "isoshell/option_range.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// A finite number. Throws: usage.
+double parse_number(const std::string& option, const std::string& text);
+
+/// A whole number, 0 to 10^15. Throws: usage.
+int64_t parse_count(const std::string& option, const std::string& text);
+
+/// Throws: usage when the value is outside of the range.
+void check_range(const std::string& option, double value, const OptionRange& range);
+
+/// The value beside `text` among the choices. Throws: usage, which lists them.
+template <class Value>
+Value parse_choice(const std::string& option, const std::string& text,
+                   std::initializer_list<std::pair<const char*, Value>> choices) {
+  std::string names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names += names.empty() ? name : std::string(", ") + name;
+  }
+  throw Error(ErrorCode::usage, "options", option + " is '" + text + "'; it must be one of " + names);
+}
+
+/// "sheet" or "shell". Throws: usage.
+Method parse_method(const std::string& option, const std::string& text);
+const char* method_name(Method method);
+
+/// "balanced" or "surface". Throws: usage.
+Fit parse_fit(const std::string& option, const std::string& text);
+const char* fit_name(Fit fit);
+
+/// Sets the closing to gaps of this width: "auto", world units, or voxels as "4vox". Throws: usage.
+void set_gap_width(const std::string& option, const std::string& text, RemeshOptions& options);
+
+/// Bytes of "2G", "512M", "1.5k", "4GiB" or plain bytes. Throws: usage.
+int64_t parse_size_bytes(const std::string& text);
+
+}  // namespace isoshell

@@ -1,0 +1,44 @@
+// Everything that is known of a run when it ends.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/device_info.h"
+#include "isoshell/distance.h"
+#include "isoshell/io/input.h"
+#include "isoshell/mesh_topology.h"
+#include "isoshell/quality.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// A file that a run writes.
+struct OutputRequest {
+  std::string path;    ///< "-" is standard output; empty: no file
+  std::string format;  ///< lower case, without a dot
+};
+
+struct RunRecord {
+  RemeshOptions options;  ///< as they were asked for
+  InputFacts input;
+  OutputRequest output;
+  RemeshReport report;
+  std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
+  std::optional<MeshQuality> quality;
+  std::optional<MeshDistance> distance;   ///< of the result and the input, as repaired
+  int64_t vertices = -1, triangles = -1;  ///< of the result; -1 when the run stopped before it
+  int64_t risky_sites = -1;               ///< with two walls in one voxel; -1: not counted
+  std::vector<StageTime> times;           ///< of the steps around the stages, whose own are in the report
+  double total_ms = 0;
+  DeviceInfo device;
+  int64_t host_peak_bytes = 0, device_peak_bytes = 0;  ///< of the process, at any time
+  std::vector<std::string> warnings;                   ///< all of them, in the order in which they came
+};
+
+/// The statistics of a run as JSON, schema 1, which README describes; what was not measured is null.
+std::string statistics_json(const RunRecord& record);
+
+}  // namespace isoshell

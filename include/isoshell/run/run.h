@@ -1,0 +1,66 @@
+// A whole run, from what is read to what is written: the call behind the command, and behind every other front.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "isoshell/memory_estimate.h"
+#include "isoshell/message.h"
+#include "isoshell/run/gates.h"
+#include "isoshell/run/options_json.h"
+#include "isoshell/run/record.h"
+
+namespace isoshell {
+
+enum class StopAfter { mesh, shell, voronoi };
+
+/// What is measured of the result. Gates have measured what they ask for, statistics that are written everything.
+enum class Measures {
+  none,
+  mesh,  ///< its topology and quality
+  all,   ///< also its distance from the input, sites with two walls, digests of all products
+};
+
+struct RunRequest {
+  InputRequest input;
+  AskedOptions options;  ///< a sizing field without "vertices" among the given ones decides their number
+  OutputRequest output;  ///< the mesh, or the stage file when the run stops before it
+  StopAfter stop_after = StopAfter::mesh;
+  std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
+  std::string statistics;                ///< file, or "-"; empty: none
+  Gates gates;
+  Measures measures = Measures::mesh;
+  bool overwrite = false;
+
+  Tell tell;
+  /// Calls `write`, which writes that file; for who must know while one is being written. Empty: it is just written.
+  std::function<void(const std::string& path, const std::function<void()>& write)> around_write;
+};
+
+/// The output that a person's words mean: its format is the path's unless one is given. Throws: usage when nothing says
+/// it, and when the run does not end with such a file.
+OutputRequest named_output(const std::string& path, const std::string& format, StopAfter stop_after);
+
+/// What can be told of a request before any file is looked at. Throws: usage.
+void check_request(const RunRequest& request);
+
+struct RunResult {
+  TriangleMesh mesh;  ///< empty when the run stopped before it
+  RunRecord record;
+  std::vector<std::string> missed_gates;
+};
+
+/// Checks that every file can be written, reads, and goes on from there as the second form. Its steps ("read",
+/// "sizing", "prepare", "risks", "relax", "flood", "triangulate", "measure", "distance", "write", ...) are progress of
+/// the context beside the stages' own. Result: the same bytes for the same input and options. Throws: as every part
+/// does; an interruption says which files were written before.
+RunResult run(const RunRequest& request, Context& context);
+/// From what was read already, or came from memory: prepares, relaxes, triangulates, measures, writes.
+RunResult run(Input input, const RunRequest& request, Context& context);
+
+/// What the run would take, from what is read alone; nothing is written. Throws: usage for a stage file, and as reading
+/// does.
+RunEstimate dry_run(const RunRequest& request, Context& context);
+
+}  // namespace isoshell

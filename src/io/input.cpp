@@ -1,0 +1,188 @@
+// Tells meshes, point clouds, volumes and stage files apart, reads them, and says what they held.
+#include "isoshell/io/input.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "core/file_format.h"
+#include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/io/volume_file.h"
+#include "isoshell/run/readable.h"
+#include "isoshell/stages.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unreadable_input, "read", message); }
+[[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
+
+void check_exists(const std::string& path) {
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) refuse(path + ": no such file");
+  if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
+  if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once
+}
+
+class Reader {
+ public:
+  Reader(const std::string& path, int64_t memory_limit_bytes, const Tell& tell)
+      : memory_limit_bytes_(memory_limit_bytes), tell_(tell) {
+    input_.facts.path = path;
+  }
+
+  void read(const InputRequest& request) {
+    const std::string& path = request.path;
+    if (path != "-") check_exists(path);
+    const std::string format = request.format.empty() ? format_of_path(path) : request.format;
+    if (format == "obj") {
+      hold(read_mesh(path, MeshFormat::obj));
+    } else if (format == "stl") {
+      hold(read_mesh(path, MeshFormat::stl));
+    } else if (format == "off") {
+      hold(read_mesh(path, MeshFormat::off));
+    } else if (format == "ply") {
+      read_ply();
+    } else if (format == "xyz" || format == "pcd") {
+      hold(read_points(path, format == "xyz" ? PointFormat::xyz : PointFormat::pcd));
+    } else if (format == "vdb" && path != "-" && is_stage_file(path)) {
+      read_stage_file();
+    } else if (format == "vdb" || format == "nvdb") {
+      read_volume_file(request);
+    } else {
+      refuse(path + ": the format '" + format +
+             "' is not one of obj, ply, stl, off, xyz, pcd, vdb, nvdb; say which by --input-format");
+    }
+    if (request.iso && input_.facts.kind != InputKind::volume) refuse_use("--iso is for volumes; leave it out");
+  }
+
+  void hold(TriangleSoup soup) {
+    InputFacts& facts = input_.facts;
+    facts.vertices = int64_t(soup.vertices.size());
+    facts.faces = soup.faces_in_file;
+    WorldPoint lo, hi;
+    bounding_box(soup, lo, hi);
+    facts.box_min = lo;
+    facts.box_max = hi;
+    note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
+    input_.soup = std::move(soup);
+  }
+
+  void hold(const PointCloud& cloud) {
+    input_.facts.kind = InputKind::points;
+    PointSurfaceInfo points;
+    hold(surface_of_points(cloud, memory_limit_bytes_, points));
+    input_.facts.vertices = points.points;
+    std::ostringstream text;
+    text << counted(points.points, "point") << ", spacing " << points.spacing_world << ", surface from voxels of "
+         << points.voxel_size_world << ", normals "
+         << (points.normals_given && !points.normals_ignored ? "given" : "estimated")
+         << (points.normals_turned ? " and turned" : "");
+    note(text.str());
+    if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
+    if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
+    if (points.open_part >= kNotableOpenPart)
+      warn(std::to_string(std::lround(100 * points.open_part)) +
+           " % of the surface has no points near it and was closed smoothly");
+  }
+
+  Input taken() { return std::move(input_); }
+
+ private:
+  void read_ply() {
+    PlyContent content = read_ply_content(input_.facts.path);
+    if (!content.is_points) return hold(std::move(content.mesh));
+    if (content.unusable_faces > 0)
+      warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
+    hold(content.points);
+  }
+
+  void read_volume_file(const InputRequest& request) {
+    input_.facts.kind = InputKind::volume;
+    VolumeInfo volume;
+    hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_}, volume));
+    std::ostringstream text;
+    text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
+         << volume.voxel_size_world << ", " << counted(volume.blocks, "block");
+    note(text.str());
+  }
+
+  void read_stage_file() {
+    input_.facts.kind = InputKind::stage;
+    input_.stage = read_stage(input_.facts.path);
+    note("stage " + input_.stage->info.stage + ", " +
+         counted(input_.stage->shell.voxels.voxel_count(), "active voxel"));
+  }
+
+  void note(const std::string& text) const { tell(MessageKind::note, text); }
+  void warn(const std::string& text) const { tell(MessageKind::warning, text); }
+  void tell(MessageKind kind, const std::string& text) const {
+    if (tell_) tell_(kind, input_.facts.name() + ": " + text);
+  }
+
+  Input input_;
+  int64_t memory_limit_bytes_;
+  const Tell& tell_;
+};
+
+}  // namespace
+
+const char* kind_name(InputKind kind) {
+  switch (kind) {
+    case InputKind::mesh:
+      return "mesh";
+    case InputKind::points:
+      return "points";
+    case InputKind::volume:
+      return "volume";
+    case InputKind::stage:
+      return "stage";
+  }
+  return "";
+}
+
+InputRequest named_input(const std::string& name, const std::string& format) {
+  InputRequest request{name, format_name(format), "", {}};
+  const size_t slash = name.find_last_of('/'), start = slash == std::string::npos ? 0 : slash;
+  const size_t colon = name.find(".vdb:", start), nano_colon = name.find(".nvdb:", start);
+  const size_t at = std::min(colon == std::string::npos ? colon : colon + 4,
+                             nano_colon == std::string::npos ? nano_colon : nano_colon + 5);
+  if (at != std::string::npos) {
+    request.grid = name.substr(at + 1);
+    request.path.resize(at);
+    if (request.grid.empty()) refuse_use("INPUT names no grid behind its colon");
+  }
+  if (request.path == "-" && request.format.empty())
+    refuse_use("INPUT is standard input; say what it holds by --input-format");
+  if (request.format.empty()) request.format = format_of_path(request.path);
+  return request;
+}
+
+Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell) {
+  Reader reader(request.path, memory_limit_bytes, tell);
+  reader.read(request);
+  return reader.taken();
+}
+
+Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
+  Reader reader(name, 0, tell);
+  reader.hold(std::move(soup));
+  return reader.taken();
+}
+
+Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell) {
+  Reader reader(name, memory_limit_bytes, tell);
+  reader.hold(cloud);
+  return reader.taken();
+}
+
+}  // namespace isoshell

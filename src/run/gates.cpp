@@ -1,0 +1,101 @@
+#include "isoshell/run/gates.h"
+
+#include <sstream>
+
+#include "isoshell/error.h"
+#include "isoshell/run/option_text.h"
+#include "isoshell/run/readable.h"
+
+namespace isoshell {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "gates", message); }
+
+void set_gate(const std::string& gate, Gates& gates) {
+  const size_t equals = gate.find('=');
+  const bool has_value = equals != std::string::npos;
+  const std::string name = gate.substr(0, equals), value = has_value ? gate.substr(equals + 1) : "";
+  if (name == "closed" && !has_value)
+    gates.closed = true;
+  else if (name == "manifold" && !has_value)
+    gates.manifold = true;
+  else if (name == "no-self-intersections" && !has_value)
+    gates.no_self_intersections = true;
+  else if (name == "genus" && has_value)
+    gates.genus = parse_count("--require genus", value);
+  else if (name == "components" && has_value)
+    gates.components = parse_count("--require components", value);
+  else if (name == "min-angle" && has_value) {
+    gates.min_angle_deg = parse_number("--require min-angle", value);
+    check_range("--require min-angle", *gates.min_angle_deg, {0, 60});
+  } else if (name == "max-deviation" && has_value) {
+    gates.max_deviation_world = parse_number("--require max-deviation", value);
+    check_range("--require max-deviation", *gates.max_deviation_world, {});
+  } else {
+    refuse("--require has '" + gate +
+           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, min-angle=DEG, "
+           "max-deviation=W");
+  }
+}
+
+/// What was measured, or a refusal.
+template <class T>
+const T& measured(const std::optional<T>& value, const char* what) {
+  if (!value) refuse(std::string("the run did not measure the ") + what + " that a gate asks for");
+  return *value;
+}
+
+std::string intersections_text(const RemeshReport& report) {
+  if (!report.post_done) return "the mesh is no closed 2-manifold and was not tested";
+  return counted(report.post.self_intersections, "pair", "pairs") + " intersect";
+}
+
+std::string deviation_text(double limit_world, const MeshDistance& distance) {
+  std::ostringstream text;
+  text << "max-deviation=" << limit_world << ": the result is up to " << distance.to_reference.max
+       << " from the input, the input up to " << distance.from_reference.max << " from the result";
+  return text.str();
+}
+
+}  // namespace
+
+Gates parse_gates(const std::string& list) {
+  Gates gates;
+  std::istringstream items(list);
+  for (std::string gate; std::getline(items, gate, ',');) set_gate(gate, gates);
+  return gates;
+}
+
+std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
+  std::vector<std::string> missed;
+  if (!g.any()) return missed;
+  const MeshTopology& t = measured(record.topology, "topology");
+  const RemeshReport& report = record.report;
+  const auto gate = [&](bool met, const std::string& text) {
+    if (!met) missed.push_back(text);
+  };
+  if (g.closed) gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
+  if (g.manifold) gate(t.is_closed_manifold(), "manifold: the mesh is not a closed 2-manifold");
+  if (g.no_self_intersections)
+    gate(report.post_done && report.post.self_intersections == 0,
+         "no-self-intersections: " + intersections_text(report));
+  if (g.genus)
+    gate(t.genus == *g.genus, "genus=" + std::to_string(*g.genus) + ": the mesh has " +
+                                  (t.genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(t.genus)));
+  if (g.components)
+    gate(t.components == *g.components,
+         "components=" + std::to_string(*g.components) + ": the mesh has " + std::to_string(t.components));
+  if (g.min_angle_deg) {
+    const double smallest = measured(record.quality, "quality").theta_min_deg;
+    std::ostringstream text;
+    text << "min-angle=" << *g.min_angle_deg << ": the smallest angle is " << smallest;
+    gate(smallest >= *g.min_angle_deg, text.str());
+  }
+  if (g.max_deviation_world) {
+    const MeshDistance& distance = measured(record.distance, "distance");
+    gate(distance.largest() <= *g.max_deviation_world, deviation_text(*g.max_deviation_world, distance));
+  }
+  return missed;
+}
+
+}  // namespace isoshell

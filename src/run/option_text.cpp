@@ -1,0 +1,87 @@
+#include "isoshell/run/option_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <sstream>
+
+#include "core/file_format.h"
+
+namespace isoshell {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "options", message); }
+
+}  // namespace
+
+double parse_number(const std::string& option, const std::string& text) {
+  double value = 0;
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  if (!(stream >> value) || !stream.eof() || !std::isfinite(value))
+    refuse(option + " is '" + text + "'; it must be a number");
+  return value;
+}
+
+int64_t parse_count(const std::string& option, const std::string& text) {
+  const double value = parse_number(option, text);
+  if (value != std::floor(value) || value < 0 || value > 1e15)
+    refuse(option + " is '" + text + "'; it must be a whole number, 0 or more");
+  return int64_t(value);
+}
+
+void check_range(const std::string& option, double value, const OptionRange& range) {
+  if (!range.holds(value)) refuse(range.refusal(option, value));
+}
+
+Method parse_method(const std::string& option, const std::string& text) {
+  return parse_choice<Method>(option, text, {{"sheet", Method::sheet}, {"shell", Method::shell}});
+}
+
+const char* method_name(Method method) { return method == Method::shell ? "shell" : "sheet"; }
+
+Fit parse_fit(const std::string& option, const std::string& text) {
+  return parse_choice<Fit>(option, text, {{"balanced", Fit::balanced}, {"surface", Fit::surface}});
+}
+
+const char* fit_name(Fit fit) { return fit == Fit::surface ? "surface" : "balanced"; }
+
+void set_gap_width(const std::string& option, const std::string& text, RemeshOptions& options) {
+  options.closing_vox.reset();
+  options.closing_world.reset();
+  if (text == "auto") return;
+  const size_t unit = text.find("vox");
+  const bool voxels = unit != std::string::npos && unit + 3 == text.size();
+  const double width = parse_number(option, voxels ? text.substr(0, unit) : text);
+  if (width < 0) refuse(option + " is " + text + "; a width is 0 or more");
+  if (voxels) check_range(option + " in voxels", width, {0, 2 * kMaxClosingVox});
+  if (voxels || width == 0)
+    options.closing_vox = int32_t(std::ceil(width / 2));
+  else
+    options.closing_world = width;
+}
+
+int64_t parse_size_bytes(const std::string& text) {
+  const size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
+  const std::string unit = lower_case(text.substr(end));
+  const int64_t scale = parse_choice<int64_t>("the unit of a size", unit.empty() ? "bytes" : unit,
+                                              {{"bytes", 1},
+                                               {"b", 1},
+                                               {"k", 1ll << 10},
+                                               {"kb", 1ll << 10},
+                                               {"kib", 1ll << 10},
+                                               {"m", 1ll << 20},
+                                               {"mb", 1ll << 20},
+                                               {"mib", 1ll << 20},
+                                               {"g", 1ll << 30},
+                                               {"gb", 1ll << 30},
+                                               {"gib", 1ll << 30},
+                                               {"t", 1ll << 40},
+                                               {"tb", 1ll << 40},
+                                               {"tib", 1ll << 40}});
+  const double bytes = parse_number("the size", text.substr(0, end)) * double(scale);
+  if (!(bytes >= 1) || bytes > 9e18) refuse("the size '" + text + "' must be more than 0");
+  return int64_t(bytes);
+}
+
+}  // namespace isoshell

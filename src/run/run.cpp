@@ -1,0 +1,289 @@
+// A run as a recipe of steps: reads, calls the stages, keeps what was asked for, measures, writes.
+#include "isoshell/run/run.h"
+
+#include <chrono>
+#include <type_traits>
+
+#include "io/output_file.h"
+#include "isoshell/digest.h"
+#include "isoshell/error.h"
+#include "isoshell/gaps.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/io/sizing_vdb.h"
+#include "isoshell/to_host.h"
+#include "run/outputs.h"
+#include "run/process_memory.h"
+#include "run/resume.h"
+#include "run/warnings.h"
+
+namespace isoshell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+MeshFormat mesh_format(const std::string& format) {
+  if (format == "ply") return MeshFormat::ply;
+  if (format == "obj") return MeshFormat::obj;
+  if (format == "stl") return MeshFormat::stl;
+  if (format == "off") return MeshFormat::off;
+  return MeshFormat::from_name;
+}
+
+class Run {
+ public:
+  Run(const RunRequest& request, Context& context) : request_(request), options_(request.options), context_(context) {
+    check_request(request_);
+    record_.device = device_info(context_);  // before anything is read: to ask for one that is not there costs no time
+    if (!options_.sizing.empty() && !options_.was_given("vertices")) options_.values.vertices.reset();
+    record_.options = options_.values;
+    record_.output = request_.output;
+    options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();
+    options_.values.want_digests |= measures_all();
+  }
+
+  RunResult from_files() {
+    return saying_what_stands([&] {
+      check_outputs(request_);
+      return steps(read());
+    });
+  }
+
+  RunResult from(Input input) {
+    return saying_what_stands([&] {
+      check_outputs(request_);
+      take(input);
+      return steps(std::move(input));
+    });
+  }
+
+  RunEstimate estimate() {
+    return saying_what_stands([&] {
+      const Input input = read();
+      read_sizing_field();
+      if (input.stage)
+        throw Error(ErrorCode::usage, "command line",
+                    "--dry-run needs a mesh as INPUT, a stage file has its grid already");
+      DirtCounts dirt;
+      return estimate_run(input.soup, measure_topology(input.soup, dirt, context_), options_.values);
+    });
+  }
+
+ private:
+  RunResult steps(Input input) {
+    read_sizing_field();
+    Prepared prepared = step("prepare", [&] { return prepare_from(input); });
+    for (const std::string& text : warnings_of_repair(record_.report, record_.input.name())) warn(text);
+    if (measures_all()) step("risks", [&] { count_risks(prepared); });
+    save_shell_if_asked(prepared);
+    if (request_.stop_after == StopAfter::shell) return finish({});
+    SeedSet seeds = step("relax", [&] { return relaxed_seeds(input, prepared); });
+    save_voronoi_if_asked(prepared, seeds);
+    if (request_.stop_after == StopAfter::voronoi) return finish({});
+    TriangleMesh mesh =
+        step("triangulate", [&] { return triangulate(prepared, seeds, options_.values, record_.report, context_); });
+    step("measure", [&] { measure(mesh); });
+    if (measures_all() || request_.gates.max_deviation_world)
+      step("distance",
+           [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface)), context_); });
+    const OutputRequest& output = request_.output;
+    if (!output.path.empty())
+      write_step("write", output.path, [&] {
+        write_mesh(output.path, mesh, {mesh_format(output.format), request_.overwrite});
+      });
+    return finish(std::move(mesh));
+  }
+
+  bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
+  bool measures_all() const { return request_.measures == Measures::all || !request_.statistics.empty(); }
+
+  template <class Work>
+  std::invoke_result_t<Work> step(const char* name, Work work) {
+    if (context_.cancel) throw Error(ErrorCode::interrupted, name, "interrupted");
+    tell_progress(name, 0);
+    struct Book {
+      Run& run;
+      const char* name;
+      Clock::time_point start = Clock::now();
+      ~Book() { run.record_.times.push_back({name, ms_since(start)}); }
+    };
+    Book book{*this, name};
+    if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+      work();
+      tell_progress(name, 1);
+    } else {
+      auto product = work();
+      tell_progress(name, 1);
+      return product;
+    }
+  }
+
+  void tell_progress(const char* name, double fraction) const {
+    if (context_.progress) context_.progress(name, fraction);
+  }
+
+  template <class Work>
+  void write_step(const char* name, const std::string& path, Work work) {
+    step(name, [&] {
+      around_write(path, work);
+      written_ += (written_.empty() ? "" : ", ") + path;
+    });
+  }
+
+  void around_write(const std::string& path, const std::function<void()>& write) const {
+    if (request_.around_write)
+      request_.around_write(path, write);
+    else
+      write();
+  }
+
+  template <class Work>
+  std::invoke_result_t<Work> saying_what_stands(Work work) {
+    try {
+      return work();
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::interrupted) throw;
+      throw Error(e.code(), e.stage(),
+                  "interrupted; " + (written_.empty() ? "nothing was written" : "written before: " + written_));
+    }
+  }
+
+  Input read() {
+    return step("read", [&] {
+      Input input = read_input(request_.input, context_.memory_limit_bytes,
+                               [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+      take(input);
+      return input;
+    });
+  }
+
+  void take(const Input& input) {
+    record_.input = input.facts;
+    if (!input.stage) return;
+    options_ = adopt_options(*input.stage, input.facts.path, options_);
+    check_method(options_);
+    if (input.stage->seeds && request_.stop_after == StopAfter::shell)
+      throw Error(ErrorCode::usage, "command line", "INPUT is past the shell already; leave out --stop-after shell");
+  }
+
+  void read_sizing_field() {
+    if (options_.sizing.empty()) return;
+    options_.values.sizing = step("sizing", [&] { return read_sizing(options_.sizing, context_.memory_limit_bytes); });
+    tell(MessageKind::note, "sizing: " + options_.sizing);
+  }
+
+  Prepared prepare_from(Input& input) {
+    if (!input.stage) return prepare(input.soup, options_.values, record_.report, context_);
+    return prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options_.values, record_.report,
+                   context_);
+  }
+
+  SeedSet relaxed_seeds(Input& input, const Prepared& prepared) {
+    if (!input.stage || !input.stage->seeds) return relax(prepared, options_.values, record_.report, context_);
+    SeedSet& seeds = *input.stage->seeds;
+    record_.report.seeds = seeds.size();
+    for (const uint32_t home : seeds.home)
+      if (int64_t(home) >= prepared.sheet.vertex_count())
+        throw Error(ErrorCode::unreadable_input, input.facts.path,
+                    "a seed sits on vertex " + std::to_string(home) + " of a sheet that has " +
+                        std::to_string(prepared.sheet.vertex_count()) +
+                        "; the file's surface and seeds do not belong together: save it anew");
+    return std::move(seeds);
+  }
+
+  StageWriteOptions stage_options(const Prepared& prepared) const {
+    StageWriteOptions options;
+    options.options_json = options_json(options_.values);
+    options.closing_vox = prepared.closing_vox;
+    options.overwrite = request_.overwrite;
+    if (prepared.closing_vox > 0 && !prepared.grown)
+      options.bridges = bridging_voxels(prepared.sheet, find_bridges(prepared.sites, prepared.sheet));
+    return options;
+  }
+
+  /// Files that keep this stage: one on the way, and the output of a run that stops there.
+  std::vector<std::string> stage_files(const std::string& saved, StopAfter stage) const {
+    std::vector<std::string> files;
+    if (!saved.empty()) files.push_back(saved);
+    if (request_.stop_after == stage && !request_.output.path.empty()) files.push_back(request_.output.path);
+    return files;
+  }
+
+  void save_shell_if_asked(const Prepared& p) {
+    for (const std::string& path : stage_files(request_.save_shell, StopAfter::shell))
+      write_step("save-shell", path, [&] { save_shell(path, p.surface, p.samples, p.shell, stage_options(p)); });
+  }
+
+  void save_voronoi_if_asked(const Prepared& p, const SeedSet& seeds) {
+    const std::vector<std::string> files = stage_files(request_.save_voronoi, StopAfter::voronoi);
+    if (files.empty()) return;
+    const VoronoiLabels labels = step("flood", [&] { return flood_shell(p.shell, seeds, context_); });
+    if (options_.values.want_digests) record_.report.digests["labels"] = digest_text(digest(labels));
+    for (const std::string& path : files)
+      write_step("save-voronoi", path, [&] {
+        save_voronoi(path, p.surface, p.samples, p.shell, seeds, labels, stage_options(p));
+        save_preview(preview_path(path), p.surface.frame, p.shell, labels, stage_options(p));
+      });
+  }
+
+  /// On the triangles alone: no stage's word is taken for it.
+  void measure(const TriangleMesh& mesh) {
+    record_.vertices = int64_t(mesh.vertices.size());
+    record_.triangles = int64_t(mesh.triangles.size());
+    if (request_.measures == Measures::none && !measures_all() && !request_.gates.any()) return;
+    record_.topology = check_mesh(mesh);
+    if (!record_.topology->is_closed_manifold() && record_.report.dual.failed_cells == 0)
+      warn("the result is not a closed 2-manifold, which should not be: please report the input");
+    record_.quality = measure_quality(mesh);
+    for (const std::string& text : warnings_of_quality(mesh, *record_.quality)) warn(text);
+  }
+
+  void count_risks(const Prepared& p) {
+    record_.risky_sites = 0;
+    for (const uint8_t risky : find_risks(p.surface, p.samples)) record_.risky_sites += risky;
+  }
+
+  void warn(const std::string& text) { tell(MessageKind::warning, text); }
+  void tell(MessageKind kind, const std::string& text) {
+    if (kind == MessageKind::warning) record_.warnings.push_back(text);
+    if (request_.tell) request_.tell(kind, text);
+  }
+
+  RunResult finish(TriangleMesh mesh) {
+    record_.total_ms = ms_since(start_);
+    record_.host_peak_bytes = process_peak_bytes();
+    record_.device_peak_bytes = device_memory_peak_bytes(context_.device);
+    for (const std::string& text : record_.report.warnings) warn(text);
+    if (!request_.statistics.empty()) around_write(request_.statistics, [&] { write_statistics(); });
+    std::vector<std::string> missed = missed_gates(request_.gates, record_);
+    return {std::move(mesh), std::move(record_), std::move(missed)};
+  }
+
+  void write_statistics() const {
+    OutputFile file(request_.statistics, true);  // check_outputs has refused what may not be replaced
+    file.write(statistics_json(record_));
+    file.commit();
+  }
+
+  const RunRequest& request_;
+  AskedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
+  Context& context_;
+  RunRecord record_;
+  std::string written_;  ///< files that are whole, for who interrupts
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace
+
+RunResult run(const RunRequest& request, Context& context) { return Run(request, context).from_files(); }
+
+RunResult run(Input input, const RunRequest& request, Context& context) {
+  return Run(request, context).from(std::move(input));
+}
+
+RunEstimate dry_run(const RunRequest& request, Context& context) { return Run(request, context).estimate(); }
+
+}  // namespace isoshell

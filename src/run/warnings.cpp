@@ -1,0 +1,63 @@
+#include "run/warnings.h"
+
+#include <sstream>
+
+#include "isoshell/run/readable.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kPoorAngleDeg = 20;  // what the optimisation lifts almost every triangle above by far
+
+}  // namespace
+
+std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input) {
+  std::vector<std::string> warnings;
+  const auto note = [&](int64_t count, const std::string& what) {
+    if (count > 0) warnings.push_back(input + ": " + with_commas(count) + " " + what);
+  };
+  const DirtCounts& d = report.dirt;
+  note(d.long_rows, "rows with values behind their last declared property, which were left out");
+  note(d.surplus_rows, "rows left out behind the last that the header promises");
+  note(d.surplus_bytes, "bytes left out behind the last row that the header promises");
+  note(d.nonfinite_vertices, "vertices that are not finite");
+  note(d.dropped_faces_nonfinite, "faces dropped, they use vertices that are not finite");
+  note(d.short_faces, "faces of fewer than three corners dropped");
+  note(d.degenerate_faces, "faces without area");
+  note(d.duplicate_faces, "repeated faces");
+  note(d.unreferenced_vertices, "vertices that no face uses");
+  note(d.nonmanifold_edges, "edges that more than two faces share");
+  note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
+  const RepairReport& m = report.mend;
+  note(m.joined_vertices, "vertices of boundaries joined over cracks");
+  note(m.fins, "fins dropped: small patches that hang on edges of more than two faces");
+  note(m.islands, "islands dropped: small open patches apart from the rest");
+  note(m.turned_faces, "faces turned to agree with their neighbours");
+  std::ostringstream caps;
+  caps << "holes closed by new faces, up to " << m.widest_cap_world << " wide";
+  note(m.capped_loops, caps.str());
+  note(m.tubes, "pairs of them joined: they face each other like the ends of a tube");
+  const UnionReport& u = report.unite;
+  note(u.turned_components, "closed components turned outward");
+  note(u.swallowed_components, "closed components dropped, they lie inside of others");
+  note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
+  note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
+  note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
+  note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
+  return warnings;
+}
+
+std::vector<std::string> warnings_of_quality(const TriangleMesh& mesh, const MeshQuality& quality) {
+  if (quality.theta_min_deg >= kPoorAngleDeg) return {};
+  WorldPoint middle{0, 0, 0};
+  for (const uint32_t v : mesh.triangles[size_t(quality.theta_min_at)]) {
+    const WorldPoint& p = mesh.vertices[v];
+    middle = {middle.x + p.x / 3, middle.y + p.y / 3, middle.z + p.z / 3};
+  }
+  std::ostringstream text;
+  text << "an angle of " << quality.theta_min_deg << " degrees near " << middle.x << ' ' << middle.y << ' ' << middle.z
+       << ": the surface may be narrower there than edges are long; more --vertices make better triangles";
+  return {text.str()};
+}
+
+}  // namespace isoshell

@@ -1,0 +1,18 @@
+// What of a run a person should look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "isoshell/quality.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// A sentence for every kind of dirt and repair that the report counts. `input` is what messages call the input.
+std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input);
+
+/// About the mesh itself, from its quality; none when it is good.
+std::vector<std::string> warnings_of_quality(const TriangleMesh& mesh, const MeshQuality& quality);
+
+}  // namespace isoshell

@@ -1,0 +1,99 @@
+// Conditions on the result: what their list means, and which a record misses.
+#include "isoshell/error.h"
+#include "isoshell/run/gates.h"
+#include "support/catch.h"
+
+using namespace isoshell;
+
+namespace {
+
+std::string refusal(const std::string& list) {
+  try {
+    parse_gates(list);
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::usage);
+    return e.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A ball, as measured.
+RunRecord good_record() {
+  RunRecord record;
+  record.report.post_done = true;
+  record.topology.emplace();
+  record.topology->closed = record.topology->manifold = true;
+  record.topology->components = 1;
+  record.topology->genus = 0;
+  record.quality.emplace();
+  record.quality->theta_min_deg = 35;
+  record.distance.emplace();
+  record.distance->to_reference.max = 0.25;
+  record.distance->from_reference.max = 0.5;
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("gates: a list sets them, an empty one none", "[gates]") {
+  CHECK_FALSE(parse_gates("").any());
+  const Gates g =
+      parse_gates("closed,manifold,no-self-intersections,genus=3,components=2,min-angle=20.5,max-deviation=0.1");
+  CHECK(g.closed);
+  CHECK(g.manifold);
+  CHECK(g.no_self_intersections);
+  CHECK(g.genus == 3);
+  CHECK(g.components == 2);
+  CHECK(g.min_angle_deg == 20.5);
+  CHECK(g.max_deviation_world == 0.1);
+}
+
+TEST_CASE("gates: what is no gate is refused with those there are", "[gates]") {
+  CHECK(contains(refusal("watertight"), "gates are closed, manifold, no-self-intersections, genus=G"));
+  CHECK(contains(refusal("genus"), "genus=G"));
+  CHECK(contains(refusal("closed=1"), "gates are closed"));
+  CHECK(contains(refusal("genus=-1"), "whole number"));
+  CHECK(contains(refusal("min-angle=61"), "0 to 60"));
+  CHECK(contains(refusal("max-deviation=-1"), "--require max-deviation"));
+}
+
+TEST_CASE("gates: a record that meets all of them misses none", "[gates]") {
+  const Gates all =
+      parse_gates("closed,manifold,no-self-intersections,genus=0,components=1,min-angle=35,max-deviation=0.5");
+  CHECK(missed_gates(all, good_record()).empty());
+  const RunRecord nothing;
+  CHECK(missed_gates(Gates{}, nothing).empty());
+}
+
+TEST_CASE("gates: each that is missed is one sentence with what is there", "[gates]") {
+  RunRecord bad = good_record();
+  bad.topology->closed = false;
+  bad.topology->boundary_loops = 2;
+  bad.topology->genus = -1;
+  bad.topology->components = 4;
+  bad.report.post.self_intersections = 1;
+  CHECK(missed_gates(
+            parse_gates("closed,manifold,no-self-intersections,genus=0,components=1,min-angle=36,max-deviation=0.4"),
+            bad) ==
+        std::vector<std::string>{
+            "closed: the mesh has 2 open boundaries",
+            "manifold: the mesh is not a closed 2-manifold",
+            "no-self-intersections: 1 pair intersect",
+            "genus=0: the mesh has none, it is no closed 2-manifold",
+            "components=1: the mesh has 4",
+            "min-angle=36: the smallest angle is 35",
+            "max-deviation=0.4: the result is up to 0.25 from the input, the input up to 0.5 from the result",
+        });
+  bad.report.post_done = false;
+  CHECK(contains(missed_gates(parse_gates("no-self-intersections"), bad).at(0), "was not tested"));
+}
+
+TEST_CASE("gates: a record without what they ask for is refused", "[gates]") {
+  const RunRecord nothing;
+  CHECK_THROWS_AS(missed_gates(parse_gates("closed"), nothing), Error);
+  RunRecord record = good_record();
+  record.distance.reset();
+  CHECK_THROWS_AS(missed_gates(parse_gates("max-deviation=1"), record), Error);
+}

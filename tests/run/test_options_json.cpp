@@ -1,0 +1,164 @@
+// Options to JSON and back, from text, and what of JSON is refused.
+#include <nlohmann/json.hpp>
+
+#include "isoshell/error.h"
+#include "isoshell/run/option_text.h"
+#include "isoshell/run/options_json.h"
+#include "support/catch.h"
+
+using namespace isoshell;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// What parsing refuses, with the code; empty when it does not.
+std::string refusal(const std::string& json, ErrorCode code = ErrorCode::usage) {
+  try {
+    parse_options_json(json);
+  } catch (const Error& e) {
+    CHECK(e.code() == code);
+    return e.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+class NamedField final : public SizingField {
+ public:
+  std::vector<double> lengths_at(const std::vector<WorldPoint>& points) const override {
+    return std::vector<double>(points.size(), 1);
+  }
+  std::string source() const override { return "field.vdb:edge"; }
+};
+
+}  // namespace
+
+TEST_CASE("options json: what is not given is the number that always stood for it", "[options]") {
+  CHECK(options_json(RemeshOptions{}) ==
+        R"({"vertices":10000,"edge-length":0.0,"band":2,"outer-only":false,"method":"sheet","iterations":0,)"
+        R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","uniform-area":false,"adaptivity":0.0,)"
+        R"("gradation":1.2,"sizing":"","resolution":0,"voxel-size":0.0,"close-gaps":"auto"})");
+  const AskedOptions back = parse_options_json(options_json(RemeshOptions{}));
+  CHECK(back.values.vertices == 10000);
+  CHECK_FALSE(back.values.edge_length_world);
+  CHECK_FALSE(back.values.resolution);
+  CHECK_FALSE(back.values.voxel_size_world);
+  CHECK_FALSE(back.values.closing_vox);
+  CHECK_FALSE(back.values.closing_world);
+  CHECK_FALSE(back.values.max_passes);
+  CHECK_FALSE(back.values.tolerance);
+  CHECK_FALSE(back.values.max_step_vox);
+}
+
+TEST_CASE("options json: every option survives the way there and back", "[options]") {
+  RemeshOptions o;
+  o.vertices.reset();
+  o.edge_length_world = 0.1;
+  o.resolution = 77;
+  o.voxel_size_world = 1e-7;
+  o.band_vox = 5;
+  o.closing_world = 0.30000000000000004;
+  o.method = Method::shell;
+  o.max_passes = 9;
+  o.tolerance = 0;
+  o.max_step_vox = 1.5;
+  o.seed = 18446744073709551615ull;
+  o.sizing = std::make_shared<NamedField>();
+  o.adaptivity = 0.25;
+  o.gradation = 1.5;
+  o.fit = Fit::surface;
+  o.uniform_area = true;
+  o.outer_only = true;
+  const AskedOptions back = parse_options_json(options_json(o));
+  const RemeshOptions& b = back.values;
+  CHECK_FALSE(b.vertices);
+  CHECK(b.edge_length_world == o.edge_length_world);
+  CHECK(b.resolution == o.resolution);
+  CHECK(b.voxel_size_world == o.voxel_size_world);
+  CHECK(b.band_vox == o.band_vox);
+  CHECK_FALSE(b.closing_vox);
+  CHECK(b.closing_world == o.closing_world);
+  CHECK(b.method == o.method);
+  CHECK(b.max_passes == o.max_passes);
+  CHECK(b.tolerance == o.tolerance);
+  CHECK(b.max_step_vox == o.max_step_vox);
+  CHECK(b.seed == o.seed);
+  CHECK(b.adaptivity == o.adaptivity);
+  CHECK(b.gradation == o.gradation);
+  CHECK(b.fit == o.fit);
+  CHECK(b.uniform_area);
+  CHECK(b.outer_only);
+  CHECK(back.sizing == "field.vdb:edge");
+  const Json object = Json::parse(options_json(o));
+  CHECK(back.given.size() == object.size());
+  for (const auto& item : object.items()) CHECK(back.was_given(item.key()));
+}
+
+TEST_CASE("options json: every value of the widths of gaps survives", "[options]") {
+  for (const char* width : {"auto", "0vox", "4vox", "30vox"}) {
+    RemeshOptions o;
+    set_gap_width("close-gaps", width, o);
+    const std::string json = options_json(o);
+    CHECK(Json::parse(json)["close-gaps"] == width);
+    CHECK(parse_options_json(json).values.closing_vox == o.closing_vox);
+  }
+  CHECK(parse_options_json(R"({"close-gaps": 0.5})").values.closing_world == 0.5);
+  CHECK(parse_options_json(R"({"close-gaps": "0.5"})").values.closing_world == 0.5);
+  CHECK(parse_options_json(R"({"close-gaps": 0})").values.closing_vox == 0);
+}
+
+TEST_CASE("options json: an object may hold few options, and null is none", "[options]") {
+  const AskedOptions few = parse_options_json(R"({"edge-length": 2, "tolerance": null, "seed": 3})");
+  CHECK(few.values.edge_length_world == 2);
+  CHECK(few.values.vertices == 10000);
+  CHECK_FALSE(few.values.tolerance);
+  CHECK(few.given == std::vector<std::string>{"edge-length", "seed"});
+  CHECK_FALSE(few.was_given("tolerance"));
+}
+
+TEST_CASE("options json: options that a stage file of 7334733 keeps are read", "[options]") {
+  const AskedOptions kept = parse_options_json(
+      R"({"vertices":0,"edge-length":1.5,"band":3,"outer-only":true,"method":"sheet","iterations":9,"tolerance":-1.0,)"
+      R"("step":0.0,"seed":7,"fit":"surface","uniform-area":false,"adaptivity":0.0,"gradation":1.3,"sizing":""})");
+  CHECK_FALSE(kept.values.vertices);
+  CHECK(kept.values.edge_length_world == 1.5);
+  CHECK(kept.values.max_passes == 9);
+  CHECK_FALSE(kept.values.tolerance);
+  CHECK_FALSE(kept.was_given("close-gaps"));
+}
+
+TEST_CASE("options json: what cannot be taken is refused by name, value and limit", "[options]") {
+  CHECK(refusal(R"({"vertices": 3})") == "vertices is 3; it must be 4 to 2147483647");
+  CHECK(refusal(R"({"vertices": 10.5})") == "vertices is 10.5; it must be a whole number");
+  CHECK(refusal(R"({"vertices": "many"})") == "vertices is \"many\"; it must be a whole number");
+  CHECK(refusal(R"({"edge-length": -1})") == "edge-length is -1; it must be more than 0");
+  CHECK(refusal(R"({"seed": -1})") == "seed is -1; it must be a whole number, 0 to 18446744073709551615");
+  CHECK(refusal(R"({"outer-only": 1})") == "outer-only is 1; it must be true or false");
+  CHECK(refusal(R"({"method": "best"})") == "method is 'best'; it must be one of sheet, shell");
+  CHECK(refusal(R"({"fit": 1})") == "fit is 1; it must be text");
+  CHECK(contains(refusal(R"({"gradation": 1})"), "gradation is 1; it must be more than 1"));
+  CHECK(contains(refusal(R"({"close-gaps": "31vox"})"), "0 to 30"));
+  CHECK(refusal(R"({"vertces": 10})") == "there is no option 'vertces'");
+  CHECK(parse_options_json(R"({"vertces": 10})", UnknownOptions::pass_over).given.empty());
+  CHECK_FALSE(refusal("", ErrorCode::unreadable_input).empty());
+  CHECK_FALSE(refusal("[1]", ErrorCode::unreadable_input).empty());
+}
+
+TEST_CASE("options: the numbers that stood for what is not given are still none", "[options]") {
+  RemeshOptions o;
+  o.vertices = 0;
+  o.edge_length_world = 0;
+  o.resolution = 0;
+  o.voxel_size_world = 0;
+  o.closing_vox = -1;
+  o.closing_world = -1;
+  o.max_passes = 0;
+  o.tolerance = -1;
+  o.max_step_vox = 0;
+  CHECK(Json::parse(options_json(o))["vertices"] == 0);
+  const AskedOptions back = parse_options_json(options_json(o));
+  CHECK_FALSE(back.values.vertices);
+  CHECK_FALSE(back.values.closing_vox);
+  CHECK_FALSE(back.values.tolerance);
+}
