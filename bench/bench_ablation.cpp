@@ -25,13 +25,14 @@ struct Bench {
   Context& context;
 
   SeedSet from_levels(int32_t passes) const {
-    RelaxReport ignored;
-    return relax_by_levels(prepared, start, {passes, kTolerancePpb, 0}, true, ignored, context);
+    return relax_by_levels(prepared, start, {passes, kTolerancePpb, 0}, true, context).seeds;
   }
   SeedSet from_strata() const { return place_seeds(prepared.sheet, start, context); }
 
   RelaxReport relax(SeedSet& s, int32_t passes) const {
-    return relax_on_sheet(prepared.sheet, s, {passes, 0, 0}, context);
+    RelaxedSeeds relaxed = relax_on_sheet(prepared.sheet, std::move(s), {passes, 0, 0}, context);
+    s = std::move(relaxed.seeds);
+    return relaxed.report;
   }
   /// A pass alone has nothing to look ahead along.
   RelaxReport relax_without_momentum(SeedSet& s, int32_t passes) const {
@@ -42,21 +43,20 @@ struct Bench {
 
   /// Quality of the dual of a copy of the seeds, improved as asked.
   json judged(const SeedSet& seeds, const OptimizeOptions* optimize) const {
-    SeedSet copy = to_host(seeds);
-    DualReport dual_report;
-    DualMesh dual = triangulate_dual(prepared.sheet, copy, {}, dual_report, context);
+    SeededMesh dual = triangulate_dual(prepared.sheet, to_host(seeds), {}, context);
     json row = json::object();
     if (optimize) {
-      const OptimizeReport report = optimize_mesh(prepared.sheet, *optimize, copy, dual, context);
-      row["self_intersections"] = report.self_intersections;
+      OptimizedMesh optimized = optimize_mesh(prepared.sheet, std::move(dual), *optimize, context);
+      row["self_intersections"] = optimized.report.self_intersections;
+      dual = std::move(optimized);
     }
-    const MeshQuality q = measure_quality(to_world(dual, prepared.surface.frame));
+    const MeshQuality q = measure_quality(to_world(dual.mesh, prepared.surface.frame));
     row.update({{"q_avg", q.q_avg},
                 {"q_min", q.q_min},
                 {"theta_avg", q.theta_avg_deg},
                 {"theta_min", q.theta_min_deg},
                 {"irregular", q.irregular_ratio},
-                {"vertices", copy.size()}});
+                {"vertices", dual.seeds.size()}});
     return row;
   }
 

@@ -187,8 +187,7 @@ json stage_rows(const Arguments& a) {
   const TriangleSoup soup = read_mesh(a.mesh);
   Context context;
   context.backend = Backend::cuda;
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, a.resolution), context);
   StageRows rows(a.repeats);
   int64_t sites_count = 0;
@@ -227,22 +226,19 @@ json stage_rows(const Arguments& a) {
     rows.run(("20 passes on the sheet, k = " + std::to_string(k)).c_str(), "vertex_passes",
              [&] {
                SeedSet seeds = place_seeds(sheet, {k, 0}, context);
-               relax_on_sheet(sheet, seeds, {kPasses, 0, 0}, context);
-               return seeds;
+               return relax_on_sheet(sheet, std::move(seeds), {kPasses, 0, 0}, context).seeds;
              },
              [&] { return kPasses * vertices; });
   rows.run(
       "20 passes in the shell, k = 4000", "voxel_passes",
       [&] {
         SeedSet seeds = place_seeds(sites, samples, {4000, 0}, context);
-        relax_in_shell(shell, sites, samples, seeds, {kPasses, 0, 0}, context);
-        return seeds;
+        return relax_in_shell(shell, sites, samples, std::move(seeds), {kPasses, 0, 0}, context).seeds;
       },
       [&] { return kPasses * shell.voxels.voxel_count(); });
   const SeedSet seeds = [&] {
     SeedSet made = place_seeds(sheet, {4000, 0}, context);
-    relax_on_sheet(sheet, made, {kPasses, 0, 0}, context);
-    return made;
+    return relax_on_sheet(sheet, std::move(made), {kPasses, 0, 0}, context).seeds;
   }();
   rows.run(
       "flood", "active_voxels", [&] { return flood_shell(shell, seeds, context); },
@@ -250,21 +246,10 @@ json stage_rows(const Arguments& a) {
   const auto copied = [&] { return to_host(seeds); };
   rows.run(
       "dual, seeds from the host", "sheet_vertices",
-      [&] {
-        SeedSet copy = copied();
-        DualReport report;
-        return triangulate_dual(sheet, copy, {}, report, context);
-      },
-      [&] { return vertices; });
+      [&] { return triangulate_dual(sheet, copied(), {}, context).mesh; }, [&] { return vertices; });
   rows.run(
       "dual and improved mesh, seeds from the host", "sheet_vertices",
-      [&] {
-        SeedSet copy = copied();
-        DualReport report;
-        DualMesh mesh = triangulate_dual(sheet, copy, {}, report, context);
-        optimize_mesh(sheet, {}, copy, mesh, context);
-        return mesh;
-      },
+      [&] { return optimize_mesh(sheet, triangulate_dual(sheet, copied(), {}, context), {}, context).mesh; },
       [&] { return vertices; });
   return rows.rows();
 }

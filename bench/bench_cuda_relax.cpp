@@ -34,8 +34,7 @@ struct Setup {
 Setup prepare(const TriangleSoup& soup, int32_t resolution, bool want_shell) {
   Context cuda;
   cuda.backend = Backend::cuda;
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   Setup s;
   s.surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), cuda);
   s.sites = voxelize(s.surface, cuda);
@@ -94,11 +93,8 @@ bool check_dual(const Sheet& sheet, const SeedSet& start) {
   for (const Backend backend : {Backend::cpu, Backend::cuda}) {
     Context context;
     context.backend = backend;
-    SeedSet seeds = copy_of(start);
-    DualReport report;
-    digests[backend == Backend::cuda] =
-        digest(to_world(to_host(triangulate_dual(sheet, seeds, {}, report, context)), sheet.frame)) ^
-        digest(to_host(seeds));
+    const Triangulation made = triangulate_dual(sheet, copy_of(start), {}, context);
+    digests[backend == Backend::cuda] = digest(to_world(to_host(made.mesh), sheet.frame)) ^ digest(to_host(made.seeds));
   }
   if (digests[0] != digests[1]) std::printf("DIFFERS dual k=%lld\n", (long long)start.size());
   return digests[0] == digests[1];
@@ -155,7 +151,9 @@ int main(int argc, char** argv) {
     cpu.backend = Backend::cpu;
     const int64_t k = std::atoll(argv[a]);
     const auto on_sheet = [&](SeedSet& seeds, const RelaxOptions& o, Context& c) {
-      return relax_on_sheet(setup.sheet, seeds, o, c);
+      RelaxedSeeds relaxed = relax_on_sheet(setup.sheet, std::move(seeds), o, c);
+      seeds = std::move(relaxed.seeds);
+      return relaxed.report;
     };
     const SeedSet start = place_seeds(setup.sheet, {k, 1}, cpu);
     bool same = true;
@@ -167,7 +165,9 @@ int main(int argc, char** argv) {
     Times shell{};
     if (want_shell) {
       const auto in_shell = [&](SeedSet& seeds, const RelaxOptions& o, Context& c) {
-        return relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, o, c);
+        RelaxedSeeds relaxed = relax_in_shell(setup.shell, setup.sites, setup.samples, std::move(seeds), o, c);
+        seeds = std::move(relaxed.seeds);
+        return relaxed.report;
       };
       const SeedSet sites = place_seeds(setup.sites, setup.samples, {k, 1}, cpu);
       if (want_check) same &= check("shell", sites, in_shell);

@@ -188,8 +188,7 @@ int main(int argc, char** argv) try {
   device.backend = Backend::cuda;
   TriangleSoup soup = read_mesh(args.mesh);
   while (soup.triangles.size() < args.triangles) soup = split(soup);
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   json rows = json::array();
   for (const int resolution : args.resolutions) {
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution * 9 / 10);

@@ -57,8 +57,7 @@ struct Setup {
 
 Setup prepare(const Arguments& args, Context& context) {
   const TriangleSoup soup = read_mesh(args.mesh);
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, args.resolution), context);
   Setup s;
   s.sites = voxelize(surface, context);
@@ -75,7 +74,7 @@ struct Timed {
 Timed relaxed(const Setup& setup, int64_t count, int32_t passes, Context& context) {
   SeedSet seeds = place_seeds(setup.sites, setup.samples, {count, 0}, context);
   const std::clock_t start = std::clock();
-  relax_in_shell(setup.shell, setup.sites, setup.samples, seeds, {passes, 0, 0}, context);
+  seeds = relax_in_shell(setup.shell, setup.sites, setup.samples, std::move(seeds), {passes, 0, 0}, context).seeds;
   return {double(std::clock() - start) * 1e9 / CLOCKS_PER_SEC, digest(seeds)};
 }
 

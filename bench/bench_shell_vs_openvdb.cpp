@@ -69,8 +69,7 @@ class Watch {
 };
 
 LatticeFrame frame_of(const TriangleSoup& soup, int32_t resolution) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   return LatticeFrame::around(lo, hi, resolution);
 }
 

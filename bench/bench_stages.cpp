@@ -91,8 +91,7 @@ int main(int argc, char** argv) try {
   const TriangleSoup soup = rows.run(
       "read", "triangles", [&] { return read_mesh(args.mesh); },
       [](const TriangleSoup& s) { return int64_t(s.triangles.size()); });
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, args.resolution);
   const LatticeSurface surface = rows.run(
       "snap", "triangles", [&] { return snap_surface(soup, frame, context); },
@@ -115,15 +114,13 @@ int main(int argc, char** argv) try {
   constexpr int32_t kPasses = 20;
   const auto relaxed_on_sheet = [&] {
     SeedSet seeds = place_seeds(sheet, {args.vertices, 0}, context);
-    relax_on_sheet(sheet, seeds, {kPasses, 0, 0}, context);
-    return seeds;
+    return relax_on_sheet(sheet, std::move(seeds), {kPasses, 0, 0}, context).seeds;
   };
   const auto vertex_passes = [&](const SeedSet&) { return kPasses * sheet.vertex_count(); };
   SeedSet seeds = rows.run("relax_on_sheet", "vertex_passes", relaxed_on_sheet, vertex_passes);
   const auto relaxed_in_shell = [&] {
     SeedSet in_shell = place_seeds(sites, samples, {args.vertices, 0}, context);
-    relax_in_shell(shell, sites, samples, in_shell, {kPasses, 0, 0}, context);
-    return in_shell;
+    return relax_in_shell(shell, sites, samples, std::move(in_shell), {kPasses, 0, 0}, context).seeds;
   };
   rows.run("relax_in_shell", "voxel_passes", relaxed_in_shell,
            [&](const SeedSet&) { return kPasses * shell.voxels.voxel_count(); });
@@ -131,8 +128,9 @@ int main(int argc, char** argv) try {
       "flood", "active_voxels", [&] { return flood_shell(shell, seeds, context); },
       [&](const VoronoiLabels& l) { return l.voxel_seed.size(); });
   const auto dual = [&] {
-    DualReport report;
-    return triangulate_dual(sheet, seeds, {}, report, context);
+    Triangulation made = triangulate_dual(sheet, std::move(seeds), {}, context);
+    seeds = std::move(made.seeds);
+    return std::move(made.mesh);
   };
   rows.run("dual", "triangles", dual, [](const DualMesh& m) { return m.triangles.size(); });
 

@@ -19,10 +19,11 @@ class CudaBackend final : public BackendTable {
   SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const override;
   SiteSet coarsen_sites(const SiteSet&, Context&) const override;
   Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const override;
-  void set_edge_lengths(SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const override;
-  void smooth_edge_lengths(SurfaceMesh&, int32_t rounds, Context&) const override;
+  EdgeLengths limit_edge_lengths(const SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const override;
+  EdgeLengths smooth_edge_lengths(const SurfaceMesh&, EdgeLengths, int32_t rounds, Context&) const override;
   int64_t seed_shares(const SurfaceMesh&, Context&) const override;
-  void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context&) const override;
+  EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to,
+                                    Context&) const override;
   Buffer<uint32_t> measure_curvature(const SurfaceMesh&, int32_t rounds, Context&) const override;
   SeedSet place_seeds_on_surface(const SurfaceMesh&, const SeedOptions&, Context&) const override;
   SeedSet place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&) const override;

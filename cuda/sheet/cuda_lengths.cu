@@ -5,15 +5,16 @@
 
 namespace isoshell {
 
-void CudaBackend::set_edge_lengths(SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16,
-                                   Context& context) const {
+EdgeLengths CudaBackend::limit_edge_lengths(const SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16,
+                                            Context& context) const {
   CudaExecutor exec(context, "lengths");
-  set_edge_lengths_body(exec, on_device(exec, surface), exec.to_device(raw), slope_q16);
+  return limit_edge_lengths_body(exec, *OnDevice<SurfaceMesh>(exec, surface), exec.to_device(raw), slope_q16);
 }
 
-void CudaBackend::smooth_edge_lengths(SurfaceMesh& surface, int32_t rounds, Context& context) const {
+EdgeLengths CudaBackend::smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths lengths, int32_t rounds,
+                                             Context& context) const {
   CudaExecutor exec(context, "lengths");
-  smooth_edge_lengths_body(exec, on_device(exec, surface), rounds);
+  return smooth_edge_lengths_body(exec, *OnDevice<SurfaceMesh>(exec, surface), exec.to_device(lengths.at), rounds);
 }
 
 int64_t CudaBackend::seed_shares(const SurfaceMesh& surface, Context& context) const {
@@ -21,9 +22,11 @@ int64_t CudaBackend::seed_shares(const SurfaceMesh& surface, Context& context) c
   return seed_shares_body(exec, *OnDevice<SurfaceMesh>(exec, surface));
 }
 
-void CudaBackend::copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context& context) const {
+EdgeLengths CudaBackend::transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to,
+                                               Context& context) const {
   CudaExecutor exec(context, "lengths");
-  copy_edge_lengths_body(exec, *OnDevice<SurfaceMesh>(exec, from), halvings, on_device(exec, to));
+  return transfer_edge_lengths_body(exec, *OnDevice<SurfaceMesh>(exec, from), halvings,
+                                    *OnDevice<SurfaceMesh>(exec, to));
 }
 
 Buffer<uint32_t> CudaBackend::measure_curvature(const SurfaceMesh& surface, int32_t rounds, Context& context) const {

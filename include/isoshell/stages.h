@@ -1,4 +1,6 @@
-// The stages, each a pure function from products to the next product. Their order is the order of this file.
+// The stages, each a function from products to the next product. Their order is the order of this file. What a stage
+// changes it takes by moving, and returns; all else it leaves as it is. When it throws, what was moved into it is still
+// valid, and nothing more can be said of it.
 //
 // What takes a SurfaceMesh takes one with borders too, unless it says that it needs a closed one: then it throws usage.
 #pragma once
@@ -17,14 +19,20 @@
 
 namespace isoshell {
 
-/// Welds and measures a soup, and adds the dirt it finds to what a reader counted (degenerate and duplicate faces,
-/// edges). Faces with fewer than three distinct positions, and repeats in the same orientation, are left out of the
-/// topology. Independent of any lattice and of the order of vertices and faces. Cost: sorts of the vertices, faces and
-/// edges.
-InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context);
+struct SoupTopology {
+  InputTopology topology;
+  DirtCounts dirt;  ///< what a reader counted, and what was found: degenerate and duplicate faces, edges
+};
+/// Welds and measures a soup. Faces with fewer than three distinct positions, and repeats in the same orientation, are
+/// left out of the topology. Independent of any lattice and of the order of vertices and faces. Cost: sorts of the
+/// vertices, faces and edges.
+SoupTopology measure_topology(const TriangleSoup& soup, Context& context);
 
+struct WorldBox {
+  WorldPoint min, max;
+};
 /// Smallest and largest coordinates of the vertices that triangles use. Throws: nothing_to_mesh without triangles.
-void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box_max);
+WorldBox bounding_box(const TriangleSoup& soup);
 
 /// Snaps the soup to the lattice (see LatticeSurface). Throws: nothing_to_mesh when no triangle is left.
 LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context);
@@ -70,16 +78,16 @@ int64_t six_volume_vox(const SurfaceMesh& surface, Context& context);
 
 constexpr int64_t kMostLengthSlopeQ16 = int64_t(1) << 24;
 
-/// Gives a surface edge lengths to aim at: the largest that are nowhere above `raw`, one a vertex in 1/256 voxel, and
+/// Edge lengths for a surface to aim at: the largest that are nowhere above `raw`, one a vertex in 1/256 voxel, and
 /// grow by at most slope_q16 / 65536 of every edge's length. They are unique. Throws: usage.
-void set_edge_lengths(SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16, Context& context);
-/// So many rounds in which every length becomes the mean of its own and its neighbours', rounded. Throws: usage.
-void smooth_edge_lengths(SurfaceMesh& surface, int32_t rounds, Context& context);
+EdgeLengths limit_edge_lengths(const SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16, Context& context);
+/// After so many rounds in which every length becomes the mean of its own and its neighbours', rounded. Throws: usage.
+EdgeLengths smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths&& lengths, int32_t rounds, Context& context);
 /// Doubled area of the surface, that of each triangle over the square of its length, the least length being 1; q16.
 int64_t seed_shares_q16(const SurfaceMesh& surface, Context& context);
-/// Gives a coarse proxy the lengths of the surface it stands for, those of the nearest vertices. `halvings`: how many
-/// times the edge of its voxels was doubled.
-void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context& context);
+/// Lengths for a coarse proxy from the surface it stands for, those of the nearest vertices. `halvings`: how many times
+/// the edge of its voxels was doubled.
+EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to, Context& context);
 /// Per vertex how much normals turn a voxel, in 1/65536: the root of the mean square over its edges, of normals that
 /// became the mean of their neighbours' in so many rounds, and smoothed in two thirds as many.
 Buffer<uint32_t> measure_curvature(const SurfaceMesh& surface, int32_t rounds, Context& context);
@@ -110,16 +118,20 @@ struct RelaxReport {
   /// seed over the sites per seed, without dimension. 0 where the method has none.
   double normalised_energy_factor = 0;
 };
+struct RelaxedSeeds {
+  SeedSet seeds;  ///< with the ids they had
+  RelaxReport report;
+};
 /// Centroidal Voronoi tessellation of the surface with clipped cells and momentum.
-RelaxReport relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options, Context& context);
+RelaxedSeeds relax_on_sheet(const SurfaceMesh& surface, SeedSet&& seeds, const RelaxOptions& options, Context& context);
 /// The paper's Lloyd loop over the active voxels of the shell, sections 3.2 and 3.3.
-RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
-                           const RelaxOptions& options, Context& context);
+RelaxedSeeds relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet&& seeds,
+                            const RelaxOptions& options, Context& context);
 
 /// Moves seeds onto a surface: its nearest point, its home vertex and outward normal. `halvings`: how many times the
 /// voxels of the seeds' lattice must be halved to give the surface's; above 0 seeds come from a coarse proxy, from
 /// half a voxel of theirs outside of it.
-void attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, Context& context, int halvings = 0);
+SeedSet attach_to_sheet(const SurfaceMesh& surface, SeedSet&& seeds, int halvings, Context& context);
 
 /// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in
 /// space but far along the shell never share a cell. Result: a seed starts in its voxel, or in the active voxel of the
@@ -135,6 +147,11 @@ struct DualMesh {
   Buffer<PointQ8> position;           ///< per seed
   Buffer<TriangleIndices> triangles;  ///< smallest index first, sorted, outward
 };
+/// A mesh and the seeds that its vertices are.
+struct SeededMesh {
+  DualMesh mesh;
+  SeedSet seeds;
+};
 struct DualReport {
   int64_t inserted_seeds = 0;       ///< appended to the seeds, in every round; a run may drop others afterwards
   int64_t relabelled_vertices = 0;  ///< in disconnected pieces that joined a neighbouring cell
@@ -145,6 +162,9 @@ struct DualOptions {
   int32_t max_repair_rounds = 64;     ///< 0 only checks
   int64_t most_against_crossing = 0;  ///< seeds put in where triangles of the dual intersect; 0: not looked for
 };
+struct Triangulation : SeededMesh {
+  DualReport report;
+};
 /// DualTriangulation(V_k) on the surface: a triangle whose vertices carry three labels is a face. Four checks
 /// (cells in one piece, cells are disks, pairs meet in one arc, four cells a component) are repaired by splitting
 /// cells; ids are kept, and a seed that owns nothing moves to the next split before seeds are appended. Result: when
@@ -153,8 +173,8 @@ struct DualOptions {
 /// until no triangles do or no more seeds may be put in; on a surface without intersections enough seeds always end
 /// them. Cost: labels, then O(surface) and O(split cells) a round; 14 bytes a vertex of the surface. Needs a closed
 /// surface. Throws: usage when there are no seeds or more than vertices.
-DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options, DualReport& report,
-                          Context& context);
+Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
+                               Context& context);
 
 /// Seeds of the next finer level: the given ones, the middles of the dual's edges (the longest, if there are more than
 /// needed) in canonical order, then the middles of the largest triangles. `target` seeds in all, at most
@@ -162,18 +182,25 @@ DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const Dual
 SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                         Context& context);
 
+struct CollapseOptions {
+  int64_t target = 0;       ///< vertices to be left
+  bool keep_apart = false;  ///< no edge is taken where triangles would intersect then
+};
 /// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
 /// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The
-/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. With `keep_apart` no
-/// edge is taken where triangles would intersect then. Cost: a sort of the edges a round, then one step for each looked
-/// at. Needs a closed surface. Throws: usage when the mesh has a border.
-void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
-                    bool keep_apart = false);
+/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. Cost: a sort of the
+/// edges a round, then one step for each looked at. Needs a closed surface. Throws: usage when the mesh has a border.
+SeededMesh collapse_edges(const SurfaceMesh& surface, SeededMesh&& mesh, const CollapseOptions& options,
+                          Context& context);
 
+struct UntangledSheet {
+  Sheet sheet;
+  SeedSet seeds;
+  int64_t self_intersections = 0;  ///< pairs of triangles that still intersect after the last round
+};
 /// Takes the vertices of a sheet's triangles that intersect back towards their lattice corners, where no triangles do,
-/// half of the way a round and in the end all of it. Returns the pairs that still intersect after the last round.
-/// Seeds keep their homes; where those moved, seeds go along.
-int64_t untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context);
+/// half of the way a round and in the end all of it. Seeds keep their homes; where those moved, seeds go along.
+UntangledSheet untangle_sheet(Sheet&& sheet, SeedSet&& seeds, Context& context);
 
 /// Where vertices of the result lie.
 enum class Fit {
@@ -195,12 +222,15 @@ struct OptimizeReport {
   int64_t self_intersections = 0;  ///< pairs of triangles that still intersect; not looked for when the vertices
                                    ///< stay in place or are to be seeds
 };
+struct OptimizedMesh : SeededMesh {
+  OptimizeReport report;
+};
 /// Valence flips, shape matching, a fit to the surface and searches around the worst triangles of a closed mesh whose
 /// vertices are the seeds; homes and positions of the seeds follow. Where triangles intersect in the end, exactly
 /// tested, the vertices around go back to where they were on the surface, then to where they began. Result: still
 /// closed and 2-manifold, same genus. Needs a closed surface. Throws: usage when the mesh has a border.
-OptimizeReport optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
-                             Context& context);
+OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
+                            Context& context);
 
 /// Final positions in the world.
 TriangleMesh to_world(const DualMesh& mesh, const LatticeFrame& frame);

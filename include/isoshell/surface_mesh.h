@@ -65,7 +65,7 @@ struct SurfaceMesh {
   Buffer<uint32_t> border_before;     ///< per vertex the one before it on its border, kNone off borders; empty: closed
   VertexBlocks blocks;
   Chains chains;                   ///< all borders are among them
-  EdgeLengths lengths;             ///< empty as built; see set_edge_lengths
+  EdgeLengths lengths;             ///< empty as built; see limit_edge_lengths
   Buffer<PointQ8> missed;          ///< points of a closed surface that are 1/2 to 4 voxels off the mesh
   Buffer<uint32_t> missed_vertex;  ///< the vertex nearest to each
 

@@ -69,10 +69,9 @@ class Reader {
     InputFacts& facts = input_.facts;
     facts.vertices = int64_t(soup.vertices.size());
     facts.faces = soup.faces_in_file;
-    WorldPoint lo, hi;
-    bounding_box(soup, lo, hi);
-    facts.box_min = lo;
-    facts.box_max = hi;
+    const WorldBox box = bounding_box(soup);
+    facts.box_min = box.min;
+    facts.box_max = box.max;
     note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
     input_.soup = std::move(soup);
   }

@@ -2,6 +2,7 @@
 #include "pipeline/hierarchy.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "core/copy_product.h"
@@ -50,31 +51,27 @@ std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
 }
 
 /// Relaxes a coarse level. Returns its dual with as many vertices as it had seeds, flipped and smoothed, so that the
-/// cells of the seeds that it is split into meet as its triangles do, and moves the seeds there; null triangles when
-/// the level is too coarse for the shape.
-DualMesh relax_coarse(const Sheet& sheet, const RelaxOptions& relax, SeedSet& seeds, Context& context) {
-  relax_on_sheet(sheet, seeds, relax, context);
+/// cells of the seeds that it is split into meet as its triangles do; none when the level is too coarse for the shape.
+std::optional<SeededMesh> relax_coarse(const Sheet& sheet, const RelaxOptions& relax, SeedSet seeds, Context& context) {
   const int64_t asked = seeds.size();
-  DualReport report;
-  DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
-  if (report.failed_cells > 0 || seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
-  collapse_edges(sheet, asked, seeds, mesh, context);
+  seeds = relax_on_sheet(sheet, std::move(seeds), relax, context).seeds;
+  Triangulation dual = triangulate_dual(sheet, std::move(seeds), {}, context);
+  if (dual.report.failed_cells > 0 || dual.seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
+  SeededMesh mesh = collapse_edges(sheet, std::move(dual), {asked}, context);
   OptimizeOptions optimize;
   optimize.smoothing_steps = kCoarseSmoothingSteps;
   optimize.for_seeds = true;
-  optimize_mesh(sheet, optimize, seeds, mesh, context);
-  return mesh;
+  return optimize_mesh(sheet, std::move(mesh), optimize, context);
 }
 
-/// Relaxes a level again, from where its first round left it; that round stands if cells are no disks after this one.
-void relax_coarse_again(const Sheet& sheet, const RelaxOptions& relax, SeedSet& seeds, DualMesh& dual,
-                        Context& context) {
-  SeedSet first = to_host(seeds);
-  DualMesh again = relax_coarse(sheet, relax, seeds, context);
-  if (again.triangles.empty())
-    seeds = std::move(first);
-  else
-    dual = std::move(again);
+/// Relaxes a level once, and again from there if it is small. The first round stands where cells are no disks after the
+/// second one.
+std::optional<SeededMesh> relax_level(const Sheet& sheet, const RelaxOptions& relax, SeedSet seeds, Context& context) {
+  std::optional<SeededMesh> first = relax_coarse(sheet, relax, std::move(seeds), context);
+  if (!first || first->seeds.size() > kMostSeedsTwice) return first;
+  const RelaxOptions again{kPassesAgain, relax.tolerance_ppb, relax.max_step_q8};
+  std::optional<SeededMesh> second = relax_coarse(sheet, again, to_host(first->seeds), context);
+  return second ? std::move(second) : std::move(first);
 }
 
 /// How many cells of the smallest size would cover the sheet, over the number of its cells.
@@ -109,7 +106,8 @@ class CoarseProxies {
           std::fill(halvings_.begin(), halvings_.begin() + level + 1, int(proxies_.size()));
           return;
         }
-        if (!finest_.lengths.at.empty()) copy_edge_lengths(finest_, int(proxies_.size()) + 1, proxy, context);
+        if (!finest_.lengths.at.empty())
+          proxy.lengths = transfer_edge_lengths(finest_, int(proxies_.size()) + 1, proxy, context);
         sites_ = std::move(coarser);
         sites = &sites_;
         proxies_.push_back(std::move(proxy));
@@ -138,8 +136,8 @@ class CoarseProxies {
 
 }  // namespace
 
-SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
-                        bool tolerance_asked, RelaxReport& report, Context& context) {
+RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
+                             bool tolerance_asked, Context& context) {
   require_seed_count(prepared.sheet, options.count);
   std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
   RelaxOptions coarse = relax, finest = relax;
@@ -152,12 +150,12 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
     const Sheet& sheet = proxies.sheet(level);
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
-    DualMesh dual = relax_coarse(sheet, coarse, seeds, context);
-    if (!dual.triangles.empty() && seeds.size() <= kMostSeedsTwice)
-      relax_coarse_again(sheet, {kPassesAgain, coarse.tolerance_ppb, coarse.max_step_q8}, seeds, dual, context);
-    seeds = dual.triangles.empty() ? SeedSet{} : subdivide_seeds(sheet, dual, seeds, counts[level + 1], context);
+    const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
+    seeds = {};
+    if (!relaxed) continue;
+    seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
     const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
-    if (seeds.size() > 0 && halvings > 0) attach_to_sheet(proxies.sheet(level + 1), seeds, context, halvings);
+    if (halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
   }
   if (seeds.size() == 0) {
     seeds = place_seeds(prepared.sheet, options, context);
@@ -165,8 +163,7 @@ SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& options, co
     finest.max_passes = std::min(relax.max_passes, kFinestPasses);
     if (!tolerance_asked) finest.tolerance_ppb = kFinestTolerancePpb;
   }
-  report = relax_on_sheet(prepared.sheet, seeds, finest, context);
-  return seeds;
+  return relax_on_sheet(prepared.sheet, std::move(seeds), finest, context);
 }
 
 }  // namespace isoshell

@@ -11,7 +11,7 @@ namespace isoshell {
 /// finest level. Coarse levels relax on coarse proxies of the sites on coarser lattices, whose voxels are as large
 /// beside their cells as those of the sheet are beside the finest level's. `options.max_passes` bounds the finest
 /// level; its tolerance is that of every level when it was asked for, else levels have their own.
-SeedSet relax_by_levels(const Prepared& prepared, const SeedOptions& seeds, const RelaxOptions& options,
-                        bool tolerance_asked, RelaxReport& report, Context& context);
+RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& seeds, const RelaxOptions& options,
+                             bool tolerance_asked, Context& context);
 
 }  // namespace isoshell

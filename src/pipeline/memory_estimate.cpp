@@ -24,8 +24,7 @@ constexpr double kFixedBytes = 64 << 20;  // lookup tables, thread-local scratch
 RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& asked,
                          int32_t resolution) {
   const RemeshOptions options = checked(asked);
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   RunEstimate e;
   e.resolution = resolution > 0 ? resolution : first_resolution(options, input.area_world, lo, hi);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, e.resolution);

@@ -191,8 +191,7 @@ void check_area(const InputTopology& input) {
 
 /// Edge of a voxel of the first grid.
 double voxel_edge(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   return LatticeFrame::around(lo, hi, first_resolution(options, input.area_world, lo, hi)).voxel_size;
 }
 
@@ -259,8 +258,7 @@ RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) 
 int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
                                int32_t usual, RemeshReport& report, Context& context) {
   memory_allows(estimate_run(soup, input, options, usual), false, report, context);
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
   LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
   surface.topology = input;
@@ -280,8 +278,7 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& in
 /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
 Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
                               RemeshReport& report, Context& context) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const bool free_grid = !options.resolution && !options.voxel_size_world;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
   const int32_t first = free_grid && wants_lengths(options)
@@ -334,18 +331,15 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
 
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
   const RemeshOptions options = with_even_length(checked(asked), soup);
-  report.dirt = soup.dirt;
-  const InputTopology given =
-      timed(report, "topology", context, [&] { return measure_topology(soup, report.dirt, context); });
+  const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
+  const InputTopology& given = measured.topology;
+  report.dirt = measured.dirt;
   check_area(given);
   memory_allows(estimate_run(soup, given, options, kCoarsestGrid), false, report, context);  // repair comes first
   TriangleSoup changed;
   const TriangleSoup* current = &soup;
   InputTopology input = given;
-  const auto measure = [&] {
-    DirtCounts counted_already;
-    return measure_topology(*current, counted_already, context);
-  };
+  const auto measure = [&] { return measure_topology(*current, context).topology; };
   if (!given.closed || !given.oriented) {
     const bool closing_chosen = !options.closing_vox && !options.closing_world;
     changed = timed(report, "mend", context, [&] { return repair_soup(soup, {closing_chosen}, report.mend); });

@@ -60,19 +60,22 @@ SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& repor
   const double area_world = options.edge_length_world ? sheet_area_world(p.sheet) : 0;
   const int64_t target = p.vertices ? *p.vertices : vertex_target(options, area_world);
   const SeedOptions seed_options{target, options.seed};
-  SeedSet seeds;
+  RelaxedSeeds relaxed;
   if (options.method == Method::sheet) {
-    seeds = timed(report, "relax", context, [&] {
-      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), report.relax,
-                             context);
+    relaxed = timed(report, "relax", context, [&] {
+      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), context);
     });
   } else {
-    seeds = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
-    report.relax = timed(report, "relax", context, [&] {
-      return relax_in_shell(p.shell, p.sites, p.samples, seeds, relax_options(options), context);
+    SeedSet start =
+        timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
+    relaxed = timed(report, "relax", context, [&] {
+      return relax_in_shell(p.shell, p.sites, p.samples, std::move(start), relax_options(options), context);
     });
-    timed(report, "attach", context, [&] { attach_to_sheet(p.sheet, seeds, context); });
+    relaxed.seeds = timed(report, "attach", context,
+                          [&] { return attach_to_sheet(p.sheet, std::move(relaxed.seeds), 0, context); });
   }
+  report.relax = std::move(relaxed.report);
+  SeedSet seeds = std::move(relaxed.seeds);
   report.seeds = seeds.size();
   note_digest(options, report, context, "seeds", seeds);
   return seeds;
@@ -81,42 +84,49 @@ SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& repor
 TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
                          Context& context) {
   const int64_t asked = seeds.size();
-  DualMesh dual;
+  SeededMesh made;
   for (int round = 0;; ++round) {
-    DualReport found;
-    dual = timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, seeds, {}, found, context); });
+    Triangulation dual =
+        timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, std::move(seeds), {}, context); });
+    const DualReport found = dual.report;
     report.dual.inserted_seeds += found.inserted_seeds;
     report.dual.relabelled_vertices += found.relabelled_vertices;
     report.dual.repair_rounds += found.repair_rounds;
     report.dual.failed_cells = found.failed_cells;
+    made = std::move(dual);
     if (found.failed_cells == 0)
-      timed(report, "dual", context, [&] { collapse_edges(p.sheet, asked, seeds, dual, context); });
+      made = timed(report, "dual", context, [&] { return collapse_edges(p.sheet, std::move(made), {asked}, context); });
     if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMaxReoptimisations) break;
-    timed(report, "relax", context, [&] { relax_on_sheet(p.sheet, seeds, {kReoptimisePasses, 0, 0}, context); });
+    const RelaxOptions again{kReoptimisePasses, 0, 0};
+    seeds = timed(report, "relax", context,
+                  [&] { return relax_on_sheet(p.sheet, std::move(made.seeds), again, context).seeds; });
   }
   if (report.dual.failed_cells > 0)
     report.warnings.push_back(
         std::to_string(report.dual.failed_cells) +
         " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
-  if (seeds.size() != asked)
-    report.warnings.push_back("the result has " + std::to_string(seeds.size()) + " vertices instead of " +
+  if (made.seeds.size() != asked)
+    report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
   OptimizeOptions optimize;
   optimize.fit = options.fit;
   optimize.uniform_area = options.uniform_area;
   if (report.dual.failed_cells == 0) {
-    report.post =
-        timed(report, "post", context, [&] { return optimize_mesh(p.sheet, optimize, seeds, dual, context); });
+    OptimizedMesh optimized =
+        timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), optimize, context); });
+    report.post = optimized.report;
+    made = std::move(optimized);
     if (report.post.self_intersections > 0)
-      timed(report, "untangle", context, [&] { resolve_intersections(p, optimize, seeds, dual, report, context); });
+      timed(report, "untangle", context, [&] { resolve_intersections(p, optimize, made, report, context); });
     report.post_done = true;
   }
   if (report.post.self_intersections > 0)
     report.warnings.push_back(std::to_string(report.post.self_intersections) +
                               " pairs of triangles intersect: parts of the surface are nearer to one another than its "
                               "edges are long; ask for more --vertices");
-  measure_edges(p.sheet, seeds, dual, report.sizing, context);
-  TriangleMesh mesh = to_world(dual, p.surface.frame);
+  seeds = std::move(made.seeds);
+  measure_edges(p.sheet, seeds, made.mesh, report.sizing, context);
+  TriangleMesh mesh = to_world(made.mesh, p.surface.frame);
   flag_gaps(p, seeds, mesh, report.gaps);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;

@@ -5,29 +5,26 @@
 
 namespace isoshell {
 
-void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
+void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, SeededMesh& mesh,
                            RemeshReport& report, Context& context) {
-  const int64_t asked = seeds.size();
-  Sheet sheet = host_copy(prepared.sheet);
-  SeedSet start = host_copy(seeds);
-  untangle_sheet(sheet, start, context);
+  const int64_t asked = mesh.seeds.size();
+  UntangledSheet start = untangle_sheet(host_copy(prepared.sheet), host_copy(mesh.seeds), context);
+  const Sheet& sheet = start.sheet;
   DualOptions split;
   split.most_against_crossing = asked;
-  DualReport found;
-  DualMesh dual = triangulate_dual(sheet, start, split, found, context);
+  Triangulation dual = triangulate_dual(sheet, std::move(start.seeds), split, context);
+  const DualReport found = dual.report;
   if (found.failed_cells > 0) return;
-  const bool keep_apart = true;
-  collapse_edges(sheet, asked, start, dual, context, keep_apart);
-  collapse_edges(sheet, asked, start, dual, context);  // the count goes before what is left
-  if (start.size() != asked) return;
-  OptimizeOptions again = options;
-  again.keep_apart = true;
-  const OptimizeReport optimize = optimize_mesh(sheet, again, start, dual, context);
-  if (optimize.self_intersections >= report.post.self_intersections) return;
-  seeds = std::move(start);
-  mesh = std::move(dual);
-  report.post = optimize;
+  SeededMesh again = collapse_edges(sheet, std::move(dual), {asked, true}, context);
+  again = collapse_edges(sheet, std::move(again), {asked}, context);  // the count goes before what is left
+  if (again.seeds.size() != asked) return;
+  OptimizeOptions careful = options;
+  careful.keep_apart = true;
+  OptimizedMesh optimized = optimize_mesh(sheet, std::move(again), careful, context);
+  if (optimized.report.self_intersections >= report.post.self_intersections) return;
+  report.post = optimized.report;
   report.seeds_against_intersections = found.inserted_seeds;
+  mesh = std::move(optimized);
 }
 
 }  // namespace isoshell

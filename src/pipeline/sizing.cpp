@@ -121,8 +121,9 @@ int64_t vertices_of_lengths(const Sheet& sheet, Context& context) {
 void smooth_lengths(int64_t vertices, int64_t slope_q16, Sheet& sheet, Context& context) {
   const double edge_vox = std::sqrt(sheet_area_world(sheet) / double(vertices)) / kCellOfEdge / sheet.frame.voxel_size;
   const int64_t rounds = std::llround(0.7 * edge_vox * edge_vox);
-  smooth_edge_lengths(sheet, int32_t(std::min(rounds, kMostLengthSmoothing)), context);
-  set_edge_lengths(sheet, sheet.lengths.at.to_host(), slope_q16, context);
+  EdgeLengths smooth =
+      smooth_edge_lengths(sheet, std::move(sheet.lengths), int32_t(std::min(rounds, kMostLengthSmoothing)), context);
+  sheet.lengths = limit_edge_lengths(sheet, std::move(smooth.at), slope_q16, context);
 }
 
 }  // namespace
@@ -151,7 +152,7 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
   const int64_t asked = field_decides(options) ? 0 : vertex_target(options, sheet_area_world(sheet));
   double cell = kCellOfEdge;
   if (asked > 0) {
-    set_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
+    sheet.lengths = limit_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
     cell = cell_of_length(sheet, asked, context);
   }
   int64_t slope_q16 = 0;
@@ -159,7 +160,7 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
     const Bounded bounded(wanted, voxel_size, cell);
     slope_q16 =
         std::min<int64_t>(std::llround((options.gradation - 1) * kCellOfEdge / cell * 65536), kMostLengthSlopeQ16);
-    set_edge_lengths(sheet, bounded.raw(), slope_q16, context);
+    sheet.lengths = limit_edge_lengths(sheet, bounded.raw(), slope_q16, context);
     const double now = asked > 0 ? cell_of_length(sheet, asked, context) : cell;
     const bool settled = std::abs(now / cell - 1) < 0.01;
     if (settled || round + 1 == kRounds) bounded.warn(wanted, sheet, cell / kCellOfEdge, report);

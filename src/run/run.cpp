@@ -67,8 +67,7 @@ class Run {
       if (input.stage)
         throw Error(ErrorCode::usage, "command line",
                     "--dry-run needs a mesh as INPUT, a stage file has its grid already");
-      DirtCounts dirt;
-      return estimate_run(input.soup, measure_topology(input.soup, dirt, context_), options_.values);
+      return estimate_run(input.soup, measure_topology(input.soup, context_).topology, options_.values);
     });
   }
 

@@ -24,10 +24,12 @@ class BackendTable {
   virtual SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const = 0;
   virtual SiteSet coarsen_sites(const SiteSet&, Context&) const = 0;
   virtual Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const = 0;
-  virtual void set_edge_lengths(SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const = 0;
-  virtual void smooth_edge_lengths(SurfaceMesh&, int32_t rounds, Context&) const = 0;
+  virtual EdgeLengths limit_edge_lengths(const SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16,
+                                         Context&) const = 0;
+  virtual EdgeLengths smooth_edge_lengths(const SurfaceMesh&, EdgeLengths, int32_t rounds, Context&) const = 0;
   virtual int64_t seed_shares(const SurfaceMesh&, Context&) const = 0;
-  virtual void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context&) const = 0;
+  virtual EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to,
+                                            Context&) const = 0;
   virtual Buffer<uint32_t> measure_curvature(const SurfaceMesh&, int32_t rounds, Context&) const = 0;
   virtual SeedSet place_seeds_on_surface(const SurfaceMesh&, const SeedOptions&, Context&) const = 0;
   virtual SeedSet place_seeds_on_sites(const SiteSet&, const SiteSamples&, const SeedOptions&, Context&) const = 0;

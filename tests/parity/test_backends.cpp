@@ -108,26 +108,10 @@ class SideBySide {
 
   Context cpu_context_, cuda_context_;
 };
-
-/// Stages that change seeds get a copy, so that one input serves all runs.
-template <class Work>
-Made<SeedSet> changed(const SeedSet& seeds, Work work) {
-  SeedSet copy = to_host(seeds);
-  std::string facts = work(copy);
-  return {std::move(copy), std::move(facts)};
+Triangulation dual_of(const Products& p, const DualOptions& options, Context& context) {
+  return triangulate_dual(p.sheet, to_host(p.seeds), options, context);
 }
-
-struct DualRun {
-  DualMesh mesh;
-  SeedSet seeds;
-  DualReport report;
-};
-DualRun dual_of(const Products& p, const DualOptions& options, Context& context) {
-  DualRun run;
-  run.seeds = to_host(p.seeds);
-  run.mesh = triangulate_dual(p.sheet, run.seeds, options, run.report, context);
-  return run;
-}
+SeededMesh seeded_mesh_of(const Products& p) { return {to_host(p.dual), to_host(p.seeds)}; }
 
 std::string text_of(const InputTopology& t, const DirtCounts& d) {
   uint64_t area;
@@ -141,12 +125,10 @@ std::string text_of(const InputTopology& t, const DirtCounts& d) {
 }
 
 bool snapped(SideBySide& both, const TriangleSoup& soup, int32_t resolution) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
   return both.stage("snap", &Products::surface, [&](const Products&, Context& c) {
-    DirtCounts dirt;
-    const InputTopology topology = measure_topology(soup, dirt, c);
+    const auto [topology, dirt] = measure_topology(soup, c);
     return made(snap_surface(soup, frame, c), text_of(topology, dirt));
   });
 }
@@ -189,16 +171,17 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
       }))
     return;
   const auto relax = [](const Products& p, Context& c) {
-    return changed(p.seeds, [&](SeedSet& seeds) { return text_of(relax_on_sheet(p.sheet, seeds, {12, 10000, 0}, c)); });
+    RelaxedSeeds relaxed = relax_on_sheet(p.sheet, to_host(p.seeds), {12, 10000, 0}, c);
+    return made(std::move(relaxed.seeds), text_of(relaxed.report));
   };
   if (!both.stage("relax on the sheet", &Products::seeds, relax)) return;
   both.stage("dual, only checked", &Products::dual, [](const Products& p, Context& c) {
-    DualRun run = dual_of(p, {0}, c);
+    Triangulation run = dual_of(p, {0}, c);
     return made(std::move(run.mesh), text_of(run.report));
   });
   int64_t failed_cells = 0;
   if (!both.stage("dual", &Products::dual, [&](const Products& p, Context& c) {
-        DualRun run = dual_of(p, {}, c);
+        Triangulation run = dual_of(p, {}, c);
         failed_cells = run.report.failed_cells;
         return made(std::move(run.mesh), text_of(run.report));
       }))
@@ -211,27 +194,25 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
   });
   if (failed_cells > 0) return;
   both.stage("improved mesh", &Products::dual, [](const Products& p, Context& c) {
-    SeedSet seeds = to_host(p.seeds);
-    DualMesh mesh = to_host(p.dual);
-    const OptimizeReport report = optimize_mesh(p.sheet, {}, seeds, mesh, c);
-    return made(std::move(mesh), std::to_string(report.flips) + " flips, " + std::to_string(report.self_intersections) +
-                                     " intersections, seeds " + digest_text(hash_arrays(seeds)));
+    OptimizedMesh run = optimize_mesh(p.sheet, seeded_mesh_of(p), {}, c);
+    return made(std::move(run.mesh), std::to_string(run.report.flips) + " flips, " +
+                                         std::to_string(run.report.self_intersections) + " intersections, seeds " +
+                                         digest_text(hash_arrays(run.seeds)));
   });
   both.stage("mesh with edges collapsed", &Products::dual, [](const Products& p, Context& c) {
-    SeedSet seeds = to_host(p.seeds);
-    DualMesh mesh = to_host(p.dual);
-    collapse_edges(p.sheet, seeds.size() * 4 / 5, seeds, mesh, c);
-    return made(std::move(mesh), "seeds " + digest_text(hash_arrays(seeds)));
+    SeededMesh run = collapse_edges(p.sheet, seeded_mesh_of(p), {p.seeds.size() * 4 / 5}, c);
+    return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));
   });
   both.stage("mesh without intersections", &Products::dual, [](const Products& p, Context& c) {
-    SeedSet seeds = to_host(p.seeds);
-    Sheet sheet = to_host(p.sheet);
-    const int64_t pairs = untangle_sheet(sheet, seeds, c), asked = seeds.size();
-    DualReport report;
-    DualMesh mesh = triangulate_dual(sheet, seeds, {64, asked}, report, c);
-    if (report.failed_cells == 0) collapse_edges(sheet, asked, seeds, mesh, c, true);
-    return made(std::move(mesh), std::to_string(pairs) + " left, " + text_of(report) + ", seeds " +
-                                     digest_text(hash_arrays(seeds)) + ", sheet " + digest_text(hash_arrays(sheet)));
+    UntangledSheet start = untangle_sheet(to_host(p.sheet), to_host(p.seeds), c);
+    const int64_t asked = start.seeds.size();
+    Triangulation dual = triangulate_dual(start.sheet, std::move(start.seeds), {64, asked}, c);
+    const DualReport report = dual.report;
+    SeededMesh run = std::move(dual);
+    if (report.failed_cells == 0) run = collapse_edges(start.sheet, std::move(run), {asked, true}, c);
+    return made(std::move(run.mesh), std::to_string(start.self_intersections) + " left, " + text_of(report) +
+                                         ", seeds " + digest_text(hash_arrays(run.seeds)) + ", sheet " +
+                                         digest_text(hash_arrays(start.sheet)));
   });
 }
 
@@ -241,29 +222,22 @@ void relax_and_flood_the_shell(SideBySide& both, int64_t count, bool has_sheet) 
       }))
     return;
   const auto relax = [](const Products& p, Context& c) {
-    return changed(p.site_seeds, [&](SeedSet& seeds) {
-      return text_of(relax_in_shell(p.shell, p.sites, p.samples, seeds, {8, 10000, 0}, c));
-    });
+    RelaxedSeeds relaxed = relax_in_shell(p.shell, p.sites, p.samples, to_host(p.site_seeds), {8, 10000, 0}, c);
+    return made(std::move(relaxed.seeds), text_of(relaxed.report));
   };
   if (!both.stage("relax in the shell", &Products::site_seeds, relax)) return;
   both.stage("flood", &Products::labels,
              [](const Products& p, Context& c) { return made(flood_shell(p.shell, p.site_seeds, c)); });
   if (!has_sheet) return;
   const auto attach = [](const Products& p, Context& c) {
-    return changed(p.site_seeds, [&](SeedSet& seeds) {
-      attach_to_sheet(p.sheet, seeds, c);
-      return std::string();
-    });
+    return made(attach_to_sheet(p.sheet, to_host(p.site_seeds), 0, c));
   };
   both.stage("attached seeds", &Products::site_seeds, attach);
   if (both.cpu.proxy.vertex_count() == 0) return;
   const auto attach_twice_as_fine = [](const Products& p, Context& c) {
-    return changed(p.site_seeds, [&](SeedSet& seeds) {
-      for (PointQ8& q : seeds.position) q = {q.x / 2, q.y / 2, q.z / 2};
-      attach_to_sheet(p.proxy, seeds, c);
-      attach_to_sheet(p.sheet, seeds, c, 1);
-      return std::string();
-    });
+    SeedSet seeds = to_host(p.site_seeds);
+    for (PointQ8& q : seeds.position) q = {q.x / 2, q.y / 2, q.z / 2};
+    return made(attach_to_sheet(p.sheet, attach_to_sheet(p.proxy, std::move(seeds), 0, c), 1, c));
   };
   both.stage("seeds moved to a finer lattice", &Products::site_seeds, attach_twice_as_fine);
 }

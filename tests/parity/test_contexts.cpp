@@ -68,8 +68,7 @@ std::string run_once(const Model& model, Method method, Run how, Context& contex
   std::string wrong;
   try {
     if (how == Run::capped && on_device()) {  // beyond the estimate, which would refuse the whole run
-      WorldPoint lo, hi;
-      bounding_box(model.soup, lo, hi);
+      const auto [lo, hi] = bounding_box(model.soup);
       voxelize(snap_surface(model.soup, LatticeFrame::around(lo, hi, 600), context), context);
     }
     RemeshResult result = remesh(model.soup, options_for(method), context);

@@ -85,10 +85,11 @@ TEST_CASE("device: contexts take each other's products and change them", "[devic
       shell = build_shell(sites, {3}, other);
       const SiteSamples samples = sample_sites(surface, sites, other);
       seeds = place_seeds(sites, samples, {300, 0}, one);
-      relax_in_shell(shell, sites, samples, seeds, {5, 0, 0}, other);
+      seeds = relax_in_shell(shell, sites, samples, std::move(seeds), {5, 0, 0}, other).seeds;
     }
-    relax_in_shell(shell, voxelize(surface, other), sample_sites(surface, voxelize(surface, one), other), seeds,
-                   {5, 0, 0}, one);
+    seeds = relax_in_shell(shell, voxelize(surface, other), sample_sites(surface, voxelize(surface, one), other),
+                           std::move(seeds), {5, 0, 0}, one)
+                .seeds;
     return std::vector<uint64_t>{digest(shell), digest(seeds)};
   };
   Context cpu, one, other;

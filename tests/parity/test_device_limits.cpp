@@ -74,11 +74,9 @@ TEST_CASE("limits: more seeds at one place than a leaf's list holds", "[parity][
     return seeds;
   };
   const auto dual = [&](Context& context) {
-    SeedSet seeds = crowded();
-    DualReport report;
-    const DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
-    return std::vector<uint64_t>{hash_arrays(mesh), hash_arrays(seeds), uint64_t(report.inserted_seeds),
-                                 uint64_t(report.repair_rounds), uint64_t(report.failed_cells)};
+    const Triangulation made = triangulate_dual(sheet, crowded(), {}, context);
+    return std::vector<uint64_t>{hash_arrays(made.mesh), hash_arrays(made.seeds), uint64_t(made.report.inserted_seeds),
+                                 uint64_t(made.report.repair_rounds), uint64_t(made.report.failed_cells)};
   };
   CHECK(dual(on.cuda) == dual(on.cpu));
 }
@@ -88,11 +86,9 @@ TEST_CASE("limits: cells of many vertices split in the same halves", "[parity][c
   const Sheet sheet = sheet_of(shapes::snapped(shapes::torus(2, .7, 60, 30), 120, on.cpu), 0, on.cpu);
   for (const int64_t count : {4, 9, 23}) {  // too few for disks: the repair splits cells of thousands of vertices
     const auto dual = [&](Context& context) {
-      SeedSet seeds = place_seeds(sheet, {count, 1}, context);
-      DualReport report;
-      const DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
-      return std::vector<uint64_t>{hash_arrays(mesh), hash_arrays(seeds), uint64_t(report.inserted_seeds),
-                                   uint64_t(report.repair_rounds)};
+      const Triangulation made = triangulate_dual(sheet, place_seeds(sheet, {count, 1}, context), {}, context);
+      return std::vector<uint64_t>{hash_arrays(made.mesh), hash_arrays(made.seeds),
+                                   uint64_t(made.report.inserted_seeds), uint64_t(made.report.repair_rounds)};
     };
     CHECK(dual(on.cuda) == dual(on.cpu));
   }
@@ -103,10 +99,8 @@ TEST_CASE("limits: what the recipe asks of whole products", "[parity][cuda]") {
   const Sheet sheet = sheet_of(shapes::snapped(shapes::torus(2, .7, 60, 30), 90, on.cpu), 0, on.cpu);
   CHECK(six_volume_vox(sheet, on.cuda) == six_volume_vox(sheet, on.cpu));
   const auto fewer = [&](Context& context) {
-    SeedSet seeds = place_seeds(sheet, {400, 1}, context);
-    DualReport report;
-    DualMesh mesh = triangulate_dual(sheet, seeds, {}, report, context);
-    collapse_edges(sheet, 375, seeds, mesh, context);
+    Triangulation made = triangulate_dual(sheet, place_seeds(sheet, {400, 1}, context), {}, context);
+    const SeedSet seeds = collapse_edges(sheet, std::move(made), {375}, context).seeds;
     return std::vector<uint64_t>{uint64_t(seeds.size()), hash_arrays(seeds)};
   };
   CHECK(fewer(on.cuda) == fewer(on.cpu));
@@ -121,8 +115,7 @@ TEST_CASE("limits: topology and snapping of soups of every kind", "[parity][cuda
   for (const shapes::NamedSoup& shape : soups) {
     CAPTURE(shape.name);
     const auto measured = [&](Context& context) {
-      DirtCounts dirt = {};
-      const InputTopology t = measure_topology(shape.soup, dirt, context);
+      const auto [t, dirt] = measure_topology(shape.soup, context);
       uint64_t area;
       std::memcpy(&area, &t.area_world, sizeof area);
       return std::vector<uint64_t>{t.closed,

@@ -50,8 +50,7 @@ struct Lattice {
   SiteSamples samples;
 };
 Lattice lattice_of(const TriangleSoup& soup, int32_t resolution, TestContext& context) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   Lattice l;
   l.surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
   l.sites = voxelize(l.surface, context);

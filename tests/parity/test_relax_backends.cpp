@@ -41,11 +41,17 @@ void same_after(const std::vector<int32_t>& passes, const SeedSet& start, int32_
 }
 
 auto on_sheet(const Sheet& sheet) {
-  return [&](SeedSet& seeds, const RelaxOptions& o, Context& c) { return relax_on_sheet(sheet, seeds, o, c); };
+  return [&](SeedSet& seeds, const RelaxOptions& o, Context& c) {
+    RelaxedSeeds relaxed = relax_on_sheet(sheet, std::move(seeds), o, c);
+    seeds = std::move(relaxed.seeds);
+    return relaxed.report;
+  };
 }
 auto in_shell(const PaperSetup& s) {
   return [&](SeedSet& seeds, const RelaxOptions& o, Context& c) {
-    return relax_in_shell(s.shell, s.sites, s.samples, seeds, o, c);
+    RelaxedSeeds relaxed = relax_in_shell(s.shell, s.sites, s.samples, std::move(seeds), o, c);
+    seeds = std::move(relaxed.seeds);
+    return relaxed.report;
   };
 }
 
@@ -70,9 +76,7 @@ void label_both(const Sheet& sheet, const SeedSet& start) {
   for (const Backend backend : {Backend::cpu, Backend::cuda}) {
     Context context;
     context.backend = backend;
-    SeedSet seeds = to_host(start);
-    DualReport report;
-    const DualMesh mesh = to_host(triangulate_dual(sheet, seeds, {0}, report, context));
+    const DualMesh mesh = to_host(triangulate_dual(sheet, to_host(start), {0}, context).mesh);
     digests[backend == Backend::cuda] = digest(to_world(mesh, sheet.frame));
   }
   CHECK(digests[0] == digests[1]);

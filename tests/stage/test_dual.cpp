@@ -179,8 +179,7 @@ TEST_CASE("dual: thin walls of a voxelised surface keep their genus with few see
   context.threads = kThreads;
   const TriangleSoup soups[] = {shapes::torus(2, 0.25, 90, 24), shapes::sieve(3, 3, 2, 1), shapes::cube_frame(14, 2)};
   for (const TriangleSoup& soup : soups) {
-    WorldPoint lo, hi;
-    bounding_box(soup, lo, hi);
+    const auto [lo, hi] = bounding_box(soup);
     const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, 60), context);
     const SiteSet sites = voxelize(surface, context);
     const Sheet sheet = build_sheet(surface, sites, sample_sites(surface, sites, context), {}, context);

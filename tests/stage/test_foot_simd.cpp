@@ -35,8 +35,7 @@ struct NoteArrivals {
 int64_t projected_elsewhere(const TriangleSoup& soup, int32_t resolution, int32_t off_q8, bool may_bridge) {
   TestContext context;
   CpuExecutor exec(context, "test");
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
   const SiteSet sites = voxelize(surface, context);
   const SiteSamples samples = sample_sites(surface, sites, context);

@@ -294,8 +294,7 @@ TEST_CASE("intersections: every pair of a mesh is found, with any number of thre
   int64_t most = 0;
   for (const TriangleSoup& soup : soups)
     for (int32_t noise : {0, 3000}) {
-      WorldPoint lo, hi;
-      bounding_box(soup, lo, hi);
+      const auto [lo, hi] = bounding_box(soup);
       const LatticeFrame frame = LatticeFrame::around(lo, hi, 100);
       std::vector<PointQ8> position;
       for (const WorldPoint& p : soup.vertices) {

@@ -61,7 +61,7 @@ TEST_CASE("lengths: the limit of their growth is that of shortest paths, whateve
       const Buffer<uint32_t> raw = random_lengths(plain, 100000);
       const std::vector<uint32_t> expected = limited(plain, raw, slope_q16);
       Sheet sheet = torus_sheet();
-      set_edge_lengths(sheet, raw.to_host(), slope_q16, context);
+      sheet.lengths = limit_edge_lengths(sheet, raw.to_host(), slope_q16, context);
       const Buffer<uint32_t> at = sheet.lengths.at.to_host();
       CHECK(std::equal(at.begin(), at.end(), expected.begin(), expected.end()));
       CHECK(sheet.lengths.least == *std::min_element(expected.begin(), expected.end()));
@@ -69,8 +69,8 @@ TEST_CASE("lengths: the limit of their growth is that of shortest paths, whateve
     }
   TestContext context;
   Sheet sheet = torus_sheet();
-  CHECK_THROWS_AS(set_edge_lengths(sheet, Buffer<uint32_t>(3), 100, context), Error);
-  CHECK_THROWS_AS(set_edge_lengths(sheet, random_lengths(sheet, 9), -1, context), Error);
+  CHECK_THROWS_AS(limit_edge_lengths(sheet, Buffer<uint32_t>(3), 100, context), Error);
+  CHECK_THROWS_AS(limit_edge_lengths(sheet, random_lengths(sheet, 9), -1, context), Error);
 }
 
 TEST_CASE("lengths: shares of the seeds add up to the area where lengths are equal", "[lengths][stage]") {
@@ -86,7 +86,7 @@ TEST_CASE("lengths: those of another sheet are taken from its nearest vertices",
   TestContext context;
   const Sheet from = with_lengths(torus_sheet(), 8);
   Sheet to = torus_sheet();
-  copy_edge_lengths(from, 0, to, context);
+  to.lengths = transfer_edge_lengths(from, 0, to, context);
   const Buffer<uint32_t> at = to.lengths.at.to_host();
   CHECK(std::equal(at.begin(), at.end(), from.lengths.at.begin(), from.lengths.at.end()));
   CHECK(to.lengths.least == from.lengths.least);
@@ -122,7 +122,7 @@ TEST_CASE("lengths: the curvature of a ball is one over its radius, of a flat wa
 TEST_CASE("lengths: smoothing gives every vertex the mean of its own and its neighbours' length", "[lengths][stage]") {
   TestContext context;
   Sheet sheet = torus_sheet();
-  set_edge_lengths(sheet, random_lengths(sheet, 100000), kMostLengthSlopeQ16, context);
+  sheet.lengths = limit_edge_lengths(sheet, random_lengths(sheet, 100000), kMostLengthSlopeQ16, context);
   const Buffer<uint32_t> before = sheet.lengths.at.to_host();
   std::vector<std::set<uint32_t>> around(size_t(before.size()));
   for (const TriangleIndices& t : torus_sheet().triangles)
@@ -134,7 +134,7 @@ TEST_CASE("lengths: smoothing gives every vertex the mean of its own and its nei
     for (const uint32_t u : ring) sum += before[u];
     expected.push_back(uint32_t(sum / ring.size()));
   }
-  smooth_edge_lengths(sheet, 1, context);
+  sheet.lengths = smooth_edge_lengths(sheet, std::move(sheet.lengths), 1, context);
   const Buffer<uint32_t> after = sheet.lengths.at.to_host();
   CHECK(std::equal(after.begin(), after.end(), expected.begin(), expected.end()));
   CHECK(sheet.lengths.least == *std::min_element(expected.begin(), expected.end()));

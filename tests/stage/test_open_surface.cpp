@@ -204,7 +204,7 @@ TEST_CASE("open surface: edge lengths reach along the border, and their means co
     constexpr int64_t kSlopeQ16 = 20000;
     std::vector<uint32_t> expected(size_t(surface.vertex_count()), 1 << 20);
     for (uint64_t i = 0; i < 5; ++i) expected[random_bits(4, i) % expected.size()] = 300 + 100 * uint32_t(i);
-    set_edge_lengths(surface, to_buffer(expected), kSlopeQ16, context);
+    surface.lengths = limit_edge_lengths(surface, to_buffer(expected), kSlopeQ16, context);
     surface = host_copy(surface);
     for (bool lowered = true; lowered;) {
       lowered = false;
@@ -224,7 +224,7 @@ TEST_CASE("open surface: edge lengths reach along the border, and their means co
       const uint64_t count = neighbours[v].size() + 1;
       mean.push_back(uint32_t((sum + count / 2) / count));
     }
-    smooth_edge_lengths(surface, 1, context);
+    surface.lengths = smooth_edge_lengths(surface, std::move(surface.lengths), 1, context);
     surface = host_copy(surface);
     CHECK(std::equal(mean.begin(), mean.end(), surface.lengths.at.begin()));
   }
@@ -252,8 +252,9 @@ TEST_CASE("open mesh: collapsing and optimising refuse it on a closed surface, t
   REQUIRE(report.failed_cells == 0);
   const std::vector<TriangleIndices> fewer(mesh.triangles.begin() + 1, mesh.triangles.end());
   mesh.triangles = to_buffer(fewer);
-  check_refused([&] { collapse_edges(sheet, 100, seeds, mesh, context); });
-  check_refused([&] { optimize_mesh(sheet, {}, seeds, mesh, context); });
+  const auto open = [&] { return SeededMesh{to_host(mesh), to_host(seeds)}; };
+  check_refused([&] { collapse_edges(sheet, open(), {100}, context); });
+  check_refused([&] { optimize_mesh(sheet, open(), {}, context); });
 }
 
 TEST_CASE("blocks: labels and cells do not depend on how vertices are cut into them", "[blocks][stage]") {
@@ -290,15 +291,14 @@ TEST_CASE("blocks: stages that go through them refuse a surface without, or with
     CHECK_THROWS_AS(relax_on_sheet(surface, seeds, {1, 0, 0}, context), Error);
     CHECK_THROWS_AS(triangulate_dual(surface, seeds, {}, report, context), Error);
     CHECK_THROWS_AS(optimize_mesh(surface, {}, seeds, mesh, context), Error);
-    CHECK_THROWS_AS(set_edge_lengths(surface, Buffer<uint32_t>(surface.vertex_count()), 0, context), Error);
+    CHECK_THROWS_AS(limit_edge_lengths(surface, Buffer<uint32_t>(surface.vertex_count()), 0, context), Error);
   }
 }
 
 TEST_CASE("blocks: those of a sheet, and of a coarse proxy, are its leaves", "[blocks][sheet][stage][cuda]") {
   TestContext context;
   for (const TriangleSoup& soup : {shapes::torus(2, 0.7, 80, 35), shapes::sphere({0, 0, 0}, 1, 32)}) {
-    WorldPoint lo, hi;
-    bounding_box(soup, lo, hi);
+    const auto [lo, hi] = bounding_box(soup);
     const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, 60), context);
     const SiteSet sites = voxelize(surface, context);
     for (const bool proxy : {false, true}) {

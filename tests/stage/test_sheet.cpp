@@ -130,8 +130,7 @@ struct Pipeline {
 };
 
 Pipeline sites_of(const TriangleSoup& soup, int32_t resolution, TestContext& context) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   Pipeline p;
   p.surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
   p.sites = voxelize(p.surface, context);

@@ -35,7 +35,9 @@ TriangleSoup tetrahedron(WorldPoint apex, double side) {
 InputTopology measured(const TriangleSoup& soup, DirtCounts& dirt, int threads = 2) {
   TestContext context;
   context.threads = threads;
-  return measure_topology(soup, dirt, context);
+  const SoupTopology found = measure_topology(soup, context);
+  dirt = found.dirt;
+  return found.topology;
 }
 InputTopology measured(const TriangleSoup& soup) {
   DirtCounts dirt;
@@ -150,8 +152,7 @@ TEST_CASE("surface: vertices that no triangle uses do not matter", "[surface][st
 
 TEST_CASE("surface: a soup without triangles is nothing to mesh", "[surface][stage]") {
   TestContext context;
-  WorldPoint lo, hi;
-  CHECK_THROWS_AS(bounding_box({}, lo, hi), Error);
+  CHECK_THROWS_AS(bounding_box({}), Error);
   CHECK_THROWS_AS(snap_surface({}, LatticeFrame::around({0, 0, 0}, {1, 1, 1}, 8), context), Error);
 }
 

@@ -27,8 +27,7 @@ int64_t count_intersections(const Sheet& sheet, const Buffer<TriangleIndices>& t
 }
 
 Sheet sheet_of(const TriangleSoup& soup, int32_t resolution, TestContext& context) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context);
   const SiteSet sites = voxelize(surface, context);
   return build_sheet(surface, sites, sample_sites(surface, sites, context), {}, context);
@@ -93,9 +92,10 @@ TriangleSoup wavy_plate(uint32_t n, double thickness) {
 /// Two voxels thick, on cells that are many voxels wide.
 Sheet thin_sheet(TestContext& context) {
   Sheet sheet = sheet_of(wavy_plate(60, 0.07), 64, context);
-  SeedSet none = place_seeds(sheet, {10, 1}, context);
-  REQUIRE(untangle_sheet(sheet, none, context.plain()) == 0);
-  return to_host(sheet);
+  SeedSet few = place_seeds(sheet, {10, 1}, context);
+  const UntangledSheet untangled = untangle_sheet(std::move(sheet), std::move(few), context);
+  REQUIRE(untangled.self_intersections == 0);
+  return to_host(untangled.sheet);
 }
 constexpr int64_t kFewSeeds = 80;
 constexpr int64_t kAnyNumber = 1 << 20;
@@ -109,8 +109,9 @@ TEST_CASE("untangle: a shaken sheet is left without intersections", "[dual][stag
     shake(sheet, voxels);
     REQUIRE(count_intersections(sheet, sheet.triangles, sheet.position) > 1000);
     SeedSet seeds = place_seeds(sheet, {100, 1}, context);
-    CHECK(untangle_sheet(sheet, seeds, context.plain()) == 0);
-    sheet = to_host(sheet);
+    const UntangledSheet untangled = untangle_sheet(std::move(sheet), std::move(seeds), context);
+    CHECK(untangled.self_intersections == 0);
+    sheet = to_host(untangled.sheet);
     CHECK(count_intersections(sheet, sheet.triangles, sheet.position) == 0);
   }
 }
@@ -127,9 +128,10 @@ TEST_CASE("untangle: only vertices of triangles that intersect move, and their s
   p = {p.x - 50 * n.x, p.y - 50 * n.y, p.z - 50 * n.z};
   REQUIRE(count_intersections(sheet, sheet.triangles, sheet.position) > 0);
   const std::vector<PointQ8> placed(seeds.position.begin(), seeds.position.end());
-  CHECK(untangle_sheet(sheet, seeds, context.plain()) == 0);
-  sheet = to_host(sheet);
-  seeds = to_host(seeds);
+  const UntangledSheet untangled = untangle_sheet(std::move(sheet), std::move(seeds), context);
+  CHECK(untangled.self_intersections == 0);
+  sheet = to_host(untangled.sheet);
+  seeds = to_host(untangled.seeds);
   int64_t moved = 0, seeds_moved = 0;
   for (int64_t v = 0; v < sheet.vertex_count(); ++v) moved += !(sheet.position[v] == before.position[v]);
   for (int64_t i = 0; i < seeds.size(); ++i) seeds_moved += !(seeds.position[i] == placed[size_t(i)]);
@@ -161,9 +163,7 @@ TEST_CASE("collapse: an edge whose loss would make triangles intersect stays", "
   for (const bool keep_apart : {false, true}) {
     Meshed m = meshed(sheet, kFewSeeds, kAnyNumber, context);
     const int64_t before = m.seeds.size();
-    collapse_edges(sheet, kFewSeeds, m.seeds, m.mesh, context.plain(), keep_apart);
-    m.seeds = to_host(m.seeds);
-    m.mesh = to_host(m.mesh);
+    collapse_edges(sheet, kFewSeeds, m.seeds, m.mesh, context, keep_apart);
     const int64_t pairs = count_intersections(sheet, m.mesh.triangles, m.mesh.position);
     CHECK(check_mesh(m.mesh.triangles.view(), m.mesh.position.size()).is_closed_manifold());
     CHECK(m.seeds.size() < before);

@@ -62,8 +62,7 @@ bool says(const Refusal& refusal, const std::string& part) { return refusal.text
 
 bool is_closed(const TriangleSoup& soup) {
   Context context;
-  DirtCounts dirt;
-  const InputTopology t = measure_topology(soup, dirt, context);
+  const InputTopology t = measure_topology(soup, context).topology;
   return t.closed && t.oriented && t.components == 1 && t.genus == 0;
 }
 
@@ -187,8 +186,7 @@ TEST_CASE("volume: a grid that is called as another would be numbered keeps its 
   }
   write(file.path, grids);
   const auto radius_of = [&](const std::string& grid) {
-    WorldPoint lo, hi;
-    bounding_box(read(file.path, {grid, {}, 0}), lo, hi);
+    const auto [lo, hi] = bounding_box(read(file.path, {grid, {}, 0}));
     return std::lround((hi.x - lo.x) / 2);
   };
   CHECK(radius_of("d[0]") == 4);

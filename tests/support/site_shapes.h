@@ -44,8 +44,7 @@ inline std::vector<NamedSoup> ugly_soups() {
 
 /// The soup on a lattice of this resolution, in host memory.
 inline LatticeSurface snapped(const TriangleSoup& soup, int32_t resolution, Context& context) {
-  WorldPoint lo, hi;
-  bounding_box(soup, lo, hi);
+  const auto [lo, hi] = bounding_box(soup);
   return to_host(snap_surface(soup, LatticeFrame::around(lo, hi, resolution), context));
 }
 

@@ -1,6 +1,6 @@
 // The context of tests that run on every backend: on the CPU, or with --cuda on the device. A stage that is called with
 // it gives its products back in host memory, where tests look at them. Inputs go to the device the same way in the
-// library itself: every stage takes what lies in host memory.
+// library itself: every stage takes what lies in host memory. Products that a stage changes keep their names here.
 #pragma once
 
 #include "isoshell/backend.h"
@@ -55,45 +55,46 @@ inline SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, con
 }
 inline RelaxReport relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options,
                                   TestContext& context) {
-  RelaxReport report = relax_on_sheet(surface, seeds, options, context.plain());
-  seeds = to_host(seeds);
-  return report;
+  const RelaxedSeeds relaxed = relax_on_sheet(surface, std::move(seeds), options, context.plain());
+  seeds = to_host(relaxed.seeds);
+  return relaxed.report;
 }
 inline RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
                                   const RelaxOptions& options, TestContext& context) {
-  RelaxReport report = relax_in_shell(shell, sites, samples, seeds, options, context.plain());
-  seeds = to_host(seeds);
-  return report;
+  const RelaxedSeeds relaxed = relax_in_shell(shell, sites, samples, std::move(seeds), options, context.plain());
+  seeds = to_host(relaxed.seeds);
+  return relaxed.report;
 }
 inline void attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, TestContext& context, int halvings = 0) {
-  attach_to_sheet(surface, seeds, context.plain(), halvings);
-  seeds = to_host(seeds);
+  seeds = to_host(attach_to_sheet(surface, std::move(seeds), halvings, context.plain()));
 }
 inline VoronoiLabels flood_shell(const Shell& shell, const SeedSet& seeds, TestContext& context) {
   return to_host(flood_shell(shell, seeds, context.plain()));
 }
 inline DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options,
                                  DualReport& report, TestContext& context) {
-  DualMesh mesh = to_host(triangulate_dual(surface, seeds, options, report, context.plain()));
-  seeds = to_host(seeds);
-  return mesh;
+  const Triangulation made = triangulate_dual(surface, std::move(seeds), options, context.plain());
+  seeds = to_host(made.seeds);
+  report = made.report;
+  return to_host(made.mesh);
 }
 inline SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                                TestContext& context) {
   return to_host(subdivide_seeds(surface, mesh, seeds, target, context.plain()));
 }
 inline void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
-                           TestContext& context) {
-  collapse_edges(surface, target, seeds, mesh, context.plain());
-  seeds = to_host(seeds);
-  mesh = to_host(mesh);
+                           TestContext& context, bool keep_apart = false) {
+  const SeededMesh left =
+      collapse_edges(surface, {std::move(mesh), std::move(seeds)}, {target, keep_apart}, context.plain());
+  seeds = to_host(left.seeds);
+  mesh = to_host(left.mesh);
 }
 inline OptimizeReport optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds,
                                     DualMesh& mesh, TestContext& context) {
-  const OptimizeReport report = optimize_mesh(surface, options, seeds, mesh, context.plain());
-  seeds = to_host(seeds);
-  mesh = to_host(mesh);
-  return report;
+  const OptimizedMesh optimized = optimize_mesh(surface, {std::move(mesh), std::move(seeds)}, options, context.plain());
+  seeds = to_host(optimized.seeds);
+  mesh = to_host(optimized.mesh);
+  return optimized.report;
 }
 
 }  // namespace isoshell

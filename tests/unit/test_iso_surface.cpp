@@ -94,8 +94,7 @@ TEST_CASE("iso surface: values that equal the asked one leave no two vertices in
   const TriangleSoup soup = extract_iso_surface(field, 0);
   CHECK(is_closed_2_manifold_by_edges(soup));
   Context context;
-  DirtCounts dirt;
-  const InputTopology topology = measure_topology(soup, dirt, context);
+  const auto [topology, dirt] = measure_topology(soup, context);
   CHECK(topology.closed);
   CHECK(topology.oriented);
   CHECK(dirt.degenerate_faces == 0);
@@ -135,8 +134,7 @@ TEST_CASE("iso surface: tiles without blocks around them are closed too", "[volu
   const TriangleSoup soup = extract_iso_surface(field, 0.5);
   CHECK(is_closed_2_manifold_by_edges(soup));
   Context context;
-  DirtCounts dirt;
-  CHECK(measure_topology(soup, dirt, context).components == 2);
+  CHECK(measure_topology(soup, context).topology.components == 2);
 }
 
 TEST_CASE("iso surface: tiles of different sizes that touch make one solid", "[volume][unit]") {
@@ -146,8 +144,7 @@ TEST_CASE("iso surface: tiles of different sizes that touch make one solid", "[v
   const TriangleSoup soup = extract_iso_surface(field, 0.5);
   CHECK(is_closed_2_manifold_by_edges(soup));
   Context context;
-  DirtCounts dirt;
-  CHECK(measure_topology(soup, dirt, context).components == 2);  // the block is apart
+  CHECK(measure_topology(soup, context).topology.components == 2);  // the block is apart
   CHECK(volume(soup) == Approx(128 * 128 * 256 + 2 * 8 * 8 * 8).epsilon(1e-3));
 }
 

@@ -58,8 +58,7 @@ PointCloud ball(int count, double lowest, double noise, bool normals) {
 
 InputTopology topology_of(const TriangleSoup& soup) {
   Context context;
-  DirtCounts dirt;
-  return measure_topology(soup, dirt, context);
+  return measure_topology(soup, context).topology;
 }
 
 double worst_radius_error(const TriangleSoup& soup, double above) {

@@ -60,8 +60,7 @@ Repaired repaired(const TriangleSoup& soup, bool cap_loops = true) {
   CHECK(triangles_of(repair_soup(shapes::shuffled(soup, 5), {cap_loops}, again)) == triangles_of(m.soup));
   CHECK(again.capped_loops == m.report.capped_loops);
   Context context;
-  DirtCounts dirt;
-  m.topology = measure_topology(m.soup, dirt, context);
+  m.topology = measure_topology(m.soup, context).topology;
   return m;
 }
 

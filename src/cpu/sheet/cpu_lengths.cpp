@@ -6,15 +6,18 @@
 
 namespace isoshell {
 
-void CpuBackend::set_edge_lengths(SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16,
-                                  Context& context) const {
+EdgeLengths CpuBackend::limit_edge_lengths(const SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16,
+                                           Context& context) const {
   CpuExecutor exec(context, "lengths");
-  run_with_threads(context, [&] { set_edge_lengths_body(exec, on_host(surface), raw.to_host(), slope_q16); });
+  return run_with_threads(context,
+                          [&] { return limit_edge_lengths_body(exec, *OnHost(surface), raw.to_host(), slope_q16); });
 }
 
-void CpuBackend::smooth_edge_lengths(SurfaceMesh& surface, int32_t rounds, Context& context) const {
+EdgeLengths CpuBackend::smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths lengths, int32_t rounds,
+                                            Context& context) const {
   CpuExecutor exec(context, "lengths");
-  run_with_threads(context, [&] { smooth_edge_lengths_body(exec, on_host(surface), rounds); });
+  return run_with_threads(
+      context, [&] { return smooth_edge_lengths_body(exec, *OnHost(surface), lengths.at.to_host(), rounds); });
 }
 
 int64_t CpuBackend::seed_shares(const SurfaceMesh& surface, Context& context) const {
@@ -22,9 +25,11 @@ int64_t CpuBackend::seed_shares(const SurfaceMesh& surface, Context& context) co
   return run_with_threads(context, [&] { return seed_shares_body(exec, *OnHost(surface)); });
 }
 
-void CpuBackend::copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context& context) const {
+EdgeLengths CpuBackend::transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to,
+                                              Context& context) const {
   CpuExecutor exec(context, "lengths");
-  run_with_threads(context, [&] { copy_edge_lengths_body(exec, *OnHost(from), halvings, on_host(to)); });
+  return run_with_threads(context,
+                          [&] { return transfer_edge_lengths_body(exec, *OnHost(from), halvings, *OnHost(to)); });
 }
 
 Buffer<uint32_t> CpuBackend::measure_curvature(const SurfaceMesh& surface, int32_t rounds, Context& context) const {

@@ -7,8 +7,8 @@
 
 namespace isoshell {
 
-DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options, DualReport& report,
-                          Context& context) {
+Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
+                               Context& context) {
   require_closed(surface, "dual");
   require_blocks(surface, "dual");
   const int64_t seed_count = seeds.size(), vertex_count = surface.vertex_count();
@@ -19,7 +19,10 @@ DualMesh triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const Dual
   if (options.max_repair_rounds < 0)
     throw Error(ErrorCode::usage, "dual",
                 "max_repair_rounds is " + std::to_string(options.max_repair_rounds) + "; it must be 0 or more");
-  return backend_for(context).triangulate_dual(surface, seeds, options, report, context);
+  Triangulation result;
+  result.mesh = backend_for(context).triangulate_dual(surface, seeds, options, result.report, context);
+  result.seeds = std::move(seeds);
+  return result;
 }
 
 }  // namespace isoshell

@@ -3,8 +3,9 @@
 
 namespace isoshell {
 
-int64_t untangle_sheet(Sheet& sheet, SeedSet& seeds, Context& context) {
-  return backend_for(context).untangle_sheet(sheet, seeds, context);
+UntangledSheet untangle_sheet(Sheet&& sheet, SeedSet&& seeds, Context& context) {
+  const int64_t pairs = backend_for(context).untangle_sheet(sheet, seeds, context);
+  return {std::move(sheet), std::move(seeds), pairs};
 }
 
 }  // namespace isoshell

@@ -4,11 +4,12 @@
 
 namespace isoshell {
 
-OptimizeReport optimize_mesh(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh,
-                             Context& context) {
+OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
+                            Context& context) {
   require_closed(surface, "optimize");
   require_blocks(surface, "optimize");
-  return backend_for(context).optimize_mesh(surface, options, seeds, mesh, context);
+  const OptimizeReport report = backend_for(context).optimize_mesh(surface, options, mesh.seeds, mesh.mesh, context);
+  return {std::move(mesh), report};
 }
 
 }  // namespace isoshell

@@ -4,10 +4,11 @@
 
 namespace isoshell {
 
-void attach_to_sheet(const SurfaceMesh& surface, SeedSet& seeds, Context& context, int halvings) {
+SeedSet attach_to_sheet(const SurfaceMesh& surface, SeedSet&& seeds, int halvings, Context& context) {
   if (surface.vertex_count() == 0)
     throw Error(ErrorCode::usage, "attach", "the sheet has no vertices; seeds need at least one to sit on");
   backend_for(context).attach_to_sheet(surface, seeds, halvings, context);
+  return std::move(seeds);
 }
 
 }  // namespace isoshell

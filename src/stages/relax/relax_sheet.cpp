@@ -6,12 +6,14 @@
 
 namespace isoshell {
 
-RelaxReport relax_on_sheet(const SurfaceMesh& surface, SeedSet& seeds, const RelaxOptions& options, Context& context) {
+RelaxedSeeds relax_on_sheet(const SurfaceMesh& surface, SeedSet&& seeds, const RelaxOptions& options,
+                            Context& context) {
   if (seeds.size() == 0)
     throw Error(ErrorCode::usage, "relax", "there are 0 seeds; relaxation needs at least 1: see place_seeds");
   require_relax_options(options);
   require_blocks(surface, "relax");
-  return backend_for(context).relax_on_sheet(surface, seeds, options, context);
+  RelaxReport report = backend_for(context).relax_on_sheet(surface, seeds, options, context);
+  return {std::move(seeds), std::move(report)};
 }
 
 }  // namespace isoshell

@@ -16,10 +16,11 @@ SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const 
   return backend_for(context).subdivide_seeds(surface, mesh, seeds, target, context);
 }
 
-void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
-                    bool keep_apart) {
+SeededMesh collapse_edges(const SurfaceMesh& surface, SeededMesh&& mesh, const CollapseOptions& options,
+                          Context& context) {
   require_closed(surface, "collapse");
-  backend_for(context).collapse_edges(surface, target, seeds, mesh, context, keep_apart);
+  backend_for(context).collapse_edges(surface, options.target, mesh.seeds, mesh.mesh, context, options.keep_apart);
+  return std::move(mesh);
 }
 
 }  // namespace isoshell

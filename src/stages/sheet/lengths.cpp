@@ -5,7 +5,7 @@
 
 namespace isoshell {
 
-void set_edge_lengths(SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16, Context& context) {
+EdgeLengths limit_edge_lengths(const SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16, Context& context) {
   if (raw.size() != surface.vertex_count())
     throw Error(ErrorCode::usage, "lengths",
                 std::to_string(raw.size()) + " lengths for a surface of " + std::to_string(surface.vertex_count()) +
@@ -15,23 +15,25 @@ void set_edge_lengths(SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_
         ErrorCode::usage, "lengths",
         "slope_q16 is " + std::to_string(slope_q16) + "; it must be 0 to " + std::to_string(kMostLengthSlopeQ16));
   require_blocks(surface, "lengths");
-  backend_for(context).set_edge_lengths(surface, std::move(raw), slope_q16, context);
+  return backend_for(context).limit_edge_lengths(surface, std::move(raw), slope_q16, context);
 }
 
-void smooth_edge_lengths(SurfaceMesh& surface, int32_t rounds, Context& context) {
-  if (surface.lengths.at.empty() || rounds < 0)
+EdgeLengths smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths&& lengths, int32_t rounds, Context& context) {
+  if (lengths.at.size() != surface.vertex_count() || rounds < 0)
     throw Error(ErrorCode::usage, "lengths",
-                surface.lengths.at.empty() ? "the surface has no lengths to smooth; set_edge_lengths gives it some"
-                                           : std::to_string(rounds) + " rounds of smoothing; use 0 or more");
-  backend_for(context).smooth_edge_lengths(surface, rounds, context);
+                rounds < 0
+                    ? std::to_string(rounds) + " rounds of smoothing; use 0 or more"
+                    : std::to_string(lengths.at.size()) + " lengths to smooth on a surface of " +
+                          std::to_string(surface.vertex_count()) + " vertices; limit_edge_lengths gives one for each");
+  return backend_for(context).smooth_edge_lengths(surface, std::move(lengths), rounds, context);
 }
 
 int64_t seed_shares_q16(const SurfaceMesh& surface, Context& context) {
   return backend_for(context).seed_shares(surface, context);
 }
 
-void copy_edge_lengths(const SurfaceMesh& from, int halvings, SurfaceMesh& to, Context& context) {
-  backend_for(context).copy_edge_lengths(from, halvings, to, context);
+EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to, Context& context) {
+  return backend_for(context).transfer_edge_lengths(from, halvings, to, context);
 }
 
 Buffer<uint32_t> measure_curvature(const SurfaceMesh& surface, int32_t rounds, Context& context) {

@@ -151,16 +151,16 @@ struct MeanValue {
   }
 };
 
-/// Takes the lengths to the sheet.
+/// The lengths with their range.
 template <class Exec>
-void keep_lengths(Exec& exec, Buffer<uint32_t> at, SurfaceMesh& surface) {
+EdgeLengths with_range(Exec& exec, Buffer<uint32_t> at) {
   Buffer<uint32_t> range = exec.template make<uint32_t>(2);
   exec.fill(range.view().part(0, 1), UINT32_MAX);
   exec.fill(range.view().part(1, 1), 0u);
   exec.for_each("range of lengths", at.size(), FindRange{at.view(), range.view()});
-  surface.lengths.least = exec.value(View<const uint32_t>(range.view()), 0);
-  surface.lengths.largest = exec.value(View<const uint32_t>(range.view()), 1);
-  surface.lengths.at = std::move(at);
+  const uint32_t least = exec.value(View<const uint32_t>(range.view()), 0);
+  const uint32_t largest = exec.value(View<const uint32_t>(range.view()), 1);
+  return {std::move(at), least, largest};
 }
 
 /// The means, so many times.
@@ -177,7 +177,7 @@ void smooth_values(Exec& exec, const SheetGraph& graph, int32_t rounds, Buffer<u
 
 /// `raw` lies in the executor's memory.
 template <class Exec>
-void set_edge_lengths_body(Exec& exec, SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16) {
+EdgeLengths limit_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16) {
   using namespace lengths;
   const int64_t blocks = surface.blocks.count(), vertices = surface.vertex_count();
   Buffer<uint32_t> next = exec.template make<uint32_t>(vertices);
@@ -192,15 +192,15 @@ void set_edge_lengths_body(Exec& exec, SurfaceMesh& surface, Buffer<uint32_t> ra
     std::swap(raw, next);
     std::swap(awake, wake);
   } while (exec.sum(blocks, IsAwake{awake.view()}) > 0);
-  keep_lengths(exec, std::move(raw), surface);
+  return with_range(exec, std::move(raw));
 }
 
+/// `at` lies in the executor's memory.
 template <class Exec>
-void smooth_edge_lengths_body(Exec& exec, SurfaceMesh& surface, int32_t rounds) {
+EdgeLengths smooth_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buffer<uint32_t> at, int32_t rounds) {
   using namespace lengths;
-  Buffer<uint32_t> at = std::move(surface.lengths.at);
   smooth_values(exec, graph_of(surface), rounds, at);
-  keep_lengths(exec, std::move(at), surface);
+  return with_range(exec, std::move(at));
 }
 
 template <class Exec>
@@ -210,16 +210,14 @@ int64_t seed_shares_body(Exec& exec, const SurfaceMesh& surface) {
 }
 
 template <class Exec>
-void copy_edge_lengths_body(Exec& exec, const SurfaceMesh& from, int halvings, SurfaceMesh& to) {
+EdgeLengths transfer_edge_lengths_body(Exec& exec, const SurfaceMesh& from, int halvings, const SurfaceMesh& to) {
   constexpr int32_t kCellVox = 4;
   PointGrid grid = make_point_grid(exec, from.extent_vox, kCellVox, from.vertex_count());
   fill_point_grid(exec, grid, from.position.view());
-  to.lengths.at = exec.template make<uint32_t>(to.vertex_count());
-  to.lengths.least = from.lengths.least;
-  to.lengths.largest = from.lengths.largest;
-  exec.for_each(
-      "copy lengths", to.vertex_count(),
-      lengths::CopyLength{grid.view(), from.lengths.at.view(), to.position.view(), halvings, to.lengths.at.view()});
+  Buffer<uint32_t> at = exec.template make<uint32_t>(to.vertex_count());
+  exec.for_each("copy lengths", to.vertex_count(),
+                lengths::CopyLength{grid.view(), from.lengths.at.view(), to.position.view(), halvings, at.view()});
+  return {std::move(at), from.lengths.least, from.lengths.largest};
 }
 
 template <class Exec>

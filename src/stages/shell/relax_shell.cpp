@@ -5,11 +5,12 @@
 
 namespace isoshell {
 
-RelaxReport relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet& seeds,
-                           const RelaxOptions& options, Context& context) {
+RelaxedSeeds relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet&& seeds,
+                            const RelaxOptions& options, Context& context) {
   if (seeds.size() == 0) throw Error(ErrorCode::usage, "relax", "there are no seeds; place at least 4");
   require_relax_options(options);
-  return backend_for(context).relax_in_shell(shell, sites, samples, seeds, options, context);
+  RelaxReport report = backend_for(context).relax_in_shell(shell, sites, samples, seeds, options, context);
+  return {std::move(seeds), std::move(report)};
 }
 
 }  // namespace isoshell

@@ -26,25 +26,27 @@ void require_countable(const TriangleSoup& soup) {
 
 }  // namespace
 
-void bounding_box(const TriangleSoup& soup, WorldPoint& box_min, WorldPoint& box_max) {
+WorldBox bounding_box(const TriangleSoup& soup) {
   require_triangles(soup);
   const double inf = std::numeric_limits<double>::infinity();
-  box_min = {inf, inf, inf};
-  box_max = {-inf, -inf, -inf};
+  WorldBox box{{inf, inf, inf}, {-inf, -inf, -inf}};
   std::vector<char> used(soup.vertices.size(), 0);  // each vertex once: triangles meet it six times
   for (const auto& t : soup.triangles)
     for (uint32_t v : t) used[v] = 1;
   for (size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
     const WorldPoint& p = soup.vertices[v];
-    box_min = {std::min(box_min.x, p.x), std::min(box_min.y, p.y), std::min(box_min.z, p.z)};
-    box_max = {std::max(box_max.x, p.x), std::max(box_max.y, p.y), std::max(box_max.z, p.z)};
+    box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
+    box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
   }
+  return box;
 }
 
-InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) {
+SoupTopology measure_topology(const TriangleSoup& soup, Context& context) {
   require_countable(soup);
-  return backend_for(context).measure_topology(soup, dirt, context);
+  SoupTopology measured{{}, soup.dirt};
+  measured.topology = backend_for(context).measure_topology(soup, measured.dirt, context);
+  return measured;
 }
 
 LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) {
