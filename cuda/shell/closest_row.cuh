@@ -161,20 +161,17 @@ class Worker {
     }
   }
 
-  /// Bands up to 3: the bits that matter to a pair are one byte a row.
+  /// Bands up to 3: the table has the nearest sites of a pair by the bits around it.
   template <bool kBorderZ>
   __device__ void rows_by_table(int place, int x, int pair, Pair (&best)[8]) const {
-    const int up = pair == 0 ? 3 : pair == 1 ? 1 : 0, down = pair == 2 ? 1 : pair == 3 ? 3 : 0;
-    const uint32_t own = 0x01010101u * ((0xffu << up & 0xffu) >> down);
-    const int side = pair < 2 ? 0 : 2, side_up = pair < 2 ? 0 : 8 - down, side_down = pair < 2 ? 8 - up : 0;
+    const RowsAround around(pair);
     const uint32_t* table = table_ + kNearestWords + pair * 256;
 #pragma unroll
     for (int leaf = 0; leaf < 3; ++leaf) {
-      const uint64_t middle = site_word(place, leaf, 1, x), other = site_word(place, leaf, side, x);
+      const uint64_t middle = site_word(place, leaf, 1, x), other = site_word(place, leaf, around.other_leaf, x);
       const uint32_t code = Keys::row_code(s_.order, leaf, 0);
-      uint32_t bytes[2];
-      bytes[0] = (uint32_t(middle) << up >> down & own) | (uint32_t(other) << side_up >> side_down & ~own);
-      bytes[1] = (uint32_t(middle >> 32) << up >> down & own) | (uint32_t(other >> 32) << side_up >> side_down & ~own);
+      const uint32_t bytes[2] = {around.of(uint32_t(middle), uint32_t(other)),
+                                 around.of(uint32_t(middle >> 32), uint32_t(other >> 32))};
 #pragma unroll
       for (int in_leaf = 0; in_leaf < 8; ++in_leaf) {
         const int y = leaf * 8 + in_leaf;

@@ -79,6 +79,30 @@ __device__ inline uint32_t table_entry(int pair, int bits, int band) {
   return entry;
 }
 
+/// Of four rows of the leaf, the bits that matter to a pair of voxels, a byte each: the eight voxels of a row that are
+/// around the pair, of which some lie in the leaf before or after it along z.
+struct RowsAround {
+  int up, down;  ///< how far the leaf's own bits move
+  uint32_t own;  ///< where they then lie
+  int other_leaf, other_up, other_down;
+
+  __device__ explicit RowsAround(int pair)
+      : up(pair == 0   ? 3
+           : pair == 1 ? 1
+                       : 0),
+        down(pair == 2   ? 1
+             : pair == 3 ? 3
+                         : 0),
+        own(0x01010101u * ((0xffu << up & 0xffu) >> down)),
+        other_leaf(pair < 2 ? 0 : 2),
+        other_up(pair < 2 ? 0 : 8 - down),
+        other_down(pair < 2 ? 8 - up : 0) {}
+
+  __device__ uint32_t of(uint32_t middle, uint32_t other) const {
+    return (middle << up >> down & own) | (other << other_up >> other_down & ~own);
+  }
+};
+
 /// Of the eight bits of a row, not 0, the one nearest to z, the lower one of two.
 __device__ inline uint32_t nearest_bit(uint32_t row, int z) {
   const uint32_t below = row & ((2u << z) - 1), above = row >> z << z;

@@ -89,10 +89,35 @@ class Worker {
     }
   }
 
+  /// Sites of a plane across x: by leaf along z, four rows along y in a word.
+  using PlaneSites = uint32_t[S::kSpan][2 * S::kSpan];
+  /// Voxels of a plane of a leaf that are near enough to sites of a plane `x` voxels away: by x, and halves of the
+  /// leaf.
+  using Discs = uint32_t[kBand + 1][2];
+
   /// For every distance along x, the voxels across x in the plane's disc of that radius; plane counts from the row.
   __device__ void find_discs(int plane, int lo, int hi) {
-    uint32_t site[S::kSpan][2 * S::kSpan], any = 0;  // by leaf along z, four rows along y
-    const bool inside = plane >= lo && plane < hi;
+    const int slot = plane & (S::kRing - 1);
+    PlaneSites site;
+    const bool any = load_plane(plane, plane >= lo && plane < hi, site);
+    if (!__any_sync(kWholeWarp, any)) {
+#pragma unroll
+      for (int x = 0; x <= kBand; ++x) s_.disc[x][slot] = 0;
+      return;
+    }
+    uint32_t grown[S::kQuads] = {};
+    Discs disc = {};
+#pragma unroll
+    for (int z = 0; z <= kBand; ++z) {
+      grow_along_z(site, z, grown);
+      grow_along_y(grown, z, disc);
+    }
+    store_discs(disc, slot);
+  }
+
+  /// True when the lane's plane has sites.
+  __device__ bool load_plane(int plane, bool inside, PlaneSites& site) const {
+    uint32_t any = 0;
 #pragma unroll
     for (int y = -S::kReach; y <= S::kReach; ++y)
 #pragma unroll
@@ -107,29 +132,33 @@ class Worker {
         site[z + S::kReach][2 * (y + S::kReach) + 1] = uint32_t(word >> 32);
         any |= uint32_t(word) | uint32_t(word >> 32);
       }
-    const int slot = plane & (S::kRing - 1);
-    if (!__any_sync(kWholeWarp, any != 0)) {
+    return any != 0;
+  }
+
+  /// Adds the sites moved by z voxels along z to those moved by less. Only rows that some disc reaches from there.
+  __device__ static void grow_along_z(const PlaneSites& site, int z, uint32_t (&grown)[S::kQuads]) {
 #pragma unroll
-      for (int x = 0; x <= kBand; ++x) s_.disc[x][slot] = 0;
-      return;
+    for (int q = 0; q < S::kQuads; ++q) {
+      const int gap = quad_gap(q + S::kLowQuad), leaf = leaf_of_quad(q + S::kLowQuad);
+      if (gap * gap + z * z <= S::kSq)
+        grown[q] |= moved(site, 2 * (leaf + S::kReach) + (q + S::kLowQuad - 2 * leaf), z);
     }
-    uint32_t grown[S::kQuads] = {}, disc[kBand + 1][2] = {};
+  }
+
+  /// Adds the rows that were grown by z along z, moved along y, to the largest disc that holds such a move. The other
+  /// discs follow in store_discs.
+  __device__ static void grow_along_y(const uint32_t (&grown)[S::kQuads], int z, Discs& disc) {
 #pragma unroll
-    for (int z = 0; z <= kBand; ++z) {
+    for (int y = 0; y <= kBand; ++y) {
+      const int x = root_of(S::kSq - z * z - y * y);
+      if (x < 0 || x == root_of(S::kSq - (z + 1) * (z + 1) - y * y)) continue;  // the next z has it all
 #pragma unroll
-      for (int q = 0; q < S::kQuads; ++q) {
-        const int gap = quad_gap(q + S::kLowQuad), leaf = leaf_of_quad(q + S::kLowQuad);
-        if (gap * gap + z * z <= S::kSq)
-          grown[q] |= moved(site, 2 * (leaf + S::kReach) + (q + S::kLowQuad - 2 * leaf), z);
-      }
-#pragma unroll
-      for (int y = 0; y <= kBand; ++y) {
-        const int x = root_of(S::kSq - z * z - y * y);
-        if (x < 0 || x == root_of(S::kSq - (z + 1) * (z + 1) - y * y)) continue;  // the next z has it all
-#pragma unroll
-        for (int half = 0; half < 2; ++half) disc[x][half] |= rows(grown, 4 * half + y) | rows(grown, 4 * half - y);
-      }
+      for (int half = 0; half < 2; ++half) disc[x][half] |= rows(grown, 4 * half + y) | rows(grown, 4 * half - y);
     }
+  }
+
+  /// A disc holds those of greater distances along x.
+  __device__ void store_discs(Discs& disc, int slot) const {
 #pragma unroll
     for (int x = kBand; x >= 0; --x) {
       if (x < kBand) disc[x][0] |= disc[x + 1][0], disc[x][1] |= disc[x + 1][1];
@@ -138,7 +167,7 @@ class Worker {
   }
 
   /// Four rows of the sites moved by `by` voxels up and down along z.
-  __device__ static uint32_t moved(const uint32_t (&site)[S::kSpan][2 * S::kSpan], int quad, int by) {
+  __device__ static uint32_t moved(const PlaneSites& site, int quad, int by) {
     const int leaves = by / 8, bits = by % 8;
     const uint32_t up = 0x01010101u * (0xffu << bits & 0xffu), down = 0x01010101u * (0xffu >> bits);
     const auto at = [&](int leaf) {
