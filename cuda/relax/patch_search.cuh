@@ -3,25 +3,11 @@
 // seeds' largest costs), then a seed also stays out that the best one beats at every vertex.
 #pragma once
 
-#include "cuda/relax/box_costs.cuh"
+#include "cuda/relax/seeds_near_box.cuh"
 
 namespace isoshell::cuda_relax {
 
 constexpr int kMaxWinners = 32;  ///< candidates of a patch; more take the exact slow path
-
-/// What a search reads.
-struct SeedSearch {
-  BucketGrid grid;
-  BucketTable table;
-  const SeedRecord* seed;
-  int64_t penalty_q16;
-
-  /// Of a seed at offset `away` from a vertex.
-  __device__ int64_t cost(Local away, uint32_t packed_normal, uint32_t other_normal) const {
-    const bool pays = __dp4a(int(packed_normal), int(other_normal), 0) < label::kOpposite;
-    return square(away) + (pays ? penalty_q16 : 0);
-  }
-};
 
 /// Where a candidate is, from the patch's origin.
 struct alignas(16) WinnerPlace {
@@ -37,11 +23,6 @@ struct Winners {
   uint32_t id[kMaxWinners];
 };
 
-/// Scratch of the search: numbers of the seeds in 32 full buckets.
-struct SearchScratch {
-  uint32_t id[32 * kBucketSeeds];
-};
-
 struct SearchResult {
   int count;      ///< above kMaxWinners: overflow, and no winners are given
   bool near;      ///< forms hold every cost in 32 bits, penalties apart
@@ -51,10 +32,9 @@ struct SearchResult {
 };
 
 /// The search of one patch by one warp.
-class PatchSearch {
+class PatchSearch : SeedsNearBox {
  public:
-  __device__ PatchSearch(const SeedSearch& search, const PatchBox& box, SearchScratch& scratch)
-      : search_(search), box_(box), scratch_(scratch), lane_(threadIdx.x & 31) {}
+  using SeedsNearBox::SeedsNearBox;
 
   /// Looks `reach` far first. Cost must fit; the result has count -1 when it no longer does. `most_at(winners)` is the
   /// most that a vertex pays at the nearest of some winners.
@@ -72,62 +52,19 @@ class PatchSearch {
   /// The quick way, for few seeds near the box: looks once, and not for seeds beyond `reach`. Those stay out rightly
   /// where every label costs at most reach^2; the limit does not promise that. False when it does not do.
   __device__ bool find_near(int32_t reach, Winners& out, SearchResult& result) {
-    if (!BoxCosts<uint32_t>::fits(box_, reach)) return false;
-    set_reach(reach);
-    if (cells_ > kFewCells) return false;
-    collect<true>(0);
-    if (next_ < cells_ || !add_spilt(reach)) return false;
+    if (!BoxCosts<uint32_t>::fits(box_, reach) || !collect_few(reach)) return false;
     const BoxCosts<uint32_t> costs(box_, search_.penalty_q16);
-    if (total_ > 32) drop_far(reach);
-    if (total_ > 2 * 32) return false;
-    constexpr uint32_t kNothing = CostBounds<uint32_t>::none();
-    uint32_t id[2] = {kNone, kNone};
-    SeedRecord seed[2] = {};
-    CostBounds<uint32_t> range[2] = {{kNothing, kNothing, kNothing}, {kNothing, kNothing, kNothing}};
-#pragma unroll
-    for (int r = 0; r < 2; ++r)
-      if (32 * r + lane_ < total_) {
-        id[r] = scratch_.id[32 * r + lane_];
-        seed[r] = search_.seed[id[r]];
-        range[r] = costs.of(seed[r], reach);
-      }
-    const bool second = range[1].hi < range[0].hi;
-    const uint32_t mine = second ? range[1].hi : range[0].hi, least = warp_min(mine);
-    if (least == kNothing) return false;
-    const int lane = __ffs(int(__ballot_sync(~0u, mine == least))) - 1;
-    best_id_ = __shfl_sync(~0u, second ? id[1] : id[0], lane);
-    best_may_pay_ = __shfl_sync(~0u, int(second ? range[1].may_oppose : range[0].may_oppose), lane);
-    const SeedRecord best = {__shfl_sync(~0u, second ? seed[1].x : seed[0].x, lane),
-                             __shfl_sync(~0u, second ? seed[1].y : seed[0].y, lane),
-                             __shfl_sync(~0u, second ? seed[1].z : seed[0].z, lane), 0};
-    unsigned kept[2];
-    bool may_oppose = false;
-#pragma unroll
-    for (int r = 0; r < 2; ++r) {
-      const bool in =
-          range[r].lo <= least &&
-          (id[r] == best_id_ || !costs.beaten(best, best_id_, best_may_pay_, seed[r], id[r], range[r].always_opposes));
-      may_oppose |= in && range[r].may_oppose;
-      kept[r] = __ballot_sync(~0u, in);
-    }
-    result.count = __popc(kept[0]) + __popc(kept[1]);
-    if (result.count > kMaxWinners) return false;
-    if (kept[0] >> lane_ & 1) put(out, lanes_before(kept[0]), id[0], seed[0]);
-    if (kept[1] >> lane_ & 1) put(out, __popc(kept[0]) + lanes_before(kept[1]), id[1], seed[1]);
+    const TwoSeeds mine = bound_two(costs, reach);
+    uint32_t least;
+    SeedRecord best;
+    if (!choose_best(mine, least, best) || !keep_two(mine, costs, best, least, out, result)) return false;
     result.limit = least;
     result.reach = reach;
-    result.narrow = !__any_sync(~0u, may_oppose);
     sort(out, result);
     return true;
   }
 
-  /// Collects all seeds within reach of the box, for `cheapest`. False when there is no room for them.
-  __device__ bool gather(int32_t reach) {
-    set_reach(reach);
-    if (cells_ > kFewCells) return false;
-    collect<true>(0);
-    return next_ >= cells_ && add_spilt(reach);
-  }
+  using SeedsNearBox::gather;
 
   /// The collected seed that costs a vertex least, the first of several: the vertex's place is from the patch's origin.
   __device__ uint32_t cheapest(Local v, uint32_t packed_normal) const {
@@ -173,6 +110,69 @@ class PatchSearch {
   }
 
  private:
+  /// Collects the seeds around the box, for find_near: at most two a lane. False when there are more.
+  __device__ bool collect_few(int32_t reach) {
+    if (!gather(reach)) return false;
+    if (total_ > 32) drop_far(reach);
+    return total_ <= 2 * 32;
+  }
+
+  /// The collected seeds of a lane, and what they cost; kNone and no cost where there is none.
+  struct TwoSeeds {
+    uint32_t id[2];
+    SeedRecord seed[2];
+    CostBounds<uint32_t> range[2];
+  };
+  __device__ TwoSeeds bound_two(const BoxCosts<uint32_t>& costs, int32_t reach) const {
+    constexpr uint32_t kNothing = CostBounds<uint32_t>::none();
+    TwoSeeds mine{{kNone, kNone}, {}, {{kNothing, kNothing, kNothing}, {kNothing, kNothing, kNothing}}};
+#pragma unroll
+    for (int r = 0; r < 2; ++r)
+      if (32 * r + lane_ < total_) {
+        mine.id[r] = scratch_.id[32 * r + lane_];
+        mine.seed[r] = search_.seed[mine.id[r]];
+        mine.range[r] = costs.of(mine.seed[r], reach);
+      }
+    return mine;
+  }
+
+  /// The seed of the smallest largest cost, and that cost. Any of several will do. False when there is no seed.
+  __device__ bool choose_best(const TwoSeeds& mine, uint32_t& least, SeedRecord& best) {
+    const bool second = mine.range[1].hi < mine.range[0].hi;
+    const uint32_t most = second ? mine.range[1].hi : mine.range[0].hi;
+    least = warp_min(most);
+    if (least == CostBounds<uint32_t>::none()) return false;
+    const int lane = __ffs(int(__ballot_sync(~0u, most == least))) - 1;
+    best_id_ = __shfl_sync(~0u, second ? mine.id[1] : mine.id[0], lane);
+    best_may_pay_ = __shfl_sync(~0u, int(second ? mine.range[1].may_oppose : mine.range[0].may_oppose), lane);
+    best = {__shfl_sync(~0u, second ? mine.seed[1].x : mine.seed[0].x, lane),
+            __shfl_sync(~0u, second ? mine.seed[1].y : mine.seed[0].y, lane),
+            __shfl_sync(~0u, second ? mine.seed[1].z : mine.seed[0].z, lane), 0};
+    return true;
+  }
+
+  /// Puts down the seeds that the limit leaves and the best one does not beat. False when they are too many.
+  __device__ bool keep_two(const TwoSeeds& mine, const BoxCosts<uint32_t>& costs, const SeedRecord& best,
+                           uint32_t limit, Winners& out, SearchResult& result) const {
+    unsigned kept[2];
+    bool may_oppose = false;
+#pragma unroll
+    for (int r = 0; r < 2; ++r) {
+      const CostBounds<uint32_t>& range = mine.range[r];
+      const bool in = range.lo <= limit &&
+                      (mine.id[r] == best_id_ ||
+                       !costs.beaten(best, best_id_, best_may_pay_, mine.seed[r], mine.id[r], range.always_opposes));
+      may_oppose |= in && range.may_oppose;
+      kept[r] = __ballot_sync(~0u, in);
+    }
+    result.count = __popc(kept[0]) + __popc(kept[1]);
+    if (result.count > kMaxWinners) return false;
+    if (kept[0] >> lane_ & 1) put(out, lanes_before(kept[0]), mine.id[0], mine.seed[0]);
+    if (kept[1] >> lane_ & 1) put(out, __popc(kept[0]) + lanes_before(kept[1]), mine.id[1], mine.seed[1]);
+    result.narrow = !__any_sync(~0u, may_oppose);
+    return true;
+  }
+
   /// The limit, by what seeds cost at most. False when the reach was too short; then it is longer.
   template <class Cost, class Most>
   __device__ bool look(SearchResult& result, Winners& out, Most most_at) {
@@ -277,152 +277,8 @@ class PatchSearch {
     __syncwarp();
   }
 
-  /// Calls each(ids, total) until every seed within the reach of the box on every axis was among them, and perhaps
-  /// others. All lanes call it.
-  template <class Each>
-  __device__ void for_each_batch(Each each) {
-    for (int base = 0; base < cells_; base = next_) {
-      if (base != collected_) collect<false>(base);
-      each(scratch_.id, total_);
-    }
-    if (__any_sync(~0u, has_spilt_)) each(search_.table.spill + 1, int(search_.table.spill[0]));
-  }
-
-  static constexpr int kFewCells = 1 << 10;  ///< the most that a quick search looks at
-
-  /// a / b; for few cells by a product that is off by less than what separates such quotients.
-  template <bool kFew>
-  __device__ static int quotient(int a, int b) {
-    return kFew ? int(__fdividef(float(a) + 0.5f, float(b))) : a / b;
-  }
-
-  __device__ void set_reach(int32_t reach) {
-    const BucketGrid& g = search_.grid;
-    const PointQ8 o = box_.origin;
-    first_[0] = g.cell(o.x + box_.lo.x - reach, 0);
-    first_[1] = g.cell(o.y + box_.lo.y - reach, 1);
-    first_[2] = g.cell(o.z + box_.lo.z - reach, 2);
-    const int nx = g.cell(o.x + box_.hi.x + reach, 0) - first_[0] + 1;
-    dims_[0] = g.cell(o.y + box_.hi.y + reach, 1) - first_[1] + 1;
-    dims_[1] = g.cell(o.z + box_.hi.z + reach, 2) - first_[2] + 1;
-    cells_ = nx * dims_[0] * dims_[1];
-    collected_ = -1;
-  }
-
-  /// Numbers of the seeds in cells base .. next_ - 1 of the box, as many as the scratch holds. Hashed cells share
-  /// buckets: unless strangers may stay, each seed is met in its own cell only.
-  template <bool kStrangers>
-  __device__ void collect(int base) {
-    __syncwarp();
-    total_ = 0;
-    next_ = base;
-#pragma unroll 1
-    while (next_ < cells_ && collect_cells<kStrangers>(next_)) next_ += 32;
-    if (!kStrangers && search_.grid.hash_mask) drop_strangers();
-    collected_ = base;
-    __syncwarp();
-  }
-
-  /// Adds the seeds of 32 cells; false when there is no room for them.
-  template <bool kStrangers>
-  __device__ bool collect_cells(int base) {
-    int count = 0, x = 0, y = 0, z = 0;
-    const uint4* bucket = reinterpret_cast<const uint4*>(search_.table.bucket);
-    uint4 part[2] = {};
-    if (base + lane_ < cells_) {
-      const int c = base + lane_;
-      const int row = quotient<kStrangers>(c, dims_[1]);
-      z = first_[2] + c - row * dims_[1];
-      x = quotient<kStrangers>(row, dims_[0]);
-      y = first_[1] + row - x * dims_[0];
-      x += first_[0];
-      bucket += int64_t(search_.grid.bucket(x, y, z)) * (sizeof(SeedBucket) / sizeof(uint4));
-      part[0] = bucket[0];
-      part[1] = bucket[1];
-      has_spilt_ |= part[0].x > kBucketSeeds;
-      count = int(min(part[0].x, uint32_t(kBucketSeeds)));
-    }
-    const int at = warp_sum_until(count);
-    const int added = __shfl_sync(~0u, at, 31);
-    if (total_ + added > 32 * kBucketSeeds) return false;
-    uint32_t* to = scratch_.id + total_ + at - count;
-    total_ += added;
-    const auto put = [&](int i, uint32_t id) {
-      if (i < count) to[i] = kStrangers ? id : in_cell(id, x, y, z);
-    };
-    put(0, part[0].y), put(1, part[0].z), put(2, part[0].w);
-    put(3, part[1].x), put(4, part[1].y), put(5, part[1].z), put(6, part[1].w);
-    if (count > 7) {
-      part[0] = bucket[2], part[1] = bucket[3];
-      put(7, part[0].x), put(8, part[0].y), put(9, part[0].z), put(10, part[0].w);
-      put(11, part[1].x), put(12, part[1].y), put(13, part[1].z), put(14, part[1].w);
-    }
-    return true;
-  }
-
-  __device__ bool is_near(uint32_t id, int32_t reach) const {
-    return uint64_t(square(box_.outside(search_.seed[id]))) <= uint64_t(int64_t(reach) * reach);
-  }
-
-  /// Adds the seeds within reach of the box that buckets had no room for, where it has such a bucket; false when there
-  /// is no room for them.
-  __device__ bool add_spilt(int32_t reach) {
-    if (!__any_sync(~0u, has_spilt_)) return true;
-    const int spilt = int(search_.table.spill[0]);
-    for (int base = 0; base < spilt; base += 32) {
-      const uint32_t id = base + lane_ < spilt ? search_.table.spill[1 + base + lane_] : kNone;
-      const bool near = id != kNone && is_near(id, reach);
-      const unsigned lanes = __ballot_sync(~0u, near);
-      if (total_ + __popc(lanes) > 32 * kBucketSeeds) return false;
-      if (near) scratch_.id[total_ + lanes_before(lanes)] = id;
-      total_ += __popc(lanes);
-    }
-    __syncwarp();
-    return true;
-  }
-
-  /// Leaves those of the collected seeds that are within reach of the box.
-  __device__ void drop_far(int32_t reach) {
-    int kept = 0;
-#pragma unroll 1
-    for (int base = 0; base < total_; base += 32) {
-      const bool in = base + lane_ < total_;
-      const uint32_t id = in ? scratch_.id[base + lane_] : 0;
-      const bool near = in && is_near(id, reach);
-      const unsigned lanes = __ballot_sync(~0u, near);
-      __syncwarp();  // all have read
-      if (near) scratch_.id[kept + lanes_before(lanes)] = id;
-      kept += __popc(lanes);
-      __syncwarp();
-    }
-    total_ = kept;
-  }
-
-  __device__ uint32_t in_cell(uint32_t id, int x, int y, int z) const {
-    return search_.grid.hash_mask && !search_.grid.holds(x, y, z, search_.seed[id].position()) ? kNone : id;
-  }
-
-  __device__ void drop_strangers() {
-    __syncwarp();
-    int kept = 0;
-    for (int base = 0; base < total_; base += 32) {
-      const uint32_t id = base + lane_ < total_ ? scratch_.id[base + lane_] : kNone;
-      const unsigned mine = __ballot_sync(~0u, id != kNone);
-      __syncwarp();  // all have read
-      if (id != kNone) scratch_.id[kept + lanes_before(mine)] = id;
-      kept += __popc(mine);
-      __syncwarp();
-    }
-    total_ = kept;
-  }
-
-  const SeedSearch& search_;
-  const PatchBox box_;
-  SearchScratch& scratch_;
-  const int lane_;
-  int first_[3] = {}, dims_[2] = {}, cells_ = 0, collected_ = -1, next_ = 0, total_ = 0;
   uint32_t best_id_ = 0;
-  bool best_may_pay_ = false, has_spilt_ = false;
+  bool best_may_pay_ = false;
 };
 
 template <class Most>
