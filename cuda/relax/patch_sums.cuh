@@ -164,50 +164,91 @@ class PatchSums {
 
   static constexpr int kJunctions = 8;  ///< at once, four lanes each
 
-  /// Triangles in three cells (see SplitTriangle::three_cells). Lane i < 3 of four cuts the piece of corner i; the last
-  /// one takes the whole from the owner, and gives it to the corner that gets what the others leave, if there is one.
-  /// Each has two triangles at its corner, (p, at_q, inner) and (p, inner, at_r), of which the second may be nothing.
+  /// Triangles in three cells (see SplitTriangle::three_cells), by four lanes each. Lane i < 3 of four cuts the piece
+  /// of corner i; the last one takes the whole from the owner, and gives it to the corner that gets what the others
+  /// leave, if there is one.
   __device__ Moved junction(PackedTriangle t, int count) const {
-    using in_patch::pick;
     t = {__shfl_sync(~0u, t.corners, lane_ >> 2), __shfl_sync(~0u, t.area2, lane_ >> 2)};
-    const int group = lane_ & ~3, i = min(lane_ & 3, 2), next = i == 2 ? 0 : i + 1, last = i == 0 ? 2 : i - 1;
-    const bool has_corner = (lane_ & 3) < 3;
-    const int number[3] = {label(t, i), label(t, next), label(t, last)};
-    const in_patch::Junction mine{{corner(t, i), corner(t, next), corner(t, last)},
-                                  {seed(number[0]), seed(number[1]), seed(number[2])}};
-    const unsigned separating = __ballot_sync(~0u, has_corner && mine.separates()) >> group & 7;
-    const int k = separating ? __ffs(int(separating)) - 1 : -1;  // the corner whose seed keeps the other two apart
-    // The bisectors that cut the sides: with the neighbours' seeds, or both with the one in between.
-    const Local other_q = k == last ? mine.s[2] : mine.s[1], other_r = k == next ? mine.s[1] : mine.s[2];
-    const int32_t on_q = crossing(mine, other_q, 1), on_r = crossing(mine, other_r, 2);
-    Local at_q = in_patch::between32(mine.p[0], mine.p[1], on_q),
-          at_r = in_patch::between32(mine.p[0], mine.p[2], on_r);
-    Local inner = at_r;
-    int32_t part = in_patch::part_of(int32_t(t.area2), on_q, on_r), second_part = 0;
-    uint32_t from = kNoLabel, to = number[0];
-    const auto of_corner = [&](int c) { return uint32_t(c == i ? number[0] : c == next ? number[1] : number[2]); };
-    if (__any_sync(~0u, k < 0)) {
-      const int32_t weight = meeting_weight(mine, group, i);
-      const int32_t weight_1 = __shfl_sync(~0u, weight, group + 1), weight_2 = __shfl_sync(~0u, weight, group + 2);
-      if (k < 0) {
-        const int32_t x[3] = {kOneQ15 - weight_1 - weight_2, weight_1, weight_2};
-        inner = meeting_point(t, weight_1, weight_2);
-        part = in_patch::part_of(int32_t(t.area2), on_q, pick(last, x[0], x[1], x[2]));
-        second_part = in_patch::part_of(int32_t(t.area2), on_r, pick(next, x[0], x[1], x[2]));
-      }
-    }
-    if (k >= 0) from = of_corner(k);
-    if (k == i) from = to = kNoLabel;
-    if (!has_corner) {
-      at_q = mine.p[1], inner = mine.p[2];
-      part = int32_t(t.area2), second_part = 0;
-      from = of_corner(t.owner()), to = k >= 0 ? of_corner(k) : kNoLabel;
+    const JunctionLane at = junction_lane(t);
+    const int k = separating_corner(at);
+    const CornerSides sides = cut_sides(at, k);
+    TwoTriangles piece = cut_corner(t, sides);
+    if (__any_sync(~0u, k < 0)) meet_inside(t, at, k, sides, piece);
+    uint32_t from = k >= 0 ? at.label_of(k) : kNoLabel, to = at.number[0];
+    if (k == at.i) from = to = kNoLabel;
+    if (!at.has_corner) {
+      piece = {at.mine.p[1], at.mine.p[2], piece.at_r, int32_t(t.area2), 0};
+      from = at.label_of(t.owner()), to = k >= 0 ? at.label_of(k) : kNoLabel;
       if (from == to) from = to = kNoLabel;
     }
     if (lane_ >> 2 >= count) from = to = kNoLabel;
-    return {in_patch::piece_sum32(part, mine.p[0], at_q, inner) +
-                in_patch::piece_sum32(second_part, mine.p[0], inner, at_r),
+    return {in_patch::piece_sum32(piece.area2, at.mine.p[0], piece.at_q, piece.inner) +
+                in_patch::piece_sum32(piece.second_area2, at.mine.p[0], piece.inner, piece.at_r),
             from, to, false};
+  }
+
+  /// A lane's part of a triangle in three cells: the corners from its own on, i, next and last.
+  struct JunctionLane {
+    int group, i, next, last;  ///< group: the first of the four lanes
+    bool has_corner;           ///< the fourth lane has the place of the third, but not its corner
+    int number[3];             ///< the corners' labels
+    in_patch::Junction mine;
+    __device__ uint32_t label_of(int corner) const {
+      return uint32_t(corner == i ? number[0] : corner == next ? number[1] : number[2]);
+    }
+  };
+  __device__ JunctionLane junction_lane(const PackedTriangle& t) const {
+    const int i = min(lane_ & 3, 2), next = i == 2 ? 0 : i + 1, last = i == 0 ? 2 : i - 1;
+    const int number[3] = {label(t, i), label(t, next), label(t, last)};
+    return {lane_ & ~3,
+            i,
+            next,
+            last,
+            (lane_ & 3) < 3,
+            {number[0], number[1], number[2]},
+            {{corner(t, i), corner(t, next), corner(t, last)}, {seed(number[0]), seed(number[1]), seed(number[2])}}};
+  }
+
+  /// The corner whose seed keeps the other two apart, or -1.
+  __device__ static int separating_corner(const JunctionLane& at) {
+    const unsigned separating = __ballot_sync(~0u, at.has_corner && at.mine.separates()) >> at.group & 7;
+    return separating ? __ffs(int(separating)) - 1 : -1;
+  }
+
+  /// Where bisectors cut the sides of a corner: with the neighbours' seeds, or both with the one in between.
+  struct CornerSides {
+    int32_t on_q, on_r;
+    Local at_q, at_r;
+  };
+  __device__ static CornerSides cut_sides(const JunctionLane& at, int k) {
+    const in_patch::Junction& mine = at.mine;
+    const Local other_q = k == at.last ? mine.s[2] : mine.s[1], other_r = k == at.next ? mine.s[1] : mine.s[2];
+    const int32_t on_q = crossing(mine, other_q, 1), on_r = crossing(mine, other_r, 2);
+    return {on_q, on_r, in_patch::between32(mine.p[0], mine.p[1], on_q),
+            in_patch::between32(mine.p[0], mine.p[2], on_r)};
+  }
+
+  /// The piece of the corner p: the triangles (p, at_q, inner) and (p, inner, at_r), of which the second may be
+  /// nothing.
+  struct TwoTriangles {
+    Local at_q, inner, at_r;
+    int32_t area2, second_area2;
+  };
+  __device__ static TwoTriangles cut_corner(const PackedTriangle& t, const CornerSides& sides) {
+    return {sides.at_q, sides.at_r, sides.at_r, in_patch::part_of(int32_t(t.area2), sides.on_q, sides.on_r), 0};
+  }
+
+  /// Where no corner keeps the others apart, the cells meet inside. All lanes of the warp call it.
+  __device__ void meet_inside(const PackedTriangle& t, const JunctionLane& at, int k, const CornerSides& sides,
+                              TwoTriangles& piece) const {
+    using in_patch::pick;
+    const int32_t weight = meeting_weight(at.mine, at.group, at.i);
+    const int32_t weight_1 = __shfl_sync(~0u, weight, at.group + 1), weight_2 = __shfl_sync(~0u, weight, at.group + 2);
+    if (k >= 0) return;
+    const int32_t x[3] = {kOneQ15 - weight_1 - weight_2, weight_1, weight_2};
+    piece.inner = meeting_point(t, weight_1, weight_2);
+    piece.area2 = in_patch::part_of(int32_t(t.area2), sides.on_q, pick(at.last, x[0], x[1], x[2]));
+    piece.second_area2 = in_patch::part_of(int32_t(t.area2), sides.on_r, pick(at.next, x[0], x[1], x[2]));
   }
 
   /// Where the bisector of its first seed with another crosses the side to corner `end`.
