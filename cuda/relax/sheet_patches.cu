@@ -83,6 +83,14 @@ struct ForeignVertices {
     if (t.c >= own_end) insert(t.c);
     atomicAdd(&triangles, 1);
   }
+
+  /// Those of a patch, and how many triangles it has. By one warp.
+  __device__ void gather(const PatchSource& source, const PatchSource::Part& part, int lane) {
+    clear(lane);
+    const int64_t own_end = part.end;
+    source.for_each_triangle(part, lane, [&](TriangleIndices t) { insert_corners(t, own_end); });
+    __syncwarp();
+  }
 };
 
 struct CountParts {
@@ -113,11 +121,8 @@ __global__ void count_patches(PatchSource source, PatchCounts counts, int* misfi
   const int64_t number = int64_t(blockIdx.x) * kWarps + (threadIdx.x >> 5);
   if (number >= source.patches) return;
   ForeignVertices& foreign = all[threadIdx.x >> 5];
-  foreign.clear(lane);
   const PatchSource::Part part = source.part(number);
-  const int64_t own_end = part.end;
-  source.for_each_triangle(part, lane, [&](TriangleIndices t) { foreign.insert_corners(t, own_end); });
-  __syncwarp();
+  foreign.gather(source, part, lane);
   if (lane) return;
   const int64_t count = part.end - part.begin + foreign.taken;
   counts.vertices[number] = round_up(count);
@@ -136,92 +141,151 @@ struct PatchTarget {
   int* misfits;
 };
 
-__global__ void fill_patches(PatchSource source, PatchTarget to) {
-  __shared__ ForeignVertices all[kWarps];
-  __shared__ PieceExchange exchange[kWarps];
-  const int lane = threadIdx.x & 31;
-  const int64_t number = int64_t(blockIdx.x) * kWarps + (threadIdx.x >> 5);
-  if (number >= source.patches) return;
-  ForeignVertices& foreign = all[threadIdx.x >> 5];
-  const PatchSource::Part part = source.part(number);
-  const int64_t own = part.begin, own_end = part.end;
-  foreign.clear(lane);
-  source.for_each_triangle(part, lane, [&](TriangleIndices t) { foreign.insert_corners(t, own_end); });
-  __syncwarp();
+/// Fills one patch, by one warp.
+class FillPatch {
+ public:
+  __device__ FillPatch(const PatchSource& source, const PatchTarget& to, int64_t number, ForeignVertices& foreign,
+                       PieceExchange& exchange)
+      : source_(source),
+        to_(to),
+        number_(number),
+        foreign_(foreign),
+        exchange_(exchange),
+        lane_(threadIdx.x & 31),
+        part_(source.part(number)),
+        origin_(source.blocks.centre[part_.block]),
+        vertex_first_(to.first.vertices[number]),
+        triangle_first_(to.first.triangles[number]),
+        owned_first_(to.first.owned[number]) {}
 
-  const PointQ8 origin = source.blocks.centre[part.block];
-  const int64_t first = to.first.vertices[number];
-  label::Bounds bounds = label::empty_bounds();
-  bool fits = true;
-  const auto put = [&](int place, uint32_t v) {
-    const PointQ8 p = source.position[v];
-    const Normal8 n = source.normal[v];
-    const Local u = local(p, origin);
-    fits &= u.x > -kMaxLocal && u.x < kMaxLocal && u.y > -kMaxLocal && u.y < kMaxLocal && u.z > -kMaxLocal &&
-            u.z < kMaxLocal;
-    to.vertex[first + place] = {int16_t(u.x), int16_t(u.y), int16_t(u.z), 0};
-    to.normal[first + place] = pack(n);
-    label::include(bounds, p, n);
-  };
-  for (int64_t v = own + lane; v < own_end; v += 32) put(int(v - own), uint32_t(v));
-  int places = int(own_end - own);
-  for (int base = 0; base < kHashSlots; base += 32) {
-    const uint32_t v = foreign.vertex[base + lane];
-    const unsigned used = __ballot_sync(~0u, v != kNone);
-    const int place = places + lanes_before(used);
-    if (v != kNone) {
-      foreign.place[base + lane] = uint16_t(place);
-      put(place, v);
+  __device__ void run() {
+    foreign_.gather(source_, part_, lane_);
+    copy_own_vertices();
+    copy_foreign_vertices();
+    pack_triangles();
+    describe();
+  }
+
+ private:
+  __device__ void copy_vertex(int place, uint32_t v) {
+    const PointQ8 p = source_.position[v];
+    const Normal8 n = source_.normal[v];
+    const Local u = local(p, origin_);
+    fits_ &= u.x > -kMaxLocal && u.x < kMaxLocal && u.y > -kMaxLocal && u.y < kMaxLocal && u.z > -kMaxLocal &&
+             u.z < kMaxLocal;
+    to_.vertex[vertex_first_ + place] = {int16_t(u.x), int16_t(u.y), int16_t(u.z), 0};
+    to_.normal[vertex_first_ + place] = pack(n);
+    label::include(bounds_, p, n);
+  }
+
+  __device__ void copy_own_vertices() {
+    for (int64_t v = part_.begin + lane_; v < part_.end; v += 32) copy_vertex(int(v - part_.begin), uint32_t(v));
+    places_ = int(part_.end - part_.begin);
+  }
+
+  /// In the order of the hash table, which keeps their places for the triangles.
+  __device__ void copy_foreign_vertices() {
+    for (int base = 0; base < kHashSlots; base += 32) {
+      const uint32_t v = foreign_.vertex[base + lane_];
+      const unsigned used = __ballot_sync(~0u, v != kNone);
+      const int place = places_ + lanes_before(used);
+      if (v != kNone) {
+        foreign_.place[base + lane_] = uint16_t(place);
+        copy_vertex(place, v);
+      }
+      places_ += __popc(used);
     }
-    places += __popc(used);
-  }
-  if (lane == 0) foreign.triangles = 0;
-  __syncwarp();
-
-  PieceSum total{0, 0, 0, 0, 0};
-  const int64_t triangle_first = to.first.triangles[number], owned_first = to.first.owned[number];
-  for (int64_t base = own; base < own_end; base += 32) {
-    PieceSum owned{0, 0, 0, 0, 0};
-    const int64_t v = base + lane;
-    if (v < own_end)
-      source.for_each_triangle_of(v, [&](TriangleIndices t) {
-        const PointQ8 a = source.position[t.a], b = source.position[t.b], c = source.position[t.c];
-        const Vec64 n = cross(difference(b, a), difference(c, a));
-        const uint32_t area2 = source.lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
-        const auto place = [&](uint32_t u) { return uint32_t(u < own_end ? int(u - own) : foreign.place_of(u)); };
-        const uint32_t owner = t.a == v ? 0 : t.b == v ? 1 : 2;
-        to.triangle[triangle_first + atomicAdd(&foreign.triangles, 1)] = {
-            place(t.a) | place(t.b) << 10 | place(t.c) << 20 | owner << 30, area2};
-        owned = owned + piece_sum(area2, local(a, origin), local(b, origin), local(c, origin));
-      });
-    total = total + owned;
+    if (lane_ == 0) foreign_.triangles = 0;
     __syncwarp();
-    to.owned[owned_first + base - own + lane] = bytes_of(owned, exchange[threadIdx.x >> 5]);
   }
-  __syncwarp();
-  Patch patch;
-  patch.vertex_first = first;
-  patch.triangle_first = triangle_first;
-  patch.owned_first = owned_first;
-  patch.total = {warp_sum(total.mass), warp_sum(total.first_x), warp_sum(total.first_y), warp_sum(total.first_z),
-                 warp_sum(total.second)};
-  const auto lowest = [](int32_t lo, int32_t from) { return int16_t(warp_min(lo) - from); };
-  const auto highest = [](int32_t hi, int32_t from) { return int16_t(warp_max(hi) - from); };
-  const Normal8 lo = bounds.normal_lo, hi = bounds.normal_hi;
-  patch.bounds = {origin,
-                  pack({int8_t(warp_min(lo.x)), int8_t(warp_min(lo.y)), int8_t(warp_min(lo.z))}),
-                  {lowest(bounds.lo.x, origin.x), lowest(bounds.lo.y, origin.y), lowest(bounds.lo.z, origin.z)},
-                  {highest(bounds.hi.x, origin.x), highest(bounds.hi.y, origin.y), highest(bounds.hi.z, origin.z)},
-                  pack({int8_t(warp_max(hi.x)), int8_t(warp_max(hi.y)), int8_t(warp_max(hi.z))})};
-  patch.own = uint16_t(own_end - own);
-  patch.vertices = uint16_t(places);
-  patch.triangles = uint16_t(foreign.triangles);
-  patch.unused = 0;
-  if (lane < round_up(patch.vertices) - patch.vertices) to.vertex[first + patch.vertices + lane] = {0, 0, 0, 0};
-  if (lane < round_up(patch.triangles) - patch.triangles) to.triangle[triangle_first + patch.triangles + lane] = {0, 0};
-  fits &= patch.total.mass < kMaxPatchMass;
-  if (!fits) atomicAdd(to.misfits, 1);
-  if (lane == 0) to.patch[number] = patch;
+
+  /// The triangles, and the moments of those that each vertex owns; in `total_` those of the lane's vertices.
+  __device__ void pack_triangles() {
+    for (int64_t base = part_.begin; base < part_.end; base += 32) {
+      PieceSum owned{0, 0, 0, 0, 0};
+      const int64_t v = base + lane_;
+      if (v < part_.end)
+        source_.for_each_triangle_of(v, [&](TriangleIndices t) { owned = owned + pack_triangle(t, v); });
+      total_ = total_ + owned;
+      __syncwarp();
+      to_.owned[owned_first_ + base - part_.begin + lane_] = bytes_of(owned, exchange_);
+    }
+    __syncwarp();
+  }
+
+  /// A triangle of vertex v. Returns its moments.
+  __device__ PieceSum pack_triangle(TriangleIndices t, int64_t v) {
+    const PointQ8 a = source_.position[t.a], b = source_.position[t.b], c = source_.position[t.c];
+    const Vec64 n = cross(difference(b, a), difference(c, a));
+    const uint32_t area2 = source_.lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
+    const uint32_t owner = t.a == v ? 0 : t.b == v ? 1 : 2;
+    to_.triangle[triangle_first_ + atomicAdd(&foreign_.triangles, 1)] = {
+        place_of(t.a) | place_of(t.b) << 10 | place_of(t.c) << 20 | owner << 30, area2};
+    return piece_sum(area2, local(a, origin_), local(b, origin_), local(c, origin_));
+  }
+  __device__ uint32_t place_of(uint32_t v) const {
+    return uint32_t(v < part_.end ? int(v - part_.begin) : foreign_.place_of(v));
+  }
+
+  __device__ void describe() {
+    Patch patch;
+    patch.vertex_first = vertex_first_;
+    patch.triangle_first = triangle_first_;
+    patch.owned_first = owned_first_;
+    patch.total = {warp_sum(total_.mass), warp_sum(total_.first_x), warp_sum(total_.first_y), warp_sum(total_.first_z),
+                   warp_sum(total_.second)};
+    patch.bounds = bounds_of_warp();
+    patch.own = uint16_t(part_.end - part_.begin);
+    patch.vertices = uint16_t(places_);
+    patch.triangles = uint16_t(foreign_.triangles);
+    patch.unused = 0;
+    clear_places_between(patch);
+    fits_ &= patch.total.mass < kMaxPatchMass;
+    if (!fits_) atomicAdd(to_.misfits, 1);
+    if (lane_ == 0) to_.patch[number_] = patch;
+  }
+
+  __device__ PatchBounds bounds_of_warp() const {
+    const auto lowest = [](int32_t lo, int32_t from) { return int16_t(warp_min(lo) - from); };
+    const auto highest = [](int32_t hi, int32_t from) { return int16_t(warp_max(hi) - from); };
+    const PointQ8 box_lo = bounds_.lo, box_hi = bounds_.hi;
+    const Normal8 lo = bounds_.normal_lo, hi = bounds_.normal_hi;
+    return {origin_,
+            pack({int8_t(warp_min(lo.x)), int8_t(warp_min(lo.y)), int8_t(warp_min(lo.z))}),
+            {lowest(box_lo.x, origin_.x), lowest(box_lo.y, origin_.y), lowest(box_lo.z, origin_.z)},
+            {highest(box_hi.x, origin_.x), highest(box_hi.y, origin_.y), highest(box_hi.z, origin_.z)},
+            pack({int8_t(warp_max(hi.x)), int8_t(warp_max(hi.y)), int8_t(warp_max(hi.z))})};
+  }
+
+  /// Copies in steps of 16 bytes read the places up to the next patch.
+  __device__ void clear_places_between(const Patch& patch) const {
+    if (lane_ < round_up(patch.vertices) - patch.vertices)
+      to_.vertex[vertex_first_ + patch.vertices + lane_] = {0, 0, 0, 0};
+    if (lane_ < round_up(patch.triangles) - patch.triangles)
+      to_.triangle[triangle_first_ + patch.triangles + lane_] = {0, 0};
+  }
+
+  const PatchSource& source_;
+  const PatchTarget& to_;
+  const int64_t number_;
+  ForeignVertices& foreign_;
+  PieceExchange& exchange_;
+  const int lane_;
+  const PatchSource::Part part_;
+  const PointQ8 origin_;  ///< of local coordinates
+  const int64_t vertex_first_, triangle_first_, owned_first_;
+  int places_ = 0;  ///< vertices so far
+  bool fits_ = true;
+  label::Bounds bounds_ = label::empty_bounds();
+  PieceSum total_{0, 0, 0, 0, 0};
+};
+
+__global__ void fill_patches(PatchSource source, PatchTarget to) {
+  __shared__ ForeignVertices foreign[kWarps];
+  __shared__ PieceExchange exchange[kWarps];
+  const int warp = int(threadIdx.x) >> 5;
+  const int64_t number = int64_t(blockIdx.x) * kWarps + warp;
+  if (number < source.patches) FillPatch(source, to, number, foreign[warp], exchange[warp]).run();
 }
 
 }  // namespace
