@@ -28,7 +28,7 @@ struct SearchPlacesInOneLaunch;
 struct UndoHarmInOneLaunch;
 }  // namespace optimize
 
-// Steps with a form; see CudaKernels::Forms.
+// Steps with a cooperative kernel; see CudaKernels::CooperativeSteps.
 struct SampleSites;
 struct SortLeafTriangles;
 namespace attach_seeds {
@@ -94,7 +94,7 @@ struct CudaKernels {
   /// optimize_kernels.cuh: the same, and a warp a vertex: a lane tries each place.
   using SearchPlaces = optimize::SearchPlacesInOneLaunch;
 
-  // Plain: one thread an element, or the step's form.
+  // Plain: one thread an element, or the step's cooperative kernel.
   using ProjectVertices = PlainKernels::ProjectVertices;
   using LabelSheet = PlainKernels::LabelSheet;
   using Walks = PlainKernels::Walks;
@@ -106,7 +106,7 @@ struct CudaKernels {
 
   /// Steps whose elements are too large for one thread, or lie so that neighbouring threads would read far apart.
   /// CooperativeKernel (cooperative_kernel.cuh) says how several threads share an element of each.
-  using Forms = StepList<
+  using CooperativeSteps = StepList<
       // attach_cooperative.cuh: a warp a seed, a lane a row of the grid's cells.
       attach_seeds::AttachSeed,
       // flood_cooperative.cuh: a warp a leaf; what it reads of its 26 neighbours lies in shared memory.

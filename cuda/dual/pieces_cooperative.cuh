@@ -1,4 +1,4 @@
-// Forms of the dual's steps over disconnected pieces: a warp a disconnected piece, a lane a vertex of it.
+// Cooperative kernels of the dual's steps over disconnected pieces: a warp a disconnected piece, a lane a vertex of it.
 #pragma once
 
 #include "cuda/runtime/cooperative_kernel.cuh"
@@ -9,7 +9,7 @@ namespace pieces_cooperative {
 
 struct NoShared {};
 template <class Step>
-struct CooperativePiece : FormOf<Step> {
+struct CooperativePiece : CooperativeKernelOf<Step> {
   using Shared = NoShared;
 };
 

@@ -1,4 +1,4 @@
-// Form of attach_to_sheet: a warp a seed. Lanes share the rows of cells around it; one then
+// Cooperative kernel of attach_to_sheet: a warp a seed. Lanes share the rows of cells around it; one then
 // looks at the triangles of its vertex.
 #pragma once
 
@@ -24,7 +24,7 @@ __device__ inline NearestPoint nearest_point(const PointGridView& grid, PointQ8 
 }  // namespace attach_cooperative
 
 template <>
-struct CooperativeKernel<attach_seeds::AttachSeed> : FormOf<attach_seeds::AttachSeed> {
+struct CooperativeKernel<attach_seeds::AttachSeed> : CooperativeKernelOf<attach_seeds::AttachSeed> {
   struct Shared {};
   static __device__ void run(const attach_seeds::AttachSeed& step, int64_t i, Shared&, int lane) {
     const PointQ8 p = step.where_from(i);

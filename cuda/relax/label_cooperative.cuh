@@ -1,4 +1,5 @@
-// Form of the step that labels a sheet: a warp a block. Lanes gather the seeds near the block, then label its vertices.
+// Cooperative kernel of the step that labels a sheet: a warp a block. Lanes gather the seeds near the block, then label
+// its vertices.
 #pragma once
 
 #include "cuda/runtime/cooperative_kernel.cuh"
@@ -142,7 +143,7 @@ class BlockLabeller {
 }  // namespace label_cooperative
 
 template <>
-struct CooperativeKernel<label::LabelBlock<>> : FormOf<label::LabelBlock<>> {
+struct CooperativeKernel<label::LabelBlock<>> : CooperativeKernelOf<label::LabelBlock<>> {
   using Shared = label_cooperative::Candidates;
   static __device__ void run(const label::LabelBlock<>& step, int64_t block, Shared& candidates, int lane) {
     label_cooperative::BlockLabeller(step, block, candidates, lane).run();

@@ -112,8 +112,8 @@ class CudaExecutor {
   void for_each(const char* name, int64_t count, Step step) {
     stop_if_cancelled();
     if (count <= 0) return;
-    if constexpr (Kernels::Forms::has<Step>)
-      launch_block_form(count, step, stream());
+    if constexpr (Kernels::CooperativeSteps::has<Step>)
+      launch_cooperative_kernel(count, step, stream());
     else
       cuda_steps::run_step<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, step);
     check(name);

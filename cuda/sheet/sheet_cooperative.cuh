@@ -1,4 +1,4 @@
-// Forms of build_sheet's steps over leaves: a warp a leaf.
+// Cooperative kernels of build_sheet's steps over leaves: a warp a leaf.
 #pragma once
 
 #include "cuda/sparse/leaf_cooperative.cuh"

@@ -1,4 +1,4 @@
-// Forms of flood_shell's steps over leaves: a warp a leaf.
+// Cooperative kernels of flood_shell's steps over leaves: a warp a leaf.
 #pragma once
 
 #include "cuda/sparse/leaf_cooperative.cuh"

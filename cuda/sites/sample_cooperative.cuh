@@ -88,7 +88,7 @@ struct CooperativeKernel<sample_cooperative::FillMet>
 
 /// Sorts by counting the smaller ones; long lists by one lane in place.
 template <>
-struct CooperativeKernel<SortLeafTriangles> : FormOf<SortLeafTriangles> {
+struct CooperativeKernel<SortLeafTriangles> : CooperativeKernelOf<SortLeafTriangles> {
   static constexpr int kMost = 512;
   struct Shared {
     uint32_t triangle[kMost];

@@ -1,4 +1,4 @@
-// What forms of steps over leaves share: a warp a leaf, and its active voxels as a list.
+// What cooperative kernels over leaves share: a warp a leaf, and its active voxels as a list.
 #pragma once
 
 #include "cuda/runtime/cooperative_kernel.cuh"
@@ -7,7 +7,7 @@
 namespace isoshell::leaf_cooperative {
 
 template <class Step, class SharedOfLeaf>
-struct CooperativeLeaf : FormOf<Step> {
+struct CooperativeLeaf : CooperativeKernelOf<Step> {
   using Shared = SharedOfLeaf;
 };
 

@@ -1,4 +1,4 @@
-// Form of measure_topology's sum of areas: a block a run of faces.
+// Cooperative kernel of measure_topology's sum of areas: a block a run of faces.
 #pragma once
 
 #include "cuda/runtime/cooperative_kernel.cuh"
@@ -8,7 +8,7 @@ namespace isoshell {
 
 /// The threads measure the faces, one of them adds in order.
 template <>
-struct CooperativeKernel<topology_steps::AddAreas> : FormOf<topology_steps::AddAreas, 256, 1> {
+struct CooperativeKernel<topology_steps::AddAreas> : CooperativeKernelOf<topology_steps::AddAreas, 256, 1> {
   using Step = topology_steps::AddAreas;
   struct Shared {
     double area[Step::kChunk];

@@ -1,4 +1,4 @@
-// What the device's forms of steps keep in lists of fixed size, made to overflow: the exact slow paths give the same.
+// What the device's kernels keep in lists of fixed size, made to overflow: the exact slow paths give the same.
 #include <cstring>
 
 #include "golden/golden_cases.h"
