@@ -115,7 +115,7 @@ __device__ inline Labelled label_vertices(const Labelling& at, const SearchResul
       if (base + 32 * r < vertices) {
         at.scratch.label[base + 32 * r] = uint8_t(best[r]);
         used |= 1u << best[r];
-        most = max(most, uint32_t(least[r]) + in_patch::square32(v[r]));
+        most = max(most, uint32_t(least[r]) + square_32(v[r]));
       }
   }
   return {warp_max(most), used};

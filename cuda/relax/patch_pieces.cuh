@@ -1,25 +1,19 @@
-// Pieces of a patch's triangles: voxel/cell_sum.h in short numbers, which its vertices and areas allow (see
-// make_sheet_patches): positions below 2^13, areas below 2^28.
+// Pieces of a patch's triangles: voxel/cell_sum.h in short numbers (voxel/cell_sum_32.h), which its vertices and areas
+// allow (see make_sheet_patches): positions below 2^13, areas below 2^28.
 #pragma once
 
 #include "cuda/relax/box_costs.cuh"
 #include "stages/relax/relax_sheet_body.h"
+#include "voxel/cell_sum_32.h"
 
 namespace isoshell::cuda_relax {
 
 namespace in_patch {
 
-__device__ inline uint32_t square32(Local u) { return uint32_t(u.x * u.x) + uint32_t(u.y * u.y) + uint32_t(u.z * u.z); }
-
 __device__ inline PieceSum piece_sum32(int32_t area2, Local a, Local b, Local c) {
-  const Local sum = {a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z};
+  const Local sum = corner_sum(a, b, c);
   return {area2, int64_t(area2) * sum.x, int64_t(area2) * sum.y, int64_t(area2) * sum.z,
-          int64_t(uint64_t(uint32_t(area2)) * (square32(a) + square32(b) + square32(c) + square32(sum)))};
-}
-
-__device__ inline Local between32(Local a, Local b, int32_t t_q15) {
-  return {a.x + ((b.x - a.x) * t_q15 + kOneQ15 / 2 >> 15), a.y + ((b.y - a.y) * t_q15 + kOneQ15 / 2 >> 15),
-          a.z + ((b.z - a.z) * t_q15 + kOneQ15 / 2 >> 15)};
+          int64_t(uint64_t(uint32_t(area2)) * sum_of_squares_32(a, b, c))};
 }
 
 /// The correctly rounded quotient of numbers between 1 and 2^60: the steps of a / b where it need not look for others.
@@ -38,15 +32,11 @@ __device__ inline int32_t crossing32(int64_t here, int64_t there) {
   return here >= 0 ? 0 : there <= 0 ? kOneQ15 : between;
 }
 
-__device__ inline int32_t part_of(int32_t area2, int32_t t_q15, int32_t u_q15) {
-  return int32_t(int64_t(area2) * (t_q15 * u_q15 >> 15) >> 15);
-}
-
 /// The corner p of the triangle (p, q, r) on the side of `here` of the bisector with `other`.
 __device__ inline PieceSum corner_piece32(int32_t area2, Local p, Local q, Local r, Local here, Local other) {
   const int64_t at = bisector_value(p, here, other);
   const int32_t t = crossing32(at, bisector_value(q, here, other)), u = crossing32(at, bisector_value(r, here, other));
-  return piece_sum32(part_of(area2, t, u), p, between32(p, q, t), between32(p, r, u));
+  return piece_sum32(part_of(uint32_t(area2), t * u >> 15), p, between_32(p, q, t), between_32(p, r, u));
 }
 
 /// A triangle whose corners are three seeds', from one of them on.
@@ -56,7 +46,7 @@ struct Junction {
   /// SplitTriangle::separates(0).
   __device__ bool separates() const {
     const Local m =
-        between32(p[1], p[2], crossing32(bisector_value(p[1], s[1], s[2]), bisector_value(p[2], s[1], s[2])));
+        between_32(p[1], p[2], crossing32(bisector_value(p[1], s[1], s[2]), bisector_value(p[2], s[1], s[2])));
     return bisector_value(m, s[1], s[0]) > 0 && bisector_value(m, s[2], s[0]) > 0;
   }
 };
@@ -96,7 +86,7 @@ __device__ inline Int128 add_to_cell(relax_sheet::CellSum& cell, const PieceSum&
   add_unread(cell.first_y, s.first_y - int64_t(mass) * (3 * d.y));
   add_unread(cell.first_z, s.first_z - int64_t(mass) * (3 * d.z));
   return s.second - 8 * (s.first_x * d.x + s.first_y * d.y + s.first_z * d.z) +
-         12 * (int64_t(mass) * int32_t(square32(d)));
+         12 * (int64_t(mass) * int32_t(square_32(d)));
 }
 
 }  // namespace in_patch

@@ -224,8 +224,7 @@ class PatchSums {
     const in_patch::Junction& mine = at.mine;
     const Local other_q = k == at.last ? mine.s[2] : mine.s[1], other_r = k == at.next ? mine.s[1] : mine.s[2];
     const int32_t on_q = crossing(mine, other_q, 1), on_r = crossing(mine, other_r, 2);
-    return {on_q, on_r, in_patch::between32(mine.p[0], mine.p[1], on_q),
-            in_patch::between32(mine.p[0], mine.p[2], on_r)};
+    return {on_q, on_r, between_32(mine.p[0], mine.p[1], on_q), between_32(mine.p[0], mine.p[2], on_r)};
   }
 
   /// The piece of the corner p: the triangles (p, at_q, inner) and (p, inner, at_r), of which the second may be
@@ -235,7 +234,7 @@ class PatchSums {
     int32_t area2, second_area2;
   };
   __device__ static TwoTriangles cut_corner(const PackedTriangle& t, const CornerSides& sides) {
-    return {sides.at_q, sides.at_r, sides.at_r, in_patch::part_of(int32_t(t.area2), sides.on_q, sides.on_r), 0};
+    return {sides.at_q, sides.at_r, sides.at_r, part_of(t.area2, sides.on_q * sides.on_r >> 15), 0};
   }
 
   /// Where no corner keeps the others apart, the cells meet inside. All lanes of the warp call it.
@@ -247,8 +246,8 @@ class PatchSums {
     if (k >= 0) return;
     const int32_t x[3] = {kOneQ15 - weight_1 - weight_2, weight_1, weight_2};
     piece.inner = meeting_point(t, weight_1, weight_2);
-    piece.area2 = in_patch::part_of(int32_t(t.area2), sides.on_q, pick(at.last, x[0], x[1], x[2]));
-    piece.second_area2 = in_patch::part_of(int32_t(t.area2), sides.on_r, pick(at.next, x[0], x[1], x[2]));
+    piece.area2 = part_of(t.area2, sides.on_q * pick(at.last, x[0], x[1], x[2]) >> 15);
+    piece.second_area2 = part_of(t.area2, sides.on_r * pick(at.next, x[0], x[1], x[2]) >> 15);
   }
 
   /// Where the bisector of its first seed with another crosses the side to corner `end`.

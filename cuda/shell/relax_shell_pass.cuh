@@ -120,7 +120,7 @@ __device__ inline LabelledVoxels label_voxels(const ShellPass& pass, const Shell
     uint32_t used = 0;
 #pragma unroll
     for (int r = 0; r < kAtOnce; ++r) {
-      int64_t cost = uint32_t(least[r]) + in_patch::square32(v[r]);
+      int64_t cost = uint32_t(least[r]) + square_32(v[r]);
       if (!found.narrow) {
         const NearestWinner nearest = nearest_winner(winners, found.count, v[r], Normal8{0, 0, 0}, 0);
         label[r] = nearest.number;

@@ -5,9 +5,12 @@
 namespace isoshell {
 namespace {
 
-/// Sum of the corners of a triangle and sum_of_squares of it.
-struct Corners {
+/// Shapes by lanes.
+struct ShapeLanes {
   int32_t x[CutSimd::kLanes], y[CutSimd::kLanes], z[CutSimd::kLanes], squares[CutSimd::kLanes];
+  ISOSHELL_INLINE void set(int i, const Shape32& s) {
+    x[i] = s.sum.x, y[i] = s.sum.y, z[i] = s.sum.z, squares[i] = int32_t(s.squares);
+  }
 };
 
 /// False when some coordinates do not fit; then nothing was done.
@@ -20,35 +23,20 @@ ISOSHELL_VECTOR_VERSIONS bool cut_simd(CutSimd& lanes) {
                beyond(kSeedReach, s.at(i)) | beyond(kSeedReach, o.at(i)) | lanes.area2[i] >> 31;
   if (misfits != 0) return false;
 
-  Corners all, piece;
-  uint32_t share[CutSimd::kLanes];  ///< of the area, q15
+  // Loops of their own for what is in 32 bits and for what is in 64.
+  ShapeLanes all, piece;
+  int32_t share_q15[CutSimd::kLanes];
   for (int i = 0; i < n; ++i) {
-    const int32_t dx = o.x[i] - s.x[i], dy = o.y[i] - s.y[i], dz = o.z[i] - s.z[i];
-    const int32_t mx = o.x[i] + s.x[i], my = o.y[i] + s.y[i], mz = o.z[i] + s.z[i];
-    const int32_t at_p = dx * (2 * p.x[i] - mx) + dy * (2 * p.y[i] - my) + dz * (2 * p.z[i] - mz);
-    const int32_t at_q = dx * (2 * q.x[i] - mx) + dy * (2 * q.y[i] - my) + dz * (2 * q.z[i] - mz);
-    const int32_t at_r = dx * (2 * r.x[i] - mx) + dy * (2 * r.y[i] - my) + dz * (2 * r.z[i] - mz);
-    const int32_t t = crossing(at_p, at_q), u = crossing(at_p, at_r);
-    share[i] = uint32_t(t * u) >> 15;
-    const int32_t qx = part_way(p.x[i], q.x[i], t), qy = part_way(p.y[i], q.y[i], t), qz = part_way(p.z[i], q.z[i], t);
-    const int32_t rx = part_way(p.x[i], r.x[i], u), ry = part_way(p.y[i], r.y[i], u), rz = part_way(p.z[i], r.z[i], u);
-    piece.x[i] = p.x[i] + qx + rx;
-    piece.y[i] = p.y[i] + qy + ry;
-    piece.z[i] = p.z[i] + qz + rz;
-    piece.squares[i] = squares_of(p.x[i], qx, rx) + squares_of(p.y[i], qy, ry) + squares_of(p.z[i], qz, rz);
+    const CornerCut cut = cut_corner(p.at(i), q.at(i), r.at(i), s.at(i), o.at(i));
+    share_q15[i] = cut.share_q15;
+    piece.set(i, cut.shape);
   }
-  for (int i = 0; i < n; ++i) {
-    all.x[i] = p.x[i] + q.x[i] + r.x[i];
-    all.y[i] = p.y[i] + q.y[i] + r.y[i];
-    all.z[i] = p.z[i] + q.z[i] + r.z[i];
-    all.squares[i] =
-        squares_of(p.x[i], q.x[i], r.x[i]) + squares_of(p.y[i], q.y[i], r.y[i]) + squares_of(p.z[i], q.z[i], r.z[i]);
-  }
+  for (int i = 0; i < n; ++i) all.set(i, shape_of(p.at(i), q.at(i), r.at(i)));
   // What moves is the piece, or all of the triangle but the piece.
   for (int i = 0; i < n; ++i) {
-    const uint32_t part = uint32_t(uint64_t(lanes.area2[i]) * share[i] >> 15);
+    const int32_t part = part_of(lanes.area2[i], share_q15[i]);
     const int32_t lost = lanes.all_is_at_p[i] ? int32_t(lanes.area2[i]) : 0;
-    const int32_t kept = lanes.all_is_at_p[i] ? -int32_t(part) : int32_t(part);
+    const int32_t kept = lanes.all_is_at_p[i] ? -part : part;
     lanes.mass[i] = int64_t(lost) + kept;
     lanes.first_x[i] = int64_t(lost) * all.x[i] + int64_t(kept) * piece.x[i];
     lanes.first_y[i] = int64_t(lost) * all.y[i] + int64_t(kept) * piece.y[i];

@@ -20,7 +20,7 @@ ISOSHELL_VECTOR_VERSIONS bool fit(const ThreeCellSimd& t) {
 
 /// SplitTriangle::separates for the seed c of corner r.
 ISOSHELL_INLINE bool separates(Local p, Local q, Local a, Local b, Local c) {
-  const Local m = part_way(p, q, crossing(bisector_value_32(p, a, b), bisector_value_32(q, a, b)));
+  const Local m = between_32(p, q, crossing(bisector_value_32(p, a, b), bisector_value_32(q, a, b)));
   return (bisector_value_32(m, a, c) > 0) & (bisector_value_32(m, b, c) > 0);
 }
 
@@ -35,25 +35,10 @@ ISOSHELL_VECTOR_VERSIONS void find_separating(const ThreeCellSimd& t, int32_t* c
   }
 }
 
-/// A piece while its moments are in 32 bits.
-struct Piece {
-  int32_t mass;
-  Local sum;
-  int32_t squares;
-};
-ISOSHELL_INLINE Piece piece_of(int32_t mass, Local p, Local q, Local r) {
-  return {mass, {p.x + q.x + r.x, p.y + q.y + r.y, p.z + q.z + r.z}, squares_of(p, q, r)};
-}
-ISOSHELL_INLINE PieceSum moments(const Piece& p) {
-  return {p.mass, int64_t(p.mass) * p.sum.x, int64_t(p.mass) * p.sum.y, int64_t(p.mass) * p.sum.z,
-          int64_t(p.mass) * p.squares};
-}
-
 /// SplitTriangle::corner of p against q's seed.
-ISOSHELL_INLINE Piece corner_of(uint32_t area2, Local p, Local q, Local r, Local a, Local b) {
-  const int32_t at = bisector_value_32(p, a, b);
-  const int32_t t = crossing(at, bisector_value_32(q, a, b)), u = crossing(at, bisector_value_32(r, a, b));
-  return piece_of(part_of(area2, t * u >> 15), p, part_way(p, q, t), part_way(p, r, u));
+ISOSHELL_INLINE PieceSum corner_of(uint32_t area2, Local p, Local q, Local r, Local a, Local b) {
+  const CornerCut cut = cut_corner(p, q, r, a, b);
+  return moments(part_of(area2, cut.share_q15), cut.shape);
 }
 
 ISOSHELL_INLINE void store(ThreeCellSimd& t, int k, int i, const PieceSum& piece) {
@@ -66,11 +51,11 @@ ISOSHELL_VECTOR_VERSIONS void split_separated(ThreeCellSimd& t) {
   for (int i = 0; i < kLanes; ++i) {
     const Local p = t.corner[0].at(i), q = t.corner[1].at(i), r = t.corner[2].at(i);
     const Local a = t.seed[0].at(i), b = t.seed[1].at(i), c = t.seed[2].at(i);
-    const PieceSum at_p = moments(corner_of(t.area2[i], p, q, r, a, c));
-    const PieceSum at_q = moments(corner_of(t.area2[i], q, r, p, b, c));
+    const PieceSum at_p = corner_of(t.area2[i], p, q, r, a, c);
+    const PieceSum at_q = corner_of(t.area2[i], q, r, p, b, c);
     store(t, 0, i, at_p);
     store(t, 1, i, at_q);
-    store(t, 2, i, moments(piece_of(int32_t(t.area2[i]), p, q, r)) - at_p - at_q);
+    store(t, 2, i, moments(int32_t(t.area2[i]), shape_of(p, q, r)) - at_p - at_q);
   }
 }
 
@@ -108,8 +93,8 @@ ISOSHELL_INLINE PieceSum around_meeting(uint32_t area2, Local p, Local q, Local 
                                         Local meet, int32_t at_q, int32_t at_r) {
   const int32_t t = crossing(bisector_value_32(p, a, b), bisector_value_32(q, a, b));
   const int32_t u = crossing(bisector_value_32(p, a, c), bisector_value_32(r, a, c));
-  return moments(piece_of(part_of(area2, t * at_r >> 15), p, part_way(p, q, t), meet)) +
-         moments(piece_of(part_of(area2, u * at_q >> 15), p, meet, part_way(p, r, u)));
+  return moments(part_of(area2, t * at_r >> 15), shape_of(p, between_32(p, q, t), meet)) +
+         moments(part_of(area2, u * at_q >> 15), shape_of(p, meet, between_32(p, r, u)));
 }
 
 /// Where no corner's cell separates the others.
@@ -136,8 +121,8 @@ ISOSHELL_VECTOR_VERSIONS void split_meeting(ThreeCellSimd& t, const int32_t* sep
 /// Cells lose the triangles that they had.
 ISOSHELL_VECTOR_VERSIONS void take_all(ThreeCellSimd& t, int k) {
   for (int i = 0; i < kLanes; ++i) {
-    const PieceSum all = moments(
-        piece_of(t.has_all[k][i] * int32_t(t.area2[i]), t.corner[0].at(i), t.corner[1].at(i), t.corner[2].at(i)));
+    const PieceSum all = moments(t.has_all[k][i] * int32_t(t.area2[i]),
+                                 shape_of(t.corner[0].at(i), t.corner[1].at(i), t.corner[2].at(i)));
     t.mass[k][i] -= all.mass;
     t.first_x[k][i] -= all.first_x;
     t.first_y[k][i] -= all.first_y;
