@@ -19,35 +19,62 @@ ISOSHELL_INLINE double dot(const Offset& a, const Offset& b) { return a.x * b.x 
 /// round_to_int, for values in 32 bits.
 ISOSHELL_INLINE int32_t rounded(double x) { return int32_t(__builtin_floor(x + 0.5)); }
 
-// The foot is a + v ab + w ac, or b + v bc; v and w have one divisor. Branches are choices between two values: of those
-// that hold, the last one counts. Not plain are needles and triangles without one of their sides.
+/// Of a triangle abc and a position p: ab.ap, ac.ap, ab.bp, ac.bp, ab.cp and ac.cp, each exact.
+struct FootProducts {
+  double ab_ap, ac_ap, ab_bp, ac_bp, ab_cp, ac_cp;
+};
+
+/// Where closest_point_on_triangle lies: a + (v ab + w ac) / whole, or b + v bc / whole.
+struct FootTerms {
+  double v, w, whole;
+  double from_b;  ///< 1 or 0: numbers of one width in a loop over lanes
+  bool inside;    ///< on no side: there needles must be told apart
+};
+
+/// The cases of closest_point_on_triangle as choices between two values: of those that hold, the last one counts, which
+/// is the first one there.
+ISOSHELL_INLINE FootTerms foot_terms(const FootProducts& d) {
+  const double vc = d.ab_ap * d.ac_bp - d.ab_bp * d.ac_ap, vb = d.ab_cp * d.ac_ap - d.ab_ap * d.ac_cp,
+               va = d.ab_bp * d.ac_cp - d.ab_cp * d.ac_bp;
+  const double past_b = d.ac_bp - d.ab_bp, past_c = d.ab_cp - d.ac_cp;
+  const bool at_a = (d.ab_ap <= 0) & (d.ac_ap <= 0), at_b = (d.ab_bp >= 0) & (d.ac_bp <= d.ab_bp),
+             at_c = (d.ac_cp >= 0) & (d.ab_cp <= d.ac_cp);
+  const bool on_ab = (vc <= 0) & (d.ab_ap >= 0) & (d.ab_bp <= 0), on_ac = (vb <= 0) & (d.ac_ap >= 0) & (d.ac_cp <= 0),
+             on_bc = (va <= 0) & (past_b >= 0) & (past_c >= 0);
+  double v = vb, w = vc, whole = va + vb + vc, from_b = 0;
+  v = on_bc ? past_b : v, w = on_bc ? 0 : w, whole = on_bc ? past_b + past_c : whole, from_b = on_bc ? 1 : from_b;
+  v = on_ac ? 0 : v, w = on_ac ? d.ac_ap : w, whole = on_ac ? d.ac_ap - d.ac_cp : whole, from_b = on_ac ? 0 : from_b;
+  v = at_c ? 0 : v, w = at_c ? 1 : w, whole = at_c ? 1 : whole, from_b = at_c ? 0 : from_b;
+  v = on_ab ? d.ab_ap : v, w = on_ab ? 0 : w, whole = on_ab ? d.ab_ap - d.ab_bp : whole, from_b = on_ab ? 0 : from_b;
+  v = at_b ? 1 : v, w = at_b ? 0 : w, whole = at_b ? 1 : whole, from_b = at_b ? 0 : from_b;
+  v = at_a ? 0 : v, w = at_a ? 0 : w, whole = at_a ? 1 : whole, from_b = at_a ? 0 : from_b;
+  return {v, w, whole, from_b, !(at_a | at_b | at_c | on_ab | on_ac | on_bc)};
+}
+
+/// The ratios of FootTerms. Not plain are needles, and triangles without one of their sides.
+struct FootRatios {
+  double v, w;
+  bool is_plain;
+};
+ISOSHELL_INLINE FootRatios ratios(const FootTerms& foot, const Offset& ab, const Offset& ac) {
+  const bool needle = foot.inside & (foot.whole <= 0x1p-40 * dot(ab, ab) * dot(ac, ac));
+  const double divisor = foot.whole > 0 ? foot.whole : 1, v = foot.v / divisor, w = foot.w / divisor;
+  const bool is_plain = (foot.whole > 0) & !needle & (v * v + w * w <= 4);
+  return {is_plain ? v : 0, is_plain ? w : 0, is_plain};
+}
+
 ISOSHELL_VECTOR_VERSIONS void find_simd(FootSimd& s, int count, double* is_plain) {
   for (int i = 0; i < count; ++i) {
     const Offset ab = way(s.a, s.b, i), ac = way(s.a, s.c, i), ap = way(s.a, s.p, i), bp = way(s.b, s.p, i),
                  cp = way(s.c, s.p, i), bc = way(s.b, s.c, i);
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-                 d6 = dot(ac, cp);
-    const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4, sum = va + vb + vc;
-    const bool at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
-    const bool on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0), on_ac = (vb <= 0) & (d2 >= 0) & (d6 <= 0),
-               on_bc = (va <= 0) & (d4 - d3 >= 0) & (d5 - d6 >= 0);
-    double v = vb, w = vc, all = sum, from_b = 0;
-    v = on_bc ? d4 - d3 : v, w = on_bc ? 0 : w, all = on_bc ? (d4 - d3) + (d5 - d6) : all, from_b = on_bc ? 1 : from_b;
-    v = on_ac ? 0 : v, w = on_ac ? d2 : w, all = on_ac ? d2 - d6 : all, from_b = on_ac ? 0 : from_b;
-    v = at_c ? 0 : v, w = at_c ? 1 : w, all = at_c ? 1 : all, from_b = at_c ? 0 : from_b;
-    v = on_ab ? d1 : v, w = on_ab ? 0 : w, all = on_ab ? d1 - d3 : all, from_b = on_ab ? 0 : from_b;
-    v = at_b ? 1 : v, w = at_b ? 0 : w, all = at_b ? 1 : all, from_b = at_b ? 0 : from_b;
-    v = at_a ? 0 : v, w = at_a ? 0 : w, all = at_a ? 1 : all, from_b = at_a ? 0 : from_b;
-    const bool inside = !(at_a | at_b | at_c | on_ab | on_ac | on_bc);
-    const bool needle = inside & (sum <= 0x1p-40 * dot(ab, ab) * dot(ac, ac));
-    const double divisor = all > 0 ? all : 1, by_ab = v / divisor, by_ac = w / divisor;
-    const bool plain = (all > 0) & !needle & (by_ab * by_ab + by_ac * by_ac <= 4);
-    const double t = plain ? by_ab : 0, u = plain ? by_ac : 0;
-    is_plain[i] = plain ? 1 : 0;
-    const Offset e = {from_b > 0 ? bc.x : ab.x, from_b > 0 ? bc.y : ab.y, from_b > 0 ? bc.z : ab.z};
-    const int32_t x = rounded(t * e.x + u * ac.x) + (from_b > 0 ? s.b.x[i] : s.a.x[i]);
-    const int32_t y = rounded(t * e.y + u * ac.y) + (from_b > 0 ? s.b.y[i] : s.a.y[i]);
-    const int32_t z = rounded(t * e.z + u * ac.z) + (from_b > 0 ? s.b.z[i] : s.a.z[i]);
+    const FootTerms foot = foot_terms({dot(ab, ap), dot(ac, ap), dot(ab, bp), dot(ac, bp), dot(ab, cp), dot(ac, cp)});
+    const FootRatios at = ratios(foot, ab, ac);
+    is_plain[i] = at.is_plain ? 1 : 0;
+    const bool from_b = foot.from_b > 0;
+    const Offset side = {from_b ? bc.x : ab.x, from_b ? bc.y : ab.y, from_b ? bc.z : ab.z};
+    const int32_t x = rounded(at.v * side.x + at.w * ac.x) + (from_b ? s.b.x[i] : s.a.x[i]);
+    const int32_t y = rounded(at.v * side.y + at.w * ac.y) + (from_b ? s.b.y[i] : s.a.y[i]);
+    const int32_t z = rounded(at.v * side.z + at.w * ac.z) + (from_b ? s.b.z[i] : s.a.z[i]);
     s.foot.x[i] = x, s.foot.y[i] = y, s.foot.z[i] = z;
     const double to_x = x - s.p.x[i], to_y = y - s.p.y[i], to_z = z - s.p.z[i];
     s.distance_sq[i] = to_x * to_x + to_y * to_y + to_z * to_z;
