@@ -45,17 +45,17 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-struct RunResult {
+struct ProductDigests {
   std::map<std::string, std::string> digests;
   std::string error;
   double ms = 0;
 };
 
 /// Every product of the run, the labels of the Voronoi volume included.
-RunResult run(const TriangleSoup& soup, const RemeshOptions& options, Backend backend) {
+ProductDigests run(const TriangleSoup& soup, const RemeshOptions& options, Backend backend) {
   Context context;
   context.backend = backend;
-  RunResult result;
+  ProductDigests result;
   RemeshReport report;
   const auto start = std::chrono::steady_clock::now();
   try {
@@ -72,7 +72,7 @@ RunResult run(const TriangleSoup& soup, const RemeshOptions& options, Backend ba
   return result;
 }
 
-std::string first_difference(const RunResult& cpu, const RunResult& cuda) {
+std::string first_difference(const ProductDigests& cpu, const ProductDigests& cuda) {
   if (cpu.error != cuda.error) return "errors: '" + cpu.error + "' and '" + cuda.error + "'";
   for (const char* product : {"surface", "sites", "samples", "shell", "sheet", "passes", "seeds", "labels", "mesh"}) {
     const auto a = cpu.digests.find(product), b = cuda.digests.find(product);
@@ -110,11 +110,11 @@ int main(int argc, char** argv) {
       RemeshOptions options = args.options;
       options.method = method;
       const TriangleSoup soup = read_mesh(file.string());
-      const RunResult cpu = run(soup, options, Backend::cpu);
+      const ProductDigests cpu = run(soup, options, Backend::cpu);
       std::string verdict;
       double first = 0, best = 0;
       for (int i = 0; i < args.runs; ++i, ++runs) {
-        const RunResult cuda = run(soup, options, Backend::cuda);
+        const ProductDigests cuda = run(soup, options, Backend::cuda);
         if (i == 0) first = best = cuda.ms;
         best = std::min(best, cuda.ms);
         const std::string difference = first_difference(cpu, cuda);
