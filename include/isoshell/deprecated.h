@@ -1,6 +1,8 @@
 // Names of 0.1 that changed, for one release.
 #pragma once
 
+#include <utility>
+
 #include "isoshell/boolean_union.h"
 #include "isoshell/repair.h"
 #include "isoshell/stages.h"
@@ -88,12 +90,34 @@ using UniteReport [[deprecated("UnionReport")]] = UnionReport;
   report.failed_cells = made.report.failed_cells;
   return std::move(made.mesh);
 }
+namespace deprecated_forms {
+
+/// A caller's mesh and seeds while a stage has them. They come back whether it returned or threw.
+struct Lent {
+  DualMesh& mesh;
+  SeedSet& seeds;
+  SeededMesh both{std::move(mesh), std::move(seeds)};
+  ~Lent() {
+    mesh = std::move(both.mesh);
+    seeds = std::move(both.seeds);
+  }
+};
+
+inline OptimizeReport optimize(const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds,
+                               DualMesh& mesh, Context& context) {
+  Lent lent{mesh, seeds};
+  OptimizedMesh optimized = optimize_mesh(surface, std::move(lent.both), options, context);
+  lent.both = std::move(optimized);
+  return optimized.report;
+}
+
+}  // namespace deprecated_forms
+
 [[deprecated("use the mesh and the seeds that collapse_edges returns")]] inline void collapse_edges(
     const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh, Context& context,
     bool keep_apart = false) {
-  SeededMesh left = collapse_edges(surface, {std::move(mesh), std::move(seeds)}, {target, keep_apart}, context);
-  seeds = std::move(left.seeds);
-  mesh = std::move(left.mesh);
+  deprecated_forms::Lent lent{mesh, seeds};
+  lent.both = collapse_edges(surface, std::move(lent.both), {target, keep_apart}, context);
 }
 [[deprecated("use the sheet and the seeds that untangle_sheet returns")]] inline int64_t untangle_sheet(
     Sheet& sheet, SeedSet& seeds, Context& context) {
@@ -104,18 +128,12 @@ using UniteReport [[deprecated("UnionReport")]] = UnionReport;
 }
 [[deprecated("use the mesh and the seeds that optimize_mesh returns")]] inline OptimizeReport optimize_mesh(
     const SurfaceMesh& surface, const OptimizeOptions& options, SeedSet& seeds, DualMesh& mesh, Context& context) {
-  OptimizedMesh optimized = optimize_mesh(surface, {std::move(mesh), std::move(seeds)}, options, context);
-  seeds = std::move(optimized.seeds);
-  mesh = std::move(optimized.mesh);
-  return optimized.report;
+  return deprecated_forms::optimize(surface, options, seeds, mesh, context);
 }
 [[deprecated("optimize_mesh")]] inline OptimizeReport improve_mesh(const SurfaceMesh& surface,
                                                                    const OptimizeOptions& options, SeedSet& seeds,
                                                                    DualMesh& mesh, Context& context) {
-  OptimizedMesh optimized = optimize_mesh(surface, {std::move(mesh), std::move(seeds)}, options, context);
-  seeds = std::move(optimized.seeds);
-  mesh = std::move(optimized.mesh);
-  return optimized.report;
+  return deprecated_forms::optimize(surface, options, seeds, mesh, context);
 }
 
 }  // namespace isoshell

@@ -35,6 +35,13 @@ void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::
     if (sheet->source_triangle[int64_t(v)] == kNone) gaps[v] = !bridges.empty() && bridges[v];
 }
 
+/// Gives the caller's seeds back as they are, whether a stage returned or threw: stages take them by moving.
+struct GiveSeedsBack {
+  SeedSet& from;
+  SeedSet& to;
+  ~GiveSeedsBack() { to = std::move(from); }
+};
+
 /// A vertex lies in a gap when its home does. Where all walls were grown, they lie off the surface everywhere.
 void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
   if (p.grown && !p.grown.only_flaps) return;
@@ -84,10 +91,11 @@ SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& repor
 TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
                          Context& context) {
   const int64_t asked = seeds.size();
-  SeededMesh made;
+  SeededMesh made{{}, std::move(seeds)};
+  const GiveSeedsBack give_back{made.seeds, seeds};
   for (int round = 0;; ++round) {
     Triangulation dual =
-        timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, std::move(seeds), {}, context); });
+        timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, std::move(made.seeds), {}, context); });
     const DualReport found = dual.report;
     report.dual.inserted_seeds += found.inserted_seeds;
     report.dual.relabelled_vertices += found.relabelled_vertices;
@@ -98,8 +106,8 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
       made = timed(report, "dual", context, [&] { return collapse_edges(p.sheet, std::move(made), {asked}, context); });
     if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMaxReoptimisations) break;
     const RelaxOptions again{kReoptimisePasses, 0, 0};
-    seeds = timed(report, "relax", context,
-                  [&] { return relax_on_sheet(p.sheet, std::move(made.seeds), again, context).seeds; });
+    made.seeds = timed(report, "relax", context,
+                       [&] { return relax_on_sheet(p.sheet, std::move(made.seeds), again, context).seeds; });
   }
   if (report.dual.failed_cells > 0)
     report.warnings.push_back(
@@ -124,10 +132,9 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     report.warnings.push_back(std::to_string(report.post.self_intersections) +
                               " pairs of triangles intersect: parts of the surface are nearer to one another than its "
                               "edges are long; ask for more --vertices");
-  seeds = std::move(made.seeds);
-  measure_edges(p.sheet, seeds, made.mesh, report.sizing, context);
+  measure_edges(p.sheet, made.seeds, made.mesh, report.sizing, context);
   TriangleMesh mesh = to_world(made.mesh, p.surface.frame);
-  flag_gaps(p, seeds, mesh, report.gaps);
+  flag_gaps(p, made.seeds, mesh, report.gaps);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;
 }

@@ -2,6 +2,7 @@
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"
 
 #include "isoshell/digest.h"
+#include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/test_context.h"
@@ -56,4 +57,17 @@ TEST_CASE("deprecated: lengths, the box and the topology of a soup come out as t
   CHECK(measure_topology(soup, dirt, context).components == measure_topology(soup, context).topology.components);
   CHECK(dirt.short_faces == 5);
   CHECK(dirt.duplicate_faces == measure_topology(soup, context).dirt.duplicate_faces);
+}
+
+TEST_CASE("deprecated: mesh and seeds are the caller's again when a stage throws", "[stage]") {
+  TestContext test_context;
+  Context& context = test_context.plain();
+  const Sheet sheet = torus_sheet();
+  Triangulation dual = triangulate_dual(sheet, place_seeds(sheet, {300, 1}, context), {}, context);
+  const int64_t triangles = dual.mesh.triangles.size();
+  context.cancel = true;
+  CHECK_THROWS_AS(collapse_edges(sheet, 280, dual.seeds, dual.mesh, context), Error);
+  CHECK_THROWS_AS(optimize_mesh(sheet, {}, dual.seeds, dual.mesh, context), Error);
+  CHECK(dual.seeds.size() == 300);
+  CHECK(dual.mesh.triangles.size() == triangles);
 }

@@ -320,3 +320,17 @@ TEST_CASE("relax: an asked tolerance holds, also one that is the default of a si
   CHECK(passes(-1, 0) < passes(1e-5, 0));
   CHECK(passes(0, 7) == 7);
 }
+
+TEST_CASE("triangulate: seeds stay the caller's when it is cancelled", "[triangulate][stage]") {
+  RemeshOptions options;
+  options.vertices = 300;
+  TestContext context;
+  RemeshReport report;
+  const Prepared prepared = prepare(shapes::torus(2, 0.7, 80, 35), options, report, context);
+  SeedSet seeds = relax(prepared, options, report, context);
+  context.cancel = true;
+  CHECK_THROWS_AS(triangulate(prepared, seeds, options, report, context), Error);
+  CHECK(seeds.size() == 300);
+  context.cancel = false;
+  CHECK(triangulate(prepared, seeds, options, report, context).vertices.size() == 300);
+}
