@@ -11,6 +11,7 @@ LatticeSurface to_host(const LatticeSurface& surface);
 SiteSet to_host(const SiteSet& sites);
 SiteSamples to_host(const SiteSamples& samples);
 Shell to_host(const Shell& shell);
+SurfaceMesh to_host(const SurfaceMesh& surface);
 Sheet to_host(const Sheet& sheet);
 SeedSet to_host(const SeedSet& seeds);
 VoronoiLabels to_host(const VoronoiLabels& labels);

@@ -9,6 +9,7 @@ LatticeSurface to_host(const LatticeSurface& surface) { return host_copy(surface
 SiteSet to_host(const SiteSet& sites) { return host_copy(sites); }
 SiteSamples to_host(const SiteSamples& samples) { return host_copy(samples); }
 Shell to_host(const Shell& shell) { return host_copy(shell); }
+SurfaceMesh to_host(const SurfaceMesh& surface) { return host_copy(surface); }
 Sheet to_host(const Sheet& sheet) { return host_copy(sheet); }
 SeedSet to_host(const SeedSet& seeds) { return host_copy(seeds); }
 VoronoiLabels to_host(const VoronoiLabels& labels) { return host_copy(labels); }
