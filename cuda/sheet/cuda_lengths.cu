@@ -11,7 +11,7 @@ EdgeLengths CudaBackend::limit_edge_lengths(const SurfaceMesh& surface, Buffer<u
   return limit_edge_lengths_body(exec, *OnDevice<SurfaceMesh>(exec, surface), exec.to_device(raw), slope_q16);
 }
 
-EdgeLengths CudaBackend::smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths lengths, int32_t rounds,
+EdgeLengths CudaBackend::smooth_edge_lengths(const SurfaceMesh& surface, const EdgeLengths& lengths, int32_t rounds,
                                              Context& context) const {
   CudaExecutor exec(context, "lengths");
   return smooth_edge_lengths_body(exec, *OnDevice<SurfaceMesh>(exec, surface), exec.to_device(lengths.at), rounds);

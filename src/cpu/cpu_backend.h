@@ -20,7 +20,7 @@ class CpuBackend final : public BackendTable {
   SiteSet coarsen_sites(const SiteSet&, Context&) const override;
   Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const override;
   EdgeLengths limit_edge_lengths(const SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16, Context&) const override;
-  EdgeLengths smooth_edge_lengths(const SurfaceMesh&, EdgeLengths, int32_t rounds, Context&) const override;
+  EdgeLengths smooth_edge_lengths(const SurfaceMesh&, const EdgeLengths&, int32_t rounds, Context&) const override;
   int64_t seed_shares(const SurfaceMesh&, Context&) const override;
   EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to,
                                     Context&) const override;

@@ -26,7 +26,7 @@ class BackendTable {
   virtual Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const = 0;
   virtual EdgeLengths limit_edge_lengths(const SurfaceMesh&, Buffer<uint32_t> raw, int64_t slope_q16,
                                          Context&) const = 0;
-  virtual EdgeLengths smooth_edge_lengths(const SurfaceMesh&, EdgeLengths, int32_t rounds, Context&) const = 0;
+  virtual EdgeLengths smooth_edge_lengths(const SurfaceMesh&, const EdgeLengths&, int32_t rounds, Context&) const = 0;
   virtual int64_t seed_shares(const SurfaceMesh&, Context&) const = 0;
   virtual EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to,
                                             Context&) const = 0;

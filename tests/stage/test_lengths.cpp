@@ -92,6 +92,26 @@ TEST_CASE("lengths: those of another sheet are taken from its nearest vertices",
   CHECK(to.lengths.least == from.lengths.least);
 }
 
+TEST_CASE("lengths: a transfer refuses a surface without lengths, and halvings that can not be", "[lengths][stage]") {
+  TestContext context;
+  const Sheet without = torus_sheet(), from = with_lengths(torus_sheet(), 8), to = torus_sheet();
+  CHECK_THROWS_AS(transfer_edge_lengths(without, 0, to, context), Error);
+  CHECK_THROWS_AS(transfer_edge_lengths(SurfaceMesh(), 0, to, context), Error);
+  for (const int halvings : {-1, 31}) CHECK_THROWS_AS(transfer_edge_lengths(from, halvings, to, context), Error);
+}
+
+TEST_CASE("lengths: smoothing that is cancelled leaves the caller's lengths as they are", "[lengths][stage]") {
+  TestContext context;
+  Context& plain = context.plain();
+  const Sheet sheet = torus_sheet();
+  EdgeLengths lengths = limit_edge_lengths(sheet, random_lengths(sheet, 100000), 13107, plain);
+  const Buffer<uint32_t> before = lengths.at.to_host();
+  plain.cancel = true;
+  CHECK_THROWS_AS(smooth_edge_lengths(sheet, std::move(lengths), 1, plain), Error);
+  const Buffer<uint32_t> after = lengths.at.to_host();
+  CHECK(std::equal(before.begin(), before.end(), after.begin(), after.end()));
+}
+
 TEST_CASE("lengths: the curvature of a ball is one over its radius, of a flat wall nothing", "[lengths][stage]") {
   TestContext context;
   RemeshOptions options;

@@ -13,7 +13,7 @@ EdgeLengths CpuBackend::limit_edge_lengths(const SurfaceMesh& surface, Buffer<ui
                           [&] { return limit_edge_lengths_body(exec, *OnHost(surface), raw.to_host(), slope_q16); });
 }
 
-EdgeLengths CpuBackend::smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths lengths, int32_t rounds,
+EdgeLengths CpuBackend::smooth_edge_lengths(const SurfaceMesh& surface, const EdgeLengths& lengths, int32_t rounds,
                                             Context& context) const {
   CpuExecutor exec(context, "lengths");
   return run_with_threads(
