@@ -205,7 +205,7 @@ TEST_CASE("open surface: edge lengths reach along the border, and their means co
     std::vector<uint32_t> expected(size_t(surface.vertex_count()), 1 << 20);
     for (uint64_t i = 0; i < 5; ++i) expected[random_bits(4, i) % expected.size()] = 300 + 100 * uint32_t(i);
     surface.lengths = limit_edge_lengths(surface, to_buffer(expected), kSlopeQ16, context);
-    surface = host_copy(surface);
+    surface = to_host(surface);
     for (bool lowered = true; lowered;) {
       lowered = false;
       for (uint32_t v = 0; v < expected.size(); ++v)
@@ -225,7 +225,7 @@ TEST_CASE("open surface: edge lengths reach along the border, and their means co
       mean.push_back(uint32_t((sum + count / 2) / count));
     }
     surface.lengths = smooth_edge_lengths(surface, std::move(surface.lengths), 1, context);
-    surface = host_copy(surface);
+    surface = to_host(surface);
     CHECK(std::equal(mean.begin(), mean.end(), surface.lengths.at.begin()));
   }
 }
@@ -283,15 +283,49 @@ TEST_CASE("blocks: labels and cells do not depend on how vertices are cut into t
 TEST_CASE("blocks: stages that go through them refuse a surface without, or with too few", "[blocks][stage]") {
   TestContext context;
   SurfaceMesh surface = surface_of(sphere_mesh(false, 60, 90, 5000), context);
-  SeedSet seeds = place_seeds(surface, {40, 0}, context);
+  const SeedSet placed = place_seeds(surface, {40, 0}, context);
   DualMesh mesh;
   DualReport report;
   for (const int64_t blocks : {0, 1}) {
+    SeedSet seeds = to_host(placed);
     surface.blocks = {Buffer<int64_t>(blocks + 1), Buffer<PointQ8>(blocks)};
     CHECK_THROWS_AS(relax_on_sheet(surface, seeds, {1, 0, 0}, context), Error);
     CHECK_THROWS_AS(triangulate_dual(surface, seeds, {}, report, context), Error);
     CHECK_THROWS_AS(optimize_mesh(surface, {}, seeds, mesh, context), Error);
     CHECK_THROWS_AS(limit_edge_lengths(surface, Buffer<uint32_t>(surface.vertex_count()), 0, context), Error);
+  }
+}
+
+TEST_CASE("blocks: stages name the offset of a block that is too large, empty or not of all vertices",
+          "[blocks][stage]") {
+  TestContext context;
+  SurfaceMesh surface = surface_of(sphere_mesh(false, 60, 90, 5000), context);
+  const Buffer<int64_t> first = surface.blocks.first.to_host();
+  const int64_t last = surface.blocks.count(), vertices = surface.vertex_count();
+  const SeedSet placed = place_seeds(surface, {40, 0}, context);
+  DualMesh mesh;
+  DualReport report;
+  const auto check_named = [&](const std::string& name, auto call) {
+    try {
+      call();
+      FAIL("no error");
+    } catch (const Error& e) {
+      CHECK(e.code() == ErrorCode::usage);
+      CHECK(std::string(e.what()).find(name) != std::string::npos);
+    }
+  };
+  const std::vector<std::pair<int64_t, int64_t>> wrong = {
+      {0, 1}, {1, 0}, {1, -1}, {1, VertexBlocks::kMostVertices + 1}, {last, vertices + 1}, {last, vertices - 1}};
+  for (const auto& [place, value] : wrong) {
+    INFO(place << " " << value);
+    SeedSet seeds = to_host(placed);
+    surface.blocks.first = first.to_host();
+    surface.blocks.first[place] = value;
+    const std::string name = "blocks.first[" + std::to_string(place) + "] is " + std::to_string(value);
+    check_named(name, [&] { relax_on_sheet(surface, seeds, {1, 0, 0}, context); });
+    check_named(name, [&] { triangulate_dual(surface, seeds, {}, report, context); });
+    check_named(name, [&] { optimize_mesh(surface, {}, seeds, mesh, context); });
+    check_named(name, [&] { limit_edge_lengths(surface, Buffer<uint32_t>(vertices), 0, context); });
   }
 }
 
