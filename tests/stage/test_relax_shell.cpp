@@ -13,12 +13,36 @@ using namespace isoshell;
 
 namespace {
 
+/// A sink of LabelLeaf that writes the labels down.
+struct WriteLabels {
+  VoxelSetView voxels;
+  View<uint32_t> label;
+
+  struct Cube {
+    const WriteLabels& to;
+    int64_t leaf;
+    const PointList& near;
+    ISOSHELL_HD void voxel(int number, int offset, int64_t) const { to.voxel(leaf, offset, near.id[number]); }
+    ISOSHELL_HD void finish() const {}
+  };
+  ISOSHELL_HD Cube open(int64_t leaf, const PointList& near) const { return {*this, leaf, near}; }
+  ISOSHELL_HD void voxel(int64_t leaf, int offset, uint32_t seed) const {
+    label[voxels.first[leaf] + rank_in_leaf(voxels.mask[leaf], offset)] = seed;
+  }
+};
+
 std::vector<uint32_t> labels_of(const VoxelSet& voxels, const std::vector<PointQ8>& seeds, int64_t spacing) {
   TestContext context;
   PlainExecutor exec(context, "test");
   PointGrid grid = make_point_grid(exec, BlockExtent(voxels.view()).vox, spacing, int64_t(seeds.size()));
   std::vector<PointQ8> copy = seeds;
-  const Buffer<uint32_t> label = label_nearest(exec, voxels, grid, {copy.data(), int64_t(copy.size())});
+  Buffer<uint32_t> label = exec.template make<uint32_t>(voxels.voxel_count());
+  Buffer<int32_t> reach_q8 = exec.template make<int32_t>(voxels.leaf_count());
+  exec.fill(reach_q8.view(), int32_t(1) << grid.shift);
+  fill_point_grid(exec, grid, View<const PointQ8>{copy.data(), int64_t(copy.size())});
+  exec.for_each(
+      "nearest seed", voxels.leaf_count(),
+      LabelLeaf<WriteLabels>{voxels.view(), grid.view(), WriteLabels{voxels.view(), label.view()}, reach_q8.view(), 0});
   return {label.data(), label.data() + label.size()};
 }
 

@@ -61,25 +61,9 @@ struct LabelledVoxels {
   }
 };
 
-/// What labelling does with its labels: writes them down.
-struct WriteLabels {
-  VoxelSetView voxels;
-  View<uint32_t> label;
-
-  struct Cube {
-    const WriteLabels& to;
-    int64_t leaf;
-    const PointList& near;
-    ISOSHELL_HD void voxel(int number, int offset, int64_t) const { to.voxel(leaf, offset, near.id[number]); }
-    ISOSHELL_HD void finish() const {}
-  };
-  ISOSHELL_HD Cube open(int64_t leaf, const PointList& near) const { return {*this, leaf, near}; }
-  ISOSHELL_HD void voxel(int64_t leaf, int offset, uint32_t seed) const {
-    label[voxels.first[leaf] + rank_in_leaf(voxels.mask[leaf], offset)] = seed;
-  }
-};
-
-/// One leaf: label its active voxels and hand the labels to the sink.
+/// One leaf: label its active voxels and hand the labels to the sink: voxel(leaf, offset, seed) for one that was
+/// searched alone; open(leaf, list) for a cube, then voxel(place in the list, offset, squared distance) for each of its
+/// voxels, and finish() when they are right.
 template <class Sink>
 struct LabelLeaf {
   VoxelSetView voxels;
@@ -165,18 +149,5 @@ struct LabelLeaf {
     return voxels.most_distance_sq_q16();
   }
 };
-
-/// Per active voxel the seed of the smallest (squared distance from the voxel's centre, seed id).
-template <class Exec>
-Buffer<uint32_t> label_nearest(Exec& exec, const VoxelSet& voxels, PointGrid& grid, View<const PointQ8> seeds) {
-  Buffer<uint32_t> label = exec.template make<uint32_t>(voxels.voxel_count());
-  Buffer<int32_t> reach_q8 = exec.template make<int32_t>(voxels.leaf_count());
-  exec.fill(reach_q8.view(), int32_t(1) << grid.shift);
-  fill_point_grid(exec, grid, seeds);
-  exec.for_each(
-      "nearest seed", voxels.leaf_count(),
-      LabelLeaf<WriteLabels>{voxels.view(), grid.view(), WriteLabels{voxels.view(), label.view()}, reach_q8.view(), 0});
-  return label;
-}
 
 }  // namespace isoshell
