@@ -93,7 +93,8 @@ struct ForeignVertices {
   }
 };
 
-struct CountParts {
+/// How many patches the vertices of a block make.
+struct CountBlockPatches {
   View<const int64_t> first;
   View<int64_t> parts;
   int max_own;
@@ -294,7 +295,7 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, 
   const Buffer<int64_t>& block_first = surface.blocks.first;
   Buffer<int64_t> patch_first = exec.make<int64_t>(block_first.size());
   exec.for_each("count patches of blocks", block_first.size(),
-                CountParts{block_first.view(), patch_first.view(), max_own});
+                CountBlockPatches{block_first.view(), patch_first.view(), max_own});
   const int64_t count = exec.exclusive_scan(patch_first.view());
   const PatchSource source{surface.blocks.view(),    surface.position.view(),     surface.normal.view(),
                            surface.triangles.view(), surface.vertex_first.view(), surface.vertex_triangles.view(),

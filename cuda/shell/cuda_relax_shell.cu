@@ -17,7 +17,7 @@ RelaxReport relax_by_parts(CudaExecutor& exec, const Shell& shell, const SiteSet
   const int of_leaf = parts_of_leaf(spacing_q8);
   const VoxelSetView voxels = shell.voxels.view();
   Buffer<int64_t> first_part = exec.make<int64_t>(leaves);
-  exec.for_each("count parts", leaves, CountParts{voxels, of_leaf, first_part.view()});
+  exec.for_each("count parts", leaves, CountLeafParts{voxels, of_leaf, first_part.view()});
   const int64_t parts = exec.exclusive_scan(first_part.view());
   // Cells that hold about five seeds, so that two in a bucket rarely overfill it.
   SeedBuckets buckets = make_seed_buckets(exec, BlockExtent(shell.voxels.view()).vox, 7 * spacing_q8 / 4, k, 2);

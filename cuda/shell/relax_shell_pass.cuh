@@ -93,17 +93,17 @@ struct ShellScratch {
 };
 
 /// What labelling the voxels of a part gives a lane.
-struct LabelledVoxels {
+struct PartLabels {
   OffsetSums sums;  ///< of the winner of the lane's number
   int64_t energy;   ///< of the voxels that the lane labelled
   int64_t most;     ///< squared distance of the part's voxel that is farthest from its seed
 };
 
-__device__ inline LabelledVoxels label_voxels(const ShellPass& pass, const ShellPart& part, const SearchResult& found,
-                                              const Winners& winners) {
+__device__ inline PartLabels label_voxels(const ShellPass& pass, const ShellPart& part, const SearchResult& found,
+                                          const Winners& winners) {
   constexpr int kAtOnce = 2;
   const int lane = threadIdx.x & 31;
-  LabelledVoxels out{{0, 0}, 0, 0};
+  PartLabels out{{0, 0}, 0, 0};
   for (int base = lane; base - lane < part.voxels; base += 32 * kAtOnce) {
     int label[kAtOnce];
     int32_t least[kAtOnce] = {};
@@ -162,7 +162,7 @@ __device__ inline bool sum_winners(const ShellPass& pass, const ShellPart& part,
     reach = reach_of(found.limit);
     return true;
   }
-  const LabelledVoxels labelled = label_voxels(pass, part, found, winners);
+  const PartLabels labelled = label_voxels(pass, part, found, winners);
   reach = reach_of(labelled.most);
   if (labelled.most > reach_sq) return false;
   if (labelled.sums.count() != 0) {
@@ -263,7 +263,7 @@ __global__ void start_shell_seeds(ShellMove m, PassState* state, PassProgress* p
 }
 
 /// How many parts of a leaf hold voxels.
-struct CountParts {
+struct CountLeafParts {
   VoxelSetView voxels;
   int of_leaf;
   View<int64_t> count;
