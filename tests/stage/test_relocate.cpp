@@ -54,8 +54,8 @@ struct Tube {
   }
   optimize::MeshView view() { return connections->view(mesh); }
   WalkOntoSheet walk() const {
-    return {sheet.position.view(), sheet.normal.view(), sheet.triangles.view(), sheet.vertex_first.view(),
-            sheet.vertex_triangles.view()};
+    return {sheet.position.view(),     sheet.normal.view(),           sheet.triangles.view(),
+            sheet.vertex_first.view(), sheet.vertex_triangles.view(), {}};
   }
   /// Puts the one sample so many edges above the middle of a triangle, and looks for far places.
   struct Found {
