@@ -67,7 +67,7 @@ struct PointList {
   int count = 0;  ///< above kMaxNear: they do not fit
   int32_t x[kMaxNear], y[kMaxNear], z[kMaxNear];
   uint32_t id[kMaxNear];
-  int32_t number[kMaxNear];  ///< place in the list that this one was made from
+  int32_t number[kMaxNear];  ///< place in the list that was gathered, which this one was chosen from
 
   ISOSHELL_HD void add(Vec64 place, uint32_t its_id) {
     if (count < kMaxNear) {
