@@ -14,7 +14,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/volume_file.h"
-#include "isoshell/run/readable.h"
+#include "isoshell/readable.h"
 #include "isoshell/stages.h"
 
 namespace isoshell {

@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "isoshell/error.h"
+#include "isoshell/readable.h"
 #include "isoshell/run/option_text.h"
-#include "isoshell/run/readable.h"
 
 namespace isoshell {
 namespace {

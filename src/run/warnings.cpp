@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "isoshell/run/readable.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "isoshell/device_info.h"
 #include "isoshell/error.h"
-#include "isoshell/run/readable.h"
+#include "isoshell/readable.h"
 #include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
 

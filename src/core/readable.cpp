@@ -1,4 +1,4 @@
-#include "isoshell/run/readable.h"
+#include "isoshell/readable.h"
 
 #include <cstdio>
 
