@@ -14,7 +14,8 @@
 namespace isoshell::tool {
 namespace {
 
-/// Before anything is read: asking for a device that is not there should cost no time.
+/// Before anything is read: asking for a device that is not there should cost no time. The run asks again for its
+/// record; this answer decides how much memory the run may take.
 void choose_device(Context& context, Console& console) {
   const DeviceInfo d = device_info(context);
   const bool cuda = d.backend == "cuda";
