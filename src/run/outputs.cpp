@@ -9,6 +9,7 @@
 
 #include "core/file_format.h"
 #include "isoshell/error.h"
+#include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/run/option_text.h"
 
@@ -62,6 +63,8 @@ void check_request(const RunRequest& r) {
   if (r.gates.any() && r.stop_after != StopAfter::mesh) refuse_use("--require needs a mesh; leave out --stop-after");
   if (r.save_shell == "-" || r.save_voronoi == "-") refuse_vdb_to_pipe();
   if (r.output.path == "-" && r.statistics == "-") refuse_use("OUTPUT and --stats cannot both be standard output");
+  named_output(r.output.path, r.output.format, r.stop_after);  // refuses what the run does not end with
+  if (!r.options.sizing.empty() && !can_write_vdb()) read_sizing(r.options.sizing);  // says that there is no OpenVDB
 }
 
 void check_outputs(const RunRequest& r) {

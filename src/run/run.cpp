@@ -29,8 +29,7 @@ MeshFormat mesh_format(const std::string& format) {
   if (format == "ply") return MeshFormat::ply;
   if (format == "obj") return MeshFormat::obj;
   if (format == "stl") return MeshFormat::stl;
-  if (format == "off") return MeshFormat::off;
-  return MeshFormat::from_name;
+  return MeshFormat::off;
 }
 
 class Run {
@@ -40,7 +39,7 @@ class Run {
     record_.device = device_info(context_);  // before anything is read: to ask for one that is not there costs no time
     if (!options_.sizing.empty() && !options_.was_given("vertices")) options_.values.vertices.reset();
     record_.options = options_.values;
-    record_.output = request_.output;
+    record_.output = named_output(request_.output.path, request_.output.format, request_.stop_after);
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();
     options_.values.want_digests |= measures_all();
   }
@@ -65,8 +64,7 @@ class Run {
       const Input input = read();
       read_sizing_field();
       if (input.stage)
-        throw Error(ErrorCode::usage, "command line",
-                    "--dry-run needs a mesh as INPUT, a stage file has its grid already");
+        throw Error(ErrorCode::usage, "options", "--dry-run needs a mesh as INPUT, a stage file has its grid already");
       return estimate_run(input.soup, measure_topology(input.soup, context_).topology, options_.values);
     });
   }
@@ -88,7 +86,7 @@ class Run {
     if (measures_all() || request_.gates.max_deviation_world)
       step("distance",
            [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface)), context_); });
-    const OutputRequest& output = request_.output;
+    const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
         write_mesh(output.path, mesh, {mesh_format(output.format), request_.overwrite});
@@ -165,7 +163,7 @@ class Run {
     options_ = adopt_options(*input.stage, input.facts.path, options_);
     check_method(options_);
     if (input.stage->seeds && request_.stop_after == StopAfter::shell)
-      throw Error(ErrorCode::usage, "command line", "INPUT is past the shell already; leave out --stop-after shell");
+      throw Error(ErrorCode::usage, "options", "INPUT is past the shell already; leave out --stop-after shell");
   }
 
   void read_sizing_field() {

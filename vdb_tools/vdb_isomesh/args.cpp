@@ -191,7 +191,7 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (raw.verbose && raw.quiet) refuse("--verbose and --quiet exclude each other");
   a.verbosity = raw.quiet ? 0 : raw.verbose ? 2 : 1;
   if (a.verbosity == 0) run.measures = Measures::none;
-  run.output.path = raw.output;
+  run.output = {raw.output, raw.output_format};
   check_request(run);
   if (raw.input.empty()) refuse("INPUT is missing; see --help");
   if (raw.output.empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
