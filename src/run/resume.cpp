@@ -23,9 +23,9 @@ AskedOptions kept_options(const std::string& json, const std::string& path) {
 }
 
 /// Whether voxels of that size would give the file's grid: LatticeFrame::around turned round.
-bool gives_grid(std::optional<double> voxel_size_world, const LatticeFrame& frame) {
+bool gives_grid(double voxel_size_world, const LatticeFrame& frame) {
   const double longest_world = frame.voxel_size * (frame.resolution - 1);
-  return voxel_size_world && std::floor(longest_world / *voxel_size_world + 0.5) + 1 == frame.resolution;
+  return std::floor(longest_world / voxel_size_world + 0.5) + 1 == frame.resolution;
 }
 
 bool is_chosen(const RemeshOptions& o) { return !o.closing_vox && !o.closing_world; }
@@ -38,7 +38,8 @@ bool gives_closing(const RemeshOptions& asked, const AskedOptions& kept, const S
   return closing_vox == file.info.closing_vox;
 }
 
-/// Refuses options that differ from what made the file.
+/// Refuses options that differ from what made the file. JSON may give an option and leave its value open, as what
+/// options_json writes does: such an option asks for nothing.
 class Held {
  public:
   Held(const StageFile& file, const AskedOptions& asked) : stage_(file.info.stage), asked_(asked) {}
@@ -48,7 +49,7 @@ class Held {
     if (!asked_.was_given(option) || same) return;
     std::ostringstream text;
     text << "--" << option << " is fixed by the " << stage_ << " stage file: it was " << there << "; leave it out";
-    throw Error(ErrorCode::usage, "command line", text.str());
+    throw Error(ErrorCode::usage, "options", text.str());
   }
   template <class T>
   void check(const char* option, const std::optional<T>& asked, const std::optional<T>& kept) const {
@@ -65,16 +66,16 @@ class Held {
 
 void check_shell(const Held& held, const StageFile& file, const RemeshOptions& asked, const AskedOptions& kept) {
   const LatticeFrame& frame = file.surface.frame;
-  held.check("resolution", asked.resolution == frame.resolution, frame.resolution);
-  held.check("voxel-size", gives_grid(asked.voxel_size_world, frame), frame.voxel_size);
+  held.check("resolution", !asked.resolution || asked.resolution == frame.resolution, frame.resolution);
+  held.check("voxel-size", !asked.voxel_size_world || gives_grid(*asked.voxel_size_world, frame), frame.voxel_size);
   held.check("band", asked.band_vox == file.shell.band_vox, file.shell.band_vox);
   held.check("close-gaps", gives_closing(asked, kept, file), std::to_string(2 * file.info.closing_vox) + "vox");
-  held.check("outer-only", kept.values.outer_only, "not given");
+  held.check("outer-only", asked.outer_only == kept.values.outer_only, kept.values.outer_only ? "given" : "not given");
 }
 
 void check_seeds(const Held& held, int64_t seeds, const AskedOptions& a, const AskedOptions& k) {
   const RemeshOptions &asked = a.values, &kept = k.values;
-  held.check("vertices", asked.vertices == seeds, seeds);
+  held.check("vertices", !asked.vertices || asked.vertices == seeds, seeds);
   held.check("edge-length", asked.edge_length_world, kept.edge_length_world);
   held.check("sizing", a.sizing == k.sizing, k.sizing.empty() ? "not given" : k.sizing);
   held.check("adaptivity", asked.adaptivity == kept.adaptivity, kept.adaptivity);

@@ -145,6 +145,33 @@ TEST_CASE("whole run: stage files resume to the same bytes, with what was asked 
   CHECK(kept.values.seed == 7);
 }
 
+TEST_CASE("whole run: a stage file resumes with the JSON of the options that made it", "[run][vdb]") {
+  if (!can_write_vdb()) return;
+  const TemporaryFolder folder;
+  CpuContext context;
+  RunRequest first = small_run();
+  first.save_shell = folder / "s.vdb";
+  first.save_voronoi = folder / "v.vdb";
+  const uint64_t expected = digest(run(input_of(ball(), "ball"), first, context).mesh);
+  const std::string asked = options_json(first.options.values);
+  for (const std::string& file : {first.save_shell, first.save_voronoi}) {
+    RunRequest second;
+    second.input = named_input(file);
+    second.options = parse_options_json(asked);
+    CHECK(digest(run(second, context).mesh) == expected);
+    second.options = parse_options_json(R"({"outer-only": false, "resolution": 0, "voxel-size": 0})");
+    CHECK(digest(run(second, context).mesh) == expected);
+    second.options = parse_options_json(R"({"outer-only": true})");
+    CHECK(contains(refusal(second, ErrorCode::usage), "it was not given; leave it out"));
+    second.options = parse_options_json(R"({"resolution": 47})");
+    CHECK(contains(refusal(second, ErrorCode::usage), "it was 48; leave it out"));
+  }
+  RunRequest open;
+  open.input = named_input(first.save_voronoi);
+  open.options = parse_options_json(R"({"vertices": 0})");
+  CHECK(digest(run(open, context).mesh) == expected);
+}
+
 TEST_CASE("whole run: a volume is read with its grid and its value", "[run][vdb]") {
   if (!can_write_vdb()) return;
   const TemporaryFolder folder;
@@ -180,6 +207,32 @@ TEST_CASE("whole run: files are looked at before any work, and requests before a
   CHECK_THROWS_AS(named_output("a.fbx", "", StopAfter::mesh), Error);
   CHECK_THROWS_AS(named_output("a.ply", "", StopAfter::shell), Error);
   CHECK(get_file(folder / "there.ply") == "precious");
+}
+
+TEST_CASE("whole run: an output that was filled in by hand is refused before any work, too", "[run]") {
+  const TemporaryFolder folder;
+  CpuContext context;
+  RunRequest request = small_run();
+  request.input = named_input(folder / "none.ply");
+  request.output.path = folder / "x.gltf";
+  CHECK(contains(refusal(request, ErrorCode::usage), "ply, obj, stl, off"));
+  request.output.path = "-";
+  CHECK(contains(refusal(request, ErrorCode::usage), "--output-format"));
+  request.output.path = folder / "x.ply";
+  request.stop_after = StopAfter::shell;
+  CHECK(contains(refusal(request, ErrorCode::usage), "OUTPUT is a .vdb file"));
+  request.stop_after = StopAfter::mesh;
+  request.output.format = ".OFF";
+  CHECK(run(input_of(ball(), "ball"), request, context).record.output.format == "off");
+  CHECK(get_file(folder / "x.ply").compare(0, 3, "OFF") == 0);
+}
+
+TEST_CASE("whole run: a build without OpenVDB refuses a sizing field before anything is read", "[run]") {
+  if (can_write_vdb()) return;
+  RunRequest request = small_run();
+  request.input = named_input("none.ply");
+  request.options.sizing = "f.vdb";
+  CHECK(contains(refusal(request, ErrorCode::unreadable_input), "build with -DISOSHELL_VDB=ON"));
 }
 
 TEST_CASE("whole run: one that is cancelled says what was written", "[run]") {
