@@ -1,6 +1,7 @@
 #include "isoshell/run/options_json.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "isoshell/run/option_text.h"
@@ -11,6 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kCloseGaps = "close-gaps";
+constexpr const char* kSizing = "sizing";
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "options", message); }
 
@@ -53,7 +55,9 @@ class Members {
   void take(const char* name, uint64_t& value) {
     const Json* member = find(name);
     if (!member) return;
-    if (!member->is_number_unsigned()) refuse_type(name, *member, "a whole number, 0 to 18446744073709551615");
+    const bool fits = member->is_number_float() ? is_whole(*member) && *member >= 0. && *member < 0x1p64
+                                                : member->is_number_unsigned();
+    if (!fits) refuse_type(name, *member, "a whole number, 0 to 18446744073709551615");
     value = member->get<uint64_t>();
   }
   std::optional<std::string> text(const char* name) {
@@ -88,8 +92,13 @@ class Members {
     refuse(std::string(name) + " is " + member.dump() + "; it must be " + wanted);
   }
 
+  /// 10000.0 is whole: some writers of JSON know only one kind of number.
+  static bool is_whole(const Json& member) {
+    return member.is_number() && std::floor(member.get<double>()) == member.get<double>();
+  }
+
   static double number_in(const char* name, const Json& member, bool whole) {
-    if (!(whole ? member.is_number_integer() : member.is_number()))
+    if (!(whole ? is_whole(member) : member.is_number()))
       refuse_type(name, member, whole ? "a whole number" : "a number");
     return member.get<double>();
   }
@@ -98,6 +107,26 @@ class Members {
   std::vector<std::string>& given_;
   std::vector<std::string> known_;
 };
+
+Json json_of(const RemeshOptions& o) {
+  return {{"vertices", o.vertices.value_or(0)},
+          {"edge-length", o.edge_length_world.value_or(0)},
+          {"band", o.band_vox},
+          {"outer-only", o.outer_only},
+          {"method", method_name(o.method)},
+          {"iterations", o.max_passes.value_or(0)},
+          {"tolerance", o.tolerance.value_or(-1)},
+          {"step", o.max_step_vox.value_or(0)},
+          {"seed", o.seed},
+          {"fit", fit_name(o.fit)},
+          {"uniform-area", o.uniform_area},
+          {"adaptivity", o.adaptivity},
+          {"gradation", o.gradation},
+          {kSizing, o.sizing ? o.sizing->source() : ""},
+          {"resolution", o.resolution.value_or(0)},
+          {"voxel-size", o.voxel_size_world.value_or(0)},
+          {kCloseGaps, gap_width(o)}};
+}
 
 Json parse_object(const std::string& json) {
   try {
@@ -115,25 +144,18 @@ bool AskedOptions::was_given(const std::string& name) const {
   return std::find(given.begin(), given.end(), name) != given.end();
 }
 
+AskedOptions asked_options(RemeshOptions values, std::string sizing) {
+  AskedOptions asked{std::move(values), std::move(sizing), {}};
+  Json options = json_of(asked.values);
+  if (!asked.sizing.empty()) options[kSizing] = asked.sizing;
+  const Json unasked = json_of({});
+  for (const auto& option : options.items())
+    if (option.value() != unasked[option.key()]) asked.given.push_back(option.key());
+  return asked;
+}
+
 std::string options_json(const RemeshOptions& o) {
-  const Json j = {{"vertices", o.vertices.value_or(0)},
-                  {"edge-length", o.edge_length_world.value_or(0)},
-                  {"band", o.band_vox},
-                  {"outer-only", o.outer_only},
-                  {"method", method_name(o.method)},
-                  {"iterations", o.max_passes.value_or(0)},
-                  {"tolerance", o.tolerance.value_or(-1)},
-                  {"step", o.max_step_vox.value_or(0)},
-                  {"seed", o.seed},
-                  {"fit", fit_name(o.fit)},
-                  {"uniform-area", o.uniform_area},
-                  {"adaptivity", o.adaptivity},
-                  {"gradation", o.gradation},
-                  {"sizing", o.sizing ? o.sizing->source() : ""},
-                  {"resolution", o.resolution.value_or(0)},
-                  {"voxel-size", o.voxel_size_world.value_or(0)},
-                  {kCloseGaps, gap_width(o)}};
-  return j.dump();
+  return json_of(o).dump(-1, ' ', false, Json::error_handler_t::replace);  // a file's name may be any bytes
 }
 
 AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown) {
@@ -154,7 +176,7 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
   members.take("uniform-area", o.uniform_area);
   members.take("adaptivity", o.adaptivity, option_range::adaptivity);
   members.take("gradation", o.gradation, option_range::gradation);
-  asked.sizing = members.text("sizing").value_or("");
+  asked.sizing = members.text(kSizing).value_or("");
   members.take<int32_t>("resolution", o.resolution, option_range::resolution, 0);
   members.take<double>("voxel-size", o.voxel_size_world, option_range::length, 0);
   if (const auto text = members.text_or_number(kCloseGaps)) set_gap_width(kCloseGaps, *text, o);

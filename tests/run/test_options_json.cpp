@@ -26,10 +26,14 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 class NamedField final : public SizingField {
  public:
+  explicit NamedField(std::string source) : source_(std::move(source)) {}
   std::vector<double> lengths_at(const std::vector<WorldPoint>& points) const override {
     return std::vector<double>(points.size(), 1);
   }
-  std::string source() const override { return "field.vdb:edge"; }
+  std::string source() const override { return source_; }
+
+ private:
+  std::string source_;
 };
 
 }  // namespace
@@ -64,7 +68,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.tolerance = 0;
   o.max_step_vox = 1.5;
   o.seed = 18446744073709551615ull;
-  o.sizing = std::make_shared<NamedField>();
+  o.sizing = std::make_shared<NamedField>("field.vdb:edge");
   o.adaptivity = 0.25;
   o.gradation = 1.5;
   o.fit = Fit::surface;
@@ -126,6 +130,40 @@ TEST_CASE("options json: options that a stage file of 7334733 keeps are read", "
   CHECK(kept.values.max_passes == 9);
   CHECK_FALSE(kept.values.tolerance);
   CHECK_FALSE(kept.was_given("close-gaps"));
+}
+
+TEST_CASE("options json: whole numbers may be written with a point", "[options]") {
+  const AskedOptions asked = parse_options_json(R"({"vertices": 500.0, "band": 3.0, "iterations": 0.0, "seed": 7.0})");
+  CHECK(asked.values.vertices == 500);
+  CHECK(asked.values.band_vox == 3);
+  CHECK_FALSE(asked.values.max_passes);
+  CHECK(asked.values.seed == 7);
+  CHECK(contains(refusal(R"({"seed": 7.5})"), "seed is 7.5; it must be a whole number"));
+  CHECK(contains(refusal(R"({"seed": -1.0})"), "it must be a whole number"));
+  CHECK(contains(refusal(R"({"seed": 18446744073709551616})"), "it must be a whole number"));
+  CHECK(contains(refusal(R"({"vertices": 1e300})"), "it must be 4 to 2147483647"));
+}
+
+TEST_CASE("options json: a sizing field whose name is not UTF-8 is written all the same", "[options]") {
+  RemeshOptions o;
+  o.sizing = std::make_shared<NamedField>("f\xff.vdb");
+  CHECK(parse_options_json(options_json(o)).sizing == "f\xEF\xBF\xBD.vdb");
+  CHECK(asked_options(o).was_given("sizing"));
+}
+
+TEST_CASE("options json: of options set in C++ those are given that differ from the defaults", "[options]") {
+  CHECK(asked_options({}).given.empty());
+  RemeshOptions o;
+  o.vertices = 500;
+  o.tolerance = 0;
+  o.closing_vox = 0;
+  o.outer_only = true;
+  o.want_digests = true;
+  const AskedOptions asked = asked_options(o, "f.vdb");
+  CHECK(asked.given == std::vector<std::string>{"vertices", "outer-only", "tolerance", "sizing", "close-gaps"});
+  CHECK(asked.sizing == "f.vdb");
+  CHECK(asked.values.vertices == 500);
+  CHECK(asked.values.want_digests);
 }
 
 TEST_CASE("options json: what cannot be taken is refused by name, value and limit", "[options]") {

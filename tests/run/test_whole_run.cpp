@@ -17,10 +17,11 @@ namespace {
 TriangleSoup ball() { return shapes::sphere({1, 2, 3}, 5, 48); }
 
 RunRequest small_run() {
+  RemeshOptions options;
+  options.vertices = 300;
+  options.resolution = 48;
   RunRequest request;
-  request.options.values.vertices = 300;
-  request.options.values.resolution = 48;
-  request.options.given = {"vertices", "resolution"};
+  request.options = asked_options(options);
   return request;
 }
 
@@ -137,7 +138,9 @@ TEST_CASE("whole run: stage files resume to the same bytes, with what was asked 
     second.options.values.closing_vox.reset();
     second.options.given = {"close-gaps"};
     CHECK(digest(run(second, context).mesh) == expected);
-    second.options.values.closing_vox = 2;
+    RemeshOptions other;
+    other.closing_vox = 2;
+    second.options = asked_options(other);
     CHECK(contains(refusal(second, ErrorCode::usage), "--close-gaps is fixed by the "));
   }
   const AskedOptions kept = parse_options_json(read_stage(first.save_voronoi).info.options_json);
