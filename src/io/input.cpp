@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "core/file_format.h"
+#include "io/mesh/face_collector.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/volume_file.h"
@@ -31,6 +32,24 @@ void check_exists(const std::string& path) {
   if (!std::filesystem::exists(status)) refuse(path + ": no such file");
   if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
   if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once
+}
+
+/// Readers make only surfaces that hold to what TriangleSoup promises; one from memory may be anything.
+void check_surface(const TriangleSoup& soup, const std::string& name) {
+  for (size_t t = 0; t < soup.triangles.size(); ++t)
+    for (const uint32_t v : soup.triangles[t]) {
+      if (v < soup.vertices.size() && is_finite(soup.vertices[v])) continue;
+      std::ostringstream text;
+      text << name << ": triangle " << t << " has vertex " << v;
+      if (v < soup.vertices.size()) {
+        const WorldPoint& p = soup.vertices[v];
+        text << " at (" << p.x << ", " << p.y << ", " << p.z << "); positions must be finite";
+      } else {
+        text << " of a surface of " << counted(int64_t(soup.vertices.size()), "vertex", "vertices")
+             << "; indices count from 0 and are below that";
+      }
+      refuse(text.str());
+    }
 }
 
 class Reader {
@@ -173,6 +192,8 @@ Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const 
 }
 
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
+  check_surface(soup, name);
+  if (soup.faces_in_file == 0) soup.faces_in_file = int64_t(soup.triangles.size());  // it comes from no file
   Reader reader(name, 0, tell);
   reader.hold(std::move(soup));
   return reader.taken();

@@ -1,4 +1,6 @@
 // Every kind of input through one call: what it is, what is known of it, what is said about it.
+#include <limits>
+
 #include "isoshell/error.h"
 #include "isoshell/io/input.h"
 #include "support/catch.h"
@@ -100,6 +102,37 @@ TEST_CASE("input: surfaces in memory are called as the caller names them", "[inp
   CHECK(contains(said.notes, "ball of mine: "));
   CHECK(input.facts.box_max->x == Approx(1).margin(0.05));
   CHECK_THROWS_AS(input_of(TriangleSoup{}, "nothing"), Error);
+}
+
+TEST_CASE("input: a surface made in memory has as many faces as triangles", "[input]") {
+  TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 16);
+  ball.faces_in_file = 0;
+  Said said;
+  const int64_t triangles = int64_t(ball.triangles.size());
+  CHECK(input_of(std::move(ball), "ball", said.tell()).facts.faces == triangles);
+  CHECK_FALSE(contains(said.notes, " 0 faces"));
+}
+
+TEST_CASE("input: a surface in memory with a vertex that is not there or not finite is refused by its place",
+          "[input]") {
+  const auto refusal = [](const TriangleSoup& soup) -> std::string {
+    try {
+      input_of(soup, "mine");
+    } catch (const Error& e) {
+      CHECK(e.code() == ErrorCode::unreadable_input);
+      return e.what();
+    }
+    return "";
+  };
+  TriangleSoup soup;
+  soup.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  soup.triangles = {{0, 1, 2}, {0, 2, 3}};
+  CHECK(refusal(soup) ==
+        "mine: triangle 1 has vertex 3 of a surface of 3 vertices; indices count from 0 and are below that");
+  soup.vertices.push_back({0, 0, std::numeric_limits<double>::infinity()});
+  CHECK(refusal(soup) == "mine: triangle 1 has vertex 3 at (0, 0, inf); positions must be finite");
+  soup.triangles.pop_back();
+  CHECK(refusal(soup).empty());
 }
 
 TEST_CASE("input: names may hold a grid, formats come in any writing", "[input]") {

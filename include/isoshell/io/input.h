@@ -53,8 +53,9 @@ struct Input {
 /// out_of_memory over `memory_limit_bytes`, if above 0.
 Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell = {});
 
-/// A surface and points that are in memory already, under the name that messages and statistics call them by. Throws:
-/// nothing_to_mesh, and as surface_of_points does.
+/// A surface and points that are in memory already, under the name that messages and statistics call them by. A surface
+/// that says no number of faces has its triangles. Throws: nothing_to_mesh; unreadable_input for a triangle whose
+/// vertex is not there or not finite; and as surface_of_points does.
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell = {});
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {});
 
