@@ -131,7 +131,7 @@ TEST_CASE("open surface: seeds are spread over it, and attached to what is neare
 }
 
 TEST_CASE("open surface: labels are those of brute force, and cells add up to the area", "[open_surface][stage]") {
-  Context context;
+  TestContext context;
   for (const NamedMesh& from : open_meshes()) {
     INFO(from.name);
     const SurfaceMesh surface = surface_of(from, context);
@@ -258,7 +258,7 @@ TEST_CASE("open mesh: collapsing and optimising refuse it on a closed surface, t
 }
 
 TEST_CASE("blocks: labels and cells do not depend on how vertices are cut into them", "[blocks][stage]") {
-  Context context;
+  TestContext context;
   std::vector<NamedMesh> meshes = open_meshes();
   meshes.push_back(sphere_mesh(false, 60, 90, 5000));
   for (const NamedMesh& from : meshes) {
