@@ -107,8 +107,9 @@ inline OptimizeReport optimize(const SurfaceMesh& surface, const OptimizeOptions
                                DualMesh& mesh, Context& context) {
   Lent lent{mesh, seeds};
   OptimizedMesh optimized = optimize_mesh(surface, std::move(lent.both), options, context);
+  const OptimizeReport report = optimized.report;
   lent.both = std::move(optimized);
-  return optimized.report;
+  return report;
 }
 
 }  // namespace deprecated_forms

@@ -86,7 +86,7 @@ EdgeLengths smooth_edge_lengths(const SurfaceMesh& surface, EdgeLengths&& length
 /// Doubled area of the surface, that of each triangle over the square of its length, the least length being 1; q16.
 int64_t seed_shares_q16(const SurfaceMesh& surface, Context& context);
 /// Lengths for a coarse proxy from the surface it stands for, those of the nearest vertices. `halvings`: how many times
-/// the edge of its voxels was doubled.
+/// the edge of its voxels was doubled. Throws: usage for a surface without lengths.
 EdgeLengths transfer_edge_lengths(const SurfaceMesh& from, int halvings, const SurfaceMesh& to, Context& context);
 /// Per vertex how much normals turn a voxel, in 1/65536: the root of the mean square over its edges, of normals that
 /// became the mean of their neighbours' in so many rounds, and smoothed in two thirds as many.

@@ -91,8 +91,9 @@ SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& repor
 TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
                          Context& context) {
   const int64_t asked = seeds.size();
-  SeededMesh made{{}, std::move(seeds)};
+  SeededMesh made;
   const GiveSeedsBack give_back{made.seeds, seeds};
+  made.seeds = std::move(seeds);
   for (int round = 0;; ++round) {
     Triangulation dual =
         timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, std::move(made.seeds), {}, context); });
