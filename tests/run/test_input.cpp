@@ -109,7 +109,8 @@ TEST_CASE("input: a surface made in memory has as many faces as triangles", "[in
   ball.faces_in_file = 0;
   Said said;
   const int64_t triangles = int64_t(ball.triangles.size());
-  CHECK(input_of(std::move(ball), "ball", said.tell()).facts.faces == triangles);
+  const Input input = input_of(std::move(ball), "ball", said.tell());
+  CHECK(input.facts.faces == triangles);
   CHECK_FALSE(contains(said.notes, " 0 faces"));
 }
 

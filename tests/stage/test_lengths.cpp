@@ -107,7 +107,7 @@ TEST_CASE("lengths: smoothing that is cancelled leaves the caller's lengths as t
   EdgeLengths lengths = limit_edge_lengths(sheet, random_lengths(sheet, 100000), 13107, plain);
   const Buffer<uint32_t> before = lengths.at.to_host();
   plain.cancel = true;
-  CHECK_THROWS_AS(smooth_edge_lengths(sheet, std::move(lengths), 1, plain), Error);
+  CHECK_THROWS_AS(smooth_edge_lengths(sheet, static_cast<EdgeLengths&&>(lengths), 1, plain), Error);  // lent, no more
   const Buffer<uint32_t> after = lengths.at.to_host();
   CHECK(std::equal(before.begin(), before.end(), after.begin(), after.end()));
 }
