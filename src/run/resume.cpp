@@ -53,10 +53,11 @@ class Held {
   }
   template <class T>
   void check(const char* option, const std::optional<T>& asked, const std::optional<T>& kept) const {
+    const bool same = !asked || asked == kept;
     if (kept)
-      check(option, asked == kept, *kept);
+      check(option, same, *kept);
     else
-      check(option, asked == kept, "not given");
+      check(option, same, "not given");
   }
 
  private:

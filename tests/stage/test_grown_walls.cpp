@@ -4,6 +4,7 @@
 
 #include "isoshell/isoshell.h"
 #include "support/catch.h"
+#include "support/prepared_run.h"
 #include "support/shapes.h"
 #include "support/solid_soup.h"
 #include "support/test_context.h"
@@ -12,18 +13,6 @@
 using namespace isoshell;
 
 namespace {
-
-struct Run {
-  RemeshReport report;
-  Prepared prepared;
-};
-
-Run prepare_with(const TriangleSoup& soup, const RemeshOptions& options) {
-  TestContext context;
-  Run run;
-  run.prepared = prepare(soup, options, run.report, context);
-  return run;
-}
 
 /// A unit ball's surface with a hole below and a brim around that: a cap of the hole lies on the brim.
 TriangleSoup hat() {
@@ -74,7 +63,7 @@ TEST_CASE("prepare: an open plate that closing makes solid stays as thin as it i
   options.vertices = 1000;
   options.resolution = 200;  // four voxels thick, less than half an edge
   options.closing_vox = 6;
-  const Run run = prepare_with(plate, options);
+  const PreparedRun run = prepare_with(plate, options);
   CHECK(run.report.grown_vox == 0);
   TestContext context;
   CHECK(double(six_volume_vox(run.prepared.sheet, context)) / 6 == Approx(200. * 200 * 4).epsilon(.1));
@@ -107,7 +96,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   options.vertices = 500;
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
-  const Run run = prepare_with(bowl, options);
+  const PreparedRun run = prepare_with(bowl, options);
   CHECK(run.prepared.grown.distance_vox > 0);
   REQUIRE(run.report.warnings.size() == 1);
   CHECK(run.report.warnings[0].find("both of its sides") != std::string::npos);
@@ -120,7 +109,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(measure_quality(result.mesh).theta_min_deg > 30);
   CHECK(measure_quality(result.mesh).q_avg > .92);
-  const Run ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
+  const PreparedRun ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
   CHECK(ball.prepared.grown.distance_vox == 0);
 }
 
@@ -161,7 +150,7 @@ TEST_CASE("prepare: a solid with flaps keeps the points that its sheet misses", 
   RemeshOptions options;
   options.vertices = 2000;
   options.resolution = 100;
-  const Run run = prepare_with(crown, options);
+  const PreparedRun run = prepare_with(crown, options);
   CHECK(run.report.mend.capped_loops == 1);
   REQUIRE(run.prepared.grown.only_flaps);
   const Sheet sheet = to_host(run.prepared.sheet);
@@ -184,7 +173,7 @@ TEST_CASE("prepare: a solid with flaps whose topology is not the input's says bo
   RemeshOptions options;
   options.vertices = 2000;
   options.resolution = 150;
-  const Run run = prepare_with(shapes::together(hat(), ring), options);
+  const PreparedRun run = prepare_with(shapes::together(hat(), ring), options);
   REQUIRE(run.prepared.grown.only_flaps);
   REQUIRE(run.report.topology_compared);
   REQUIRE(run.report.sheet.genus == 0);
@@ -200,7 +189,7 @@ TEST_CASE("prepare: walls of what the widest closing does not close grow too", "
   options.closing_world = 2 * kMaxClosingVox * 2. / 199;
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
-  const Run run = prepare_with(bowl, options);
+  const PreparedRun run = prepare_with(bowl, options);
   CHECK(run.report.closing_vox == kMaxClosingVox);
   CHECK(run.prepared.grown.distance_vox > 2);
   CHECK(run.report.sheet.components == 1);

@@ -4,6 +4,7 @@
 
 #include "isoshell/isoshell.h"
 #include "support/catch.h"
+#include "support/prepared_run.h"
 #include "support/shapes.h"
 #include "support/solid_soup.h"
 #include "support/test_context.h"
@@ -13,20 +14,8 @@ using namespace isoshell;
 
 namespace {
 
-struct Run {
-  RemeshReport report;
-  Prepared prepared;
-};
-
-Run prepare_with(const TriangleSoup& soup, const RemeshOptions& options) {
-  TestContext context;
-  Run run;
-  run.prepared = prepare(soup, options, run.report, context);
-  return run;
-}
-
 /// Volume inside the sheet in terms of a ball whose diameter is the grid's longest side.
-double volume_in_balls(const Run& run) {
+double volume_in_balls(const PreparedRun& run) {
   TestContext context;
   const double radius_vox = .5 * run.report.frame.resolution;
   return double(six_volume_vox(run.prepared.sheet, context)) / (8 * 3.14159 * radius_vox * radius_vox * radius_vox);
@@ -64,14 +53,14 @@ TEST_CASE("prepare: balls through each other are one body, on the first grid; ba
   RemeshOptions options;
   options.vertices = 500;
   const TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 32);
-  const Run joined = prepare_with(shapes::together(ball, shapes::sphere({1, .1, 0}, 1, 32)), options);
+  const PreparedRun joined = prepare_with(shapes::together(ball, shapes::sphere({1, .1, 0}, 1, 32)), options);
   CHECK(joined.report.input.components == 2);
   CHECK(joined.report.sheet.components == 1);
   CHECK(joined.report.sheet.genus == 0);
   CHECK_FALSE(joined.report.topology_compared);
   CHECK(joined.report.warnings.empty());
   TriangleSoup two = shapes::together(ball, shapes::sphere({2.3, .1, 0}, 1, 32));
-  const Run apart = prepare_with(two, options);
+  const PreparedRun apart = prepare_with(two, options);
   CHECK(apart.report.sheet.components == 2);
   CHECK(apart.report.topology_agrees);
   two = shapes::together(two, shapes::sphere({0, 2, 0}, 1e-7, 8));  // a point on the lattice: joined with nothing
@@ -85,18 +74,18 @@ TEST_CASE("prepare: a hollow ball stays hollow, unless only outer surfaces are w
       shapes::together(shapes::sphere({0, 0, 0}, 1, 48), shapes::inside_out(shapes::sphere({.1, 0, 0}, .6, 48)));
   RemeshOptions outer_only = options;
   outer_only.outer_only = true;
-  const Run outer = prepare_with(hollow, outer_only);
+  const PreparedRun outer = prepare_with(hollow, outer_only);
   CHECK(outer.report.sheet.components == 1);
   CHECK(outer.report.topology_agrees);
   const double ball = volume_in_balls(outer);
   for (const TriangleSoup& soup : {hollow, shapes::inside_out(hollow)}) {
-    const Run kept = prepare_with(soup, options);
+    const PreparedRun kept = prepare_with(soup, options);
     CHECK(kept.report.unite.inner_surfaces == 1);
     CHECK(kept.report.sheet.components == 2);
     CHECK(kept.report.topology_agrees);
     CHECK(volume_in_balls(kept) / ball == Approx(1 - .216).margin(.01));
   }
-  const Run nested = prepare_with(shapes::together(hollow, shapes::sphere({.1, 0, 0}, .3, 32)), options);
+  const PreparedRun nested = prepare_with(shapes::together(hollow, shapes::sphere({.1, 0, 0}, .3, 32)), options);
   CHECK(nested.report.sheet.components == 3);
   CHECK(nested.report.topology_agrees);
   CHECK(volume_in_balls(nested) / ball == Approx(1 - .216 + .027).margin(.01));
@@ -110,7 +99,7 @@ TEST_CASE("prepare: hollows about as small as a voxel do not open the solid arou
     const double at = radius_vox / 4 - .3;
     ball = shapes::together(ball, shapes::inside_out(shapes::sphere({at, .2, .1 - at}, radius_vox * 2 / 39, 12)));
   }
-  const Run run = prepare_with(ball, options);
+  const PreparedRun run = prepare_with(ball, options);
   CHECK(run.report.unite.inner_surfaces == 5);
   CHECK(volume_in_balls(run) > .9);
 }
@@ -127,7 +116,7 @@ TEST_CASE("prepare: a hollow survives coarse levels, and a run from the lattice"
   CHECK(topology.components == 2);
   CHECK(result.mesh.vertices.size() == 1000);
   CHECK(result.report.post.self_intersections == 0);
-  const Run first = prepare_with(hollow, options);
+  const PreparedRun first = prepare_with(hollow, options);
   RemeshReport again;
   const Prepared resumed = prepare(to_host(first.prepared.surface), 0, options, again, context);
   CHECK(digest(resumed.sheet) == digest(first.prepared.sheet));
@@ -140,7 +129,7 @@ TEST_CASE("prepare: bars through each other that make a frame have its handle", 
   frame = shapes::together(frame, shapes::box({-.5, 3, .1}, {4.3, 4, .9}));
   frame = shapes::together(frame, shapes::box({.1, -.3, .2}, {1.1, 4.2, .8}));
   frame = shapes::together(frame, shapes::box({3, -.2, -.1}, {4, 4.3, 1.1}));
-  const Run run = prepare_with(frame, options);
+  const PreparedRun run = prepare_with(frame, options);
   CHECK(run.report.unite.joined_components == 1);
   CHECK(run.report.sheet.components == 1);
   CHECK(run.report.sheet.genus == 1);
@@ -184,10 +173,10 @@ TEST_CASE("prepare: sites that hold both sides of a thin plate are risky, those 
   RemeshOptions options;
   options.vertices = 200;
   options.resolution = 40;
-  const Run plate = prepare_with(shapes::box({0, 0, 0}, {1, 1, .003}), options);
+  const PreparedRun plate = prepare_with(shapes::box({0, 0, 0}, {1, 1, .003}), options);
   const std::vector<uint8_t> risks = find_risks(plate.prepared.surface, plate.prepared.samples);
   CHECK(std::count(risks.begin(), risks.end(), 1) > int64_t(risks.size()) / 3);
-  const Run cube = prepare_with(shapes::box({0, 0, 0}, {1, 1, 1}), options);
+  const PreparedRun cube = prepare_with(shapes::box({0, 0, 0}, {1, 1, 1}), options);
   const std::vector<uint8_t> none = find_risks(cube.prepared.surface, cube.prepared.samples);
   CHECK(std::count(none.begin(), none.end(), 1) == 0);
 }
@@ -207,7 +196,7 @@ TEST_CASE("prepare: a limit that the faces alone exceed ends it before they are 
 TEST_CASE("prepare: where closing fills open surfaces to less than half an edge, walls are grown", "[prepare]") {
   RemeshOptions options;
   options.vertices = 2000;
-  const Run run = prepare_with(shapes::random_soup(60, 2, .7, 11), options);
+  const PreparedRun run = prepare_with(shapes::random_soup(60, 2, .7, 11), options);
   CHECK(run.report.grown_vox > 0);
   options.vertices = 100;  // edges as long as the faces: solid
   CHECK(volume_in_balls(prepare_with(slotted_ball(.05), options)) > .9);
@@ -227,7 +216,7 @@ TEST_CASE("prepare: more handles than vertices can show are closed, and it is sa
   CHECK(check_mesh(few.mesh).is_closed_manifold());
   CHECK(few.report.post.self_intersections == 0);
   options.vertices = 3000;
-  const Run all = prepare_with(sieve, options);
+  const PreparedRun all = prepare_with(sieve, options);
   CHECK(all.report.grown_vox == 0);
   CHECK(all.report.topology_agrees);
 }
@@ -243,7 +232,7 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
       options.resolution = kResolution;
       options.closing_world = asked_vox * voxel;
       options.vertices = asked_vox == width_vox ? 10000 : 2500;  // walls grow as far as edges are long
-      const Run run = prepare_with(ball, options);
+      const PreparedRun run = prepare_with(ball, options);
       INFO("slot of " << width_vox << " voxels, closing " << asked_vox << ", volume " << volume_in_balls(run));
       CHECK(run.report.mend.capped_loops == 0);
       if (asked_vox == width_vox) {
@@ -262,7 +251,7 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
     }
     RemeshOptions automatic;
     automatic.resolution = kResolution;
-    const Run run = prepare_with(ball, automatic);
+    const PreparedRun run = prepare_with(ball, automatic);
     CHECK(run.report.mend.capped_loops == 1);
     CHECK(run.report.closing_vox == 0);
     CHECK(volume_in_balls(run) > .9);
@@ -307,7 +296,7 @@ TEST_CASE("prepare: options out of range are refused with their name", "[prepare
 TEST_CASE("relax: an asked tolerance holds, also one that is the default of a single level", "[relax][stage]") {
   RemeshOptions options;
   options.vertices = 600;
-  Run run = prepare_with(shapes::torus(2, .7, 60, 30), options);
+  PreparedRun run = prepare_with(shapes::torus(2, .7, 60, 30), options);
   const auto passes = [&](double tolerance, int32_t most) {
     options.tolerance = tolerance;
     options.max_passes = most;
