@@ -55,6 +55,10 @@ struct EdgeLengths {
 
 /// An oriented 2-manifold of triangles: each edge has two triangles, which pass it in opposite directions, or one, and
 /// the triangles around a vertex are one fan. What its stages need of the lattice is its extent.
+///
+/// A surface with creases is cut along them into patches, whose borders lie on one another: every patch has vertices of
+/// its own there, with normals of its own. No triangle has vertices of two patches, and a seed that is in one patch
+/// takes no part in another (FixedSeeds joins them).
 struct SurfaceMesh {
   int32_t extent_vox[3] = {};  ///< positions are 0 to 256 times this
   Buffer<PointQ8> position;    ///< per vertex
@@ -63,11 +67,12 @@ struct SurfaceMesh {
   Buffer<int64_t> vertex_first;       ///< vertex_count + 1 offsets into vertex_triangles
   Buffer<uint32_t> vertex_triangles;  ///< ascending per vertex
   Buffer<uint32_t> border_before;     ///< per vertex the one before it on its border, kNone off borders; empty: closed
-  VertexBlocks blocks;
-  Chains chains;                   ///< all borders are among them
-  EdgeLengths lengths;             ///< empty as built; see limit_edge_lengths
-  Buffer<PointQ8> missed;          ///< points of a closed surface that are 1/2 to 4 voxels off the mesh
-  Buffer<uint32_t> missed_vertex;  ///< the vertex nearest to each
+  VertexBlocks blocks;                ///< each of one patch
+  Chains chains;                      ///< all borders are among them
+  Buffer<uint32_t> patch;             ///< per vertex from 0 on, where the mesh is cut into patches; empty: one patch
+  EdgeLengths lengths;                ///< empty as built; see limit_edge_lengths
+  Buffer<PointQ8> missed;             ///< points of a closed surface that are 1/2 to 4 voxels off the mesh
+  Buffer<uint32_t> missed_vertex;     ///< the vertex nearest to each
 
   int64_t vertex_count() const { return position.size(); }
   /// Without a border.

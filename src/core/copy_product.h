@@ -46,6 +46,7 @@ SurfaceMesh copy_product(const SurfaceMesh& s, Copy copy) {
           copy(s.border_before),
           {copy(s.blocks.first), copy(s.blocks.centre)},
           {copy(s.chains.first), copy(s.chains.vertex), copy(s.chains.kind), copy(s.chains.is_loop)},
+          copy(s.patch),
           {copy(s.lengths.at), s.lengths.least, s.lengths.largest},
           copy(s.missed),
           copy(s.missed_vertex)};
@@ -57,7 +58,8 @@ Sheet copy_product(const Sheet& s, Copy copy) {
 }
 template <class Copy>
 SeedSet copy_product(const SeedSet& s, Copy copy) {
-  return {copy(s.position), copy(s.normal), copy(s.home)};
+  return {
+      copy(s.position), copy(s.normal), copy(s.home), {s.fixed.count, copy(s.fixed.of_vertex), copy(s.fixed.joined)}};
 }
 template <class Copy>
 VoronoiLabels copy_product(const VoronoiLabels& l, Copy copy) {
