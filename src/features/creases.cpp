@@ -1,0 +1,190 @@
+#include "features/creases.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "features/face_normals.h"
+#include "features/surface_walk.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kSeedDegrees = 40, kGrowthDegrees = 20;
+constexpr double kStraightOn = .5;       // cosine between an edge and the next one, to grow: 60 degrees
+constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
+constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
+constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
+
+/// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
+std::vector<double> turns_at(const MeshEdges& edges, const std::vector<WorldPoint>& normals) {
+  std::vector<double> turns(edges.count(), 0);
+  tbb::parallel_for(size_t(0), turns.size(), [&](size_t e) {
+    const FeatureEdge& edge = edges.edges[e];
+    if (edge.use == EdgeUse::inner) turns[e] = turn_between(normals[edge.face[0]], normals[edge.face[1]]);
+  });
+  return turns;
+}
+
+std::vector<uint32_t> edges_above(const std::vector<double>& turns, double least) {
+  std::vector<uint32_t> found;
+  for (uint32_t e = 0; e < turns.size(); ++e)
+    if (turns[e] >= least) found.push_back(e);
+  return found;
+}
+
+/// Whether edge `to` goes on from edge `from` at their common vertex.
+bool goes_on(const FeatureMesh& mesh, const FeatureEdge& from, const FeatureEdge& to, uint32_t at) {
+  const auto away = [&](const FeatureEdge& e) { return mesh.vertices[e.end[0] + e.end[1] - at] - mesh.vertices[at]; };
+  const WorldPoint a = away(from), b = away(to);
+  return -dot(a, b) >= kStraightOn * std::sqrt(length_sq(a) * length_sq(b));
+}
+
+/// Fixed curve edges and creases in one list, ascending.
+std::vector<CurveEdge> with_creases(const std::vector<CurveEdge>& fixed, const std::vector<uint32_t>& creases,
+                                    const std::vector<double>& turns) {
+  std::vector<CurveEdge> both;
+  auto next = fixed.begin();
+  for (const uint32_t e : creases) {
+    for (; next != fixed.end() && next->edge < e; ++next) both.push_back(*next);
+    both.push_back({e, CurveKind::crease, turns[e]});
+  }
+  both.insert(both.end(), next, fixed.end());
+  return both;
+}
+
+/// Hysteresis: sharp edges, and less sharp ones that go on from a crease.
+std::vector<uint32_t> grow_creases(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<double>& turns) {
+  const std::vector<uint32_t> weak = edges_above(turns, turn_of_degrees(kGrowthDegrees));
+  std::vector<std::pair<uint32_t, uint32_t>> around;  // vertex, edge
+  for (const uint32_t e : weak)
+    for (const uint32_t v : edges.edges[e].end) around.push_back({v, e});
+  tbb::parallel_sort(around.begin(), around.end());
+
+  std::vector<uint8_t> is_crease(edges.count(), 0);
+  std::vector<uint32_t> grown = edges_above(turns, turn_of_degrees(kSeedDegrees));
+  for (const uint32_t e : grown) is_crease[e] = 1;
+  for (size_t i = 0; i < grown.size(); ++i) {
+    const FeatureEdge from = edges.edges[grown[i]];
+    for (const uint32_t v : from.end)
+      for (auto at = std::lower_bound(around.begin(), around.end(), std::pair(v, 0u));
+           at != around.end() && at->first == v; ++at) {
+        if (is_crease[at->second] || !goes_on(mesh, from, edges.edges[at->second], v)) continue;
+        is_crease[at->second] = 1;
+        grown.push_back(at->second);
+      }
+  }
+  std::sort(grown.begin(), grown.end());
+  return grown;
+}
+
+/// A chain of creases, judged.
+struct Judged {
+  uint32_t component;
+  double length_world;
+  double beside;  ///< how much the surface turns beside the chain over how much at it, in roots of 1 - cosine
+  double unseen;  ///< the same of sides that are a single small triangle, as if that turned like the edge
+  bool is_good() const { return beside < kMostBeside; }
+  /// A triangle between creases says nothing of a surface.
+  bool is_surely_good() const { return beside + unseen < kMostBeside; }
+};
+
+/// Looks beside creases at the surface as it is: what filtered normals hide tells a scan.
+class Judge {
+ public:
+  Judge(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<WorldPoint>& normals,
+        const std::vector<double>& filtered_turns, double reach_world)
+      : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
+
+  std::vector<Judged> judge(const std::vector<EdgeChain>& chains) const {
+    std::vector<uint8_t> is_end(edges_.count(), 0);
+    for (const EdgeChain& chain : chains)
+      for (const uint32_t e : chain.edge) is_end[e] = 1;
+    const WalkGround ground{mesh_, edges_, normals_, is_end};
+    const std::vector<uint32_t> component = components_of(mesh_, edges_);
+    std::vector<Judged> judged(chains.size());
+    tbb::parallel_for(size_t(0), chains.size(), [&](size_t c) {
+      if (chains[c].kind == CurveKind::crease)
+        judged[c] = judge(ground, chains[c], component[edges_.edges[chains[c].edge[0]].face[0]]);
+    });
+    return judged;
+  }
+
+ private:
+  Judged judge(const WalkGround& ground, const EdgeChain& chain, uint32_t component) const {
+    double beside = 0, unseen = 0, at = 0;
+    for (size_t i = 0; i < chain.edge.size(); ++i) {
+      const uint32_t e = chain.edge[i];
+      const double size = length(mesh_.vertices[chain.vertex[i + 1]] - mesh_.vertices[chain.vertex[i]]);
+      at += size * std::sqrt(turns_[e]);
+      for (const uint32_t f : edges_.edges[e].face) {
+        const BesideEdge seen = look_beside(ground, e, f, walk_length(f));
+        beside += size / 2 * std::sqrt(seen.turn);
+        const bool is_seen = seen.crossed > 0 || seen.walked_world >= reach_world_;
+        if (!is_seen) unseen += size / 2 * std::sqrt(turns_[e]);
+      }
+    }
+    return {component, length_of(mesh_, chain), beside / at, unseen / at};
+  }
+
+  double walk_length(uint32_t face) const {
+    const auto& c = mesh_.triangles[face];
+    const double area = triangle_area(mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]);
+    return std::max(reach_world_, kWalkInFaceSizes * std::sqrt(area));
+  }
+
+  const FeatureMesh& mesh_;
+  const MeshEdges& edges_;
+  const std::vector<WorldPoint>& normals_;
+  const std::vector<double>& turns_;
+  double reach_world_;
+};
+
+}  // namespace
+
+std::vector<CurveEdge> find_fixed_curve_edges(const MeshEdges& edges) {
+  std::vector<CurveEdge> fixed;
+  for (uint32_t e = 0; e < edges.count(); ++e)
+    if (!edges.is_inner(e))
+      fixed.push_back({e, edges.edges[e].use == EdgeUse::border ? CurveKind::border : CurveKind::non_manifold, 0});
+  return fixed;
+}
+
+std::vector<CurveEdge> with_creases_above(const FeatureMesh& mesh, const MeshEdges& edges,
+                                          const std::vector<CurveEdge>& fixed, double degrees) {
+  const std::vector<double> turns = turns_at(edges, face_normals(mesh, edges));
+  return with_creases(fixed, edges_above(turns, turn_of_degrees(degrees)), turns);
+}
+
+std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
+                                                  const std::vector<CurveEdge>& fixed, double edge_length_world,
+                                                  CreaseReport& report) {
+  const std::vector<WorldPoint> normals = face_normals(mesh, edges);
+  const std::vector<double> turns = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world));
+  const std::vector<EdgeChain> chains =
+      find_chains(edges, with_creases(fixed, grow_creases(mesh, edges, turns), turns));
+  const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, edge_length_world).judge(chains);
+
+  std::vector<double> all(mesh.triangles.size(), 0), good(mesh.triangles.size(), 0);  // lengths, per component
+  for (size_t c = 0; c < chains.size(); ++c) {
+    if (chains[c].kind != CurveKind::crease) continue;
+    all[judged[c].component] += judged[c].length_world;
+    if (judged[c].is_surely_good()) good[judged[c].component] += judged[c].length_world;
+  }
+  const auto has_creases = [&](uint32_t component) { return good[component] >= kLeastGoodShare * all[component]; };
+  std::vector<uint32_t> kept;
+  for (size_t c = 0; c < chains.size(); ++c)
+    if (chains[c].kind == CurveKind::crease && judged[c].is_good() && has_creases(judged[c].component))
+      kept.insert(kept.end(), chains[c].edge.begin(), chains[c].edge.end());
+  std::sort(kept.begin(), kept.end());
+  for (uint32_t t = 0; t < all.size(); ++t) {
+    report.candidate_length_world += all[t];
+    report.components_with_candidates += all[t] > 0;
+    report.components_without_creases += all[t] > 0 && !has_creases(t);
+  }
+  return with_creases(fixed, kept, turns);
+}
+
+}  // namespace isoshell

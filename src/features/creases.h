@@ -1,0 +1,21 @@
+// Which edges are creases.
+#pragma once
+
+#include "features/edge_chains.h"
+#include "features/find_curves.h"
+
+namespace isoshell {
+
+/// Border and non-manifold edges.
+std::vector<CurveEdge> find_fixed_curve_edges(const MeshEdges& edges);
+
+/// And the inner edges that turn by the threshold or more.
+std::vector<CurveEdge> with_creases_above(const FeatureMesh& mesh, const MeshEdges& edges,
+                                          const std::vector<CurveEdge>& fixed, double degrees);
+
+/// And the creases between surfaces that are smooth beside them, by filtered normals.
+std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
+                                                  const std::vector<CurveEdge>& fixed, double edge_length_world,
+                                                  CreaseReport& report);
+
+}  // namespace isoshell

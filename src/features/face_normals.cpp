@@ -1,0 +1,158 @@
+#include "features/face_normals.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+
+namespace isoshell {
+namespace {
+
+constexpr int kRounds = 20;            // of the filter
+constexpr double kStill = 1e-6;        // squared difference of normals that ends it
+constexpr double kMostApartSq = .468;  // of normals of one smooth surface: 40 degrees
+constexpr double kThinHeight = 1e-5;   // of the largest coordinate: what floats round is 100 times smaller
+constexpr int kThinRounds = 8;         // thin triangles in a row that get a normal
+
+constexpr WorldPoint kNoNormal{0, 0, 0};
+
+double largest_coordinate(const FeatureMesh& mesh) {
+  double largest = 0;
+  for (const WorldPoint& p : mesh.vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return largest;
+}
+
+WorldPoint doubled_area_of(const FeatureMesh& mesh, size_t t) {
+  const auto& c = mesh.triangles[t];
+  return doubled_area(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]);
+}
+
+double edge_length_sq(const FeatureMesh& mesh, const FeatureEdge& e) {
+  return distance_sq(mesh.vertices[e.end[0]], mesh.vertices[e.end[1]]);
+}
+
+/// The normal on the other side of the longest edge that has one there.
+WorldPoint neighbours_normal(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<WorldPoint>& normals,
+                             uint32_t face) {
+  WorldPoint best = kNoNormal;
+  double longest_sq = 0;
+  for (const uint32_t e : edges.of_triangle[face]) {
+    if (!edges.is_inner(e)) continue;
+    const WorldPoint& n = normals[edges.across(e, face)];
+    const double length_sq = edge_length_sq(mesh, edges.edges[e]);
+    if (!has_normal(n) || length_sq <= longest_sq) continue;
+    longest_sq = length_sq;
+    best = n;
+  }
+  return best;
+}
+
+/// Thin triangles take a neighbour's normal; a round only sees the normals of the rounds before.
+void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<uint32_t> thin,
+                    std::vector<WorldPoint>& normals) {
+  for (int round = 0; round < kThinRounds && !thin.empty(); ++round) {
+    std::vector<std::pair<uint32_t, WorldPoint>> found;
+    for (const uint32_t t : thin) found.push_back({t, neighbours_normal(mesh, edges, normals, t)});
+    thin.clear();
+    for (const auto& [t, n] : found) {
+      normals[t] = n;
+      if (!has_normal(n)) thin.push_back(t);
+    }
+  }
+}
+
+/// What a neighbour weighs but for its normal; 0 where there is none.
+struct Link {
+  uint32_t face = 0;
+  double weight = 0;
+};
+struct Links {
+  double own_weight;
+  std::array<Link, 3> to;
+};
+
+/// Weights are areas, less with the distance of the triangles' centres.
+std::vector<Links> link_triangles(const FeatureMesh& mesh, const MeshEdges& edges, double reach_world) {
+  const auto area = [&](uint32_t t) { return length(doubled_area_of(mesh, t)) / 2; };
+  const auto centre = [&](uint32_t t) {
+    const auto& c = mesh.triangles[t];
+    return 1. / 3 * (mesh.vertices[c[0]] + mesh.vertices[c[1]] + mesh.vertices[c[2]]);
+  };
+  std::vector<Links> links(mesh.triangles.size());
+  tbb::parallel_for(uint32_t(0), uint32_t(links.size()), [&](uint32_t t) {
+    links[t].own_weight = area(t);
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t e = edges.of_triangle[t][i];
+      if (!edges.is_inner(e)) continue;
+      const uint32_t other = edges.across(e, t);
+      const double near = 1 / (1 + distance_sq(centre(t), centre(other)) / (reach_world * reach_world));
+      links[t].to[i] = {other, area(other) * near * near};
+    }
+  });
+  return links;
+}
+
+}  // namespace
+
+std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
+  const double least_height = kThinHeight * largest_coordinate(mesh);
+  std::vector<WorldPoint> normals(mesh.triangles.size(), kNoNormal);
+  tbb::parallel_for(size_t(0), normals.size(), [&](size_t t) {
+    double longest_sq = 0;
+    for (const uint32_t e : edges.of_triangle[t])
+      longest_sq = std::max(longest_sq, edge_length_sq(mesh, edges.edges[e]));
+    const WorldPoint across = doubled_area_of(mesh, t);
+    const double doubled = length(across);
+    if (doubled > least_height * std::sqrt(longest_sq)) normals[t] = (1 / doubled) * across;
+  });
+  std::vector<uint32_t> thin;
+  for (uint32_t t = 0; t < normals.size(); ++t)
+    if (!has_normal(normals[t])) thin.push_back(t);
+  borrow_normals(mesh, edges, std::move(thin), normals);
+  return normals;
+}
+
+std::vector<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<WorldPoint> normals,
+                                       double reach_world) {
+  const std::vector<Links> links = link_triangles(mesh, edges, reach_world);
+  std::vector<WorldPoint> next(normals.size());
+  const auto filter_one = [&](size_t t) {
+    const WorldPoint& own = normals[t];
+    WorldPoint sum = links[t].own_weight * own;
+    for (const Link& link : links[t].to) {
+      const double alike = 1 - (1 / kMostApartSq) * distance_sq(own, normals[link.face]);
+      if (alike > 0) sum = sum + (link.weight * alike * alike) * normals[link.face];
+    }
+    const double size = length(sum);
+    next[t] = size > 0 ? (1 / size) * sum : own;
+    return distance_sq(next[t], own);
+  };
+  using Range = tbb::blocked_range<size_t>;
+  for (int round = 0; round < kRounds; ++round) {
+    const double moved = tbb::parallel_reduce(
+        Range(0, normals.size(), 1024), 0.,
+        [&](const Range& range, double most) {
+          for (size_t t = range.begin(); t != range.end(); ++t) most = std::max(most, filter_one(t));
+          return most;
+        },
+        [](double a, double b) { return std::max(a, b); });
+    normals.swap(next);
+    if (moved < kStill) break;
+  }
+  return normals;
+}
+
+double turn_of_degrees(double degrees) {
+  // The series of 1 - cos at a quarter of the angle, where it converges fast, then twice doubled.
+  const double x = degrees / 180 * 3.14159265358979323846 / 4;
+  double term = x * x / 2, turn = 0;
+  for (int k = 2; k < 20; k += 2) {
+    turn += term;
+    term *= -x * x / double((k + 1) * (k + 2));
+  }
+  for (int twice = 0; twice < 2; ++twice) turn = 2 * turn * (2 - turn);
+  return turn;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,28 @@
+// Unit normals of triangles, as given and smoothed for the detection of creases.
+#pragma once
+
+#include <vector>
+
+#include "core/world_vector.h"
+#include "features/mesh_edges.h"
+
+namespace isoshell {
+
+/// Unit normal of every triangle. One so thin that rounding decides its normal has that of a neighbour, or none: 0.
+std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges);
+
+/// The normals after a bilateral filter over neighbours within about `reach_world`: noise goes, creases stay.
+std::vector<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<WorldPoint> normals,
+                                       double reach_world);
+
+inline bool has_normal(const WorldPoint& n) { return n.x != 0 || n.y != 0 || n.z != 0; }
+
+/// 1 - the cosine of the angle between two normals; 0 where one is unknown.
+inline double turn_between(const WorldPoint& a, const WorldPoint& b) {
+  return has_normal(a) && has_normal(b) ? 1 - dot(a, b) : 0;
+}
+
+/// 1 - the cosine of an angle of 0 to 180 degrees, by the same operations everywhere.
+double turn_of_degrees(double degrees);
+
+}  // namespace isoshell

@@ -1,0 +1,111 @@
+#include "features/find_curves.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+#include "features/corners.h"
+#include "features/creases.h"
+#include "features/small_creases.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+void check(const CurveOptions& options) {
+  const double h = options.edge_length_world;
+  if (!(h > 0) || !std::isfinite(h))
+    throw Error(ErrorCode::usage, "features",
+                "curves are looked for at an edge length of " + std::to_string(h) + "; give one above 0");
+  if (options.mode == CreaseMode::threshold && !(options.degrees > 0 && options.degrees <= 180))
+    throw Error(ErrorCode::usage, "features",
+                "creases are edges that turn by " + std::to_string(options.degrees) +
+                    " degrees or more; give an angle above 0 and at most 180");
+}
+
+std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges& edges, const CurveOptions& options,
+                                        CreaseReport& report) {
+  const std::vector<CurveEdge> fixed = find_fixed_curve_edges(edges);
+  if (options.mode == CreaseMode::off) return fixed;
+  return drop_small_creases(mesh, edges,
+                            options.mode == CreaseMode::threshold
+                                ? with_creases_above(mesh, edges, fixed, options.degrees)
+                                : with_creases_beside_smooth(mesh, edges, fixed, options.edge_length_world, report),
+                            options.edge_length_world);
+}
+
+/// A curve, and its smallest edge, which it is sorted by.
+struct NumberedCurve {
+  uint32_t smallest_edge;
+  FeatureCurve curve;
+};
+
+/// The edges from one place of a chain to another, which may lie behind a ring's end.
+NumberedCurve curve_between(const EdgeChain& chain, size_t begin, size_t end) {
+  NumberedCurve made{UINT32_MAX, {chain.kind, false, {}}};
+  uint32_t first_edge = 0, last_edge = 0;
+  for (size_t i = begin; i < end; ++i) {
+    last_edge = chain.edge[i % chain.edge.size()];
+    if (i == begin) first_edge = last_edge;
+    made.smallest_edge = std::min(made.smallest_edge, last_edge);
+    made.curve.vertex.push_back(chain.vertex[i % chain.edge.size()]);
+  }
+  made.curve.vertex.push_back(chain.vertex[(end - 1) % chain.edge.size() + 1]);
+  auto& v = made.curve.vertex;
+  if (v.back() < v.front() || (v.back() == v.front() && last_edge < first_edge)) std::reverse(v.begin(), v.end());
+  return made;
+}
+
+std::vector<NumberedCurve> cut_at_corners(const FeatureMesh& mesh, const EdgeChain& chain, double edge_length_world) {
+  std::vector<size_t> places = corners_inside(mesh, chain, edge_length_world);
+  std::vector<NumberedCurve> curves;
+  if (chain.is_ring && places.empty()) {
+    curves.push_back({*std::min_element(chain.edge.begin(), chain.edge.end()), {chain.kind, true, chain.vertex}});
+    curves.back().curve.vertex.pop_back();
+    return curves;
+  }
+  if (chain.is_ring)
+    places.push_back(places.front() + chain.edge.size());
+  else {
+    places.insert(places.begin(), 0);
+    places.push_back(chain.edge.size());
+  }
+  for (size_t i = 0; i + 1 < places.size(); ++i) curves.push_back(curve_between(chain, places[i], places[i + 1]));
+  return curves;
+}
+
+}  // namespace
+
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report) {
+  check(options);
+  CreaseReport unread;
+  CreaseReport& told = report ? *report : unread;
+  told = {};
+  const MeshEdges edges = find_mesh_edges(mesh);
+  const std::vector<EdgeChain> chains = find_chains(edges, find_curve_edges(mesh, edges, options, told));
+
+  std::vector<std::vector<NumberedCurve>> cut(chains.size());
+  tbb::parallel_for(size_t(0), chains.size(),
+                    [&](size_t c) { cut[c] = cut_at_corners(mesh, chains[c], options.edge_length_world); });
+  std::vector<NumberedCurve> all;
+  for (auto& curves : cut) std::move(curves.begin(), curves.end(), std::back_inserter(all));
+  std::sort(all.begin(), all.end(),
+            [](const NumberedCurve& a, const NumberedCurve& b) { return a.smallest_edge < b.smallest_edge; });
+
+  CurveNetwork network;
+  for (NumberedCurve& c : all) {
+    if (!c.curve.is_loop)
+      network.corners.insert(network.corners.end(), {c.curve.vertex.front(), c.curve.vertex.back()});
+    network.curves.push_back(std::move(c.curve));
+  }
+  std::sort(network.corners.begin(), network.corners.end());
+  network.corners.erase(std::unique(network.corners.begin(), network.corners.end()), network.corners.end());
+  for (const EdgeChain& chain : chains)
+    if (chain.kind == CurveKind::crease) told.kept_length_world += length_of(mesh, chain);
+  return network;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,34 @@
+// Where a mesh is not smooth: its borders, non-manifold edges and creases, as curves between corners.
+#pragma once
+
+#include "features/feature_mesh.h"
+
+namespace isoshell {
+
+enum class CreaseMode : uint8_t {
+  off,        ///< borders and non-manifold edges only
+  automatic,  ///< edges that are sharp beside the surface next to them; none on scans
+  threshold,  ///< every edge whose triangles turn by so many degrees or more
+};
+
+struct CurveOptions {
+  CreaseMode mode = CreaseMode::automatic;
+  double degrees = 40;           ///< of mode threshold, above 0 and at most 180
+  double edge_length_world = 0;  ///< h, the edge length that the result aims at; above 0
+};
+
+/// What was decided about creases.
+struct CreaseReport {
+  double candidate_length_world = 0;  ///< before anything was dropped
+  double kept_length_world = 0;
+  int64_t components_with_candidates = 0;
+  int64_t components_without_creases = 0;  ///< of those, taken for a scan or an organic shape as a whole
+};
+
+/// Result: every border and non-manifold edge, and the creases of the mode, less dangling and looping ones shorter than
+/// 2 h. Corners are vertices with another number of curve edges than two or edges of two kinds, and those where a curve
+/// turns by more than 45 degrees between chords of .7 h. An open curve runs from its smaller corner (from the smaller
+/// edge of two at the same corner); a loop from its smallest vertex along the smaller edge. Throws: usage.
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report = nullptr);
+
+}  // namespace isoshell
