@@ -9,6 +9,11 @@ const BackendTable* cuda_backend() {
   return &table;
 }
 
+/// Its triangles lie on the host, and it is made once a run.
+MadeSurface CudaBackend::make_surface_mesh(const SurfaceTriangles& from, Context& context) const {
+  return cpu_backend().make_surface_mesh(from, context);
+}
+
 /// Sequential by nature.
 SiteSet CudaBackend::cut_false_handles(const SiteSet& sites, const SiteSamples& samples, int64_t genus,
                                        Context& context) const {

@@ -10,6 +10,7 @@ class CudaBackend final : public BackendTable {
   const char* name() const override { return "cuda"; }
   InputTopology measure_topology(const TriangleSoup& soup, DirtCounts& dirt, Context& context) const override;
   LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) const override;
+  MadeSurface make_surface_mesh(const SurfaceTriangles&, Context&) const override;
   SiteSet voxelize(const LatticeSurface&, Context&) const override;
   SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const override;
   Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const override;

@@ -10,6 +10,7 @@ class CpuBackend final : public BackendTable {
   const char* name() const override { return "cpu"; }
   InputTopology measure_topology(const TriangleSoup&, DirtCounts&, Context&) const override;
   LatticeSurface snap_surface(const TriangleSoup&, const LatticeFrame&, Context&) const override;
+  MadeSurface make_surface_mesh(const SurfaceTriangles&, Context&) const override;
   SiteSet voxelize(const LatticeSurface&, Context&) const override;
   SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const override;
   Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const override;

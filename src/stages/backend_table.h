@@ -12,6 +12,7 @@ class BackendTable {
   virtual const char* name() const = 0;
   virtual InputTopology measure_topology(const TriangleSoup&, DirtCounts&, Context&) const = 0;
   virtual LatticeSurface snap_surface(const TriangleSoup&, const LatticeFrame&, Context&) const = 0;
+  virtual MadeSurface make_surface_mesh(const SurfaceTriangles&, Context&) const = 0;
   virtual SiteSet voxelize(const LatticeSurface&, Context&) const = 0;
   virtual SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const = 0;
   virtual Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const = 0;

@@ -21,6 +21,7 @@ struct NamedMesh {
   std::string name;
   std::vector<PointQ8> position;
   std::vector<TriangleIndices> triangles;
+  std::vector<uint32_t> patch = {};  ///< per vertex; empty: one patch
   int64_t vertex_count() const { return int64_t(position.size()); }
 };
 
@@ -120,14 +121,15 @@ std::vector<std::vector<uint32_t>> border_loops_of(const Triangles& triangles) {
   return loops;
 }
 
-/// Cuts the vertices, which must be in the order of their leaves, into blocks of at most so many of a leaf each.
+/// Cuts the vertices, which must be in the order of patches and leaves, into blocks of at most so many of a leaf each.
 inline void cut_into_blocks(SurfaceMesh& surface, int most = VertexBlocks::kMostVertices) {
   std::vector<int64_t> first;
   std::vector<PointQ8> centre;
   uint64_t key = ~uint64_t(0);
   for (int64_t v = 0; v < surface.vertex_count(); ++v) {
     const Voxel leaf = leaf_of_voxel(voxel_of(surface.position[v]));
-    if (leaf_key(leaf) == key && v - first.back() < most) continue;
+    const bool same_patch = v == 0 || surface.patch.empty() || surface.patch[v] == surface.patch[v - 1];
+    if (leaf_key(leaf) == key && same_patch && v - first.back() < most) continue;
     key = leaf_key(leaf);
     first.push_back(v);
     centre.push_back({leaf.x * 2048 + 1024, leaf.y * 2048 + 1024, leaf.z * 2048 + 1024});
@@ -137,47 +139,9 @@ inline void cut_into_blocks(SurfaceMesh& surface, int most = VertexBlocks::kMost
   surface.blocks.centre = to_buffer(centre);
 }
 
-/// The surface of a mesh, its vertices in the order of the leaves that they lie in.
+/// The surface of a mesh.
 inline SurfaceMesh surface_of(const NamedMesh& mesh, Context& context) {
-  std::vector<uint32_t> order(mesh.position.size()), place(mesh.position.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](uint32_t v) { return leaf_key(leaf_of_voxel(voxel_of(mesh.position[v]))); };
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-  for (uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-
-  SurfaceMesh surface;
-  for (int32_t& extent : surface.extent_vox) extent = 256;
-  surface.position = Buffer<PointQ8>(mesh.vertex_count());
-  for (uint32_t i = 0; i < order.size(); ++i) surface.position[i] = mesh.position[order[i]];
-  std::vector<TriangleIndices> triangles;
-  for (const TriangleIndices& t : mesh.triangles) triangles.push_back({place[t.a], place[t.b], place[t.c]});
-  surface.triangles = to_buffer(triangles);
-
-  std::vector<std::vector<uint32_t>> around(order.size());
-  std::vector<Vec64> normal(order.size(), Vec64{0, 0, 0});
-  for (uint32_t t = 0; t < triangles.size(); ++t) {
-    const TriangleIndices i = triangles[t];
-    const Vec64 n = cross(difference(surface.position[i.b], surface.position[i.a]),
-                          difference(surface.position[i.c], surface.position[i.a]));
-    for (const uint32_t v : {i.a, i.b, i.c}) {
-      around[v].push_back(t);
-      normal[v] = normal[v] + n;
-    }
-  }
-  std::vector<int64_t> first{0};
-  std::vector<uint32_t> lists;
-  surface.normal = Buffer<Normal8>(mesh.vertex_count());
-  for (size_t v = 0; v < order.size(); ++v) {
-    surface.normal[int64_t(v)] = normal8(normal[v]);
-    lists.insert(lists.end(), around[v].begin(), around[v].end());
-    first.push_back(int64_t(lists.size()));
-  }
-  surface.vertex_first = to_buffer(first);
-  surface.vertex_triangles = to_buffer(lists);
-  cut_into_blocks(surface);
-  PlainExecutor exec(context, "test");
-  run_with_threads(context, [&] { find_borders(exec, surface); });
-  return surface;
+  return make_surface_mesh({mesh.position, mesh.triangles, mesh.patch, {256, 256, 256}}, context).surface;
 }
 
 }  // namespace isoshell

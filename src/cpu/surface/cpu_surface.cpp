@@ -1,7 +1,8 @@
-// The CPU's measure_topology and snap_surface.
+// The CPU's measure_topology, snap_surface and make_surface_mesh.
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
 #include "stages/surface/surface_body.h"
+#include "stages/surface/surface_mesh_body.h"
 #include "stages/surface/topology_body.h"
 
 namespace isoshell {
@@ -14,6 +15,11 @@ InputTopology CpuBackend::measure_topology(const TriangleSoup& soup, DirtCounts&
 LatticeSurface CpuBackend::snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context) const {
   CpuExecutor exec(context, "surface");
   return run_with_threads(context, [&] { return snap_surface_body(exec, view_of(soup), frame); });
+}
+
+MadeSurface CpuBackend::make_surface_mesh(const SurfaceTriangles& from, Context& context) const {
+  CpuExecutor exec(context, "surface");
+  return run_with_threads(context, [&] { return make_surface_mesh_body(exec, from); });
 }
 
 }  // namespace isoshell

@@ -1,0 +1,156 @@
+// cut_surface and edge_length_for (see cut_surface.h).
+#include "features/cut_surface.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/watched.h"
+#include "core/world_vector.h"
+#include "features/refine_mesh.h"
+#include "isoshell/error.h"
+#include "isoshell/stages.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kEdgesOfLength = 4;                 ///< fine edges along one edge of the result
+constexpr double kLongestEdgeQ8 = 16 * kOneVoxelQ8;  ///< well within the reach of blocks
+
+/// As snap_coordinate, before it rounds.
+WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
+  const auto steps = [&](double world, double origin) { return (world - origin) / frame.voxel_size * kOneVoxelQ8; };
+  return {steps(p.x, frame.origin.x), steps(p.y, frame.origin.y), steps(p.z, frame.origin.z)};
+}
+PointQ8 rounded(const WorldPoint& p) {
+  const auto nearest = [](double steps) { return int32_t(std::floor(steps + 0.5)); };
+  return {nearest(p.x), nearest(p.y), nearest(p.z)};
+}
+
+FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame, double edge_length_q8,
+                 Context& context) {
+  FineMesh fine;
+  for (const WorldPoint& p : mesh.vertices) fine.position.push_back(on_lattice(frame, p));
+  fine.triangles = mesh.triangles;
+  fine.paths = curve_paths(fine.position, fine.triangles, network);
+  return refine_mesh(std::move(fine), {std::min(edge_length_q8 / kEdgesOfLength, kLongestEdgeQ8), edge_length_q8},
+                     context);
+}
+
+std::vector<uint64_t> edges_of(const std::vector<CurvePath>& paths) {
+  std::vector<uint64_t> edges;
+  for (const CurvePath& path : paths)
+    for (size_t i = 0; i < path.edge_count(); ++i) edges.push_back(edge_key(path.vertex[i], path.edge_end(i)));
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+/// Every fan becomes a vertex.
+SurfaceTriangles cut_triangles(const FineMesh& mesh, const MeshFans& fans, const LatticeFrame& frame) {
+  SurfaceTriangles out;
+  std::copy(frame.extent_vox, frame.extent_vox + 3, out.extent_vox);
+  out.position.resize(fans.vertex.size());
+  out.patch.resize(fans.vertex.size());
+  out.triangles.resize(mesh.triangles.size());
+  tbb::parallel_for(size_t(0), fans.vertex.size(),
+                    [&](size_t f) { out.position[f] = rounded(mesh.position[fans.vertex[f]]); });
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uint32_t* fan = &fans.of_corner[3 * t];
+    out.triangles[t] = {fan[0], fan[1], fan[2]};
+    for (int i = 0; i < 3; ++i) out.patch[fan[i]] = fans.patch[t];
+  }
+  return out;
+}
+
+/// Numbers the points of the paths. Result: per fine vertex its place, or kNone.
+std::vector<uint32_t> number_places(const FineMesh& mesh, CutSurface& cut) {
+  std::vector<uint32_t> place(mesh.position.size(), kNone), corners;
+  for (const CurvePath& path : mesh.paths)
+    if (!path.is_loop) corners.insert(corners.end(), {path.vertex.front(), path.vertex.back()});
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  uint32_t count = 0;
+  for (const uint32_t v : corners) place[v] = count++;
+  cut.corner_count = count;
+  for (const CurvePath& path : mesh.paths) {
+    CutCurve curve{path.curve, path.kind, path.is_loop, {}, path.at, path.length, path.least_segments};
+    for (const uint32_t v : path.vertex) {
+      if (place[v] == kNone) place[v] = count++;
+      curve.place.push_back(place[v]);
+    }
+    cut.curves.push_back(std::move(curve));
+  }
+  return place;
+}
+
+/// Which border vertices are at a place.
+void list_copies(const MeshFans& fans, const std::vector<uint32_t>& place_of_fine, const std::vector<uint32_t>& number,
+                 CutSurface& cut) {
+  const SurfaceMesh& surface = cut.surface;
+  cut.place.assign(size_t(surface.vertex_count()), kNone);
+  if (surface.is_closed()) {
+    cut.copies_first = {0};
+    return;
+  }
+  uint32_t places = 0;
+  for (const CutCurve& curve : cut.curves)
+    for (const uint32_t p : curve.place) places = std::max(places, p + 1);
+  cut.copies_first.assign(size_t(places) + 1, 0);
+  for (size_t f = 0; f < number.size(); ++f)
+    if (surface.border_before[number[f]] != kNone) cut.place[number[f]] = place_of_fine[fans.vertex[f]];
+  for (const uint32_t p : cut.place)
+    if (p != kNone) ++cut.copies_first[p + 1];
+  for (size_t p = 0; p < places; ++p) cut.copies_first[p + 1] += cut.copies_first[p];
+  std::vector<int64_t> next(cut.copies_first.begin(), cut.copies_first.end());
+  cut.copies.resize(size_t(cut.copies_first.back()));
+  for (size_t v = 0; v < cut.place.size(); ++v)
+    if (cut.place[v] != kNone) cut.copies[size_t(next[cut.place[v]]++)] = uint32_t(v);
+}
+
+void require_edge_length(double edge_length_world) {
+  if (edge_length_world > 0 && std::isfinite(edge_length_world)) return;
+  throw Error(ErrorCode::usage, "features",
+              "the edge length is " + std::to_string(edge_length_world) + "; it must be above 0, and finite");
+}
+
+}  // namespace
+
+CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
+                       double edge_length_world, Context& context) {
+  require_edge_length(edge_length_world);
+  return run_with_threads(context, [&] {
+    const FineMesh fine = refined(mesh, network, frame, edge_length_world / frame.voxel_size * kOneVoxelQ8, context);
+    const MeshFans fans = find_fans(fine.triangles, int64_t(fine.position.size()), edges_of(fine.paths));
+    check_cancel(context, "features");
+    CutSurface cut;
+    cut.voxel_size = frame.voxel_size;
+    cut.edge_length_world = edge_length_world;
+    MadeSurface made = make_surface_mesh(cut_triangles(fine, fans, frame), context);
+    cut.surface = std::move(made.surface);
+    list_copies(fans, number_places(fine, cut), made.number, cut);
+    return cut;
+  });
+}
+
+double edge_length_for(const FeatureMesh& mesh, const CurveNetwork& network, int64_t vertices) {
+  if (vertices < 1)
+    throw Error(ErrorCode::usage, "features", std::to_string(vertices) + " vertices are too few; it takes at least 1");
+  double area = 0, extra = 0;
+  for (const auto& t : mesh.triangles)
+    area += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  for (const FeatureCurve& curve : network.curves) {
+    CurvePath path;
+    path.vertex = curve.vertex;
+    path.is_loop = curve.is_loop;
+    measure_path(mesh.vertices, path);
+    if (curve.kind == CurveKind::border) extra += path.length / 2;
+    if (curve.kind == CurveKind::non_manifold) extra -= path.length / 2;
+  }
+  // vertices = 2 / sqrt(3) * area / e^2 + extra / e, solved for 1 / e.
+  const double per_area = 2 / std::sqrt(3.0) * area;
+  return 2 * per_area / (std::sqrt(extra * extra + 4 * per_area * double(vertices)) - extra);
+}
+
+}  // namespace isoshell

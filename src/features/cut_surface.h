@@ -1,0 +1,50 @@
+// The surface of a clean input: its own triangles on the lattice, refined, and cut open along its curves.
+#pragma once
+
+#include "features/feature_mesh.h"
+#include "isoshell/backend.h"
+#include "isoshell/lattice.h"
+#include "isoshell/seed_set.h"
+#include "isoshell/surface_mesh.h"
+
+namespace isoshell {
+
+/// A curve between two corners, or a loop, in fine points. A curve of the network at whose inner vertices the border
+/// turns back is several of these.
+struct CutCurve {
+  uint32_t curve = 0;  ///< of the network
+  CurveKind kind = CurveKind::crease;
+  bool is_loop = false;         ///< the last place is beside the first, which is not repeated
+  std::vector<uint32_t> place;  ///< along it; an open one begins and ends with corners, which may be the same one
+  std::vector<double> at_q8;    ///< per place the arclength from the first one
+  double length_q8 = 0;
+  int64_t least_segments = 1;  ///< that keep edges of the result apart
+};
+
+/// A surface cut open along curves. A place is a point of a curve, of which every fan of triangles around it has a
+/// copy: a border vertex of its own. First come the corners, then what is inside of the curves, by curve, then along
+/// it.
+struct CutSurface {
+  SurfaceMesh surface;  ///< cut into patches, with triangles that may have no area: they were thinner than a step
+  double voxel_size = 1;
+  double edge_length_world = 0;  ///< aimed at
+  std::vector<CutCurve> curves;
+  int64_t corner_count = 0;
+  std::vector<uint32_t> place;        ///< per vertex of the surface; kNone off borders
+  std::vector<int64_t> copies_first;  ///< per place, and one more: offsets into copies
+  std::vector<uint32_t> copies;       ///< border vertices, ascending per place
+};
+
+/// Snaps a mesh to the lattice, with edges cut into quarters of the edge length aimed at and a vertex wherever that
+/// length puts a seed on a curve, and cuts it along every edge of the network: each component of triangles is a patch.
+/// Vertices are snapped last, and what falls together then keeps its triangles, without area: so a patch stays the
+/// manifold that it is in the input. Result: independent of the order of triangles. Cost: sorts of the fine edges.
+/// Throws: usage where the network lacks a border or non-manifold edge, or triangles are too long and thin.
+CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
+                       double edge_length_world, Context& context);
+
+/// The edge length of a mesh with so many vertices. Triangles of that size fill the area; a border has more vertices
+/// than the area beside it, half of one an edge, and where three sheets meet there are as many fewer.
+double edge_length_for(const FeatureMesh& mesh, const CurveNetwork& network, int64_t vertices);
+
+}  // namespace isoshell

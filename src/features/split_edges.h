@@ -1,0 +1,35 @@
+// The edges of a mesh, cut into parts.
+#pragma once
+
+#include "features/refine_mesh.h"
+
+namespace isoshell {
+
+/// Comes before in position: what does not depend on how vertices are numbered.
+bool is_before(const WorldPoint& a, const WorldPoint& b);
+/// How many equal parts of at most `longest` a line takes, and where part i of so many begins. The same from both ends.
+int64_t parts_of(const WorldPoint& a, const WorldPoint& b, double longest);
+WorldPoint point_between(const WorldPoint& a, const WorldPoint& b, int64_t i, int64_t parts);
+
+/// The inner points of edges: consecutive vertices from the end of the smaller number to the other.
+class SplitEdges {
+ public:
+  /// Appends their vertices to the mesh, and cuts its paths.
+  SplitEdges(FineMesh& mesh, const RefineOptions& options);
+  /// The vertices from u to v along their edge, without v.
+  void append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const;
+
+ private:
+  struct Edge {
+    uint64_t key;
+    uint32_t first, count;  ///< of its inner points
+  };
+  const Edge* find(uint64_t key) const;
+  void list_edges(const FineMesh& mesh);
+  void split_paths(FineMesh& mesh) const;
+
+  double longest_;
+  std::vector<Edge> edges_;  ///< ascending
+};
+
+}  // namespace isoshell
