@@ -11,7 +11,8 @@ namespace isoshell::cuda_relax {
 struct PatchBox {
   PointQ8 origin;
   Local lo, hi;
-  uint32_t normal_lo, normal_hi;  ///< packed
+  uint32_t normal_lo, normal_hi;   ///< packed
+  uint32_t surface_patch = kNone;  ///< whose seeds count, where the surface is cut
 
   /// How far a seed is outside the box, on each axis.
   __device__ Local outside(const SeedRecord& s) const {
@@ -26,7 +27,8 @@ struct PatchBox {
 };
 __device__ inline PatchBox box_of(const Patch& patch) {
   const PatchBounds b = patch.bounds;
-  return {b.origin, {b.lo[0], b.lo[1], b.lo[2]}, {b.hi[0], b.hi[1], b.hi[2]}, b.normal_lo, b.normal_hi};
+  return {b.origin,    {b.lo[0], b.lo[1], b.lo[2]}, {b.hi[0], b.hi[1], b.hi[2]}, b.normal_lo,
+          b.normal_hi, patch.surface_patch};
 }
 
 /// Root of a squared distance in q16, rounded up, perhaps by a little more.

@@ -110,7 +110,9 @@ __device__ __noinline__ inline Int128 sum_patch_directly(const SheetPass& pass, 
       split.p[i] = pass.patches.vertex[v].local();
       const PointQ8 p = {patch.bounds.origin.x + split.p[i].x, patch.bounds.origin.y + split.p[i].y,
                          patch.bounds.origin.z + split.p[i].z};
-      id[i] = label_directly(pass.search, box, reach, p, SeedRecord{0, 0, 0, pass.patches.normal[v]}.normal());
+      id[i] = patch.has_fixed ? pass.patches.fixed[v] : kNone;
+      if (id[i] == kNone)
+        id[i] = label_directly(pass.search, box, reach, p, SeedRecord{0, 0, 0, pass.patches.normal[v]}.normal());
       split.s[i] = local(pass.search.seed[id[i]].position(), patch.bounds.origin);
     }
     const auto add = [&](int i, const PieceSum& piece) {

@@ -46,11 +46,12 @@ RelaxReport relax_by_patches(CudaExecutor& exec, const SurfaceMesh& surface, con
   Buffer<PatchWinners> winners = exec.make<PatchWinners>(parts);
   Buffer<PassState> state = exec.make<PassState>(1);
   Buffer<PassProgress> progress = exec.make<PassProgress>(1);
+  const Buffer<uint32_t> patch_of_seed = find_patches_of_seeds(exec, surface, seeds);
 
   const WalkOntoSheet walk = walk_onto(surface);
   const relax_sheet::MovingSeeds moving = relax_sheet::moving_seeds(walk, seeds, last.view(), spacing, options);
   SheetPass pass{patches.view(),
-                 {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16},
+                 {buckets.grid, buckets.table(0), records.data(), spacing.penalty_q16, patch_of_seed.data()},
                  winners.data(),
                  label.data(),
                  int32_t(spacing.h_q8 / 8),
@@ -91,7 +92,7 @@ RelaxReport CudaBackend::relax_on_sheet(const SurfaceMesh& surface, SeedSet& see
   on_device(exec, seeds);
   const SeedSpacing spacing = seed_spacing(exec, *here, seeds.size());
   const SheetPatches patches =
-      make_sheet_patches(exec, *here, own_vertices_for(spacing.h_sq_q16, here->vertex_count()));
+      make_sheet_patches(exec, *here, seeds.fixed, own_vertices_for(spacing.h_sq_q16, here->vertex_count()));
   if (!patches.fits) return relax_on_sheet_body(exec, *here, seeds, options);
   return relax_by_patches(exec, *here, patches, spacing, seeds, options);
 }

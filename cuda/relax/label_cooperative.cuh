@@ -22,7 +22,8 @@ class BlockLabeller {
         candidates_(candidates),
         lane_(lane),
         begin_(step.blocks.first[block]),
-        end_(step.blocks.first[block + 1]) {}
+        end_(step.blocks.first[block + 1]),
+        patch_(step.patches.at(begin_)) {}
 
   /// Looks among the seeds within reach of the block's bounds. When the dearest label costs no more than a seed beyond
   /// would, the labels are right; else that cost says how far to look.
@@ -62,11 +63,13 @@ class BlockLabeller {
     bounds_ = b;
   }
 
-  /// Keeps the seeds within reach, perhaps others too. Returns their number; above kCapacity they do not fit.
+  /// Keeps the seeds of the patch within reach, perhaps others of it too. Returns their number; above kCapacity they do
+  /// not fit.
   __device__ int gather(int64_t reach_sq) {
     int count = 0;
     for_each_within(reach_sq, [&](bool in, const label::LabelSeed& s) {
-      in = in && cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).lo <= reach_sq;
+      in = in && step_.patches.has(patch_, s.id) &&
+           cost_range(bounds_, s.position, s.normal, step_.spacing.penalty_q16).lo <= reach_sq;
       const unsigned kept = __ballot_sync(kWholeWarp, in);
       const int place = count + lanes_before(kept);
       if (in && place < kCapacity) candidates_.seed[place] = s;
@@ -125,6 +128,7 @@ class BlockLabeller {
     const int32_t r = int32_t(isqrt(uint64_t(reach_sq))) + 1;
     const PointQ8 lo = bounds_.lo, hi = bounds_.hi;
     const auto offer = [&](const GridPoint& p) {
+      if (!step_.patches.has(patch_, p.id)) return;
       best.offer(label::cost(step_.position[v], step_.normal[v], {p.position, p.id, step_.seed_normal[p.id]},
                              step_.spacing.penalty_q16),
                  p.id);
@@ -137,6 +141,7 @@ class BlockLabeller {
   Candidates& candidates_;
   const int lane_;
   const int64_t begin_, end_;
+  const uint32_t patch_;  ///< of the surface
   label::Bounds bounds_;
 };
 

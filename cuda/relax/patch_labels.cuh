@@ -64,6 +64,47 @@ __device__ inline int write_labels(const Labelling& at, uint32_t used, PatchWinn
   return __popc(used);
 }
 
+/// Gives vertices the labels that are prescribed for them: the seeds take the numbers of winners that label no other
+/// vertex. Returns all winners that label a vertex then; 0 when they are too many, and the labels of no use.
+__device__ __noinline__ inline uint32_t label_fixed(Labelling at) {
+  const int lane = threadIdx.x & 31, vertices = at.patch.vertices;
+  const uint32_t* fixed = at.pass.patches.fixed + at.patch.vertex_first;
+  uint32_t* winner = at.scratch.winners.id;
+  uint32_t used = 0;
+  for (int i = lane; i < vertices; i += 32)
+    if (fixed[i] == kNone) used |= 1u << at.scratch.label[i];
+  used = warp_or(used);
+  for (int base = 0; base < vertices; base += 32) {
+    const uint32_t mine = base + lane < vertices ? fixed[base + lane] : kNone;
+    for (unsigned left = __ballot_sync(~0u, mine != kNone); left != 0;) {
+      const uint32_t id = __shfl_sync(~0u, mine, __ffs(int(left)) - 1);
+      const unsigned same = __ballot_sync(~0u, (used >> lane & 1) != 0 && winner[lane] == id);
+      const int number = __ffs(int(same != 0 ? same : ~used)) - 1;
+      if (number < 0) return 0;
+      __syncwarp();  // all have read
+      if (lane == 0) winner[number] = id;
+      if (mine == id) at.scratch.label[base + lane] = uint8_t(number);
+      __syncwarp();
+      used |= 1u << number;
+      left &= ~__ballot_sync(~0u, mine == id);
+    }
+  }
+  return used;
+}
+
+/// Ends a patch whose labels cost at most `limit` where they are not prescribed. Returns the number of its winners;
+/// when prescribed ones are too many it must be summed directly.
+__device__ inline int end_labels(const Labelling& at, uint32_t used, int64_t limit, int32_t& reach, PatchWinners& out) {
+  if (at.patch.has_fixed) {
+    used = label_fixed(at);
+    if (used == 0) {
+      reach = reach_of(limit);
+      return kMaxWinners + 1;
+    }
+  }
+  return write_labels(at, used, out);
+}
+
 /// What labelling says of the vertices.
 struct Labelled {
   int64_t most;   ///< that one of them pays

@@ -80,6 +80,7 @@ __device__ inline uint32_t label_directly(const SeedSearch& search, const PatchB
   int64_t least = INT64_MAX;
   uint32_t label = kNone;
   const auto consider = [&](uint32_t id) {
+    if (!search.may_label(box, id)) return;
     const SeedRecord s = search.seed[id];
     const int64_t here =
         distance_sq_q16(v, s.position()) + (dot(normal, s.normal()) < label::kOpposite ? search.penalty_q16 : 0);

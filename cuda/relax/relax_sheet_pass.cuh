@@ -30,7 +30,7 @@ __device__ inline int label_patch(const Labelling& at, int32_t& reach, PatchWinn
     if (!PatchSearch(at.pass.search, box_of(at.patch), at.scratch.search).find_near(reach, at.scratch.winners, found))
       found = find_all(at, reach);
     const int64_t reach_sq = int64_t(found.reach) * found.reach;
-    if (found.count == 1 && found.limit <= reach_sq) {
+    if (found.count == 1 && found.limit <= reach_sq && !at.patch.has_fixed) {
       reach = reach_of(found.limit);
       if ((threadIdx.x & 31) == 0) out.id[0] = at.scratch.winners.id[0];
       return 1;
@@ -42,7 +42,7 @@ __device__ inline int label_patch(const Labelling& at, int32_t& reach, PatchWinn
         return found.count;
       }
       reach /= 2;  // most likely for vertices that pay: in some passes the short search does for the others
-      return write_labels(at, ~0u >> (32 - found.count), out);
+      return end_labels(at, ~0u >> (32 - found.count), found.limit, reach, out);
     }
     const Labelled labelled = label_vertices(at, found);
     const int64_t penalty = at.pass.search.penalty_q16;
@@ -50,11 +50,11 @@ __device__ inline int label_patch(const Labelling& at, int32_t& reach, PatchWinn
       const Labelled paying = label_paying(at, found.count, found.reach);
       if (paying.most >= 0) {
         reach = reach_of(paying.most);
-        return write_labels(at, paying.used, out);
+        return end_labels(at, paying.used, labelled.most, reach, out);
       }
     }
     reach = reach_of(labelled.most);
-    if (labelled.most <= reach_sq) return write_labels(at, labelled.used, out);
+    if (labelled.most <= reach_sq) return end_labels(at, labelled.used, labelled.most, reach, out);
   }
 }
 
@@ -183,14 +183,15 @@ __global__ void __launch_bounds__(kMoveThreads, at_once(kBlocks)) move_seeds(con
   Landing at{seeds.home[i], before};
   PointQ8 centre = before;
   Vec64 step = step_together(cell);
-  bool active = exists && cell.mass > 0, moved = active;
+  const bool is_free = exists && seeds.is_free(i);
+  bool active = is_free && cell.mass > 0, moved = active;
   const int legs = goes_on && beta_q15 != 0 ? 2 : 1;
 #pragma unroll 1
   for (int leg = 0; leg < legs; ++leg) {
     if (leg == 1) {
       step = difference(centre, last) * beta_q15;
       step = {step.x >> 15, step.y >> 15, step.z >> 15};
-      active = moved = exists;
+      active = moved = is_free;
     }
     const Landing landing = walk_together(seeds.walk, at.vertex, moved_by(seeds, at.vertex, at.point, step), active);
     if (active) at = landing;
@@ -198,7 +199,7 @@ __global__ void __launch_bounds__(kMoveThreads, at_once(kBlocks)) move_seeds(con
   }
   __syncwarp();
   if (!exists || thread % kWalkLanes != 0) return;
-  const Normal8 normal = seeds.walk.normal[at.vertex];
+  const Normal8 normal = moved ? seeds.walk.normal[at.vertex] : seeds.normal[i];
   move.from.remove(move.grid, before, i);
   move.cell[i] = {0, 0, 0, 0};
   if (goes_on) {

@@ -1,4 +1,5 @@
-// Collects, by one warp, the seeds within reach of a patch's box from the buckets that hold them.
+// Collects, by one warp, the seeds within reach of a patch's box from the buckets that hold them. Where the surface is
+// cut into patches of its own, only those of the box's are collected: so no limit comes from others.
 #pragma once
 
 #include "cuda/relax/box_costs.cuh"
@@ -11,7 +12,11 @@ struct SeedSearch {
   BucketTable table;
   const SeedRecord* seed;
   int64_t penalty_q16;
+  const uint32_t* patch_of_seed = nullptr;  ///< of the surface; null where it is not cut
 
+  __device__ bool may_label(const PatchBox& box, uint32_t id) const {
+    return patch_of_seed == nullptr || patch_of_seed[id] == box.surface_patch;
+  }
   /// Of a seed at offset `away` from a vertex.
   __device__ int64_t cost(Local away, uint32_t packed_normal, uint32_t other_normal) const {
     const bool pays = __dp4a(int(packed_normal), int(other_normal), 0) < label::kOpposite;
@@ -21,7 +26,8 @@ struct SeedSearch {
 
 /// Scratch of the search: numbers of the seeds in 32 full buckets.
 struct SearchScratch {
-  uint32_t id[32 * kBucketSeeds];
+  static constexpr int kRoom = 32 * kBucketSeeds;
+  uint32_t id[kRoom];
 };
 
 /// The seeds within reach of a box, by one warp: all that may be, in batches that fit the scratch.
@@ -61,24 +67,18 @@ class SeedsNearBox {
       if (base != collected_) collect<false>(base);
       each(scratch_.id, total_);
     }
-    if (__any_sync(~0u, has_spilt_)) each(search_.table.spill + 1, int(search_.table.spill[0]));
+    if (!__any_sync(~0u, has_spilt_)) return;
+    const bool is_cut = search_.patch_of_seed != nullptr;
+    const int spilt = int(search_.table.spill[0]), at_once = is_cut ? SearchScratch::kRoom : spilt;
+    for (int base = 0; base < spilt; base += at_once) {
+      if (is_cut) collect_spilt(base, min(at_once, spilt - base));
+      each(is_cut ? scratch_.id : search_.table.spill + 1, is_cut ? total_ : spilt);
+    }
   }
 
   /// Leaves those of the collected seeds that are within reach of the box.
   __device__ void drop_far(int32_t reach) {
-    int kept = 0;
-#pragma unroll 1
-    for (int base = 0; base < total_; base += 32) {
-      const bool in = base + lane_ < total_;
-      const uint32_t id = in ? scratch_.id[base + lane_] : 0;
-      const bool near = in && is_near(id, reach);
-      const unsigned lanes = __ballot_sync(~0u, near);
-      __syncwarp();  // all have read
-      if (near) scratch_.id[kept + lanes_before(lanes)] = id;
-      kept += __popc(lanes);
-      __syncwarp();
-    }
-    total_ = kept;
+    keep_if([&](uint32_t id) { return is_near(id, reach); });
   }
 
   const SeedSearch& search_;
@@ -96,6 +96,28 @@ class SeedsNearBox {
     return kFew ? int(__fdividef(float(a) + 0.5f, float(b))) : a / b;
   }
 
+  /// Leaves those of the collected seeds that keep(id) is true of.
+  template <class Keep>
+  __device__ void keep_if(Keep keep) {
+    __syncwarp();
+    int kept = 0;
+#pragma unroll 1
+    for (int base = 0; base < total_; base += 32) {
+      const bool in = base + lane_ < total_;
+      const uint32_t id = in ? scratch_.id[base + lane_] : kNone;
+      const bool stays = in && keep(id);
+      const unsigned lanes = __ballot_sync(~0u, stays);
+      __syncwarp();  // all have read
+      if (stays) scratch_.id[kept + lanes_before(lanes)] = id;
+      kept += __popc(lanes);
+      __syncwarp();
+    }
+    total_ = kept;
+  }
+  __device__ void drop_other_patches() {
+    keep_if([&](uint32_t id) { return search_.may_label(box_, id); });
+  }
+
   /// Numbers of the seeds in cells base .. next_ - 1 of the box, as many as the scratch holds. Hashed cells share
   /// buckets: unless strangers may stay, each seed is met in its own cell only.
   template <bool kStrangers>
@@ -105,7 +127,8 @@ class SeedsNearBox {
     next_ = base;
 #pragma unroll 1
     while (next_ < cells_ && collect_cells<kStrangers>(next_)) next_ += 32;
-    if (!kStrangers && search_.grid.hash_mask) drop_strangers();
+    if (!kStrangers && search_.grid.hash_mask) keep_if([](uint32_t id) { return id != kNone; });
+    if (search_.patch_of_seed != nullptr) drop_other_patches();
     collected_ = base;
     __syncwarp();
   }
@@ -158,7 +181,7 @@ class SeedsNearBox {
     const int spilt = int(search_.table.spill[0]);
     for (int base = 0; base < spilt; base += 32) {
       const uint32_t id = base + lane_ < spilt ? search_.table.spill[1 + base + lane_] : kNone;
-      const bool near = id != kNone && is_near(id, reach);
+      const bool near = id != kNone && search_.may_label(box_, id) && is_near(id, reach);
       const unsigned lanes = __ballot_sync(~0u, near);
       if (total_ + __popc(lanes) > 32 * kBucketSeeds) return false;
       if (near) scratch_.id[total_ + lanes_before(lanes)] = id;
@@ -172,18 +195,14 @@ class SeedsNearBox {
     return search_.grid.hash_mask && !search_.grid.holds(x, y, z, search_.seed[id].position()) ? kNone : id;
   }
 
-  __device__ void drop_strangers() {
+  /// Of the seeds that buckets had no room for, so many from one on, those that may label the box. They take the place
+  /// of the seeds that were collected.
+  __device__ void collect_spilt(int first, int count) {
     __syncwarp();
-    int kept = 0;
-    for (int base = 0; base < total_; base += 32) {
-      const uint32_t id = base + lane_ < total_ ? scratch_.id[base + lane_] : kNone;
-      const unsigned mine = __ballot_sync(~0u, id != kNone);
-      __syncwarp();  // all have read
-      if (id != kNone) scratch_.id[kept + lanes_before(mine)] = id;
-      kept += __popc(mine);
-      __syncwarp();
-    }
-    total_ = kept;
+    for (int i = lane_; i < count; i += 32) scratch_.id[i] = search_.table.spill[1 + first + i];
+    total_ = count;
+    collected_ = -1;
+    drop_other_patches();
   }
 
   int first_[3] = {}, dims_[2] = {}, cells_ = 0, collected_ = -1, next_ = 0;

@@ -17,6 +17,8 @@ struct PatchSource {
   View<const int64_t> vertex_first;
   View<const uint32_t> vertex_triangles;
   EdgeLengthsView lengths;
+  label::PatchesView surface_patches;
+  View<const uint32_t> fixed;  ///< per vertex; empty without fixed seeds
   const int64_t* patch_first;  ///< of each block, and in the end how many there are
   int64_t patches;
 
@@ -139,6 +141,7 @@ struct PatchTarget {
   uint32_t* normal;
   PackedTriangle* triangle;
   PieceBytes* owned;
+  uint32_t* fixed;
   int* misfits;
 };
 
@@ -177,6 +180,9 @@ class FillPatch {
     to_.vertex[vertex_first_ + place] = {int16_t(u.x), int16_t(u.y), int16_t(u.z), 0};
     to_.normal[vertex_first_ + place] = pack(n);
     label::include(bounds_, p, n);
+    if (source_.fixed.empty()) return;
+    to_.fixed[vertex_first_ + place] = source_.fixed[v];
+    has_fixed_ |= source_.fixed[v] != kNone;
   }
 
   __device__ void copy_own_vertices() {
@@ -239,7 +245,8 @@ class FillPatch {
     patch.own = uint16_t(part_.end - part_.begin);
     patch.vertices = uint16_t(places_);
     patch.triangles = uint16_t(foreign_.triangles);
-    patch.unused = 0;
+    patch.has_fixed = __any_sync(~0u, has_fixed_) ? 1 : 0;
+    patch.surface_patch = source_.surface_patches.at(part_.begin);
     clear_places_between(patch);
     fits_ &= patch.total.mass < kMaxPatchMass;
     if (!fits_) atomicAdd(to_.misfits, 1);
@@ -276,7 +283,7 @@ class FillPatch {
   const PointQ8 origin_;  ///< of local coordinates
   const int64_t vertex_first_, triangle_first_, owned_first_;
   int places_ = 0;  ///< vertices so far
-  bool fits_ = true;
+  bool fits_ = true, has_fixed_ = false;
   label::Bounds bounds_ = label::empty_bounds();
   PieceSum total_{0, 0, 0, 0, 0};
 };
@@ -291,15 +298,23 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
 
 }  // namespace
 
-SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, int max_own) {
+SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, const FixedSeeds& fixed, int max_own) {
   const Buffer<int64_t>& block_first = surface.blocks.first;
   Buffer<int64_t> patch_first = exec.make<int64_t>(block_first.size());
   exec.for_each("count patches of blocks", block_first.size(),
                 CountBlockPatches{block_first.view(), patch_first.view(), max_own});
   const int64_t count = exec.exclusive_scan(patch_first.view());
-  const PatchSource source{surface.blocks.view(),    surface.position.view(),     surface.normal.view(),
-                           surface.triangles.view(), surface.vertex_first.view(), surface.vertex_triangles.view(),
-                           lengths_of(surface),      patch_first.data(),          count};
+  const PatchSource source{surface.blocks.view(),
+                           surface.position.view(),
+                           surface.normal.view(),
+                           surface.triangles.view(),
+                           surface.vertex_first.view(),
+                           surface.vertex_triangles.view(),
+                           lengths_of(surface),
+                           {surface.patch.view(), {}},
+                           fixed.count > 0 ? fixed.of_vertex.view() : View<const uint32_t>{},
+                           patch_first.data(),
+                           count};
   const unsigned blocks = unsigned((count + kWarps - 1) / kWarps);
   SheetPatches out;
   Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),
@@ -320,9 +335,10 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, 
   out.normal = exec.make<uint32_t>(copies);
   out.triangle = exec.make<PackedTriangle>(triangle_places);
   out.owned = exec.make<PieceBytes>(owned_slots);
+  if (fixed.count > 0) out.fixed = exec.make<uint32_t>(copies);
   fill_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(
       source, {counts, out.patch.data(), out.vertex.data(), out.normal.data(), out.triangle.data(), out.owned.data(),
-               misfits.data()});
+               out.fixed.data(), misfits.data()});
   exec.check("fill patches");
   out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
   return out;

@@ -1,10 +1,12 @@
 // The sheet cut into patches, parts of a block of about the same size, each with all that a pass reads of it: copies of
 // its vertices and of those around it that its triangles use, triangles by their places among these, bounds, and the
-// moments of the whole and of each of its own vertices. A triangle is its smallest vertex's own.
+// moments of the whole and of each of its own vertices. A triangle is its smallest vertex's own. These patches have
+// nothing to do with those that a surface may be cut into (SurfaceMesh::patch), but that each is in one of them.
 #pragma once
 
 #include "cuda/relax/label_sums.cuh"
 #include "cuda/runtime/executor_cuda.cuh"
+#include "isoshell/seed_set.h"
 #include "isoshell/surface_mesh.h"
 #include "stages/relax/relax_sheet_body.h"
 #include "voxel/cell_sum.h"
@@ -38,8 +40,10 @@ struct alignas(16) PatchBounds {
 struct alignas(16) Patch {
   PatchBounds bounds;
   int64_t vertex_first, triangle_first, owned_first;
-  uint16_t own, vertices, triangles, unused;  ///< a patch's own vertices come first
-  PieceSum total;                             ///< of all triangles
+  uint16_t own, vertices, triangles;  ///< a patch's own vertices come first
+  uint16_t has_fixed;                 ///< 1: labels of some vertices are prescribed
+  PieceSum total;                     ///< of all triangles
+  uint32_t surface_patch;             ///< that it is in; kNone where the surface is not cut
 };
 
 struct PatchesView {
@@ -48,6 +52,7 @@ struct PatchesView {
   const uint32_t* normal;  ///< packed, per vertex
   const PackedTriangle* triangle;
   const PieceBytes* owned;  ///< moments of the own vertices' triangles, 32 vertices by 32 lanes
+  const uint32_t* fixed;    ///< per vertex the label that is prescribed, or kNone; read where a patch has some
   int64_t count;
 };
 
@@ -57,14 +62,15 @@ struct SheetPatches {
   Buffer<uint32_t> normal;
   Buffer<PackedTriangle> triangle;
   Buffer<PieceBytes> owned;
-  bool fits = true;  ///< false: the sheet breaks a limit of patches; relax with the plain body
+  Buffer<uint32_t> fixed;  ///< empty without fixed seeds
+  bool fits = true;        ///< false: the sheet breaks a limit of patches; relax with the plain body
 
   PatchesView view() const {
-    return {patch.data(), vertex.data(), normal.data(), triangle.data(), owned.data(), patch.size()};
+    return {patch.data(), vertex.data(), normal.data(), triangle.data(), owned.data(), fixed.data(), patch.size()};
   }
 };
 
 /// Makes the patches of a sheet in device memory, with at most so many vertices of their own.
-SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, int max_own);
+SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, const FixedSeeds& fixed, int max_own);
 
 }  // namespace isoshell::cuda_relax

@@ -12,6 +12,7 @@
 #include "stages/shell/shell_body.h"
 #include "stages/sites/samples_body.h"
 #include "support/catch.h"
+#include "support/fixed_cases.h"
 #include "support/relax_sheets.h"
 #include "support/site_shapes.h"
 #include "support/solid_soup.h"
@@ -56,6 +57,34 @@ Lattice lattice_of(const TriangleSoup& soup, int32_t resolution, TestContext& co
   l.sites = voxelize(l.surface, context);
   l.samples = sample_sites(l.surface, l.sites, context);
   return l;
+}
+
+/// Puts free seeds of a patch, up to 120, at the place of the first one: more than lists and buckets have room for.
+void crowd(const SurfaceMesh& surface, SeedSet& seeds) {
+  const int64_t first = seeds.fixed.count, end = std::min(seeds.size(), first + 120);
+  for (int64_t s = first; s < end; ++s) {
+    if (!surface.patch.empty() && surface.patch[seeds.home[s]] != surface.patch[seeds.home[first]]) continue;
+    seeds.position[s] = seeds.position[first];
+    seeds.normal[s] = seeds.normal[first];
+    seeds.home[s] = seeds.home[first];
+  }
+}
+
+/// A box whose sides are a block each, of triangles so large that a device has no patches of its own for them.
+FixedCase box_of_large_triangles(TestContext& context) {
+  constexpr int32_t kStep = 2300;
+  SurfaceMesh surface = surface_of(cut_box({7, 7, 7}, kStep), context);
+  std::vector<int64_t> first{0};
+  std::vector<PointQ8> centre;
+  for (int32_t side = 0; side < 6; ++side) {
+    first.push_back(first.back() + 64);
+    int32_t at[3] = {10000 + 7 * kStep / 2, 10000 + 7 * kStep / 2, 10000 + 7 * kStep / 2};
+    at[side / 2] = 10000 + side % 2 * 7 * kStep;
+    centre.push_back({at[0], at[1], at[2]});
+  }
+  surface.blocks = {to_buffer(first), to_buffer(centre)};
+  SeedSet seeds = with_free_seeds(surface, fixed_on_borders(surface, every_steps(2, kStep)), 30);
+  return {"box of large triangles", std::move(surface), std::move(seeds)};
 }
 
 std::vector<shapes::NamedSoup> named_soups() {
@@ -136,4 +165,21 @@ TEST_CASE("kernels: relaxed seeds, duals and improved meshes are those of the pl
     }
   CHECK(split > 0);
   CHECK(flips > 0);
+}
+
+TEST_CASE("kernels: seeds of patches, some of them fixed, are those of the plain set", "[kernels][parity][cuda]") {
+  TestContext context;
+  PlainExecutor exec(context, "test");
+  std::vector<FixedCase> cases = fixed_cases(context);
+  cases.push_back(box_of_large_triangles(context));
+  for (FixedCase& c : cases)
+    for (const bool crowded : {false, true}) {
+      INFO(c.name << (crowded ? ", crowded" : ""));
+      SeedSet seeds = host_copy(c.seeds);
+      if (crowded) crowd(c.surface, seeds);
+      SeedSet plain_seeds = host_copy(seeds);
+      const RelaxReport report = relax_on_sheet(c.surface, seeds, {12, 0, 0}, context);
+      CHECK(report.energy == relax_on_sheet_body(exec, c.surface, plain_seeds, {12, 0, 0}).energy);
+      CHECK(hash_arrays(seeds) == hash_arrays(plain_seeds));
+    }
 }

@@ -219,8 +219,8 @@ struct LabelBlockSimd {
     const label::Bounds& bounds = block_bounds[block];
     const int64_t begin = plain.blocks.first[block], end = plain.blocks.first[block + 1];
     NearSeeds near;
-    const int64_t limit =
-        middle[block] == kNone ? gather_first(bounds, begin, near) : gather_as_far_as(middle[block], bounds, near);
+    const int64_t limit = middle[block] == kNone ? gather_first(begin, bounds, near)
+                                                 : gather_as_far_as(middle[block], begin, bounds, near);
     BlockSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
     const bool are_few = near.count <= NearSeeds::kMost, fit = are_few && seeds.fit(near) && seeds.cut_penalty(limit);
     if (!fit || !seeds.take(near)) {
@@ -250,7 +250,7 @@ struct LabelBlockSimd {
   }
   void label_side(const label::Bounds& bounds, const int64_t* member, int count) const {
     NearSeeds near;
-    const int64_t limit = gather_first(bounds, member[0], near);
+    const int64_t limit = gather_first(member[0], bounds, near);
     BlockSeeds seeds(bounds, plain.seed_normal, plain.spacing.penalty_q16);
     if (near.count <= NearSeeds::kMost && seeds.fit(near) && seeds.cut_penalty(limit) && seeds.take(near))
       return seeds.label(
@@ -258,24 +258,27 @@ struct LabelBlockSimd {
     for (int i = 0; i < count; ++i) plain.label_directly(limit, member[i], member[i] + 1);
   }
 
-  // Both return a limit that no label's cost exceeds.
+  // Both take a vertex in the bounds, and return a limit that no label's cost exceeds.
 
-  int64_t gather_first(const label::Bounds& bounds, int64_t begin, NearSeeds& near) const {
+  int64_t gather_first(int64_t vertex, const label::Bounds& bounds, NearSeeds& near) const {
     label::LabelSeed seeds[label::kMaxCandidates];
     int64_t limit;
-    const int count = plain.gather(bounds, plain.spacing.h_at(uint32_t(begin)), seeds, limit);
+    const int count = plain.gather(vertex, bounds, seeds, limit);
     if (count > label::kMaxCandidates)
       near.count = NearSeeds::kMost + 1;
     else
       for (int s = 0; s < count; ++s) near.add(local(seeds[s].position, bounds.lo), seeds[s].id);
     return limit;
   }
-  /// No label costs more than a seed does at most, wherever it is by now.
-  int64_t gather_as_far_as(uint32_t seed, const label::Bounds& bounds, NearSeeds& near) const {
+  /// No label costs more than a seed of the patch does at most, wherever it is by now.
+  int64_t gather_as_far_as(uint32_t seed, int64_t vertex, const label::Bounds& bounds, NearSeeds& near) const {
+    const uint32_t patch = plain.patches.at(vertex);
     const int64_t limit =
         label::cost_range(bounds, seed_position[seed], plain.seed_normal[seed], plain.spacing.penalty_q16).hi;
     const int32_t r = int32_t(isqrt(uint64_t(limit))) + 1;
-    const auto add = [&](const GridPoint& p) { near.add(local(p.position, bounds.lo), p.id); };
+    const auto add = [&](const GridPoint& p) {
+      if (plain.patches.has(patch, p.id)) near.add(local(p.position, bounds.lo), p.id);
+    };
     visit_box(
         plain.grid,
         {{bounds.lo.x - r, bounds.lo.y - r, bounds.lo.z - r}, {bounds.hi.x + r, bounds.hi.y + r, bounds.hi.z + r}},
@@ -295,12 +298,20 @@ LabelSimd::LabelSimd(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSp
 
 void LabelSimd::label(CpuExecutor& exec, const SeedSet& seeds, View<uint32_t> labels) {
   const PointGrid grid = grid_of_seeds(exec, surface_, seeds, spacing_);
+  const Buffer<uint32_t> patch_of_seed = find_patches_of_seeds(exec, surface_, seeds);
   exec.for_each("label sheet vertices", surface_.blocks.count(),
-                LabelBlockSimd{{surface_.blocks.view(), surface_.position.view(), surface_.normal.view(), grid.view(),
-                                seeds.normal.view(), spacing_, labels},
+                LabelBlockSimd{{surface_.blocks.view(),
+                                surface_.position.view(),
+                                surface_.normal.view(),
+                                grid.view(),
+                                seeds.normal.view(),
+                                spacing_,
+                                labels,
+                                {surface_.patch.view(), patch_of_seed.view()}},
                                bounds_.view(),
                                seeds.position.view(),
                                middle_.view()});
+  prescribe_labels(exec, seeds.fixed, labels);
 }
 
 }  // namespace isoshell

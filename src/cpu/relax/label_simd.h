@@ -7,8 +7,8 @@
 
 namespace isoshell {
 
-/// Labels one sheet for seeds that move: what does not change is found once, and the seeds in the middle of blocks say
-/// how far to look the next time.
+/// Labels one sheet for seeds that move, each in its patch: what does not change is found once, and the seeds in the
+/// middle of blocks say how far to look the next time.
 class LabelSimd {
  public:
   LabelSimd(CpuExecutor& exec, const SurfaceMesh& surface, const SeedSpacing& spacing);

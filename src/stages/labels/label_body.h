@@ -1,15 +1,17 @@
 // Nearest seed of every vertex of a surface, exact (paper section 3.2, on the surface).
 //
-// Result: label = minimum of (squared distance + penalty, seed id). The penalty, 16 h^2, is paid by a seed that sits on
-// the other side of a thin wall (normals at more than about 104 degrees), so that each side keeps its own seeds.
-// A block gathers the seeds that can win inside its box, each of its octants keeps those that can win inside its own
-// box, and its vertices compare those. A seed can win when its smallest cost over the box is not above the smallest of
-// the seeds' largest costs.
+// Result: label = minimum of (squared distance + penalty, seed id) over the seeds of the vertex's patch. The penalty,
+// 16 h^2, is paid by a seed that sits on the other side of a thin wall (normals at more than about 104 degrees), so
+// that each side keeps its own seeds. On borders with fixed seeds the label is prescribed. A block gathers the seeds
+// that can win inside its box, each of its octants keeps those that can win inside its own box, and its vertices
+// compare those. A seed can win when its smallest cost over the box is not above the smallest of the seeds' largest
+// costs.
 #pragma once
 
 #include <algorithm>
 
 #include "isoshell/seed_set.h"
+#include "stages/labels/patch_labels.h"
 #include "stages/sheet/edge_lengths.h"
 #include "stages/sparse/point_grid_body.h"
 
@@ -113,6 +115,7 @@ struct LabelBlock {
   View<const Normal8> seed_normal;
   SeedSpacing spacing;
   View<uint32_t> out;
+  PatchesView patches = {};
 
   ISOSHELL_HD void operator()(int64_t block) const {
     const int64_t begin = blocks.first[block], end = blocks.first[block + 1];
@@ -120,20 +123,22 @@ struct LabelBlock {
     for (int64_t v = begin; v < end; ++v) include(bounds, position[v], normal[v]);
     LabelSeed candidates[kCapacity];
     int64_t limit;
-    const int count = gather(bounds, spacing.h_at(uint32_t(begin)), candidates, limit);
+    const int count = gather(begin, bounds, candidates, limit);
     if (count > kCapacity) return label_directly(limit, begin, end);
     label_from(block, candidates, count);
   }
 
-  /// The seeds that can win in the box, and the limit that no label's cost exceeds: the smallest of the seeds' largest
-  /// costs, taken over those in reach; the spacing says how far to look first. Returns more than kCapacity when they do
-  /// not fit.
-  ISOSHELL_HD int gather(const Bounds& bounds, int64_t h_q8, LabelSeed* candidates, int64_t& limit) const {
+  /// The seeds that can win in the box around a vertex and others of its block, and the limit that no label's cost
+  /// exceeds: the smallest of the seeds' largest costs, taken over those in reach; the spacing says how far to look
+  /// first. Returns more than kCapacity when they do not fit.
+  ISOSHELL_HD int gather(int64_t vertex, const Bounds& bounds, LabelSeed* candidates, int64_t& limit) const {
+    const uint32_t patch = patches.at(vertex);
+    const int64_t h_q8 = spacing.h_at(uint32_t(vertex));
     const int64_t diagonal = int64_t(isqrt(uint64_t(distance_sq_q16(bounds.lo, bounds.hi))));
     for (int64_t reach = diagonal / 2 + h_q8;; reach *= 2) {
       limit = INT64_MAX;
       int count = 0;
-      for_each_within(bounds, reach * reach, [&](const LabelSeed& s) {
+      for_each_within(patch, bounds, reach * reach, [&](const LabelSeed& s) {
         const CostRange range = cost_range(bounds, s.position, s.normal, spacing.penalty_q16);
         if (range.hi < limit) limit = range.hi;
         if (count < kCapacity) candidates[count] = s;
@@ -143,7 +148,7 @@ struct LabelBlock {
       if (limit <= reach * reach && count <= kCapacity) return keep_winnable(bounds, limit, candidates, count);
       // Reached too short or too far; the limit is a bound all the same, and says how far to look.
       count = 0;
-      for_each_within(bounds, limit, [&](const LabelSeed& s) {
+      for_each_within(patch, bounds, limit, [&](const LabelSeed& s) {
         if (cost_range(bounds, s.position, s.normal, spacing.penalty_q16).lo > limit) return;
         if (count < kCapacity) candidates[count] = s;
         ++count;
@@ -174,6 +179,7 @@ struct LabelBlock {
   /// The exact path without lists, where too many seeds can win somewhere in the block: each vertex looks for its own,
   /// farther until the best one is nearer than it looked. No label costs more than the limit.
   ISOSHELL_HD void label_directly(int64_t limit, int64_t begin, int64_t end) const {
+    const uint32_t patch = patches.at(begin);
     for (int64_t v = begin; v < end; ++v) {
       Bounds at = empty_bounds();
       include(at, position[v], normal[v]);
@@ -181,7 +187,7 @@ struct LabelBlock {
         const int64_t within = reach * reach < limit ? reach * reach : limit;
         int64_t best = INT64_MAX;
         uint32_t id = kNone;
-        for_each_within(at, within, [&](const LabelSeed& s) {
+        for_each_within(patch, at, within, [&](const LabelSeed& s) {
           const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
           if (c < best || (c == best && s.id < id)) best = c, id = s.id;
         });
@@ -192,11 +198,14 @@ struct LabelBlock {
     }
   }
 
-  /// Calls visit(LabelSeed) for every seed whose squared distance to the box is at most the limit, and for some more.
+  /// Calls visit(LabelSeed) for every seed of the patch whose squared distance to the box is at most the limit, and for
+  /// some more of the patch.
   template <class Visit>
-  ISOSHELL_HD void for_each_within(const Bounds& b, int64_t limit_sq, Visit visit) const {
+  ISOSHELL_HD void for_each_within(uint32_t patch, const Bounds& b, int64_t limit_sq, Visit visit) const {
     const int32_t r = int32_t(isqrt(uint64_t(limit_sq))) + 1;
-    const auto visit_point = [&](const GridPoint& p) { visit(LabelSeed{p.position, p.id, seed_normal[p.id]}); };
+    const auto visit_point = [&](const GridPoint& p) {
+      if (patches.has(patch, p.id)) visit(LabelSeed{p.position, p.id, seed_normal[p.id]});
+    };
     visit_box(grid, {{b.lo.x - r, b.lo.y - r, b.lo.z - r}, {b.hi.x + r, b.hi.y + r, b.hi.z + r}}, visit_point);
   }
 
@@ -341,15 +350,24 @@ PointGrid grid_of_seeds(Exec& exec, const SurfaceMesh& surface, const SeedSet& s
   return grid;
 }
 
-/// Labels of all vertices for the current seeds. Cost: O(vertices) for seeds of even spacing.
+/// Labels of all vertices for the current seeds. Cost: O(vertices) for seeds of even spacing. Throws: usage for a patch
+/// without a seed.
 struct PlainLabelSheet {
   template <class Exec>
   static void run(Exec& exec, const SurfaceMesh& surface, const SeedSet& seeds, const SeedSpacing& spacing,
                   View<uint32_t> labels) {
     const PointGrid grid = grid_of_seeds(exec, surface, seeds, spacing);
+    const Buffer<uint32_t> patch_of_seed = find_patches_of_seeds(exec, surface, seeds);
     exec.for_each("label sheet vertices", surface.blocks.count(),
-                  label::LabelBlock<>{surface.blocks.view(), surface.position.view(), surface.normal.view(),
-                                      grid.view(), seeds.normal.view(), spacing, labels});
+                  label::LabelBlock<>{surface.blocks.view(),
+                                      surface.position.view(),
+                                      surface.normal.view(),
+                                      grid.view(),
+                                      seeds.normal.view(),
+                                      spacing,
+                                      labels,
+                                      {surface.patch.view(), patch_of_seed.view()}});
+    prescribe_labels(exec, seeds.fixed, labels);
   }
 };
 

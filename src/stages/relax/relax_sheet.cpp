@@ -2,6 +2,7 @@
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
 #include "stages/relax/relax_options.h"
+#include "stages/require_seeds.h"
 #include "stages/require_surface.h"
 
 namespace isoshell {
@@ -12,6 +13,7 @@ RelaxedSeeds relax_on_sheet(const SurfaceMesh& surface, SeedSet&& seeds, const R
     throw Error(ErrorCode::usage, "relax", "there are 0 seeds; relaxation needs at least 1: see place_seeds");
   require_relax_options(options);
   require_blocks(surface, "relax");
+  require_fixed_seeds(surface, seeds, "relax");
   RelaxReport report = backend_for(context).relax_on_sheet(surface, seeds, options, context);
   return {std::move(seeds), std::move(report)};
 }

@@ -3,7 +3,7 @@
 //
 // A pass: look ahead along the last move (Nesterov), label the sheet, sum area and moments of every clipped cell in
 // integers, move each seed past its cell's centre, walk it back onto the sheet. Momentum starts anew when the energy
-// rose.
+// rose. Fixed seeds take part in all but the moves.
 #pragma once
 
 #include "isoshell/stages.h"
@@ -36,7 +36,9 @@ struct MovingSeeds {
   View<Normal8> normal;
   int64_t max_step_q8;  ///< where lengths are least
   EdgeLengthsView lengths;
+  int64_t fixed;  ///< so many of the first stay where they are
 
+  ISOSHELL_HD bool is_free(int64_t i) const { return i >= fixed; }
   /// The step of seed i, shortened to the bound where it is at home.
   ISOSHELL_HD PointQ8 moved(int64_t i, PointQ8 from, Vec64 step) const {
     const int64_t length_sq = dot(step, step), most = lengths.scaled(max_step_q8, home[i]);
@@ -63,7 +65,8 @@ inline MovingSeeds moving_seeds(const WalkOntoSheet& walk, SeedSet& seeds, View<
           seeds.home.view(),
           seeds.normal.view(),
           most > 0 ? most : spacing.h_q8 * 2 / 5,
-          most > 0 ? EdgeLengthsView{} : spacing.lengths};
+          most > 0 ? EdgeLengthsView{} : spacing.lengths,
+          seeds.fixed.count};
 }
 
 /// s + beta (s - last).
@@ -88,7 +91,7 @@ struct LookAhead {
   MovingSeeds seeds;
   View<const PassState> state;
   ISOSHELL_HD bool aims(int64_t i, PointQ8& target) const {
-    if (state[0].converged) return false;
+    if (state[0].converged || !seeds.is_free(i)) return false;
     const int64_t beta_q15 = state[0].beta_q15;
     const PointQ8 s = seeds.here[i];
     target = point_ahead(seeds, s, beta_q15, i);
@@ -103,7 +106,7 @@ struct MovePastCentre {
   View<const CellSum> cell;
   View<const PassState> state;
   ISOSHELL_HD bool aims(int64_t i, PointQ8& target) const {
-    if (state[0].converged || cell[i].mass <= 0) return false;
+    if (state[0].converged || !seeds.is_free(i) || cell[i].mass <= 0) return false;
     target = point_past_centre(seeds, cell[i], i);
     return true;
   }
