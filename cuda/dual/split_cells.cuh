@@ -74,6 +74,10 @@ struct Work {
   __device__ uint32_t vertex(int64_t p) const { return split.queue[first + p]; }
   __device__ uint32_t& from_old(int64_t p) const { return scratch.from_old[first + p]; }
   __device__ uint32_t& from_new(int64_t p) const { return scratch.from_new[first + p]; }
+  /// Of the old source, whose one vertex is `source` where it has no border.
+  __device__ bool is_old_source(uint32_t v, uint32_t source) const {
+    return split.cells.is_fixed(id) ? split.graph.is_on_border(v) : v == source;
+  }
   __device__ bool is_new(int64_t p) const { return from_new(p) < from_old(p); }
 
   /// Calls visit(place) for the neighbours in the cell until it returns true; returns whether it did.
@@ -109,10 +113,10 @@ __device__ inline uint64_t block_min(uint64_t value, uint64_t* shared) {
   return *shared;
 }
 
-/// Marks how many edges every vertex is away from `source`, where that is below `limit`.
-template <class Distance, class Limit>
-__device__ inline void measure_from(const Work& work, uint32_t source, Distance distance, Limit limit) {
-  for (int64_t p = threadIdx.x; p < work.size; p += kThreads) distance(p) = work.vertex(p) == source ? 0 : kFar;
+/// Marks how many edges every vertex is away from a source, where that is below `limit`.
+template <class IsSource, class Distance, class Limit>
+__device__ inline void measure_from(const Work& work, IsSource is_source, Distance distance, Limit limit) {
+  for (int64_t p = threadIdx.x; p < work.size; p += kThreads) distance(p) = is_source(work.vertex(p)) ? 0 : kFar;
   bool grew = true;
   for (uint32_t level = 0; __syncthreads_or(grew); ++level) {
     grew = false;
@@ -125,12 +129,13 @@ __device__ inline void measure_from(const Work& work, uint32_t source, Distance 
   }
 }
 
-/// The vertex nearest to the seed, the smallest of equals.
+/// The vertex nearest to the seed, of a fixed one among those on the border; the smallest of equals.
 __device__ inline uint32_t nearest_to_seed(const Work& work, uint64_t* shared) {
   uint64_t nearest = ~uint64_t(0), best = kNone;
   const PointQ8 seed = work.split.seed_position[work.id];
   for (int64_t p = threadIdx.x; p < work.size; p += kThreads) {
     const uint32_t v = work.vertex(p);
+    if (!work.split.may_be_source(work.id, v)) continue;
     const uint64_t d = uint64_t(distance_sq_q16(work.split.vertex_position[v], seed));
     if (d < nearest || (d == nearest && v < best)) nearest = d, best = v;
   }
@@ -140,14 +145,15 @@ __device__ inline uint32_t nearest_to_seed(const Work& work, uint64_t* shared) {
 
 /// The vertex of the most edges from the old source, among those that touch the requested cell if there are any; the
 /// smallest of equals.
-__device__ inline uint32_t farthest(const Work& work, uint32_t source, uint64_t* shared) {
+__device__ inline uint32_t farthest(const Work& work, uint64_t* shared) {
   const uint32_t touching = work.split.request[work.id];
   uint64_t anywhere = ~uint64_t(0), at_other = ~uint64_t(0);  // ~distance << 32 | vertex
   for (int64_t p = threadIdx.x; p < work.size; p += kThreads) {
     const uint32_t v = work.vertex(p);
     const uint64_t key = uint64_t(~work.from_old(p)) << 32 | v;
     anywhere = key < anywhere ? key : anywhere;
-    if (touching != kSplitAnywhere && v != source && key < at_other && work.touches(v, touching)) at_other = key;
+    const bool is_source = work.from_old(p) == 0;
+    if (touching != kSplitAnywhere && !is_source && key < at_other && work.touches(v, touching)) at_other = key;
   }
   anywhere = block_min(anywhere, shared);
   at_other = block_min(at_other, shared);
@@ -174,6 +180,7 @@ __device__ inline void measure_halves(const Work& work, int64_t i, uint32_t* siz
       --sum;
       if (last > v && is_same(last)) ++sum;
     });
+    if (split.graph.is_on_border(v) && split.graph.border_before[v] > v && is_same(split.graph.border_before[v])) --sum;
     ++all;
     euler_all += sum;
     if (side) ++in_new, euler_new += sum;
@@ -200,10 +207,12 @@ __global__ void __launch_bounds__(kThreads) split_in_blocks(int64_t count, Split
     const Work work = {split, scratch, split.cell[i], split.first[i], split.first[i + 1] - split.first[i]};
     const uint32_t old_source = nearest_to_seed(work, &least);
     const auto from_old = [&](int64_t p) -> uint32_t& { return work.from_old(p); };
-    measure_from(work, old_source, from_old, [](int64_t) { return kFar; });
-    const uint32_t new_source = farthest(work, old_source, &least);
     measure_from(
-        work, new_source, [&](int64_t p) -> uint32_t& { return work.from_new(p); }, from_old);
+        work, [&](uint32_t v) { return work.is_old_source(v, old_source); }, from_old, [](int64_t) { return kFar; });
+    const uint32_t new_source = farthest(work, &least);
+    measure_from(
+        work, [&](uint32_t v) { return v == new_source; }, [&](int64_t p) -> uint32_t& { return work.from_new(p); },
+        from_old);
     measure_halves(work, i, size, euler);
     if (threadIdx.x == 0) {
       split.cells.root[work.id] = old_source;

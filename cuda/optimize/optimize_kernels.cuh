@@ -96,13 +96,14 @@ __device__ inline void search_together(const SearchVertex& search, uint32_t v) {
 
 /// The whole of PlainSearchPlaces.
 __global__ void __launch_bounds__(kThreads, kBlocks)
-    search_in_rounds(SearchVertex search, View<uint32_t> poor, double least_quality, int rounds) {
+    search_in_rounds(SearchVertex search, View<uint32_t> poor, double least_quality, int64_t locked, int rounds) {
   const auto grid = cooperative_groups::this_grid();
   const int lane = threadIdx.x & 31;
   for (int round = 0; round < rounds; ++round) {
     for_each_of_grid(poor.size, [&](int64_t v) { poor[v] = 0; });
     grid.sync();
-    for_each_of_grid(search.mesh.triangles.size, MarkPoor{search.mesh.triangles, search.position, least_quality, poor});
+    for_each_of_grid(search.mesh.triangles.size,
+                     MarkPoor{search.mesh.triangles, search.position, least_quality, locked, poor});
     grid.sync();
     search.round = round;
     const MayMove may_move{search.mesh, poor, uint64_t(round)};
@@ -167,7 +168,7 @@ struct SearchPlacesInOneLaunch {
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
     const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};
     device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
-                                  options.least_quality, options.rounds);
+                                  options.least_quality, options.locked, options.rounds);
     exec.check("search places");
   }
 };

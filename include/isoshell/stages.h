@@ -3,6 +3,8 @@
 // valid, and nothing more can be said of it.
 //
 // What takes a SurfaceMesh takes one with borders too, unless it says that it needs a closed one: then it throws usage.
+// Where a surface is cut into patches, a vertex is in the cell of the nearest seed of its own patch; where there are
+// fixed seeds, a vertex on a border is in the cell that FixedSeeds says, and relaxation leaves them as they are.
 #pragma once
 
 #include <vector>
@@ -36,6 +38,24 @@ WorldBox bounding_box(const TriangleSoup& soup);
 
 /// Snaps the soup to the lattice (see LatticeSurface). Throws: nothing_to_mesh when no triangle is left.
 LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, Context& context);
+
+/// Triangles on the lattice to make a surface of. No triangle has a corner twice, or vertices of two patches.
+struct SurfaceTriangles {
+  std::vector<PointQ8> position;  ///< per vertex; every vertex has a triangle
+  std::vector<TriangleIndices> triangles;
+  std::vector<uint32_t> patch;  ///< per vertex; empty: one patch
+  int32_t extent_vox[3] = {};   ///< positions are 0 to 256 times this
+};
+struct MadeSurface {
+  SurfaceMesh surface;
+  std::vector<uint32_t> number;  ///< per vertex as given the vertex that it became
+};
+/// A surface from triangles that do not come from a sheet. Result: vertices in the order of (patch, leaf key, x, y, z,
+/// number as given), triangles from their smallest corner on, sorted; a block is what a patch has in a leaf, and
+/// normals are sums of the triangles' area vectors. Triangles without area stay. In host memory. Cost: a sort of the
+/// vertices, the triangles and the edges. Throws: usage where the triangles are no oriented manifold, or reach 28
+/// voxels or more beyond a corner's leaf.
+MadeSurface make_surface_mesh(const SurfaceTriangles& from, Context& context);
 
 /// Voxelization(O, res) of the paper: sites of a snapped surface. Cost: proportional to the voxels tested; 64 B a leaf.
 SiteSet voxelize(const LatticeSurface& surface, Context& context);
@@ -122,7 +142,9 @@ struct RelaxedSeeds {
   SeedSet seeds;  ///< with the ids they had
   RelaxReport report;
 };
-/// Centroidal Voronoi tessellation of the surface with clipped cells and momentum.
+/// Centroidal Voronoi tessellation of the surface with clipped cells and momentum. Seeds stay in their patches; fixed
+/// ones keep position, normal and home, and their cells count in the energy. Throws: usage when a patch has no seed, or
+/// fixed seeds are not of this surface.
 RelaxedSeeds relax_on_sheet(const SurfaceMesh& surface, SeedSet&& seeds, const RelaxOptions& options, Context& context);
 /// The paper's Lloyd loop over the active voxels of the shell, sections 3.2 and 3.3.
 RelaxedSeeds relax_in_shell(const Shell& shell, const SiteSet& sites, const SiteSamples& samples, SeedSet&& seeds,
@@ -130,7 +152,8 @@ RelaxedSeeds relax_in_shell(const Shell& shell, const SiteSet& sites, const Site
 
 /// Moves seeds onto a surface: its nearest point, its home vertex and outward normal. `halvings`: how many times the
 /// voxels of the seeds' lattice must be halved to give the surface's; above 0 seeds come from a coarse proxy, from
-/// half a voxel of theirs outside of it.
+/// half a voxel of theirs outside of it. A seed comes into the patch of its new home. Throws: usage for fixed seeds,
+/// which sit on vertices of one surface.
 SeedSet attach_to_sheet(const SurfaceMesh& surface, SeedSet&& seeds, int halvings, Context& context);
 
 /// ShellFlooding(P, S) of the paper, section 3.4: labels spread through the shell only, so seeds that are close in
@@ -172,7 +195,9 @@ struct Triangulation : SeededMesh {
 /// asked to, it then splits the cells of triangles that intersect, and puts the seeds of both halves in their middles,
 /// until no triangles do or no more seeds may be put in; on a surface without intersections enough seeds always end
 /// them. Cost: labels, then O(surface) and O(split cells) a round; 14 bytes a vertex of the surface. Needs a closed
-/// surface. Throws: usage when there are no seeds or more than vertices.
+/// surface, or borders with three fixed seeds or more each. Then the result is homeomorphic to the surface, with the
+/// edges between successive fixed seeds as its borders; fixed seeds stay as they are, new ones are free, and no edge is
+/// there twice once patches are joined. Throws: usage when there are no seeds or more than vertices.
 Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
                                Context& context);
 
@@ -183,13 +208,14 @@ SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const 
                         Context& context);
 
 struct CollapseOptions {
-  int64_t target = 0;       ///< vertices to be left
+  int64_t target = 0;       ///< vertices to be left, every copy of a fixed one counted
   bool keep_apart = false;  ///< no edge is taken where triangles would intersect then
 };
 /// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
 /// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The
 /// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. Cost: a sort of the
-/// edges a round, then one step for each looked at. Needs a closed surface. Throws: usage when the mesh has a border.
+/// edges a round, then one step for each looked at. Fixed vertices and the edges of borders stay: an edge that has one
+/// fixed end is taken into that. Throws: usage when surface or mesh have a border without fixed seeds.
 SeededMesh collapse_edges(const SurfaceMesh& surface, SeededMesh&& mesh, const CollapseOptions& options,
                           Context& context);
 
@@ -228,9 +254,19 @@ struct OptimizedMesh : SeededMesh {
 /// Valence flips, shape matching, a fit to the surface and searches around the worst triangles of a closed mesh whose
 /// vertices are the seeds; homes and positions of the seeds follow. Where triangles intersect in the end, exactly
 /// tested, the vertices around go back to where they were on the surface, then to where they began. Result: still
-/// closed and 2-manifold, same genus. Needs a closed surface. Throws: usage when the mesh has a border.
+/// closed and 2-manifold, same genus. Fixed vertices stay where they are, with the edges of their borders; they are to
+/// have as many triangles as their angle holds, and copies count as one vertex where intersections are looked for.
+/// Throws: usage when surface or mesh have a border without fixed seeds.
 OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
                             Context& context);
+
+struct JoinedMesh {
+  DualMesh mesh;
+  Buffer<uint32_t> vertex_of;  ///< per vertex of the mesh that was cut into patches its vertex in the joined one
+};
+/// Makes one vertex of all copies of a fixed seed (see FixedSeeds): where patches met the mesh is closed again.
+/// Vertices keep their order, that of the first copy of each. In host memory.
+JoinedMesh join_patches(const DualMesh& mesh, const FixedSeeds& fixed);
 
 /// Final positions in the world.
 TriangleMesh to_world(const DualMesh& mesh, const LatticeFrame& frame);

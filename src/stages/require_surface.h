@@ -5,6 +5,7 @@
 
 #include "isoshell/error.h"
 #include "isoshell/surface_mesh.h"
+#include "stages/require_seeds.h"
 
 namespace isoshell {
 
@@ -14,6 +15,16 @@ inline void require_closed(const SurfaceMesh& surface, const char* stage) {
   throw Error(ErrorCode::usage, stage,
               "the surface has " + std::to_string(surface.chains.count()) +
                   " borders; this stage needs a closed one, as build_sheet makes it");
+}
+
+/// Of stages that can do with borders that fixed seeds hold.
+inline void require_closed_or_fixed(const SurfaceMesh& surface, const SeedSet& seeds, const char* stage) {
+  if (seeds.fixed.count == 0) return require_closed(surface, stage);
+  require_fixed_seeds(surface, seeds, stage);
+  if (surface.is_closed())
+    throw Error(ErrorCode::usage, stage,
+                "fixed.count is " + std::to_string(seeds.fixed.count) +
+                    " on a closed surface; it must be 0 there: see FixedSeeds");
 }
 
 /// Throws unless blocks in host memory hold every vertex once and are of a size that stages can take.

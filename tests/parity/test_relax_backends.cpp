@@ -62,7 +62,7 @@ SeedSet seeds_on(const Sheet& sheet, int64_t count) {
 }
 
 SeedSet first_of(const SeedSet& seeds, int64_t count) {
-  SeedSet out{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count)};
+  SeedSet out{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count), {}};
   for (int64_t i = 0; i < count; ++i) {
     out.position[i] = seeds.position[i];
     out.normal[i] = seeds.normal[i];

@@ -47,7 +47,7 @@ std::vector<NamedSheet> ugly_sheets() {
 
 /// Seeds at random vertices, some twice, some off the sheet and facing the wrong way when `rough`.
 SeedSet random_seeds(const Sheet& sheet, int64_t count, uint64_t generator, bool rough) {
-  SeedSet seeds{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count)};
+  SeedSet seeds{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count), {}};
   for (int64_t s = 0; s < count; ++s) {
     const uint64_t bits = random_bits(generator, uint64_t(s));
     const int64_t v = int64_t(bits % uint64_t(sheet.vertex_count()));
@@ -63,7 +63,7 @@ SeedSet random_seeds(const Sheet& sheet, int64_t count, uint64_t generator, bool
 }
 
 SeedSet copy_of(const SeedSet& seeds) {
-  SeedSet out{Buffer<PointQ8>(seeds.size()), Buffer<Normal8>(seeds.size()), Buffer<uint32_t>(seeds.size())};
+  SeedSet out{Buffer<PointQ8>(seeds.size()), Buffer<Normal8>(seeds.size()), Buffer<uint32_t>(seeds.size()), {}};
   std::copy(seeds.position.begin(), seeds.position.end(), out.position.begin());
   std::copy(seeds.normal.begin(), seeds.normal.end(), out.normal.begin());
   std::copy(seeds.home.begin(), seeds.home.end(), out.home.begin());

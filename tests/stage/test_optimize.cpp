@@ -30,7 +30,9 @@ template <class T>
 Buffer<T> copy_of(const Buffer<T>& from) {
   return from.to_host();
 }
-SeedSet copy_of(const SeedSet& seeds) { return {copy_of(seeds.position), copy_of(seeds.normal), copy_of(seeds.home)}; }
+SeedSet copy_of(const SeedSet& seeds) {
+  return {copy_of(seeds.position), copy_of(seeds.normal), copy_of(seeds.home), {}};
+}
 DualMesh copy_of(const DualMesh& mesh) { return {copy_of(mesh.position), copy_of(mesh.triangles)}; }
 
 /// Duals of seeds that were relaxed a little, or not at all.
@@ -308,7 +310,7 @@ TEST_CASE("optimize: an edge far from the surface is flipped where that brings i
     exec.for_each("measure", 1, optimize::MeasureSamples{view, mesh.position.view(), sample.view(), far.view(), gaps});
     Buffer<uint64_t> claim(mesh.position.size());
     const int64_t flips =
-        PlainKernels::FlipEdges::run(exec, optimize::ChordKey{view, mesh.position.view(), gaps}, claim.view(), 1);
+        PlainKernels::FlipEdges::run(exec, optimize::ChordKey{view, mesh.position.view(), gaps, {}}, claim.view(), 1);
     CHECK(view.are_neighbours(c, d) == (flips > 0));
     CHECK(view.are_neighbours(a, b) == (flips == 0));
     return flips;

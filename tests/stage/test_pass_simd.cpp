@@ -20,7 +20,7 @@ SeedSet seeds_on(const Sheet& sheet, int64_t count) {
 /// A seed at every second vertex: more than lists of candidates and tables of local sums have places for.
 SeedSet crowded_seeds(const Sheet& sheet) {
   const int64_t count = sheet.vertex_count() / 2;
-  SeedSet seeds{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count)};
+  SeedSet seeds{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count), {}};
   for (int64_t s = 0; s < count; ++s) {
     seeds.home[s] = uint32_t(2 * s);
     seeds.position[s] = sheet.position[2 * s];

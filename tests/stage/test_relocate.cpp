@@ -96,7 +96,7 @@ struct Tube {
     f.far = optimize::choose_apart(exec, f.places, mesh.triangles.size(), f.claim.view());
     exec.fill(f.claim.view(), uint64_t(0));
     exec.for_each("block", f.far.size(), optimize::BlockPlaces{f.places, f.far.view(), f.claim.view()});
-    f.edges = {{view(), mesh.position.view(), home.view(), {}}, f.distance.view(), size};
+    f.edges = {{view(), mesh.position.view(), home.view(), {}, {}}, f.distance.view(), size};
     f.spare = optimize::choose_apart(exec, f.edges, connections->twin.size(), f.claim.view());
     return f;
   }

@@ -79,7 +79,8 @@ struct SmoothVertices {
         group, lanes, [](VertexSimd&, int, uint32_t) {}, [&](VertexSimd& l) { l.add(step.options.evenness); });
     for (int i = 0; i < count; ++i) {
       const FitSums s = lanes.sums(i);
-      step.to[begin + i] = step.place(begin + i, {s.corners, s.normal, {s.planes}});
+      step.to[begin + i] =
+          step.is_locked(begin + i) ? step.from[begin + i] : step.place(begin + i, {s.corners, s.normal, {s.planes}});
     }
   }
 };
@@ -88,7 +89,7 @@ struct LayOntoSheet {
   SmoothVertex step;
   bool aims(int64_t v, PointQ8& target) const {
     target = step.to[v];
-    return true;
+    return !step.is_locked(v);
   }
   void arrives(int64_t v, uint32_t vertex, PointQ8 p) const { step.home[v] = vertex, step.to[v] = p; }
 };
@@ -123,7 +124,7 @@ struct FitVertices {
         [&](VertexSimd& l) { l.add_with_pulls(step.options.smooth.evenness); });
     for (int i = 0; i < count; ++i) {
       ahead.before(begin + i, end);
-      step.to[begin + i] = step.place(begin + i, lanes.sums(i));
+      step.to[begin + i] = step.is_locked(begin + i) ? step.from[begin + i] : step.place(begin + i, lanes.sums(i));
     }
   }
 };

@@ -72,16 +72,17 @@ struct StaysVertex {
   View<const uint32_t> merged_into;
   ISOSHELL_HD bool operator()(int64_t v) const { return merged_into[v] == v; }
 };
-/// Merged vertices go to the middle of their edge, then back onto the sheet.
+/// Merged vertices go to the middle of their edge, then back onto the sheet; fixed ones stay.
 struct MoveToMiddle {
   WalkOntoSheet walk;
+  int64_t fixed;
   View<const uint32_t> merged_into;
   View<PointQ8> position;
   View<Normal8> normal;
   View<uint32_t> home;
   ISOSHELL_HD void operator()(int64_t v) const {
     const uint32_t into = merged_into[v];
-    if (into == v) return;
+    if (into == v || into < fixed) return;
     const PointQ8 middle = CollapseCost::middle_of(position[into], position[v]);
     home[into] = walk.nearest_vertex(home[into], middle);
     normal[into] = walk.normal[home[into]];
@@ -165,14 +166,14 @@ int64_t part_crossing(Exec& exec, const SurfaceMesh& surface, const WalkOntoShee
     exec.copy(seeds.position.view(), position.view());
     exec.copy(seeds.home.view(), home.view());
     exec.for_each("move to the middle", vertices,
-                  MoveToMiddle{walk, merged_into, position.view(), normal.view(), home.view()});
+                  MoveToMiddle{walk, seeds.fixed.count, merged_into, position.view(), normal.view(), home.view()});
     const Buffer<uint32_t> kept =
         exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
     Buffer<TriangleIndices> triangles = exec.template make<TriangleIndices>(kept.size());
     exec.for_each("merge triangles", kept.size(),
                   MergeTriangle{kept.view(), merged_into, mesh.triangles.view(), triangles.view()});
-    optimize::find_intersections(exec, {triangles.view(), position.view()}, surface.extent_vox, spacing_vox,
-                                 marked.view());
+    optimize::find_intersections(exec, {triangles.view(), position.view(), seeds.fixed.joined.view()},
+                                 surface.extent_vox, spacing_vox, marked.view());
     exec.for_each("part crossing", vertices, PartCrossing{marked.view(), merged_into, blocked});
     left = exec.sum(vertices, IsMerged{merged_into});
   }
@@ -196,6 +197,7 @@ void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, Dual
   left.position = exec.template make<PointQ8>(vertices.size());
   left.normal = exec.template make<Normal8>(vertices.size());
   left.home = exec.template make<uint32_t>(vertices.size());
+  left.fixed = std::move(seeds.fixed);  // which come first, and all stay
   DualMesh out;
   out.position = exec.template make<PointQ8>(vertices.size());
   out.triangles = exec.template make<TriangleIndices>(triangles.size());
@@ -222,11 +224,18 @@ void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const collapse:
   const WalkOntoSheet walk = walk_onto(surface);
   Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
   exec.fill(blocked.view(), uint8_t(0));
+  Buffer<uint32_t> fixed_valence;  // of the mesh as it comes in, see optimize::FixedView
   for (bool any = true; any && seeds.size() > options.target;) {
     const int64_t before = seeds.size();
     optimize::Connections connections(exec, mesh);
-    connections.require_closed(exec, "collapse");
-    const CollapseCost cost{connections.view(mesh), seeds.position.view(), seeds.home.view(), lengths_of(surface)};
+    connections.require_borders_of(exec, mesh.triangles.view(), seeds.fixed.count, "collapse");
+    if (fixed_valence.empty())
+      fixed_valence = optimize::even_valences(exec, seeds.fixed, connections.view(mesh), mesh.position.view());
+    const CollapseCost cost{connections.view(mesh),
+                            seeds.position.view(),
+                            seeds.home.view(),
+                            lengths_of(surface),
+                            {seeds.fixed.joined.view(), fixed_valence.view()}};
     const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
     Buffer<Candidate> candidates = exec.template make<Candidate>(half_edges.size());
     exec.for_each("make candidates", candidates.size(), MakeCandidate{cost, half_edges.view(), candidates.view()});
@@ -240,9 +249,9 @@ void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const collapse:
     int64_t taken_back = 0;
     if (options.keep_apart)
       taken_back = part_crossing(exec, surface, walk, seeds, mesh, merged_into.view(), blocked.view());
-    exec.for_each(
-        "move to the middle", before,
-        MoveToMiddle{walk, merged_into.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view()});
+    exec.for_each("move to the middle", before,
+                  MoveToMiddle{walk, seeds.fixed.count, merged_into.view(), seeds.position.view(), seeds.normal.view(),
+                               seeds.home.view()});
     close_up(exec, merged_into.view(), seeds, mesh, blocked);
     any = seeds.size() < before || taken_back > 0;
   }

@@ -9,7 +9,7 @@ namespace isoshell {
 
 Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
                                Context& context) {
-  require_closed(surface, "dual");
+  require_closed_or_fixed(surface, seeds, "dual");
   require_blocks(surface, "dual");
   const int64_t seed_count = seeds.size(), vertex_count = surface.vertex_count();
   if (seed_count < 1 || seed_count > vertex_count)

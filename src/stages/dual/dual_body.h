@@ -5,9 +5,14 @@
 // four cells or more, the dual is a triangulation of the sheet. DisconnectedPieces are resolved first, then cells that
 // are not disks are split, then pairs that meet twice; a split keeps both halves connected, so no disconnected pieces
 // come back, and since the finest partition is the sheet itself, the rounds end.
+//
+// On a border every vertex has the label of its fixed seed, and keeps it: the cells of fixed seeds are one run of
+// border vertices each and what is inside of it. The edge between two runs is where the arc between two cells ends. A
+// component with a border needs no four cells, since it has three on every border.
 #pragma once
 
 #include "isoshell/stages.h"
+#include "stages/dual/dual_border_body.h"
 #include "stages/dual/dual_cells_body.h"
 #include "stages/dual/dual_faces_body.h"
 #include "stages/dual/dual_pieces_body.h"
@@ -45,23 +50,24 @@ class Partition {
     report_ = {};
     Exec::Kernels::LabelSheet::run(exec_, surface_, seeds_, spacing_, label_.view());
     grow(exec_, cells_, seeds_.size());
+    if (seeds_.fixed.count == 0) return;
+    border_ = follow_borders(exec_, surface_, seeds_.fixed);
+    cells_.held = std::move(border_.held);
   }
 
   /// Repairs as far as the rounds allow; returns the faces, not sorted.
   Buffer<TriangleIndices> repair() {
     const int64_t disconnected_pieces = resolve_disconnected_pieces();
-    measure_euler(exec_, surface_, label_.view(), cells_);
+    measure_euler(exec_, surface_, label_.view(), border_.vertex.view(), cells_);
     Buffer<TriangleIndices> faces;
     for (;;) {
-      const Buffer<uint32_t> failing = find_failing(faces);
+      Buffer<uint32_t> failing = find_failing(faces);
       const Buffer<uint32_t> unused = unused_seeds();
-      report_.failed_cells = disconnected_pieces + failing.size() + unused.size();
+      report_.failed_cells = disconnected_pieces + failing.size() + unused.size() + stuck();
       if (report_.failed_cells == 0 && split_crossing(faces)) continue;
-      if (report_.failed_cells == 0 || disconnected_pieces > 0 || !take_round()) break;
-      if (!failing.empty())
-        split(failing, unused);
-      else
-        split(largest_cells(unused.size()), unused);
+      if (failing.empty() && !unused.empty()) failing = largest_cells(unused.size());
+      if (failing.empty() || disconnected_pieces > 0 || !take_round()) break;
+      split(failing, unused);
     }
     if (faces.empty()) faces = faces_now();
     return faces;
@@ -94,7 +100,7 @@ class Partition {
 
   /// Leaves every cell in one piece. Returns the number of disconnected pieces that are left.
   int64_t resolve_disconnected_pieces() {
-    Pieces pieces = find_pieces(exec_, surface_, label_.view(), cells_);
+    Pieces pieces = find_pieces(exec_, surface_, label_.view(), border_.vertex.view(), cells_);
     const DisconnectedPieces disconnected_pieces = list_disconnected_pieces(exec_, pieces, label_.view(), cells_);
     Buffer<uint32_t> waiting = exec_.template make<uint32_t>(disconnected_pieces.count());
     exec_.for_each("all strays wait", disconnected_pieces.count(), StartAlone{waiting.view()});
@@ -137,13 +143,18 @@ class Partition {
   /// Cells to split. Faces are made, and pairs looked at, only when all cells are disks.
   Buffer<uint32_t> find_failing(Buffer<TriangleIndices>& faces) {
     request_ = exec_.template make<uint32_t>(cells_.count());
-    exec_.for_each("check disks", cells_.count(), RequestNonDisks{cells_.view(), request_.view()});
+    stuck_ = exec_.template make<uint32_t>(1);
+    exec_.fill(stuck_.view(), 0u);
+    exec_.for_each("check disks", cells_.count(), RequestNonDisks{cells_.view(), request_.view(), stuck_.view()});
     Buffer<uint32_t> failing = requested();
     faces = {};
     if (!failing.empty()) return failing;
     faces = faces_now();
-    const Buffer<uint64_t> pairs = face_pairs(exec_, faces.view());
-    exec_.for_each("check pairs", pairs.size(), RequestDoublePairs{pairs.view(), cells_.view(), request_.view()});
+    const Buffer<uint64_t> pairs = face_pairs(exec_, faces.view(), border_.next.view());
+    const RequestParting part{cells_.view(), request_.view(), stuck_.view()};
+    exec_.for_each("check pairs", pairs.size(), RequestDoublePairs{pairs.view(), part});
+    if (seeds_.fixed.count > 0)
+      request_double_places(exec_, pairs.view(), seeds_.fixed.joined.view(), border_.next.view(), part);
     request_small_components(exec_, pairs.view(), cells_, request_.view());
     return requested();
   }
@@ -158,6 +169,8 @@ class Partition {
     request_largest(exec_, cells_, count, request_.view());
     return requested();
   }
+  /// What no split can mend, of the last look.
+  int64_t stuck() { return seeds_.fixed.count > 0 ? exec_.value(View<const uint32_t>(stuck_.view()), 0) : 0; }
   Buffer<uint32_t> requested() { return exec_.select(cells_.count(), IsRequested{request_.view()}); }
 
   /// Splits the cells of triangles that intersect. False when there are none, or not enough seeds for them.
@@ -165,8 +178,8 @@ class Partition {
     if (most_against_crossing_ == 0) return false;
     Buffer<uint32_t> marked = exec_.template make<uint32_t>(seeds_.size());
     const int64_t pairs =
-        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view()}, surface_.extent_vox,
-                                     spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
+        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view(), seeds_.fixed.joined.view()},
+                                     surface_.extent_vox, spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
     if (pairs == 0) return false;
     exec_.for_each("request crossing cells", cells_.count(),
                    RequestCrossing{marked.view(), cells_.view(), request_.view()});
@@ -201,7 +214,7 @@ class Partition {
     if (to_middles)
       exec_.for_each("seeds to middles", count,
                      SeedsToMiddles{cell.view(), ids.view(), queue.view(), first.view(), label_.view(),
-                                    surface_.position.view(), writer_of(surface_, seeds_)});
+                                    surface_.position.view(), cells_.view(), writer_of(surface_, seeds_)});
     if (!face_triangle_.empty())
       add_new_faces(exec_, {graph_of(surface_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
                     cell.view(), cells_.count(), face_triangle_);
@@ -217,7 +230,9 @@ class Partition {
   SeedSpacing spacing_;
   Buffer<uint32_t> label_;
   Cells cells_;
+  FixedBorder border_;  ///< empty without fixed seeds
   Buffer<uint32_t> request_;
+  Buffer<uint32_t> stuck_;  ///< one element
   Buffer<uint8_t> mark_;
   Buffer<uint32_t> face_triangle_;  ///< sheet triangles with three labels, in any order; empty while not known
 };

@@ -10,17 +10,26 @@
 namespace isoshell::dual {
 
 /// What is known of every cell; index is the seed id. A cell's main piece is its largest connected set of vertices, the
-/// one with the smallest vertex among equals.
+/// one with the smallest vertex among equals; of a fixed seed the one on the border.
 struct CellsView {
-  View<uint32_t> size;  ///< vertices of the main piece; 0 when the seed owns nothing
-  View<uint32_t> root;  ///< a vertex of the main piece; kNone when the seed owns nothing
-  View<int32_t> euler;  ///< V - E + F of the vertices with this label; 1 for a disk, once there is only one piece
+  View<uint32_t> size;        ///< vertices of the main piece; 0 when the seed owns nothing
+  View<uint32_t> root;        ///< a vertex of the main piece; kNone when the seed owns nothing
+  View<int32_t> euler;        ///< V - E + F of the vertices with this label; 1 for a disk, once there is only one piece
+  View<const uint32_t> held;  ///< per fixed seed its border vertices, which stay in its cell
+
+  ISOSHELL_HD bool is_fixed(int64_t s) const { return s < held.size; }
+  /// How many vertices a split could take away: a free cell keeps one, a fixed one those on the border.
+  ISOSHELL_HD uint32_t loose(int64_t s) const {
+    const uint32_t kept = is_fixed(s) ? held[s] : 1;
+    return size[s] > kept ? size[s] - kept : 0;
+  }
 };
 struct Cells {
   Buffer<uint32_t> size;
   Buffer<uint32_t> root;
   Buffer<int32_t> euler;
-  CellsView view() { return {size.view(), root.view(), euler.view()}; }
+  Buffer<uint32_t> held;
+  CellsView view() { return {size.view(), root.view(), euler.view(), held.view()}; }
   int64_t count() const { return size.size(); }
 };
 
@@ -141,13 +150,33 @@ struct RankMainPieces {
     if (piece[v] == v) atomic_max(best[label[v]], piece_rank(size[v], uint32_t(v)));
   }
 };
+/// The piece on the border comes before all others of its cell.
+struct RankHeldPieces {
+  static constexpr uint64_t kHeld = uint64_t(1) << 63;
+  View<const uint32_t> border_vertex, piece, size, label;
+  View<uint64_t> best;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t v = border_vertex[i], root = piece[v];
+    atomic_max(best[label[v]], kHeld | piece_rank(size[root], root));
+  }
+};
 struct TakeMainPiece {
   View<const uint64_t> best;
   CellsView cells;
   ISOSHELL_HD void operator()(int64_t s) const {
-    cells.size[s] = uint32_t(best[s] >> 32);
+    cells.size[s] = uint32_t((best[s] & ~RankHeldPieces::kHeld) >> 32);
     cells.root[s] = best[s] ? ~uint32_t(best[s]) : kNone;
     cells.euler[s] = 0;
+  }
+};
+
+/// Hooks the ends of border edges with one label, which no second triangle runs up.
+struct HookBorderEdges {
+  View<const uint32_t> border_vertex, before, label;
+  View<uint32_t> parent;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t v = border_vertex[i], u = before[v];
+    if (label[u] == label[v]) join(parent, u, v);
   }
 };
 
@@ -157,17 +186,22 @@ struct Pieces {
   Buffer<uint32_t> size;
 };
 template <class Exec>
-Pieces find_pieces(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label, Cells& cells) {
+Pieces find_pieces(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label,
+                   View<const uint32_t> border_vertex, Cells& cells) {
   const int64_t n = surface.vertex_count();
   Pieces pieces{exec.template make<uint32_t>(n), exec.template make<uint32_t>(n)};
   exec.for_each("start pieces", n, StartAlone{pieces.piece.view()});
   exec.for_each("hook pieces", surface.triangles.size(),
                 HookEqualLabels{surface.triangles.view(), label, pieces.piece.view()});
+  exec.for_each("hook border edges", border_vertex.size,
+                HookBorderEdges{border_vertex, surface.border_before.view(), label, pieces.piece.view()});
   exec.for_each("root pieces", n, PointAtRoot{pieces.piece.view()});
   count_groups(exec, "count pieces", View<const uint32_t>(pieces.piece.view()), pieces.size.view());
   Buffer<uint64_t> best = exec.template make<uint64_t>(cells.count());
   exec.fill(best.view(), uint64_t(0));
   exec.for_each("rank pieces", n, RankMainPieces{pieces.piece.view(), pieces.size.view(), label, best.view()});
+  exec.for_each("rank pieces on borders", border_vertex.size,
+                RankHeldPieces{border_vertex, pieces.piece.view(), pieces.size.view(), label, best.view()});
   exec.for_each("take main pieces", cells.count(), TakeMainPiece{best.view(), cells.view()});
   return pieces;
 }
@@ -190,11 +224,23 @@ struct AddTrianglesToEuler {
     if (c == a && t.c < t.a) atomic_add(euler[c], -1);
   }
 };
+/// The edges of borders that their one triangle runs down.
+struct AddBorderEdgesToEuler {
+  View<const uint32_t> border_vertex, before, label;
+  View<int32_t> euler;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const uint32_t v = border_vertex[i], u = before[v];
+    if (u > v && label[u] == label[v]) atomic_add(euler[label[v]], -1);
+  }
+};
 template <class Exec>
-void measure_euler(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label, Cells& cells) {
+void measure_euler(Exec& exec, const SurfaceMesh& surface, View<const uint32_t> label,
+                   View<const uint32_t> border_vertex, Cells& cells) {
   count_groups(exec, "count vertices of cells", label, cells.euler.view());
   exec.for_each("count edges and faces of cells", surface.triangles.size(),
                 AddTrianglesToEuler{surface.triangles.view(), label, cells.euler.view()});
+  exec.for_each("count border edges of cells", border_vertex.size,
+                AddBorderEdgesToEuler{border_vertex, surface.border_before.view(), label, cells.euler.view()});
 }
 
 struct OwnsNothing {

@@ -43,10 +43,19 @@ struct MakePairs {
     pair[3 * i + 2] = key(f.c, f.a);
   }
 };
+/// Fixed seed s and the next one along its border.
+struct MakeBorderPairs {
+  View<const uint32_t> next;
+  View<uint64_t> pair;
+  ISOSHELL_HD void operator()(int64_t s) const { pair[s] = MakePairs::key(uint32_t(s), next[s]); }
+};
+/// Every pair of cells, sorted, as often as arcs between the two end: in a face each, or at the border.
 template <class Exec>
-Buffer<uint64_t> face_pairs(Exec& exec, View<const TriangleIndices> faces) {
-  Buffer<uint64_t> pairs = exec.template make<uint64_t>(3 * faces.size);
+Buffer<uint64_t> face_pairs(Exec& exec, View<const TriangleIndices> faces, View<const uint32_t> next_fixed) {
+  Buffer<uint64_t> pairs = exec.template make<uint64_t>(3 * faces.size + next_fixed.size);
   exec.for_each("make pairs", faces.size, MakePairs{faces, pairs.view()});
+  exec.for_each("make border pairs", next_fixed.size,
+                MakeBorderPairs{next_fixed, pairs.view().part(3 * faces.size, next_fixed.size)});
   exec.sort(pairs.view());
   return pairs;
 }
@@ -59,23 +68,35 @@ constexpr uint32_t kSplitAnywhere = kNone - 1;
 struct RequestNonDisks {
   CellsView cells;
   View<uint32_t> request;
+  View<uint32_t> stuck;  ///< counts what no split can mend: cells that have only border vertices
   ISOSHELL_HD void operator()(int64_t s) const {
-    request[s] = cells.size[s] > 1 && cells.euler[s] != 1 ? kSplitAnywhere : kNoSplit;
+    const bool fails = cells.size[s] > 1 && cells.euler[s] != 1, can = cells.loose(s) > 0;
+    request[s] = fails && can ? kSplitAnywhere : kNoSplit;
+    if (fails && !can) atomic_add(stuck[0], 1u);
   }
 };
 
-/// Of a pair that more than two faces see, the larger cell is split where it touches the other, ties by the
-/// smaller id; of several requests to one cell the smallest wins.
+/// Of two cells that meet where they should not, the one that has more to give is split where it touches the other,
+/// ties by the smaller id; of several requests to one cell the smallest wins.
+struct RequestParting {
+  CellsView cells;
+  View<uint32_t> request, stuck;
+  ISOSHELL_HD void operator()(uint64_t pair) const {
+    const uint32_t a = uint32_t(pair >> 32), b = uint32_t(pair);
+    const uint32_t larger = cells.loose(b) > cells.loose(a) ? b : a;
+    if (cells.loose(larger) > 0)
+      atomic_min(request[larger], larger == a ? b : a);
+    else
+      atomic_add(stuck[0], 1u);
+  }
+};
+/// A pair of more than one arc.
 struct RequestDoublePairs {
   View<const uint64_t> pair;  ///< sorted
-  CellsView cells;
-  View<uint32_t> request;
+  RequestParting part;
   ISOSHELL_HD void operator()(int64_t i) const {
     const bool first = i == 0 || pair[i - 1] != pair[i];
-    if (!first || i + 2 >= pair.size || pair[i + 2] != pair[i]) return;
-    const uint32_t a = uint32_t(pair[i] >> 32), b = uint32_t(pair[i]);
-    const uint32_t larger = cells.size[b] > cells.size[a] ? b : a;
-    if (cells.size[larger] > 1) atomic_min(request[larger], larger == a ? b : a);
+    if (first && i + 2 < pair.size && pair[i + 2] == pair[i]) part(pair[i]);
   }
 };
 
@@ -85,18 +106,19 @@ struct RequestCrossing {
   CellsView cells;
   View<uint32_t> request;
   ISOSHELL_HD void operator()(int64_t s) const {
-    request[s] = marked[s] && cells.size[s] > 1 ? kSplitAnywhere : kNoSplit;
+    request[s] = marked[s] && cells.loose(s) > 0 ? kSplitAnywhere : kNoSplit;
   }
 };
 
-/// A cell of one vertex cannot be split: its seed goes there. Counts the seeds that moved.
+/// A free cell of one vertex cannot be split: its seed goes there. Counts the seeds that moved.
 struct SettleCrossing {
   View<const uint32_t> marked;
   CellsView cells;
   SeedWriter seeds;
   View<int64_t> moved;
   ISOSHELL_HD void operator()(int64_t s) const {
-    moved[s] = marked[s] && cells.size[s] == 1 && !(seeds.position[s] == seeds.vertex_position[cells.root[s]]);
+    moved[s] = marked[s] && cells.size[s] == 1 && !cells.is_fixed(s) &&
+               !(seeds.position[s] == seeds.vertex_position[cells.root[s]]);
     if (moved[s]) seeds.put(uint32_t(s), cells.root[s]);
   }
 };
@@ -113,7 +135,8 @@ struct HookPairs {
     if (i == 0 || pair[i - 1] != pair[i]) join(parent, uint32_t(pair[i] >> 32), uint32_t(pair[i]));
   }
 };
-/// A run of cells of one component is added at once.
+/// A run of cells of one component is added at once. Three fixed cells are enough for a component: each counts as many
+/// as are asked for.
 struct CountCellsOfComponent {
   static constexpr int64_t kRun = 64;
   View<const uint32_t> component;
@@ -134,7 +157,7 @@ struct CountCellsOfComponent {
       if (cells.size[s] == 0) continue;
       const uint64_t rank = piece_rank(cells.size[s], uint32_t(s));
       best = rank > best ? rank : best;
-      ++found;
+      found += cells.is_fixed(s) ? 4 : 1;
     }
     add(current, found, best);
   }
@@ -176,7 +199,7 @@ void request_small_components(Exec& exec, View<const uint64_t> pairs, Cells& cel
 struct RankCell {
   CellsView cells;
   View<uint64_t> rank;
-  ISOSHELL_HD void operator()(int64_t s) const { rank[s] = ~piece_rank(cells.size[s], uint32_t(s)); }
+  ISOSHELL_HD void operator()(int64_t s) const { rank[s] = ~piece_rank(cells.loose(s), uint32_t(s)); }
 };
 struct RequestRanked {
   View<const uint64_t> rank;  ///< ascending, so larger cells first
@@ -184,7 +207,7 @@ struct RequestRanked {
   View<uint32_t> request;
   ISOSHELL_HD void operator()(int64_t i) const {
     const uint32_t cell = uint32_t(rank[i]);
-    if (cells.size[cell] > 1) request[cell] = kSplitAnywhere;
+    if (cells.loose(cell) > 0) request[cell] = kSplitAnywhere;
   }
 };
 template <class Exec>

@@ -13,10 +13,11 @@ struct Half {
   int32_t euler;
 };
 
-/// Splits cell[i]: its old source is its vertex nearest to its seed, the new source the vertex farthest from that along
-/// edges (among those that touch the requested cell, if one is), ties by the smaller vertex. A vertex goes to the
-/// source that is fewer edges away within the cell, ties to the old one; so both halves are connected. Writes marks
-/// only, so that all splits of a round read the same labels.
+/// Splits cell[i]: its old source is its vertex nearest to its seed, of a fixed seed all its border vertices, which are
+/// connected; the new source is the vertex farthest from that along edges (among those that touch the requested cell,
+/// if one is), ties by the smaller vertex. A vertex goes to the source that is fewer edges away within the cell, ties
+/// to the old one; so both halves are connected, and the old one keeps the border. Writes marks only, so that all
+/// splits of a round read the same labels.
 struct SplitCell {
   enum Mark : uint8_t { kClear, kSeen, kMeasured, kOldHalf, kNewHalf };
 
@@ -33,17 +34,19 @@ struct SplitCell {
     const uint32_t id = cell[i];
     const View<uint32_t> places = {queue.data + first[i], first[i + 1] - first[i]};
     const uint32_t old_source = nearest_to_seed(id, places);
-    const uint32_t new_source = farthest(id, places, old_source, request[id]);
-    places[0] = old_source;
-    places[1] = new_source;
-    mark[old_source] = kOldHalf;
+    const int64_t sources = gather_sources(id, places, old_source);
+    const uint32_t new_source = farthest(id, places, sources, request[id]);
+    for (int64_t at = 0; at < sources; ++at) mark[places[at]] = kOldHalf;
+    places[sources] = new_source;
     mark[new_source] = kNewHalf;
     // Within a level the queue holds the old half first, so ties go to it.
-    spread(id, places, 2, kMeasured, [&](uint32_t from) { return mark[from]; });
+    spread(id, places, sources + 1, kMeasured, [&](uint32_t from) { return mark[from]; });
     measure_halves(i, id, places);
     cells.root[id] = old_source;
     half[i].seed_vertex = new_source;
   }
+  /// Of the old half.
+  ISOSHELL_HD bool may_be_source(uint32_t id, uint32_t v) const { return !cells.is_fixed(id) || graph.is_on_border(v); }
 
  private:
   /// Breadth first over the vertices of the cell whose mark is `fresh`; each takes mark_from(its predecessor).
@@ -69,10 +72,23 @@ struct SplitCell {
     int64_t nearest = INT64_MAX;
     uint32_t best = kNone;
     for (uint32_t v : places) {
+      if (!may_be_source(id, v)) continue;
       const int64_t d = distance_sq_q16(vertex_position[v], seed_position[id]);
       if (d < nearest || (d == nearest && v < best)) nearest = d, best = v;
     }
     return best;
+  }
+
+  /// The first places become the old source; returns how many.
+  ISOSHELL_HD int64_t gather_sources(uint32_t id, View<uint32_t> places, uint32_t old_source) const {
+    if (!cells.is_fixed(id)) {
+      places[0] = old_source;
+      return 1;
+    }
+    int64_t count = 0;
+    for (uint32_t v : places)
+      if (graph.is_on_border(v)) places[count++] = v;
+    return count;
   }
 
   ISOSHELL_HD bool touches(uint32_t v, uint32_t other) const {
@@ -81,17 +97,17 @@ struct SplitCell {
     return found;
   }
 
-  ISOSHELL_HD uint32_t farthest(uint32_t id, View<uint32_t> places, uint32_t source, uint32_t touching) const {
-    places[0] = source;
-    mark[source] = kMeasured;
+  ISOSHELL_HD uint32_t farthest(uint32_t id, View<uint32_t> places, int64_t sources, uint32_t touching) const {
+    for (int64_t at = 0; at < sources; ++at) mark[places[at]] = kMeasured;
     uint32_t anywhere = kNone, at_other = kNone;
-    for (int64_t begin = 0, end = 1; begin < end;) {
+    for (int64_t begin = 0, end = sources; begin < end;) {
       uint32_t level_anywhere = kNone, level_at_other = kNone;
       int64_t count = end;
       for (int64_t at = begin; at < end; ++at) {
         const uint32_t v = places[at];
         if (v < level_anywhere) level_anywhere = v;
-        if (touching != kSplitAnywhere && v != source && v < level_at_other && touches(v, touching)) level_at_other = v;
+        if (touching != kSplitAnywhere && at >= sources && v < level_at_other && touches(v, touching))
+          level_at_other = v;
         graph.for_each_neighbour(v, [&](uint32_t w) {
           if (label[w] != id || mark[w] != kSeen) return;
           mark[w] = kMeasured;
@@ -120,6 +136,7 @@ struct SplitCell {
         --euler[h];
         if (last > v && label[last] == id && mark[last] == side) ++euler[h];
       });
+      if (graph.is_on_border(v) && graph.border_before[v] > v && label[graph.border_before[v]] == id) --euler[h];
     }
     cells.size[id] = size[0];
     cells.euler[id] = euler[0];
@@ -157,16 +174,18 @@ struct ApplySplit {
   }
 };
 
-/// Both seeds of a split cell go to the vertices of their halves that are nearest to the halves' middles, ties to the
-/// smaller vertex.
+/// Both seeds of a split cell, but for a fixed one, go to the vertices of their halves that are nearest to the halves'
+/// middles, ties to the smaller vertex.
 struct SeedsToMiddles {
   View<const uint32_t> cell, new_id, queue;
   View<const int64_t> first;
   View<const uint32_t> label;
   View<const PointQ8> position;
+  CellsView cells;
   SeedWriter seeds;
   ISOSHELL_HD void operator()(int64_t i) const {
-    for (const uint32_t id : {cell[i], new_id[i]}) seeds.put(id, vertex_in_the_middle(i, id));
+    for (const uint32_t id : {cell[i], new_id[i]})
+      if (!cells.is_fixed(id)) seeds.put(id, vertex_in_the_middle(i, id));
   }
 
  private:

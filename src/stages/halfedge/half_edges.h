@@ -27,10 +27,15 @@ struct MeshView {
   ISOSHELL_HD uint32_t to(uint32_t h) const { return from(next_half_edge(h)); }
   ISOSHELL_HD uint32_t opposite(uint32_t h) const { return from(previous_half_edge(h)); }
   ISOSHELL_HD bool is_border(uint32_t h) const { return twin[h] == kNone; }
-  /// Makes twins of two half-edges.
+  ISOSHELL_HD bool is_on_border(uint32_t v) const { return is_border(outgoing[v]); }
+  /// Makes twins of a half-edge and another one, which may be none.
   ISOSHELL_HD void join(uint32_t g, uint32_t h) const {
     twin[g] = h;
-    twin[h] = g;
+    if (h != kNone) twin[h] = g;
+  }
+  /// Lets turns around its start begin with h, unless they begin at a border elsewhere.
+  ISOSHELL_HD void begin_turn(uint32_t v, uint32_t h, bool is_on_border) const {
+    if (!is_on_border || is_border(h)) outgoing[v] = h;
   }
   /// The half-edge from the same vertex that comes next, beyond the triangle of h; after the last one of a border
   /// vertex comes the first again.
@@ -121,6 +126,15 @@ struct PairTwins {
   }
 };
 
+/// Vertices on a border that are not among the first so many, others that are, and those without triangles.
+struct IsBorderMisfit {
+  MeshView mesh;
+  int64_t fixed;
+  ISOSHELL_HD int64_t operator()(int64_t v) const {
+    return mesh.outgoing[v] == kNone || mesh.is_on_border(uint32_t(v)) != (v < fixed) ? 1 : 0;
+  }
+};
+
 /// The half-edge structure of a mesh: an oriented manifold, closed or with borders.
 struct Connections {
   Buffer<uint32_t> twin, valence, outgoing;
@@ -147,6 +161,17 @@ struct Connections {
   MeshView view(View<TriangleIndices> triangles) { return {triangles, twin.view(), valence.view(), outgoing.view()}; }
   MeshView view(DualMesh& mesh) { return view(mesh.triangles.view()); }
 
+  /// For stages that can do with borders of the mesh's first vertices, so many, and with no others.
+  template <class Exec>
+  void require_borders_of(Exec& exec, View<TriangleIndices> triangles, int64_t fixed, const char* stage) {
+    if (fixed == 0) return require_closed(exec, stage);
+    const int64_t misfits = exec.sum(outgoing.size(), IsBorderMisfit{view(triangles), fixed});
+    if (misfits > 0)
+      throw Error(ErrorCode::usage, stage,
+                  "the mesh has " + std::to_string(misfits) + " vertices that are fixed but not on its border, on it " +
+                      "but not fixed, or in no triangle; with " + std::to_string(fixed) + " fixed seeds those must " +
+                      "be its border, as triangulate_dual makes it");
+  }
   /// For stages that can not do with a border.
   template <class Exec>
   void require_closed(Exec& exec, const char* stage) const {

@@ -28,10 +28,16 @@ ISOSHELL_HD inline bool boxes_meet(const BoxQ8& a, const BoxQ8& b) {
 struct TrianglesView {
   View<const TriangleIndices> triangles;
   View<const PointQ8> position;
+  View<const uint32_t> joined = {};  ///< of the first vertices the one that each is a copy of (see FixedSeeds)
+
+  /// By the ids that copies share.
   ISOSHELL_HD CornersOfTriangle operator[](int64_t t) const {
     const TriangleIndices i = triangles[t];
-    return {{i.a, i.b, i.c}, {position[i.a], position[i.b], position[i.c]}};
+    return {{id(i.a), id(i.b), id(i.c)}, {position[i.a], position[i.b], position[i.c]}};
   }
+
+ private:
+  ISOSHELL_HD uint32_t id(uint32_t v) const { return v < joined.size ? joined[v] : v; }
 };
 
 ISOSHELL_HD inline int32_t extent_of(const BoxQ8& box) {
@@ -92,10 +98,8 @@ struct FindIntersections {
       const CornersOfTriangle there = mesh[other];
       if (!boxes_meet(box, box_of(there)) || !triangles_intersect(here, there)) return;
       ++count;
-      for (int i = 0; i < 3; ++i) {
-        atomic_or(marked[here.id[i]], 1u);
-        atomic_or(marked[there.id[i]], 1u);
-      }
+      mark_corners(t);
+      mark_corners(other);
     };
     const int32_t reach = extents.most / 2 + 1;  // from the box to the middles of boxes that meet it
     visit_box(middles,
@@ -103,6 +107,14 @@ struct FindIntersections {
                {box.hi.x + reach, box.hi.y + reach, box.hi.z + reach}},
               test);
     found[t] += count;
+  }
+
+ private:
+  ISOSHELL_HD void mark_corners(int64_t t) const {
+    const TriangleIndices i = mesh.triangles[t];
+    atomic_or(marked[i.a], 1u);
+    atomic_or(marked[i.b], 1u);
+    atomic_or(marked[i.c], 1u);
   }
 };
 struct FoundHere {

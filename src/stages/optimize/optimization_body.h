@@ -50,7 +50,8 @@ class Optimization {
         walk_(walk_onto(surface)),
         connections_(exec, mesh),
         keep_apart_(options.keep_apart) {
-    connections_.require_closed(exec, "optimize");
+    connections_.require_borders_of(exec, mesh.triangles.view(), seeds.fixed.count, "optimize");
+    fixed_valence_ = even_valences(exec, seeds.fixed, view(), mesh.position.view());
     claim_ = exec.template make<uint64_t>(vertices_);
     moved_ = exec.template make<PointQ8>(vertices_);
     previous_ = exec.template make<PointQ8>(vertices_);
@@ -64,7 +65,7 @@ class Optimization {
 
   /// Flips until none is left or `rounds` are done. Returns how many were made.
   int64_t flip(int rounds, double least_quality) {
-    return flip_by([&] { return FlipKey{view(), mesh_.position.view(), least_quality}; }, rounds);
+    return flip_by([&] { return FlipKey{view(), mesh_.position.view(), least_quality, fixed()}; }, rounds);
   }
 
   /// Steps along the mesh, the last and every eighth one back onto the sheet: a step leaves it by little. Where eight
@@ -150,7 +151,7 @@ class Optimization {
                    MeasureSamples{view(), mesh_.position.view(), sample_.view(), far.view(), gaps});
     exec_.for_each("measure middles", half_edges_,
                    MeasureMiddles{view(), walk_, mesh_.position.view(), seeds_.home.view(), gaps});
-    return flip_by([&] { return ChordKey{view(), mesh_.position.view(), gaps}; }, 1);
+    return flip_by([&] { return ChordKey{view(), mesh_.position.view(), gaps, fixed()}; }, 1);
   }
 
   /// Takes vertices from flat places to triangles that the samples of the last step of the fit are far from, by edges.
@@ -173,7 +174,8 @@ class Optimization {
     const int64_t most = std::min(far.size(), 1 + vertices_ / kVerticesPerMove);
     exec_.fill(claim_.view(), uint64_t(0));
     exec_.for_each("block far places", most, BlockPlaces{places, far.view(), claim_.view()});
-    const SpareEdge edges{{view(), mesh_.position.view(), seeds_.home.view(), size_.lengths}, distance.view(), size_};
+    const SpareEdge edges{
+        {view(), mesh_.position.view(), seeds_.home.view(), size_.lengths, fixed()}, distance.view(), size_};
     const Buffer<uint64_t> spare = choose_apart(exec_, edges, half_edges_, claim_.view());
     const int64_t moves = std::min(most, spare.size());
     Buffer<uint32_t> heir = exec_.template make<uint32_t>(triangles);
@@ -195,7 +197,8 @@ class Optimization {
 
   /// Looks for better places for the corners of triangles below kGoodQuality.
   void search(int rounds, double hold, bool onto_sheet) {
-    Kernels::SearchPlaces::run(exec_, view(), walk_, {rounds, kGoodQuality, size_, hold, onto_sheet},
+    Kernels::SearchPlaces::run(exec_, view(), walk_,
+                               {rounds, kGoodQuality, size_, hold, onto_sheet, seeds_.fixed.count},
                                mesh_.position.view(), seeds_.home.view(), harmed_.view());
   }
 
@@ -235,6 +238,7 @@ class Optimization {
 
  private:
   MeshView view() { return connections_.view(mesh_); }
+  FixedView fixed() const { return {seeds_.fixed.joined.view(), fixed_valence_.view()}; }
 
   /// Of flips that would keep vertices from going back to where they began, none is made that is near to one.
   template <class MakeKey>
@@ -258,8 +262,8 @@ class Optimization {
 
   /// Pairs of triangles; their corners are marked as harmed.
   int64_t intersections_at(const Buffer<PointQ8>& position) {
-    return find_intersections(exec_, {mesh_.triangles.view(), position.view()}, surface_.extent_vox,
-                              int64_t(size_.edge_q8) / kOneVoxelQ8 + 1, harmed_.view());
+    return find_intersections(exec_, {mesh_.triangles.view(), position.view(), seeds_.fixed.joined.view()},
+                              surface_.extent_vox, int64_t(size_.edge_q8) / kOneVoxelQ8 + 1, harmed_.view());
   }
 
   SmoothOptions smooth_options(double most_edges) const {
@@ -267,6 +271,7 @@ class Optimization {
     options.evenness = evenness_;
     options.size = size_;
     options.most_edges = most_edges;
+    options.locked = seeds_.fixed.count;
     return options;
   }
 
@@ -283,9 +288,9 @@ class Optimization {
   }
 
   void update_seeds() {
-    Kernels::Walks::for_each(
-        exec_, "update seeds", walk_, seeds_.home.view(),
-        UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(), seeds_.home.view()});
+    Kernels::Walks::for_each(exec_, "update seeds", walk_, seeds_.home.view(),
+                             UpdateSeed{walk_, mesh_.position.view(), seeds_.position.view(), seeds_.normal.view(),
+                                        seeds_.home.view(), seeds_.fixed.count});
   }
 
   /// Where what was moved would harm, `before` takes its place.
@@ -310,6 +315,7 @@ class Optimization {
   SeedSpacing spacing_;
   WalkOntoSheet walk_;
   Connections connections_;
+  Buffer<uint32_t> fixed_valence_;  ///< see FixedView
   bool keep_apart_;
   typename Kernels::StepWork work_;
   EdgeSize size_;

@@ -6,7 +6,7 @@ namespace isoshell {
 
 OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
                             Context& context) {
-  require_closed(surface, "optimize");
+  require_closed_or_fixed(surface, mesh.seeds, "optimize");
   require_blocks(surface, "optimize");
   const OptimizeReport report = backend_for(context).optimize_mesh(surface, options, mesh.seeds, mesh.mesh, context);
   return {std::move(mesh), report};

@@ -46,11 +46,11 @@ void fit_to_surface(Optimization<Exec>& work, OptimizeReport& report) {
 /// Brings vertices to where the surface is far from the mesh, after the search: only among good triangles can those of
 /// a star be good.
 template <class Exec>
-void relocate_to_far_places(Optimization<Exec>& work, const OptimizeOptions& options) {
+void relocate_to_far_places(Optimization<Exec>& work, const OptimizeOptions& options, double free_hold) {
   if (work.relocate(kFarPlace) == 0) return;
   work.fit(kRelocatedFitSteps, kDamping, kPoorQuality);
   if (work.relocate(kVeryFarPlace) > 0) work.fit(kRelocatedFitSteps, kDamping, kPoorQuality);
-  work.search(kRelocatedSearches * options.search_rounds, 0, false);
+  work.search(kRelocatedSearches * options.search_rounds, free_hold, false);
   work.fit(kLastFitSteps, kDamping, kGoodQuality);
 }
 
@@ -63,6 +63,8 @@ OptimizeReport optimize_mesh_body(Exec& exec, const SurfaceMesh& surface, const 
   if (mesh.triangles.empty()) return {};
   Optimization<Exec> work(exec, surface, options, seeds, mesh);
   OptimizeReport report;
+  // Triangles at fixed vertices may stay poor: a free search would take their other corners far off the surface.
+  const double free_hold = seeds.fixed.count > 0 ? kHold : 0;
   const bool flips_only = options.smoothing_steps == 0;
   report.flips = work.flip(options.flip_rounds, kPoorQuality);
   if (!flips_only) {
@@ -74,10 +76,10 @@ OptimizeReport optimize_mesh_body(Exec& exec, const SurfaceMesh& surface, const 
     const bool balanced = options.fit == Fit::balanced;
     if (balanced) fit_to_surface(work, report);
     work.search(kHeldSearches * options.search_rounds, kHold, !balanced);
-    work.search(kFreeSearches * options.search_rounds, 0, !balanced);
+    work.search(kFreeSearches * options.search_rounds, free_hold, !balanced);
     if (balanced) {
       work.fit(kLastFitSteps, kDamping, kGoodQuality);
-      if (!options.uniform_area && !options.keep_apart) relocate_to_far_places(work, options);
+      if (!options.uniform_area && !options.keep_apart) relocate_to_far_places(work, options, free_hold);
       work.drop_samples();
     }
     work.undo_intersections(report);

@@ -40,6 +40,7 @@ struct MeasureSamples {
     if (s.triangle == kNone) return;
     for (uint32_t h = 3 * s.triangle; h < 3 * s.triangle + 3; ++h) {
       const uint32_t g = mesh.twin[h];
+      if (mesh.is_border(h)) continue;
       if (!far[h / 3] && !far[g / 3]) continue;
       const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g), edge = h < g ? h : g;
       atomic_max(gaps.now[edge], nearer_of(s.position, {a, b, c}, {b, a, d}));
@@ -87,6 +88,7 @@ struct ChordKey {
   MeshView mesh;
   View<const PointQ8> position;
   ChordGaps gaps;
+  FixedView fixed;
 
   /// By half-edge. 0 when the edge is no chord, or when its flip would gain little or harm the mesh: a vertex of
   /// valence 4 on a smooth place cannot have good triangles.
@@ -96,13 +98,14 @@ struct ChordKey {
     const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
     const double length_sq = double(distance_sq_q16(position[a], position[b]));
     if (double(now) * double(now) <= kFarChord * kFarChord * length_sq) return 0;
-    if (mesh.valence[a] <= 5 || mesh.valence[b] <= 5 || mesh.are_neighbours(c, d)) return 0;
+    if (is_sparse(a) || is_sparse(b) || mesh.are_neighbours(c, d) || !fixed.may_join(mesh, c, d)) return 0;
     return makes_fair(position[a], position[b], position[c], position[d])
                ? uint64_t(now - flipped) << 32 | (0xffffffffu - h)
                : 0;
   }
 
  private:
+  ISOSHELL_HD bool is_sparse(uint32_t v) const { return int32_t(mesh.valence[v]) < fixed.even_valence(v); }
   /// Whether (a, d, c) and (d, b, c) are good enough, and neither turns over.
   ISOSHELL_HD static bool makes_fair(PointQ8 a, PointQ8 b, PointQ8 c, PointQ8 d) {
     const Vector before = normal_of(a, b, c) + normal_of(b, a, d);

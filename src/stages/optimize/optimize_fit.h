@@ -38,6 +38,10 @@ struct FitVertex {
 
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
+    if (is_locked(v)) {
+      to[v] = p;
+      return;
+    }
     const double radius = radius_q8(v);
     FitSums sums;
     for_each_half_edge_around(mesh, uint32_t(v), [&](uint32_t h) {
@@ -54,6 +58,7 @@ struct FitVertex {
 
   // The parts of a step.
 
+  ISOSHELL_HD bool is_locked(int64_t v) const { return v < options.smooth.locked; }
   /// Of the triangle that is to be around the vertex.
   ISOSHELL_HD double radius_q8(int64_t v) const { return options.smooth.size.at(home[v]) * kRadiusOfEdge; }
   /// Where the vertex goes; its home follows where it is held back.

@@ -1,7 +1,7 @@
-// Flips of a closed mesh's edges, in independent sets, and those that make valences more even.
+// Flips of a mesh's edges, in independent sets, and those that make valences more even.
 #pragma once
 
-#include "stages/halfedge/half_edges.h"
+#include "stages/halfedge/fixed_vertices.h"
 #include "stages/halfedge/triangle_shape.h"
 
 namespace isoshell::optimize {
@@ -11,23 +11,23 @@ struct FlipKey {
   MeshView mesh;
   View<const PointQ8> position;
   double least_quality;  ///< triangles below this may not get worse
-
-  ISOSHELL_HD static int32_t excess_sq(uint32_t valence) { return (int32_t(valence) - 6) * (int32_t(valence) - 6); }
+  FixedView fixed;
 
   /// By half-edge. 0 when the flip gains nothing or would harm the mesh.
   ISOSHELL_HD uint64_t operator()(uint32_t h) const {
     const uint32_t g = mesh.twin[h];
-    if (g < h) return 0;
+    if (g < h || mesh.is_border(h)) return 0;
     const uint32_t a = mesh.from(h), b = mesh.to(h), c = mesh.opposite(h), d = mesh.opposite(g);
-    const uint32_t va = mesh.valence[a], vb = mesh.valence[b], vc = mesh.valence[c], vd = mesh.valence[d];
-    const int32_t gain = excess_sq(va) + excess_sq(vb) + excess_sq(vc) + excess_sq(vd) - excess_sq(va - 1) -
-                         excess_sq(vb - 1) - excess_sq(vc + 1) - excess_sq(vd + 1);
-    if (gain <= 0 || va <= 4 || vb <= 4 || mesh.are_neighbours(c, d)) return 0;
+    const int32_t ea = excess(a), eb = excess(b), ec = excess(c), ed = excess(d);
+    // The valences of a and b fall by one, the others rise: the sum of the squares falls by twice this.
+    const int32_t gain = 2 * (ea + eb - ec - ed - 2);
+    if (gain <= 0 || ea <= -2 || eb <= -2 || mesh.are_neighbours(c, d) || !fixed.may_join(mesh, c, d)) return 0;
     return keeps_shape(position[a], position[b], position[c], position[d]) ? uint64_t(gain) << 32 | (0xffffffffu - h)
                                                                            : 0;
   }
 
  private:
+  ISOSHELL_HD int32_t excess(uint32_t v) const { return int32_t(mesh.valence[v]) - fixed.even_valence(v); }
   /// Whether (a, d, c) and (d, b, c) may replace (a, b, c) and (b, a, d).
   ISOSHELL_HD bool keeps_shape(PointQ8 a, PointQ8 b, PointQ8 c, PointQ8 d) const {
     const Vector before = normal_of(a, b, c) + normal_of(b, a, d);
@@ -47,6 +47,7 @@ struct UnblockedFlip {
   View<const uint32_t> blocked;
   ISOSHELL_HD uint64_t operator()(uint32_t h) const {
     const uint32_t g = mesh.twin[h];
+    if (mesh.is_border(h)) return 0;
     if (blocked[mesh.from(h)] || blocked[mesh.to(h)] || blocked[mesh.opposite(h)] || blocked[mesh.opposite(g)])
       return 0;
     return key(h);
@@ -91,6 +92,8 @@ ISOSHELL_HD inline void flip_edge(const MeshView& mesh, uint32_t h) {
   const uint32_t bc = mesh.twin[next_half_edge(h)], ca = mesh.twin[previous_half_edge(h)];
   const uint32_t ad = mesh.twin[next_half_edge(g)], db = mesh.twin[previous_half_edge(g)];
   const uint32_t s = h / 3 * 3, t = g / 3 * 3;
+  const bool a_border = mesh.is_on_border(a), b_border = mesh.is_on_border(b), c_border = mesh.is_on_border(c),
+             d_border = mesh.is_on_border(d);
   mesh.triangles[h / 3] = {a, d, c};
   mesh.triangles[g / 3] = {d, b, c};
   mesh.join(s, ad);
@@ -98,10 +101,10 @@ ISOSHELL_HD inline void flip_edge(const MeshView& mesh, uint32_t h) {
   mesh.join(s + 2, ca);
   mesh.join(t, db);
   mesh.join(t + 1, bc);
-  mesh.outgoing[a] = s;
-  mesh.outgoing[d] = s + 1;
-  mesh.outgoing[c] = s + 2;
-  mesh.outgoing[b] = t + 1;
+  mesh.begin_turn(a, s, a_border);
+  mesh.begin_turn(d, d_border ? t : s + 1, d_border);
+  mesh.begin_turn(c, s + 2, c_border);
+  mesh.begin_turn(b, t + 1, b_border);
   --mesh.valence[a];
   --mesh.valence[b];
   ++mesh.valence[c];

@@ -83,9 +83,10 @@ struct FarPlace {
   FarSamples far;
   double least_edges;  ///< kFarPlace or more
 
-  /// By triangle; 0 where nothing is far, or where a vertex would harm the mesh.
+  /// By triangle; 0 where nothing is far, where a vertex would harm the mesh, and on borders.
   ISOSHELL_HD uint64_t operator()(uint32_t t) const {
     const uint32_t distance = far.distance_q8[t];
+    if (mesh.is_border(3 * t) || mesh.is_border(3 * t + 1) || mesh.is_border(3 * t + 2)) return 0;
     if (far.offset[t] == 0 || !(double(distance) > least_edges * size.at(home[mesh.triangles[t].a]))) return 0;
     return best_star(t).quality > 0 ? uint64_t(distance) << 32 | (0xffffffffu - t) : 0;
   }
@@ -152,8 +153,9 @@ struct SpareEdge {
   View<const uint32_t> distance_q8;  ///< of the farthest sample, by triangle
   EdgeSize size;
 
-  /// By half-edge; 0 where the mesh or the surface would suffer.
+  /// By half-edge; 0 where the mesh or the surface would suffer, and at fixed vertices.
   ISOSHELL_HD uint64_t operator()(uint32_t h) const {
+    if (cost.fixed.is_fixed(cost.mesh.from(h))) return 0;
     const int64_t c = cost(h), most = 0xfffffffe;  // longer edges are as good as each other
     if (c <= 0 || c == collapse::CollapseCost::kNever) return 0;
     if (!is_flat(cost.mesh.from(h)) || !is_flat(cost.mesh.to(h))) return 0;
@@ -290,8 +292,8 @@ struct RelocateVertex {
     heir[h / 3] = ca / 3;
     heir[g / 3] = ad / 3;
     mesh.outgoing[a] = ca;
-    mesh.outgoing[c] = bc;
-    mesh.outgoing[d] = ad;
+    mesh.begin_turn(c, bc, mesh.is_on_border(c));
+    mesh.begin_turn(d, ad, mesh.is_on_border(d));
     mesh.valence[a] += mesh.valence[b] - 4;
     --mesh.valence[c];
     --mesh.valence[d];
@@ -301,6 +303,7 @@ struct RelocateVertex {
     const MeshView& mesh = places.mesh;
     const TriangleIndices i = mesh.triangles[t];
     const uint32_t bc = mesh.twin[3 * t + 1], ca = mesh.twin[3 * t + 2];
+    const bool a_border = mesh.is_on_border(i.a), b_border = mesh.is_on_border(i.b), c_border = mesh.is_on_border(i.c);
     mesh.triangles[t] = {i.a, i.b, v};
     mesh.triangles[s] = {i.b, i.c, v};
     mesh.triangles[u] = {i.c, i.a, v};
@@ -309,9 +312,9 @@ struct RelocateVertex {
     mesh.join(3 * t + 1, 3 * s + 2);
     mesh.join(3 * s + 1, 3 * u + 2);
     mesh.join(3 * u + 1, 3 * t + 2);
-    mesh.outgoing[i.a] = 3 * t;
-    mesh.outgoing[i.b] = 3 * s;
-    mesh.outgoing[i.c] = 3 * u;
+    mesh.begin_turn(i.a, 3 * t, a_border);
+    mesh.begin_turn(i.b, 3 * s, b_border);
+    mesh.begin_turn(i.c, 3 * u, c_border);
     mesh.outgoing[v] = 3 * t + 2;
     mesh.valence[v] = 3;
     ++mesh.valence[i.a];

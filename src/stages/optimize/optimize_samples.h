@@ -151,7 +151,8 @@ struct PullCorners {
         best = distance_sq, s.triangle = t, foot = there;
     };
     if (zeros == 1 && !far) {  // on the edge opposite of the corner without weight
-      consider(mesh.twin[own * 3 + (foot.weight[0] <= 0 ? 1 : (foot.weight[1] <= 0 ? 2 : 0))] / 3);
+      const uint32_t h = own * 3 + (foot.weight[0] <= 0 ? 1 : (foot.weight[1] <= 0 ? 2 : 0));
+      if (!mesh.is_border(h)) consider(mesh.twin[h] / 3);
       return s.triangle != own;
     }
     const bool at[3] = {foot.weight[0] > 0, foot.weight[1] > 0, foot.weight[2] > 0};

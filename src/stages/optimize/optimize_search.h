@@ -15,13 +15,19 @@ struct MarkPoor {
   View<const TriangleIndices> triangles;
   View<const PointQ8> position;
   double least_quality;
+  int64_t locked;  ///< the first vertices, so many, are never poor: they stay where they are
   View<uint32_t> poor;
   ISOSHELL_HD void operator()(int64_t t) const {
     const TriangleIndices i = triangles[t];
     if (quality_of(position[i.a], position[i.b], position[i.c]) >= least_quality) return;
-    atomic_or(poor[i.a], 1u);
-    atomic_or(poor[i.b], 1u);
-    atomic_or(poor[i.c], 1u);
+    mark(i.a);
+    mark(i.b);
+    mark(i.c);
+  }
+
+ private:
+  ISOSHELL_HD void mark(uint32_t v) const {
+    if (v >= locked) atomic_or(poor[v], 1u);
   }
 };
 /// A poor vertex moves in a round when none of its poor neighbours drew a larger number.
@@ -143,6 +149,7 @@ struct SearchOptions {
   EdgeSize edge;
   double hold;  ///< see SearchVertex
   bool onto_sheet;
+  int64_t locked;  ///< see MarkPoor
 };
 
 /// Looks for better places for poor vertices, in rounds of independent ones.
@@ -152,7 +159,8 @@ struct PlainSearchPlaces {
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
     for (int r = 0; r < options.rounds; ++r) {
       exec.fill(poor, 0u);
-      exec.for_each("mark poor", mesh.triangles.size, MarkPoor{mesh.triangles, position, options.least_quality, poor});
+      exec.for_each("mark poor", mesh.triangles.size,
+                    MarkPoor{mesh.triangles, position, options.least_quality, options.locked, poor});
       const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
       if (chosen.empty()) return;
       exec.for_each(

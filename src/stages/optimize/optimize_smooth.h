@@ -18,6 +18,7 @@ struct SmoothOptions {
   EdgeSize size;
   double most_edges = 0;   ///< longest move, in edges
   double hold = 0;         ///< how much moves are held to the planes of the triangles
+  int64_t locked = 0;      ///< the first vertices, so many, stay where they are
   bool onto_sheet = true;  ///< back onto the sheet, or only along the mesh
 };
 
@@ -51,6 +52,10 @@ struct SmoothVertex {
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = from[v];
+    if (is_locked(v)) {
+      to[v] = p;
+      return;
+    }
     const double radius = radius_q8(v);
     SmoothingSums sums;
     for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
@@ -65,6 +70,7 @@ struct SmoothVertex {
 
   // The parts of a step.
 
+  ISOSHELL_HD bool is_locked(int64_t v) const { return v < options.locked; }
   /// Of the triangle that is to be around the vertex.
   ISOSHELL_HD double radius_q8(int64_t v) const { return options.size.at(home[v]) * kRadiusOfEdge; }
   /// Where the vertex goes along the mesh.

@@ -15,7 +15,9 @@ struct UpdateSeed {
   View<PointQ8> position;
   View<Normal8> normal;
   View<uint32_t> home;
+  int64_t locked;  ///< the first seeds, so many, are where they began
   ISOSHELL_HD void operator()(int64_t v) const {
+    if (v < locked) return;
     position[v] = vertex[v];
     home[v] = walk.nearest_vertex(home[v], vertex[v]);
     normal[v] = walk.normal[home[v]];

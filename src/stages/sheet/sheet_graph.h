@@ -11,12 +11,13 @@ struct SheetGraph {
   View<const uint32_t> incident;
   View<const uint32_t> border_before;
 
+  ISOSHELL_HD bool is_on_border(uint32_t v) const { return border_before.size > 0 && border_before[v] != kNone; }
   /// visit(u) for every neighbour u of v: each is the next one in one triangle around v, but for the one before a
   /// border vertex on its border.
   template <class Visit>
   ISOSHELL_HD void for_each_neighbour(uint32_t v, Visit visit) const {
     for_each_corner(v, [&](uint32_t next, uint32_t) { visit(next); });
-    if (border_before.size > 0 && border_before[v] != kNone) visit(border_before[v]);
+    if (is_on_border(v)) visit(border_before[v]);
   }
   /// visit(next, last) for every triangle (v, next, last) around v.
   template <class Visit>
