@@ -1,5 +1,4 @@
-// Volumes as input: level sets and fog volumes of .vdb and .nvdb files become the closed surface of their zero
-// crossing.
+// Volumes as input: level sets, unsigned distances and fog volumes of .vdb and .nvdb files become a closed surface.
 #pragma once
 
 #include <optional>
@@ -13,21 +12,33 @@ struct VolumeReadOptions {
   /// Name of the grid, NAME[1] for the second one of that name, or NAME[2] where a grid is called NAME[1]: what a grid
   /// is called comes first. Empty takes the only level set, or the only grid that can be meshed.
   std::string grid;
-  std::optional<double> iso;       ///< value of the surface; without it 0 in a level set, and an error in a fog volume
+  std::optional<double> iso;       ///< value of the surface; without it 0 in a level set and in unsigned distances, and
+                                   ///< an error in a fog volume
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
+};
+
+/// What the values of a grid were taken for.
+enum class VolumeKind {
+  at_value,                ///< a level set, or any field whose value of the surface was given
+  unsigned_distance,       ///< distances without sign from a closed surface, found between its two sides
+  open_unsigned_distance,  ///< of a surface that encloses nothing: the closed crust around it, less than a voxel off
 };
 
 /// What was read, for messages and statistics.
 struct VolumeInfo {
   std::string grid, grid_class;  ///< class as the file says it: "level set", "fog volume", "unknown"
+  VolumeKind kind = VolumeKind::at_value;
   double iso = 0;
   double voxel_size_world = 0;  ///< longest edge of a voxel
   int64_t blocks = 0;           ///< of 8^3 voxels that hold values of their own
 };
 
 /// Reads one grid and extracts the surface on which its trilinear field has the value `iso`: closed, 2-manifold, with
-/// vertices where lattice edges cross it, oriented towards the side on which the background lies. Every count and
-/// offset in the file is held to its bytes before anything is allocated by it.
+/// vertices where lattice edges cross it, oriented towards the side on which the background lies. Without `iso` a grid
+/// of class unknown, or whose class says that it is unsigned, with no negative values that rise by one voxel's length a
+/// voxel holds unsigned distances. They get the signs of the two sides of their zero set first, so that it is one skin,
+/// closed over holes and with the hollows of nested surfaces. Every count and offset in the file is held to its bytes
+/// before anything is allocated by it.
 /// Throws: unreadable_input for a damaged file, a value that is not a number, and frustum transforms; nothing_to_mesh
 /// for a grid without the surface or of a type that has none (points, booleans, vectors), naming the grids there are;
 /// usage when the grid or its iso value must be named; out_of_memory over the limit.

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "implicit/iso_surface.h"
+#include "implicit/unsigned_field.h"
 #include "io/vdb/grid_names.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
@@ -22,22 +23,56 @@ std::string list_of(const std::vector<VolumeGrid>& grids) {
   return list;
 }
 
-/// The value asked for, or 0 in a level set; one that does not say so shows it by a background outside and values
-/// inside.
-double iso_of(const ScalarField& field, const VolumeReadOptions& options) {
-  if (options.iso) return *options.iso;
-  if (field.grid_class == kLevelSet) return 0;
-  const ValueRange range = value_range(field);
-  if (field.grid_class == kUnknown && range.low < 0 && field.background > 0) return 0;
+constexpr double kCrustVoxels = 0.9;     // half a voxel's diagonal and a little: every voxel of the surface is inside
+constexpr double kLeastEnclosing = 0.5;  // of the zero set: with less it is an open surface
+
+[[noreturn]] void refuse_without_iso(const ScalarField& field, const ValueRange& range, const std::string& why) {
   std::ostringstream text;
   text << field.title();
   if (range.low == range.high) {
     text << " has no surface: all its values are " << range.low;
     throw Error(ErrorCode::nothing_to_mesh, "read", text.str());
   }
-  text << " is no level set (class " << field.grid_class << ", values " << range.low << " to " << range.high
-       << "); say by --iso at which value its surface lies, for example --iso " << (double(range.low) + range.high) / 2;
+  text << " is no level set (class " << field.grid_class << ", values " << range.low << " to " << range.high << ")"
+       << why << "; say by --iso at which value its surface lies, for example --iso "
+       << (double(range.low) + range.high) / 2;
   throw Error(ErrorCode::usage, "read", text.str());
+}
+
+/// Whether the class leaves open what the values are, or says that they have no sign.
+bool may_be_unsigned(const std::string& grid_class) {
+  return grid_class == kUnknown || grid_class.find("unsigned") != std::string::npos;
+}
+
+/// The surface of unsigned distances: of their sides, or around the zero set where that encloses nothing.
+TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  const ValueRange range = value_range(field);
+  if (range.low == range.high) refuse_without_iso(field, range, "");
+  const DistanceKind kind = kind_of_distance(field);
+  if (kind.voxel == 0) refuse_without_iso(field, range, ", and no unsigned distance: " + kind.why);
+  if (field.background <= 0)
+    refuse_without_iso(field, range,
+                       ". Its values look like unsigned distances, but its background of 0 puts a surface at the end "
+                       "of the grid: save it with a background above its largest value");
+  info.kind = VolumeKind::unsigned_distance;
+  const SignedSides sides = find_sides(field, kind.voxel, options.memory_limit_bytes);
+  if (sides.enclosing_part >= kLeastEnclosing) return extract_iso_surface(*sides.field, 0, options.memory_limit_bytes);
+  info.kind = VolumeKind::open_unsigned_distance;
+  info.iso = kCrustVoxels * kind.voxel;
+  return extract_iso_surface(field, info.iso, options.memory_limit_bytes);
+}
+
+/// The surface at the value asked for, or at 0 in a level set; one that does not say so shows it by a background
+/// outside and values inside.
+TriangleSoup surface_of(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  if (options.iso) {
+    info.iso = *options.iso;
+  } else if (field.grid_class != kLevelSet) {
+    const ValueRange range = value_range(field);
+    if (range.low >= 0 && may_be_unsigned(field.grid_class)) return surface_of_unsigned(field, options, info);
+    if (field.grid_class != kUnknown || range.low >= 0 || field.background <= 0) refuse_without_iso(field, range, "");
+  }
+  return extract_iso_surface(field, info.iso, options.memory_limit_bytes);
 }
 
 double voxel_size(const AffineMap& map) {
@@ -113,10 +148,9 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
   check_map(*field);
   info.grid = field->name;
   info.grid_class = field->grid_class;
-  info.iso = iso_of(*field, options);
   info.voxel_size_world = voxel_size(field->to_world);
   info.blocks = int64_t(field->blocks().size());
-  return extract_iso_surface(*field, info.iso, options.memory_limit_bytes);
+  return surface_of(*field, options, info);
 }
 
 }  // namespace isoshell
