@@ -21,8 +21,8 @@ struct OptionRange {
 namespace option_range {
 constexpr OptionRange vertices{4, std::numeric_limits<int32_t>::max()},
     length{0, std::numeric_limits<double>::max(), true}, resolution{8, kMaxResolution}, band{1, kMaxBandVox},
-    closing{0, kMaxClosingVox}, adaptivity{0, 1}, gradation{1, 10, true}, iterations{1, 1000000}, tolerance{0, 1},
-    step{1. / kOneVoxelQ8, 1000};
+    closing{0, kMaxClosingVox}, crease{1, 179}, adaptivity{0, 1}, gradation{1, 10, true}, iterations{1, 1000000},
+    tolerance{0, 1}, step{1. / kOneVoxelQ8, 1000};
 }
 
 }  // namespace isoshell

@@ -54,6 +54,11 @@ RemeshOptions checked(RemeshOptions o) {
   check<double>("max_step_vox", o.max_step_vox, option_range::step, 0);
   check("adaptivity", o.adaptivity, option_range::adaptivity);
   check("gradation", o.gradation, option_range::gradation);
+  if (o.features.creases == Features::Creases::threshold)
+    check("features.degrees", o.features.degrees, option_range::crease);
+  if (o.method == Method::shell && o.features.creases != Features::Creases::off)
+    throw Error(ErrorCode::usage, "options",
+                "features need the method sheet: the paper's loop on the shell knows no curves");
   if (o.method == Method::shell && (o.sizing || o.adaptivity > 0))
     throw Error(ErrorCode::usage, "options",
                 "a sizing field and adaptivity need the method sheet: the paper's loop on the shell has even cells");

@@ -69,6 +69,11 @@ int32_t resolution_for_cell(double longest_world, double cell_world, int64_t ver
                     kMinDefaultResolution, kMaxResolution);
 }
 
+int64_t vertex_target(const RemeshOptions& options, const Prepared& prepared) {
+  if (prepared.vertices) return *prepared.vertices;
+  return vertex_target(options, options.edge_length_world ? sheet_area_world(prepared.sheet) : 0);
+}
+
 double usual_edge_length(const RemeshOptions& options, double area_world) {
   if (options.edge_length_world) return *options.edge_length_world;
   return std::sqrt(area_world / double(vertex_target(options, area_world)) / kAreaPerEdgeSq);

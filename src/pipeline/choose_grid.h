@@ -8,6 +8,9 @@ namespace isoshell {
 /// Target count of a surface of this area. Throws: usage when an edge length asks for more than 2^31 - 1.
 int64_t vertex_target(const RemeshOptions& options, double area_world);
 
+/// Target count of a prepared run, whose field may decide it.
+int64_t vertex_target(const RemeshOptions& options, const Prepared& prepared);
+
 /// Edge length where nothing else says one: that of the options, or of as many vertices as they ask for.
 double usual_edge_length(const RemeshOptions& options, double area_world);
 

@@ -13,6 +13,7 @@
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/flaps.h"
+#include "pipeline/patches.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
@@ -240,6 +241,7 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.topology_compared = can_compare(report.input);
   report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
   timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
+  cut_into_patches(options, p, report, context);
   note_digest(options, report, context, "surface", p.surface);
   note_digest(options, report, context, "sites", p.sites);
   note_digest(options, report, context, "samples", p.samples);

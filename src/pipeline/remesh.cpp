@@ -6,7 +6,9 @@
 #include "isoshell/to_host.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
+#include "pipeline/dual_of_seeds.h"
 #include "pipeline/hierarchy.h"
+#include "pipeline/patches.h"
 #include "pipeline/resolve_intersections.h"
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
@@ -15,10 +17,6 @@
 
 namespace isoshell {
 namespace {
-
-constexpr int32_t kReoptimisePasses = 20;
-constexpr int kMaxReoptimisations = 4;
-constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
 
 RelaxOptions relax_options(const RemeshOptions& options) {
   RelaxOptions relax;
@@ -60,15 +58,16 @@ void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapR
   report.area_world = gap_area_world(p.sheet, gaps);
 }
 
-}  // namespace
-
-SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+/// On the patches of a cut surface, or on the sheet.
+SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patches, RemeshReport& report,
+                    Context& context) {
   const RemeshOptions options = checked(asked);
-  const double area_world = options.edge_length_world ? sheet_area_world(p.sheet) : 0;
-  const int64_t target = p.vertices ? *p.vertices : vertex_target(options, area_world);
-  const SeedOptions seed_options{target, options.seed};
+  const SeedOptions seed_options{vertex_target(options, p), options.seed};
   RelaxedSeeds relaxed;
-  if (options.method == Method::sheet) {
+  if (in_patches) {
+    relaxed = timed(report, "relax", context,
+                    [&] { return relax_in_patches(p, seed_options, relax_options(options), context); });
+  } else if (options.method == Method::sheet) {
     relaxed = timed(report, "relax", context, [&] {
       return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), context);
     });
@@ -88,28 +87,30 @@ SeedSet relax(const Prepared& p, const RemeshOptions& asked, RemeshReport& repor
   return seeds;
 }
 
+}  // namespace
+
+SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  return relax_seeds(p, options, p.cut != nullptr, report, context);
+}
+
 TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
                          Context& context) {
-  const int64_t asked = seeds.size();
+  OptimizeOptions optimize;
+  optimize.fit = options.fit;
+  optimize.uniform_area = options.uniform_area;
   SeededMesh made;
   const GiveSeedsBack give_back{made.seeds, seeds};
   made.seeds = std::move(seeds);
-  for (int round = 0;; ++round) {
-    Triangulation dual =
-        timed(report, "dual", context, [&] { return triangulate_dual(p.sheet, std::move(made.seeds), {}, context); });
-    const DualReport found = dual.report;
-    report.dual.inserted_seeds += found.inserted_seeds;
-    report.dual.relabelled_vertices += found.relabelled_vertices;
-    report.dual.repair_rounds += found.repair_rounds;
-    report.dual.failed_cells = found.failed_cells;
-    made = std::move(dual);
-    if (found.failed_cells == 0)
-      made = timed(report, "dual", context, [&] { return collapse_edges(p.sheet, std::move(made), {asked}, context); });
-    if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMaxReoptimisations) break;
-    const RelaxOptions again{kReoptimisePasses, 0, 0};
-    made.seeds = timed(report, "relax", context,
-                       [&] { return relax_on_sheet(p.sheet, std::move(made.seeds), again, context).seeds; });
+  if (p.cut && made.seeds.fixed.count > 0) {
+    if (std::optional<TriangleMesh> mesh = triangulate_patches(p, made, optimize, report, context)) {
+      note_digest(options, report, context, "mesh", *mesh);
+      return std::move(*mesh);
+    }
+    report.post = {};
+    made.seeds = relax_seeds(p, options, false, report, context);
   }
+  const int64_t asked = made.seeds.size();
+  make_dual_of_seeds(p.sheet, made, report, context);
   if (report.dual.failed_cells > 0)
     report.warnings.push_back(
         std::to_string(report.dual.failed_cells) +
@@ -117,9 +118,6 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   if (made.seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
-  OptimizeOptions optimize;
-  optimize.fit = options.fit;
-  optimize.uniform_area = options.uniform_area;
   if (report.dual.failed_cells == 0) {
     OptimizedMesh optimized =
         timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), optimize, context); });

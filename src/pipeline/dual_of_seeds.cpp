@@ -1,0 +1,36 @@
+// See dual_of_seeds.h.
+#include "pipeline/dual_of_seeds.h"
+
+#include "pipeline/timed.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int32_t kPassesAgain = 20;
+constexpr int kMostTimesAgain = 4;
+constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
+
+}  // namespace
+
+void make_dual_of_seeds(const SurfaceMesh& surface, SeededMesh& made, RemeshReport& report, Context& context) {
+  const int64_t asked = made.seeds.size();
+  report.dual = {};
+  for (int round = 0;; ++round) {
+    Triangulation dual =
+        timed(report, "dual", context, [&] { return triangulate_dual(surface, std::move(made.seeds), {}, context); });
+    const DualReport found = dual.report;
+    report.dual.inserted_seeds += found.inserted_seeds;
+    report.dual.relabelled_vertices += found.relabelled_vertices;
+    report.dual.repair_rounds += found.repair_rounds;
+    report.dual.failed_cells = found.failed_cells;
+    made = std::move(dual);
+    if (found.failed_cells == 0)
+      made = timed(report, "dual", context, [&] { return collapse_edges(surface, std::move(made), {asked}, context); });
+    if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMostTimesAgain) return;
+    const RelaxOptions again{kPassesAgain, 0, 0};
+    made.seeds = timed(report, "relax", context,
+                       [&] { return relax_on_sheet(surface, std::move(made.seeds), again, context).seeds; });
+  }
+}
+
+}  // namespace isoshell

@@ -1,0 +1,200 @@
+// Runs that keep creases: the edges of crisp parts are edges of the result, and all that held without them still holds.
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "isoshell/digest.h"
+#include "isoshell/error.h"
+#include "isoshell/mesh_topology.h"
+#include "isoshell/quality.h"
+#include "isoshell/remesh.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+RemeshOptions keeping_creases(int64_t vertices) {
+  RemeshOptions options;
+  options.vertices = vertices;
+  options.features.creases = Features::Creases::automatic;
+  return options;
+}
+
+double distance(const WorldPoint& a, const WorldPoint& b) {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
+}
+
+/// Turned by odd angles, exactly the same shape to rounding.
+TriangleSoup turned(TriangleSoup soup) {
+  const double a = 0.3, b = 0.7, c = 1.1;
+  for (WorldPoint& p : soup.vertices) {
+    const WorldPoint q{p.x * std::cos(a) - p.y * std::sin(a), p.x * std::sin(a) + p.y * std::cos(a), p.z};
+    const WorldPoint r{q.x, q.y * std::cos(b) - q.z * std::sin(b), q.y * std::sin(b) + q.z * std::cos(b)};
+    p = {r.x * std::cos(c) + r.z * std::sin(c), r.y, r.z * std::cos(c) - r.x * std::sin(c)};
+  }
+  return soup;
+}
+
+/// A right prism over a regular polygon.
+TriangleSoup cylinder(double radius, double height, uint32_t sides) {
+  TriangleSoup soup;
+  for (uint32_t i = 0; i < sides; ++i) {
+    const double turn = 6.283185307179586 * i / sides;
+    for (const double z : {0., height}) soup.vertices.push_back({radius * std::cos(turn), radius * std::sin(turn), z});
+  }
+  soup.vertices.push_back({0, 0, 0});
+  soup.vertices.push_back({0, 0, height});
+  for (uint32_t i = 0; i < sides; ++i) {
+    const uint32_t a = 2 * i, b = 2 * ((i + 1) % sides);
+    soup.triangles.push_back({a, b, b + 1});
+    soup.triangles.push_back({a, b + 1, a + 1});
+    soup.triangles.push_back({2 * sides, b, a});
+    soup.triangles.push_back({2 * sides + 1, a + 1, b + 1});
+  }
+  return soup;
+}
+
+/// Length of the result's edges that lie on a segment of the input: both ends no farther than this from it.
+double length_on(const TriangleMesh& mesh, const WorldPoint& a, const WorldPoint& b, double tolerance) {
+  const double length = distance(a, b);
+  const WorldPoint along{(b.x - a.x) / length, (b.y - a.y) / length, (b.z - a.z) / length};
+  const auto lies_on = [&](uint32_t v) {
+    const WorldPoint& p = mesh.vertices[v];
+    const double t = (p.x - a.x) * along.x + (p.y - a.y) * along.y + (p.z - a.z) * along.z;
+    const WorldPoint foot{a.x + t * along.x, a.y + t * along.y, a.z + t * along.z};
+    return distance(p, foot) <= tolerance && t >= -tolerance && t <= length + tolerance;
+  };
+  double on = 0;
+  for (const auto& t : mesh.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t u = t[size_t(i)], v = t[size_t((i + 1) % 3)];
+      if (u < v && lies_on(u) && lies_on(v)) on += distance(mesh.vertices[u], mesh.vertices[v]);
+    }
+  return on;
+}
+
+void check_valid(const RemeshResult& result, int64_t vertices, int64_t genus) {
+  const MeshTopology topology = check_mesh(result.mesh);
+  CHECK(topology.is_closed_manifold());
+  CHECK(topology.components == 1);
+  CHECK(topology.genus == genus);
+  CHECK(result.report.post.self_intersections == 0);
+  CHECK(int64_t(result.mesh.vertices.size()) == vertices);
+}
+
+}  // namespace
+
+TEST_CASE("features: the edges of a box are edges of the result, and its corners vertices", "[features]") {
+  TestContext context;
+  for (const bool is_turned : {false, true}) {
+    TriangleSoup soup = shapes::box({-1, -2, 0}, {1, 2, 1});
+    if (is_turned) soup = turned(soup);
+    const RemeshResult result = remesh(soup, keeping_creases(800), context);
+    check_valid(result, 800, 0);
+    CHECK(result.report.features.kept);
+    CHECK(result.report.features.curves == 12);
+    CHECK(result.report.features.corners == 8);
+    CHECK(result.report.features.patches == 6);
+    const double fine = result.report.frame.voxel_size / 128;
+    for (int edge = 0; edge < 12; ++edge) {
+      const int axis = edge / 4, u = edge & 1, v = edge >> 1 & 1;
+      const int a = u << (axis + 1) % 3 | v << (axis + 2) % 3, b = a | 1 << axis;
+      const WorldPoint &from = soup.vertices[size_t(a)], &to = soup.vertices[size_t(b)];
+      INFO("edge " << edge);
+      CHECK(std::abs(length_on(result.mesh, from, to, fine) - distance(from, to)) < 4 * fine);
+    }
+    CHECK(measure_quality(result.mesh).theta_min_deg > 30);
+  }
+}
+
+TEST_CASE("features: a cylinder keeps its rims and has none along its side", "[features]") {
+  TestContext context;
+  const RemeshResult result = remesh(cylinder(1, 2, 96), keeping_creases(1000), context);
+  check_valid(result, 1000, 0);
+  CHECK(result.report.features.kept);
+  CHECK(result.report.features.curves == 2);
+  CHECK(result.report.features.corners == 0);
+  CHECK(measure_quality(result.mesh).theta_min_deg > 30);
+}
+
+TEST_CASE("features: a smooth shape is remeshed as if none were looked for", "[features]") {
+  TestContext context;
+  const TriangleSoup soup = shapes::torus(2, 0.7, 96, 48);
+  RemeshOptions without = keeping_creases(600);
+  without.features = {};
+  const RemeshResult result = remesh(soup, keeping_creases(600), context);
+  CHECK_FALSE(result.report.features.kept);
+  CHECK(result.report.features.curves == 0);
+  CHECK(result.report.warnings.empty());
+  CHECK(digest(result.mesh) == digest(remesh(soup, without, context).mesh));
+}
+
+TEST_CASE("features: an angle decides which edges are creases", "[features]") {
+  TestContext context;
+  RemeshOptions options = keeping_creases(600);
+  options.features = {Features::Creases::threshold, 50};
+  CHECK(remesh(cylinder(1, 2, 6), options, context).report.features.curves == 18);
+  options.features.degrees = 70;
+  CHECK(remesh(cylinder(1, 2, 6), options, context).report.features.curves == 12);  // rims with six corners each
+}
+
+TEST_CASE("features: an open surface loses its creases, and the run says so", "[features]") {
+  TestContext context;
+  TriangleSoup soup = shapes::box({0, 0, 0}, {2, 2, 2});
+  soup.triangles.pop_back();
+  const RemeshResult result = remesh(soup, keeping_creases(400), context);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  if (!result.report.features.kept) CHECK_FALSE(result.report.features.given_up.empty());
+}
+
+TEST_CASE("features: more places on curves than vertices are no error", "[features]") {
+  TestContext context;
+  const RemeshResult result = remesh(cylinder(1, 2, 6), keeping_creases(20), context);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(result.mesh.vertices.size() == 20);
+}
+
+TEST_CASE("features: the bytes are the same for any number of threads", "[features]") {
+  TestContext one, more;
+  one.threads = 1;
+  more.threads = 3;
+  const TriangleSoup soup = turned(shapes::box({0, 0, 0}, {3, 2, 1}));
+  CHECK(digest(remesh(soup, keeping_creases(700), one).mesh) == digest(remesh(soup, keeping_creases(700), more).mesh));
+}
+
+TEST_CASE("features: the paper's loop on the shell refuses them", "[features]") {
+  TestContext context;
+  RemeshOptions options = keeping_creases(100);
+  options.method = Method::shell;
+  CHECK_THROWS_AS(remesh(shapes::box({0, 0, 0}, {1, 1, 1}), options, context), Error);
+}
+
+TEST_CASE("features: what cannot be cut is remeshed without, closed, and the run says so", "[features]") {
+  TestContext context;
+  const TriangleSoup cube = shapes::box({0, 0, 0}, {2, 2, 2});
+  TriangleSoup capped = cube;
+  capped.triangles.pop_back();
+  const std::vector<std::pair<std::string, TriangleSoup>> inputs = {
+      {"inside out", shapes::inside_out(cube)},
+      {"touching in a corner", shapes::together(cube, shapes::box({2, 2, 2}, {4, 4, 4}))},
+      {"with a tiny part", shapes::together(cube, shapes::box({3, 3, 3}, {3.01, 3.01, 3.01}))},
+      {"a thin plate", shapes::box({0, 0, 0}, {1, 1, 0.01})},
+      {"with a hole", capped},
+  };
+  for (const auto& [name, soup] : inputs) {
+    INFO(name);
+    const RemeshResult result = remesh(soup, keeping_creases(500), context);
+    CHECK(check_mesh(result.mesh).is_closed_manifold());
+    CHECK((result.report.features.kept || !result.report.features.given_up.empty()));
+    double volume = 0;
+    for (const auto& t : result.mesh.triangles) {
+      const WorldPoint &a = result.mesh.vertices[t[0]], &b = result.mesh.vertices[t[1]],
+                       &c = result.mesh.vertices[t[2]];
+      volume += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+    }
+    CHECK(volume > 0);
+  }
+}
