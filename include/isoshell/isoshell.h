@@ -21,3 +21,4 @@
 #include "isoshell/run/run.h"
 #include "isoshell/stages.h"
 #include "isoshell/to_host.h"
+#include "isoshell/transfer_attributes.h"

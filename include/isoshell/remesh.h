@@ -21,6 +21,17 @@ enum class Method {
   shell,  ///< the paper's Lloyd loop on shell voxels
 };
 
+/// Which edges of the input become edges of the result.
+struct Features {
+  enum class Creases {
+    off,        ///< none: sharp edges are rounded off
+    automatic,  ///< those of crisp parts, and none of a scan
+    threshold,  ///< all whose faces turn by `degrees` or more
+  };
+  Creases creases = Creases::off;
+  double degrees = 0;  ///< only of a threshold
+};
+
 /// What has no value is chosen by the run. The numbers that stood for that before, 0 or -1 by option, mean it still.
 struct RemeshOptions {
   std::optional<int64_t> vertices = 10000;  ///< target count; without it as `sizing` asks for, or 10000
@@ -40,9 +51,22 @@ struct RemeshOptions {
   double gradation = 1.2;                     ///< most that an edge may be longer than its neighbours, above 1
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
+  Features features;          ///< need the method sheet
+  /// Names of the vertex attributes that a run keeps; without a value all. remesh() itself makes positions only.
+  std::optional<std::vector<std::string>> attributes;
   bool outer_only = false;    ///< drop what lies inside of a closed surface
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
   bool want_digests = false;  ///< fill RemeshReport::digests
+};
+
+/// What was kept of the input's creases.
+struct FeatureReport {
+  bool kept = false;     ///< the result has the curves as edges
+  std::string given_up;  ///< why there are none, though curves were found; empty otherwise
+  int64_t patches = 0;   ///< of the surface between the curves
+  int64_t curves = 0;
+  int64_t corners = 0;   ///< where curves end or turn sharply
+  int64_t vertices = 0;  ///< of the result on curves
 };
 
 struct StageTime {
@@ -69,6 +93,7 @@ struct RemeshReport {
   int64_t seeds_against_intersections = 0;  ///< put in where triangles intersected; others were taken out for them
   SizingReport sizing;
   GapReport gaps;
+  FeatureReport features;
   bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections
   int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was begun; see memory_estimate.h
   std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry
@@ -86,6 +111,8 @@ struct GrownSolid {
   explicit operator bool() const { return distance_vox > 0; }
 };
 
+struct CutSurface;
+
 /// Products up to the sheet.
 struct Prepared {
   LatticeSurface surface;
@@ -94,8 +121,9 @@ struct Prepared {
   Shell shell;  ///< empty unless the method or want_shell asks for it
   Sheet sheet;  ///< with edge lengths where they vary
   int32_t closing_vox = 0;
-  std::optional<int64_t> vertices;  ///< as many as the sizing field asks for; without it as the options say
-  GrownSolid grown;                 ///< for the stages that follow
+  std::optional<int64_t> vertices;        ///< as many as the sizing field asks for; without it as the options say
+  GrownSolid grown;                       ///< for the stages that follow
+  std::shared_ptr<const CutSurface> cut;  ///< the input's own triangles in patches; null where no features are kept
 };
 
 /// Repairs the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for.

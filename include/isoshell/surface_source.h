@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isoshell/lattice.h"
+#include "isoshell/vertex_attribute.h"
 
 namespace isoshell {
 
@@ -33,6 +34,8 @@ struct TriangleSoup {
   int64_t faces_in_file = 0;         ///< polygons and strips before they were split
   uint32_t first_cap = 0xffffffffu;  ///< triangles from this one on were added to close holes
   DirtCounts dirt;
+  std::vector<VertexAttribute> attributes;           ///< as read; what repair or union changed has none
+  std::vector<DroppedAttribute> dropped_attributes;  ///< of the file, that no reader takes
 };
 
 }  // namespace isoshell

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isoshell/lattice.h"
+#include "isoshell/vertex_attribute.h"
 
 namespace isoshell {
 
@@ -15,6 +16,7 @@ struct TriangleMesh {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint8_t> gap = {};  ///< per vertex 1 where the input has no surface; empty when it has everywhere
+  std::vector<VertexAttribute> attributes = {};  ///< of the input, where they were transferred
 };
 
 }  // namespace isoshell

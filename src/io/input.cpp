@@ -50,6 +50,11 @@ void check_surface(const TriangleSoup& soup, const std::string& name) {
       }
       refuse(text.str());
     }
+  for (const VertexAttribute& a : soup.attributes)
+    if (a.components < 1 || a.values.size() != soup.vertices.size() * size_t(a.components))
+      refuse(name + ": the attribute '" + a.name + "' has " + counted(int64_t(a.values.size()), "value") + "; " +
+             counted(int64_t(soup.vertices.size()), "vertex", "vertices") + " need " + std::to_string(a.components) +
+             " each");
 }
 
 class Reader {
@@ -130,8 +135,13 @@ class Reader {
     hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_}, volume));
     std::ostringstream text;
     text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
-         << volume.voxel_size_world << ", " << counted(volume.blocks, "block");
+         << volume.voxel_size_world << ", " << counted(volume.blocks, "block")
+         << (volume.kind == VolumeKind::at_value ? "" : ", unsigned distances");
     note(text.str());
+    if (volume.kind == VolumeKind::open_unsigned_distance)
+      warn(
+          "the zero set of its unsigned distances encloses nothing; the closed crust around it is meshed, 0.9 voxels "
+          "from it");
   }
 
   void read_stage_file() {

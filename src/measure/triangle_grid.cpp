@@ -14,47 +14,57 @@ constexpr int64_t kCellsPerTriangle = 8;
 constexpr int64_t kEntriesPerTriangle = 32;  // more, and cells are too small for the largest triangles
 constexpr int64_t kMostEntries = std::numeric_limits<uint32_t>::max();
 
-double to_segment_sq(WorldPoint p, WorldPoint a, WorldPoint b) {
+/// Of the segment from a to b, at a + part (b - a).
+struct OnSegment {
+  double distance_sq, part;
+};
+OnSegment nearest_of_segment(WorldPoint p, WorldPoint a, WorldPoint b) {
   const WorldPoint ab = b - a, ap = p - a;
   const double length_sq = dot(ab, ab), t = length_sq > 0 ? std::clamp(dot(ap, ab) / length_sq, 0.0, 1.0) : 0;
   const WorldPoint rest = ap + -t * ab;
-  return dot(rest, rest);
+  return {dot(rest, rest), t};
 }
 
-/// By the plane where p lies over the triangle, by the edges elsewhere.
-double to_triangle_sq(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c) {
+/// In the plane where p lies over the triangle, on the edges elsewhere.
+MeshPoint nearest_of_triangle(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c) {
   const WorldPoint ab = b - a, ac = c - a, ap = p - a;
   const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
   const double area_sq = bb * cc - bc * bc, v = cc * pb - bc * pc, w = bb * pc - bc * pb;
   if (area_sq > 0 && v >= 0 && w >= 0 && v + w <= area_sq) {
     const WorldPoint rest = ap + (-v / area_sq) * ab + (-w / area_sq) * ac;
-    return dot(rest, rest);
+    return {dot(rest, rest), v / area_sq, w / area_sq};
   }
-  return std::min({to_segment_sq(p, a, b), to_segment_sq(p, b, c), to_segment_sq(p, c, a)});
+  const OnSegment on_ab = nearest_of_segment(p, a, b), on_bc = nearest_of_segment(p, b, c),
+                  on_ca = nearest_of_segment(p, c, a);
+  const double least = std::min({on_ab.distance_sq, on_bc.distance_sq, on_ca.distance_sq});
+  if (on_ab.distance_sq == least) return {least, on_ab.part, 0};
+  if (on_bc.distance_sq == least) return {least, 1 - on_bc.part, on_bc.part};
+  return {least, 0, 1 - on_ca.part};
 }
 
 }  // namespace
 
-TriangleGrid::TriangleGrid(const TriangleMesh& mesh) : mesh_(mesh) {
+TriangleGrid::TriangleGrid(const std::vector<WorldPoint>& vertices, const Triangles& triangles)
+    : vertices_(vertices), list_(triangles) {
   WorldPoint lo{kLargest, kLargest, kLargest}, hi{-kLargest, -kLargest, -kLargest};
-  for (const auto& t : mesh.triangles)
+  for (const auto& t : list_)
     for (const uint32_t v : t) {
-      const WorldPoint p = mesh.vertices[v];
+      const WorldPoint p = vertices_[v];
       lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
       hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
     }
   choose_cells(lo, hi);
-  for (size_t t = 0; t < mesh.triangles.size(); ++t) for_each_cell_of(t, [&](Cell c) { ++first_[number_of(c)]; });
+  for (size_t t = 0; t < list_.size(); ++t) for_each_cell_of(t, [&](Cell c) { ++first_[number_of(c)]; });
   for (size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
   triangles_.resize(first_.back());
-  for (size_t t = mesh.triangles.size(); t-- > 0;)
+  for (size_t t = list_.size(); t-- > 0;)
     for_each_cell_of(t, [&](Cell c) { triangles_[--first_[number_of(c)]] = uint32_t(t); });
 }
 
 /// About as wide as triangles are, wider where that would take too many cells or entries.
 void TriangleGrid::choose_cells(WorldPoint lo, WorldPoint hi) {
   const std::array<double, 3> extent{hi.x - lo.x, hi.y - lo.y, hi.z - lo.z};
-  const auto triangles = int64_t(mesh_.triangles.size());
+  const auto triangles = int64_t(list_.size());
   const double longest = std::max({extent[0], extent[1], extent[2]});
   origin_ = {lo.x, lo.y, lo.z};
   edge_ = longest > 0 ? longest / std::sqrt(double(triangles)) : 1;
@@ -62,7 +72,7 @@ void TriangleGrid::choose_cells(WorldPoint lo, WorldPoint hi) {
     int64_t cells = 1, entries = 0;
     for (size_t axis = 0; axis < 3; ++axis) cells *= dims_[axis] = 1 + int64_t(extent[axis] / edge_);
     if (cells > kCellsPerTriangle * triangles) continue;
-    for (size_t t = 0; t < mesh_.triangles.size(); ++t) entries += cells_of(t).count();
+    for (size_t t = 0; t < list_.size(); ++t) entries += cells_of(t).count();
     if (cells > 1 && entries > std::min(kEntriesPerTriangle * triangles, kMostEntries)) continue;
     first_.assign(size_t(cells) + 1, 0);
     return;
@@ -78,8 +88,8 @@ TriangleGrid::Cell TriangleGrid::cell_of(WorldPoint p) const {
 }
 
 TriangleGrid::CellBox TriangleGrid::cells_of(size_t triangle) const {
-  const auto& t = mesh_.triangles[triangle];
-  const WorldPoint a = mesh_.vertices[t[0]], b = mesh_.vertices[t[1]], c = mesh_.vertices[t[2]];
+  const auto& t = list_[triangle];
+  const WorldPoint a = vertices_[t[0]], b = vertices_[t[1]], c = vertices_[t[2]];
   return {cell_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})}),
           cell_of({std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})})};
 }
@@ -92,16 +102,9 @@ void TriangleGrid::for_each_cell_of(size_t triangle, Visit visit) const {
       for (int64_t x = lo[0]; x <= hi[0]; ++x) visit(Cell{x, y, z});
 }
 
-void TriangleGrid::look_into(Cell cell, WorldPoint p, double& best_sq) const {
-  const size_t c = number_of(cell);
-  for (uint32_t i = first_[c]; i < first_[c + 1]; ++i) {
-    const auto& t = mesh_.triangles[triangles_[i]];
-    best_sq = std::min(best_sq, to_triangle_sq(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]));
-  }
-}
-
 /// The cells that are `ring` cells from the middle along some axis.
-void TriangleGrid::look_into_ring(Cell middle, int64_t ring, WorldPoint p, double& best_sq) const {
+template <class Visit>
+void TriangleGrid::for_each_cell_of_ring(Cell middle, int64_t ring, Visit visit) const {
   const auto from = [&](size_t axis) { return std::max<int64_t>(0, middle[axis] - ring); };
   const auto to = [&](size_t axis) { return std::min(dims_[axis] - 1, middle[axis] + ring); };
   for (int64_t z = from(2); z <= to(2); ++z)
@@ -109,7 +112,7 @@ void TriangleGrid::look_into_ring(Cell middle, int64_t ring, WorldPoint p, doubl
       const bool is_face = std::abs(z - middle[2]) == ring || std::abs(y - middle[1]) == ring;
       for (int64_t x = from(0); x <= to(0); ++x) {
         if (is_face || std::abs(x - middle[0]) == ring)
-          look_into({x, y, z}, p, best_sq);
+          visit(Cell{x, y, z});
         else
           x = std::max(x, middle[0] + ring - 1);  // past what is inside of the ring
       }
@@ -128,14 +131,42 @@ double TriangleGrid::reach_of(Cell middle, int64_t ring, WorldPoint p) const {
   return reach;
 }
 
-double TriangleGrid::distance_sq(WorldPoint p) const {
+/// The nearest point of the triangles that are accepted and no farther.
+template <class Accept>
+MeshPoint TriangleGrid::search(WorldPoint p, double farthest_sq, Accept accept) const {
   const Cell middle = cell_of(p);
-  double best_sq = kLargest;
+  MeshPoint best;
+  best.distance_sq = farthest_sq;
   for (int64_t ring = 0;; ++ring) {
-    look_into_ring(middle, ring, p, best_sq);
+    for_each_cell_of_ring(middle, ring, [&](Cell cell) {
+      const size_t number = number_of(cell);
+      for (uint32_t i = first_[number]; i < first_[number + 1]; ++i) {
+        const uint32_t triangle = triangles_[i];
+        const auto& t = list_[triangle];
+        const MeshPoint found = nearest_of_triangle(p, vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]);
+        if (found.distance_sq > best.distance_sq ||
+            (found.distance_sq == best.distance_sq && triangle >= best.triangle) || !accept(triangle))
+          continue;
+        best = found;
+        best.triangle = triangle;
+      }
+    });
     const double reach = reach_of(middle, ring, p);
-    if (reach == kLargest || (reach > 0 && best_sq <= reach * reach)) return best_sq;
+    if (reach == kLargest || (reach > 0 && best.distance_sq < reach * reach)) return best;
   }
+}
+
+MeshPoint TriangleGrid::nearest(WorldPoint p) const {
+  return search(p, std::numeric_limits<double>::infinity(), [](uint32_t) { return true; });
+}
+
+bool TriangleGrid::is_facing(size_t triangle, WorldPoint direction) const {
+  const auto& t = list_[triangle];
+  return dot(doubled_area(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]), direction) > 0;
+}
+
+MeshPoint TriangleGrid::nearest_facing(WorldPoint p, WorldPoint direction, double farthest) const {
+  return search(p, farthest * farthest, [&](uint32_t triangle) { return is_facing(triangle, direction); });
 }
 
 }  // namespace isoshell

@@ -1,22 +1,39 @@
-// Distances of points to a mesh, by a grid of cells that list the triangles whose boxes meet them.
+// Nearest points of a mesh, by a grid of cells that list the triangles whose boxes meet them.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {
 
+/// A point of a mesh: a + b_part (b - a) + c_part (c - a) of a triangle's corners a, b and c.
+struct MeshPoint {
+  static constexpr uint32_t kNoTriangle = 0xffffffff;
+  double distance_sq = std::numeric_limits<double>::infinity();
+  double b_part = 0, c_part = 0;
+  uint32_t triangle = kNoTriangle;
+};
+
 class TriangleGrid {
  public:
-  /// Keeps a reference to the mesh, which has at least one triangle.
-  explicit TriangleGrid(const TriangleMesh& mesh);
+  using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-  /// Squared distance of p to the nearest point of the mesh.
-  double distance_sq(WorldPoint p) const;
+  /// Keeps references to both. There is at least one triangle.
+  TriangleGrid(const std::vector<WorldPoint>& vertices, const Triangles& triangles);
+  explicit TriangleGrid(const TriangleMesh& mesh) : TriangleGrid(mesh.vertices, mesh.triangles) {}
+
+  /// Of the mesh, to p. Of triangles that are equally near the smallest index.
+  MeshPoint nearest(WorldPoint p) const;
+  /// The same among triangles whose normals are less than a right angle from `direction`, and at most so far from p;
+  /// kNoTriangle where there is none.
+  MeshPoint nearest_facing(WorldPoint p, WorldPoint direction, double farthest) const;
+  bool is_facing(size_t triangle, WorldPoint direction) const;
+  double distance_sq(WorldPoint p) const { return nearest(p).distance_sq; }
 
  private:
   using Cell = std::array<int64_t, 3>;
@@ -31,12 +48,15 @@ class TriangleGrid {
   CellBox cells_of(size_t triangle) const;
   template <class Visit>
   void for_each_cell_of(size_t triangle, Visit visit) const;
-  void look_into(Cell cell, WorldPoint p, double& best_sq) const;
-  void look_into_ring(Cell middle, int64_t ring, WorldPoint p, double& best_sq) const;
+  template <class Accept>
+  MeshPoint search(WorldPoint p, double farthest_sq, Accept accept) const;
+  template <class Visit>
+  void for_each_cell_of_ring(Cell middle, int64_t ring, Visit visit) const;
   double reach_of(Cell middle, int64_t ring, WorldPoint p) const;
   size_t number_of(Cell c) const { return size_t((c[2] * dims_[1] + c[1]) * dims_[0] + c[0]); }
 
-  const TriangleMesh& mesh_;
+  const std::vector<WorldPoint>& vertices_;
+  const Triangles& list_;
   std::array<double, 3> origin_{};
   double edge_ = 1;  ///< of a cell
   Cell dims_{1, 1, 1};

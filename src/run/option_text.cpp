@@ -46,6 +46,44 @@ Fit parse_fit(const std::string& option, const std::string& text) {
 
 const char* fit_name(Fit fit) { return fit == Fit::surface ? "surface" : "balanced"; }
 
+Features parse_features(const std::string& option, const std::string& text) {
+  if (text == "off") return {};
+  if (text == "auto") return {Features::Creases::automatic, 0};
+  const double degrees = parse_number(option + " is neither off nor auto: the angle of creases", text);
+  check_range(option, degrees, option_range::crease);
+  return {Features::Creases::threshold, degrees};
+}
+
+std::string features_text(const Features& features) {
+  if (features.creases == Features::Creases::off) return "off";
+  if (features.creases == Features::Creases::automatic) return "auto";
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(17);
+  text << features.degrees;
+  return text.str();
+}
+
+std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text) {
+  if (text == "all") return std::nullopt;
+  std::vector<std::string> names;
+  if (text == "none") return names;
+  std::istringstream parts(text + ",");
+  for (std::string name; std::getline(parts, name, ',');) {
+    if (name.empty()) refuse(option + " is '" + text + "'; it must be all, none, or names separated by commas");
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string attributes_text(const std::optional<std::vector<std::string>>& attributes) {
+  if (!attributes) return "all";
+  if (attributes->empty()) return "none";
+  std::string text;
+  for (const std::string& name : *attributes) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
 void set_gap_width(const std::string& option, const std::string& text, RemeshOptions& options) {
   options.closing_vox.reset();
   options.closing_world.reset();

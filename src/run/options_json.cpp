@@ -120,6 +120,8 @@ Json json_of(const RemeshOptions& o) {
           {"seed", o.seed},
           {"fit", fit_name(o.fit)},
           {"uniform-area", o.uniform_area},
+          {"features", features_text(o.features)},
+          {"attributes", attributes_text(o.attributes)},
           {"adaptivity", o.adaptivity},
           {"gradation", o.gradation},
           {kSizing, o.sizing ? o.sizing->source() : ""},
@@ -174,6 +176,8 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
   members.take("seed", o.seed);
   if (const auto text = members.text("fit")) o.fit = parse_fit("fit", *text);
   members.take("uniform-area", o.uniform_area);
+  if (const auto text = members.text_or_number("features")) o.features = parse_features("features", *text);
+  if (const auto text = members.text("attributes")) o.attributes = parse_attributes("attributes", *text);
   members.take("adaptivity", o.adaptivity, option_range::adaptivity);
   members.take("gradation", o.gradation, option_range::gradation);
   asked.sizing = members.text(kSizing).value_or("");
@@ -185,6 +189,8 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
 }
 
 void check_method(const AskedOptions& options) {
+  if (options.values.method == Method::shell && options.values.features.creases != Features::Creases::off)
+    refuse("--features needs --method sheet: the paper's loop on the shell knows no curves");
   if (options.values.method == Method::shell && (!options.sizing.empty() || options.values.adaptivity > 0))
     refuse("--sizing and --adaptivity need --method sheet: the paper's loop on the shell has even cells");
 }

@@ -16,4 +16,8 @@ std::string preview_path(const std::string& path);
 /// would share one file.
 void check_outputs(const RunRequest& request);
 
+/// Refuses to keep a Voronoi stage file of a run that keeps features: asked for, or those of the stage file it resumes.
+/// Throws: usage.
+void check_features(const Features& features, const RunRequest& request);
+
 }  // namespace isoshell

@@ -86,6 +86,7 @@ void check_seeds(const Held& held, int64_t seeds, const AskedOptions& a, const A
   held.check("tolerance", asked.tolerance, kept.tolerance);
   held.check("step", asked.max_step_vox, kept.max_step_vox);
   held.check("seed", asked.seed == kept.seed, kept.seed);
+  held.check("features", features_text(asked.features) == features_text(kept.features), features_text(kept.features));
 }
 
 }  // namespace
@@ -117,6 +118,7 @@ AskedOptions adopt_options(const StageFile& file, const std::string& path, const
   keep("step", &RemeshOptions::max_step_vox);
   keep("seed", &RemeshOptions::seed);
   keep("uniform-area", &RemeshOptions::uniform_area);
+  keep("features", &RemeshOptions::features);
   keep("adaptivity", &RemeshOptions::adaptivity);
   keep("gradation", &RemeshOptions::gradation);
   keep("fit", &RemeshOptions::fit);

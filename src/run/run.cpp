@@ -11,6 +11,8 @@
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/to_host.h"
+#include "isoshell/transfer_attributes.h"
+#include "run/choose_attributes.h"
 #include "run/outputs.h"
 #include "run/process_memory.h"
 #include "run/resume.h"
@@ -71,6 +73,9 @@ class Run {
 
  private:
   RunResult steps(Input input) {
+    const std::vector<VertexAttribute> attributes =
+        choose_attributes(input, options_.values.attributes, stops_early() ? "vdb" : record_.output.format,
+                          record_.attributes, [&](MessageKind kind, const std::string& text) { tell(kind, text); });
     read_sizing_field();
     Prepared prepared = step("prepare", [&] { return prepare_from(input); });
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name())) warn(text);
@@ -86,6 +91,8 @@ class Run {
     if (measures_all() || request_.gates.max_deviation_world)
       step("distance",
            [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface)), context_); });
+    if (!attributes.empty())
+      mesh.attributes = step("attributes", [&] { return transfer_attributes(input.soup, attributes, mesh, context_); });
     const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
@@ -162,6 +169,7 @@ class Run {
     if (!input.stage) return;
     options_ = adopt_options(*input.stage, input.facts.path, options_);
     check_method(options_);
+    check_features(options_.values.features, request_);
     if (input.stage->seeds && request_.stop_after == StopAfter::shell)
       throw Error(ErrorCode::usage, "options", "INPUT is past the shell already; leave out --stop-after shell");
   }

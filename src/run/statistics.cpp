@@ -108,6 +108,13 @@ Json gaps_json(const RunRecord& r) {
           {"risky_sites", known(r.risky_sites)}};
 }
 
+Json attributes_json(const AttributeReport& r) {
+  Json kept = Json::array(), dropped = Json::array();
+  for (const std::string& name : r.kept) kept.push_back(name);
+  for (const DroppedAttribute& d : r.dropped) dropped.push_back({{"name", d.name}, {"reason", d.reason}});
+  return {{"kept", kept}, {"dropped", dropped}};
+}
+
 Json topology_json(const RunRecord& r) {
   Json j = {{"components", nullptr},
             {"genus", nullptr},
@@ -168,6 +175,12 @@ Json distance_json(const std::optional<MeshDistance>& d) {
   return j;
 }
 
+/// Creases of the input, and whether the result has them.
+Json features_json(const FeatureReport& f) {
+  return {{"kept", f.kept},       {"curves", f.curves},     {"corners", f.corners},
+          {"patches", f.patches}, {"vertices", f.vertices}, {"given_up", known(f.given_up)}};
+}
+
 Json sizing_json(const SizingReport& s) {
   if (!s.varies) return nullptr;
   return {{"min", s.least_world}, {"max", s.largest_world}, {"edge_error_mean", s.edge_error_mean}};
@@ -202,8 +215,10 @@ std::string statistics_json(const RunRecord& r) {
   j["grid"] = grid_json(r.report);
   j["counts"] = counts_json(r);
   j["gaps"] = gaps_json(r);
+  j["attributes"] = attributes_json(r.attributes);
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
+  j["features"] = features_json(r.report.features);
   j["sizing"] = sizing_json(r.report.sizing);
   j["distance"] = distance_json(r.distance);
   j["energy"] = r.report.relax.energy;

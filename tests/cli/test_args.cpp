@@ -59,6 +59,9 @@ TEST_CASE("args: options reach the library with their units", "[cli][args]") {
   CHECK(values({"--fit", "surface"}).fit == Fit::surface);
   CHECK(values({}).fit == Fit::balanced);
   CHECK(values({"--uniform-area"}).uniform_area);
+  CHECK_FALSE(values({"--attributes", "all"}).attributes);
+  CHECK(values({"--attributes", "none"}).attributes == std::vector<std::string>{});
+  CHECK(values({"--attributes", "color,heat"}).attributes == std::vector<std::string>{"color", "heat"});
   CHECK(values({"--seed", "18446744073709551615"}).seed == 18446744073709551615ull);
   CHECK(values({"--tolerance", "0"}).tolerance == 0);
   CHECK(values({"--close-gaps", "0"}).closing_vox == 0);

@@ -26,6 +26,8 @@ void run_mesh(View<const char> bytes) {
   for (const auto& t : soup.triangles)
     for (const uint32_t corner : t)
       if (corner >= soup.vertices.size()) std::abort();
+  for (const VertexAttribute& a : soup.attributes)
+    if (a.values.size() != soup.vertices.size() * size_t(a.components)) std::abort();
 }
 
 template <PointCloud (*read)(const MeshSource&)>

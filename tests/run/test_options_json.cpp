@@ -39,10 +39,11 @@ class NamedField final : public SizingField {
 }  // namespace
 
 TEST_CASE("options json: what is not given is the number that always stood for it", "[options]") {
-  CHECK(options_json(RemeshOptions{}) ==
-        R"({"vertices":10000,"edge-length":0.0,"band":2,"outer-only":false,"method":"sheet","iterations":0,)"
-        R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","uniform-area":false,"adaptivity":0.0,)"
-        R"("gradation":1.2,"sizing":"","resolution":0,"voxel-size":0.0,"close-gaps":"auto"})");
+  CHECK(
+      options_json(RemeshOptions{}) ==
+      R"({"vertices":10000,"edge-length":0.0,"band":2,"outer-only":false,"method":"sheet","iterations":0,)"
+      R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","uniform-area":false,"features":"off","attributes":"all",)"
+      R"("adaptivity":0.0,"gradation":1.2,"sizing":"","resolution":0,"voxel-size":0.0,"close-gaps":"auto"})");
   const AskedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
   CHECK_FALSE(back.values.edge_length_world);
@@ -63,7 +64,6 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.voxel_size_world = 1e-7;
   o.band_vox = 5;
   o.closing_world = 0.30000000000000004;
-  o.method = Method::shell;
   o.max_passes = 9;
   o.tolerance = 0;
   o.max_step_vox = 1.5;
@@ -73,6 +73,8 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.gradation = 1.5;
   o.fit = Fit::surface;
   o.uniform_area = true;
+  o.features = {Features::Creases::threshold, 33.25};
+  o.attributes = {"color", "quality"};
   o.outer_only = true;
   const AskedOptions back = parse_options_json(options_json(o));
   const RemeshOptions& b = back.values;
@@ -83,7 +85,6 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.band_vox == o.band_vox);
   CHECK_FALSE(b.closing_vox);
   CHECK(b.closing_world == o.closing_world);
-  CHECK(b.method == o.method);
   CHECK(b.max_passes == o.max_passes);
   CHECK(b.tolerance == o.tolerance);
   CHECK(b.max_step_vox == o.max_step_vox);
@@ -92,6 +93,9 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.gradation == o.gradation);
   CHECK(b.fit == o.fit);
   CHECK(b.uniform_area);
+  CHECK(b.features.creases == Features::Creases::threshold);
+  CHECK(b.features.degrees == 33.25);
+  CHECK(b.attributes == o.attributes);
   CHECK(b.outer_only);
   CHECK(back.sizing == "field.vdb:edge");
   const Json object = Json::parse(options_json(o));
@@ -199,4 +203,15 @@ TEST_CASE("options: the numbers that stood for what is not given are still none"
   CHECK_FALSE(back.values.vertices);
   CHECK_FALSE(back.values.closing_vox);
   CHECK_FALSE(back.values.tolerance);
+}
+
+TEST_CASE("options json: attributes are all, none, or names between commas", "[options]") {
+  using Names = std::vector<std::string>;
+  CHECK_FALSE(parse_options_json(R"({"attributes": "all"})").values.attributes);
+  CHECK(parse_options_json(R"({"attributes": "none"})").values.attributes == Names{});
+  CHECK(parse_options_json(R"({"attributes": "color,my heat"})").values.attributes == Names{"color", "my heat"});
+  for (const char* text : {"", ",", "a,", "a,,b"})
+    CHECK(contains(refusal(Json{{"attributes", text}}.dump()), "must be all, none, or names separated by commas"));
+  CHECK(contains(refusal(R"({"attributes": 3})"), "it must be text"));
+  for (const char* text : {"all", "none", "a,b"}) CHECK(attributes_text(parse_attributes("attributes", text)) == text);
 }

@@ -19,9 +19,9 @@ namespace {
 constexpr const char* kDescription =
     "vdb_isomesh INPUT OUTPUT [options]\n\n"
     "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
-    "INPUT   a mesh (.obj .ply .stl .off), a point cloud (.ply .xyz .pcd), a volume (.vdb .nvdb;\n"
-    "        FILE.vdb:NAME names a grid), or a stage file that this command wrote (.vdb); - reads\n"
-    "        standard input and needs --input-format\n"
+    "INPUT   a mesh (.obj .ply .stl .off), a point cloud (.ply .xyz .pcd), a volume (.vdb .nvdb: a level\n"
+    "        set, unsigned distances, or with --iso a fog volume; FILE.vdb:NAME names a grid), or a\n"
+    "        stage file that this command wrote (.vdb); - reads standard input and needs --input-format\n"
     "OUTPUT  a mesh (.ply .obj .stl .off), or a .vdb file with --stop-after; - writes standard output\n"
     "        and needs --output-format";
 
@@ -31,7 +31,7 @@ struct Raw {
   double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0, iso = 0, adaptivity = 0, gradation = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
   std::string input, input_format, output, output_format;
-  std::string seed, close_gaps, method, fit, device, stop_after, require, max_memory, progress;
+  std::string seed, close_gaps, method, fit, features, attributes, device, stop_after, require, max_memory, progress;
   bool verbose = false, quiet = false, help = false, version = false;
   std::vector<std::string> reals;  ///< options that take any number, not only whole ones
 };
@@ -88,10 +88,18 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* shape = "Shape of the result";
   option(shape, "--fit", raw.fit, "balanced|surface",
          "balanced: vertices where the mesh is closest to the surface; surface: vertices on the surface", "balanced");
+  option(shape, "--features", raw.features, "auto|off|DEG",
+         "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
+         "or more; off: none",
+         "off");
+  option(shape, "--attributes", raw.attributes, "all|none|LIST",
+         "what stands at the vertices of a mesh and is kept: names separated by commas, color for red, green and blue",
+         "all");
   flag(shape, "--uniform-area", values.uniform_area, "prefer triangles of equal area to triangles of the best shape");
 
   const char* files = "Files";
-  option(files, "--iso", raw.iso, "V", "isovalue of a volume; required for a fog volume", "0 in a level set");
+  option(files, "--iso", raw.iso, "V", "isovalue of a volume; required for a fog volume",
+         "0 in a level set and in unsigned distances");
   option(files, "--input-format", raw.input_format, "F", "format of INPUT: obj, ply, stl, off, xyz, pcd, vdb or nvdb",
          "by its name");
   option(files, "--output-format", raw.output_format, "F", "format of OUTPUT: ply, obj, stl, off or vdb",
@@ -162,6 +170,8 @@ void settle_options(const Raw& raw, AskedOptions& asked) {
   if (!raw.seed.empty()) o.seed = parse_seed(raw.seed);
   if (!raw.close_gaps.empty()) set_gap_width("--close-gaps", raw.close_gaps, o);
   if (!raw.method.empty()) o.method = parse_method("--method", raw.method);
+  if (!raw.features.empty()) o.features = parse_features("--features", raw.features);
+  if (asked.was_given("attributes")) o.attributes = parse_attributes("--attributes", raw.attributes);
   check_method(asked);
   if (!raw.fit.empty()) o.fit = parse_fit("--fit", raw.fit);
 }

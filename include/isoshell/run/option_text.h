@@ -3,8 +3,10 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "isoshell/error.h"
 #include "isoshell/option_range.h"
@@ -40,6 +42,14 @@ const char* method_name(Method method);
 /// "balanced" or "surface". Throws: usage.
 Fit parse_fit(const std::string& option, const std::string& text);
 const char* fit_name(Fit fit);
+
+/// "off", "auto", or the angle in degrees from which on edges are creases. Throws: usage.
+Features parse_features(const std::string& option, const std::string& text);
+std::string features_text(const Features& features);
+
+/// "all", "none", or names separated by commas. Throws: usage.
+std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text);
+std::string attributes_text(const std::optional<std::vector<std::string>>& attributes);
 
 /// Sets the closing to gaps of this width: "auto", world units, or voxels as "4vox". Throws: usage.
 void set_gap_width(const std::string& option, const std::string& text, RemeshOptions& options);

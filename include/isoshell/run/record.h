@@ -21,6 +21,12 @@ struct OutputRequest {
   std::string format;  ///< lower case, without a dot
 };
 
+/// What stands at the vertices of the input, by name.
+struct AttributeReport {
+  std::vector<std::string> kept;
+  std::vector<DroppedAttribute> dropped;
+};
+
 struct RunRecord {
   RemeshOptions options;  ///< as they were asked for
   InputFacts input;
@@ -30,6 +36,7 @@ struct RunRecord {
   std::optional<MeshQuality> quality;
   std::optional<MeshDistance> distance;   ///< of the result and the input, as repaired
   int64_t vertices = -1, triangles = -1;  ///< of the result; -1 when the run stopped before it
+  AttributeReport attributes;             ///< of the vertices
   int64_t risky_sites = -1;               ///< with two walls in one voxel; -1: not counted
   std::vector<StageTime> times;           ///< of the steps around the stages, whose own are in the report
   double total_ms = 0;

@@ -53,6 +53,12 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWri
   const MeshFormat format = format_of(path, options.format, "write_mesh");
   if (!mesh.gap.empty() && mesh.gap.size() != mesh.vertices.size())
     throw Error(ErrorCode::usage, "write_mesh", "the mesh has another number of gap flags than of vertices");
+  for (const VertexAttribute& a : mesh.attributes)
+    if (a.components < 1 || a.values.size() != mesh.vertices.size() * size_t(a.components))
+      throw Error(ErrorCode::usage, "write_mesh",
+                  "the attribute '" + a.name + "' has " + std::to_string(a.values.size()) + " values; " +
+                      std::to_string(mesh.vertices.size()) + " vertices need " + std::to_string(a.components) +
+                      " each");
   OutputFile file(path, options.overwrite);
   switch (format) {
     case MeshFormat::ply:

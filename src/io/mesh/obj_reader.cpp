@@ -1,4 +1,6 @@
-// OBJ: positions and faces; everything else (normals, colours, groups, lines, curves) is passed over.
+// OBJ: positions with their colours, and faces; everything else (normals, groups, lines, curves) is passed over.
+#include <algorithm>
+
 #include "io/mesh/face_collector.h"
 #include "io/mesh/mesh_readers.h"
 #include "io/text_scan.h"
@@ -9,6 +11,7 @@ namespace {
 struct ObjChunk {
   TextChunk text;
   int64_t first_vertex = 0, vertices = 0, faces = 0;
+  std::vector<double> colors = {};  ///< three a vertex; empty where no vertex has one
 };
 
 enum class ObjLine { other, vertex, face };
@@ -31,7 +34,17 @@ void count_lines(ObjChunk& chunk) {
   }
 }
 
-void read_vertices(const Text& text, const ObjChunk& chunk, std::vector<WorldPoint>& points) {
+/// Three numbers up to the end of the line, and no fourth: one more than a position has would be its weight.
+bool parse_color(const char* p, const char* end, double color[3]) {
+  for (int i = 0; i < 3; ++i) {
+    p = skip_blanks(p, end);
+    if (!parse_real(p, end, color[i])) return false;
+  }
+  p = skip_blanks(p, end);
+  return p == end || *p == '\n' || *p == '#';
+}
+
+void read_vertices(const Text& text, ObjChunk& chunk, std::vector<WorldPoint>& points) {
   WorldPoint* point = points.data() + chunk.first_vertex;
   const char* const end = chunk.text.end;
   const WorldPoint* const last = point + chunk.vertices;
@@ -42,8 +55,24 @@ void read_vertices(const Text& text, const ObjChunk& chunk, std::vector<WorldPoi
       if (!parse_real(p, end, *value))
         text.refuse(p, "a vertex needs three numbers; found " + quoted_token(p, end) + " instead of one");
     }
+    double color[3];
+    if (p = skip_blanks(p, end); p < end && *p != '\n' && parse_color(p, end, color)) {
+      chunk.colors.resize(3 * size_t(chunk.vertices), 1);
+      std::copy(color, color + 3, &chunk.colors[3 * size_t(chunk.vertices - (last - point))]);
+    }
     ++point;
   }
+}
+
+/// All chunks' in one; none where no vertex has one.
+std::vector<VertexAttribute> joined_colors(std::vector<ObjChunk>& chunks, int64_t vertex_count) {
+  if (std::all_of(chunks.begin(), chunks.end(), [](const ObjChunk& c) { return c.colors.empty(); })) return {};
+  VertexAttribute color{kColorName, NumberType::f32, 3, std::vector<double>(3 * size_t(vertex_count), 1)};
+  for (ObjChunk& chunk : chunks) {
+    std::copy(chunk.colors.begin(), chunk.colors.end(), color.values.begin() + 3 * chunk.first_vertex);
+    chunk.colors = {};
+  }
+  return {std::move(color)};
 }
 
 // One corner, as i, i/t, i//n or i/t/n; relative when negative. Returns a 0-based index.
@@ -99,7 +128,9 @@ TriangleSoup read_obj(const MeshSource& source) {
   vertices.count_nonfinite();
   std::vector<FaceCollector> faces(chunks.size(), FaceCollector(vertices));
   for_each_chunk(chunk_count, [&](int64_t c) { read_faces(text, chunks[size_t(c)], vertex_count, faces[size_t(c)]); });
-  return join_soup(source, std::move(vertices), faces);
+  TriangleSoup soup = join_soup(source, std::move(vertices), faces);
+  soup.attributes = joined_colors(chunks, vertex_count);
+  return soup;
 }
 
 }  // namespace isoshell

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/number_type.h"
 #include "io/mesh/ply_body.h"
 #include "io/text_scan.h"
 
@@ -27,29 +28,6 @@ T load(const char* p, bool big_endian) {
   std::reverse_copy(p, p + sizeof value, bytes);
   std::memcpy(&value, bytes, sizeof value);
   return value;
-}
-
-// Calls visit(T()) with the C++ type.
-template <class Visit>
-auto with_type(PlyType type, Visit visit) {
-  switch (type) {
-    case PlyType::i8:
-      return visit(int8_t());
-    case PlyType::u8:
-      return visit(uint8_t());
-    case PlyType::i16:
-      return visit(int16_t());
-    case PlyType::u16:
-      return visit(uint16_t());
-    case PlyType::i32:
-      return visit(int32_t());
-    case PlyType::u32:
-      return visit(uint32_t());
-    case PlyType::f32:
-      return visit(float());
-    default:
-      return visit(double());
-  }
 }
 
 // One element's rows in the file.
@@ -191,23 +169,26 @@ class BinaryRows {
   std::vector<int64_t> block_begin_;
 };
 
-void read_vertices(const MeshSource& source, const BinaryRows& rows, const PlyMeshLayout& layout,
-                   VertexTable& vertices) {
+void read_vertices(const MeshSource& source, const BinaryRows& rows, const PlyMeshLayout& layout, PlyBody& body) {
   static constexpr double WorldPoint::*kAxes[] = {&WorldPoint::x, &WorldPoint::y, &WorldPoint::z};
+  std::vector<WorldPoint>& points = body.vertices.points;
   tbb::parallel_for(int64_t(0), rows.block_count(), [&](int64_t block) {
-    for (int axis = 0; axis < 3; ++axis) {  // by columns: the type is looked at once a block, which stays cached
-      const int property = layout.xyz[axis];
+    // By columns: the type is looked at once a block, which stays cached.
+    const auto read_column = [&](int property, auto value_of_row) {
       with_type(layout.vertices->properties[size_t(property)].type, [&](auto type) {
         int64_t in_row = -1;
         rows.each_row(block, [&](int64_t row, int64_t offset) {
           if (in_row < 0 || rows.stride() == 0) in_row = rows.find(offset, property).offset - offset;
-          vertices.points[size_t(row)].*kAxes[axis] =
-              double(load<decltype(type)>(source.begin() + offset + in_row, rows.big_endian()));
+          value_of_row(row) = double(load<decltype(type)>(source.begin() + offset + in_row, rows.big_endian()));
         });
       });
-    }
+    };
+    for (int axis = 0; axis < 3; ++axis)
+      read_column(layout.xyz[axis], [&](int64_t row) -> double& { return points[size_t(row)].*kAxes[axis]; });
+    for (const PlyColumn& column : layout.columns)
+      read_column(column.property, [&](int64_t row) -> double& { return body.value_at(column, row); });
   });
-  vertices.count_nonfinite();
+  body.vertices.count_nonfinite();
 }
 
 template <class T>
@@ -290,8 +271,8 @@ void read_ply_binary(const MeshSource& source, const PlyHeader& header, const Pl
 
   const auto rows_of = [&](const PlyElement* element) { return rows[size_t(element - header.elements.data())]; };
   if (layout.vertices) {
-    body.vertices = VertexTable(source, layout.vertices->count);
-    read_vertices(source, rows_of(layout.vertices), layout, body.vertices);
+    body.make_room(source, layout);
+    read_vertices(source, rows_of(layout.vertices), layout, body);
   }
   for (const PlyElement& element : header.elements) {
     if (&element != layout.faces && &element != layout.strips) continue;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "io/mesh/face_collector.h"
+#include "io/mesh/ply_attributes.h"
 #include "io/mesh/ply_header.h"
 
 namespace isoshell {
@@ -13,15 +14,27 @@ struct PlyMeshLayout {
   const PlyElement *vertices = nullptr, *faces = nullptr, *strips = nullptr;
   int xyz[3] = {-1, -1, -1};                  ///< properties of `vertices`
   int face_corners = -1, strip_corners = -1;  ///< list properties
+  std::vector<PlyColumn> columns;             ///< of `vertices`, that are kept beside the positions
 };
 
 /// What was read. The collectors know where the vertices are: join them before it moves.
 struct PlyBody {
   explicit PlyBody(const MeshSource& source) : vertices(source, 0) {}
 
+  /// For all vertices of the layout, which is not null.
+  void make_room(const MeshSource& source, const PlyMeshLayout& layout) {
+    vertices = VertexTable(source, layout.vertices->count);
+    for (VertexAttribute& a : attributes) a.values.resize(vertices.points.size() * size_t(a.components));
+  }
+  double& value_at(const PlyColumn& column, int64_t row) {
+    VertexAttribute& a = attributes[column.attribute];
+    return a.values[size_t(row * a.components + column.component)];
+  }
+
   VertexTable vertices;
-  std::vector<FaceCollector> faces;  ///< and strips, in the order of the file, made as needed
-  DirtCounts dirt;                   ///< what the header does not declare; nothing else is counted here
+  std::vector<VertexAttribute> attributes;  ///< those that the layout's columns name
+  std::vector<FaceCollector> faces;         ///< and strips, in the order of the file, made as needed
+  DirtCounts dirt;                          ///< what the header does not declare; nothing else is counted here
 };
 
 /// Either way. Throws: unreadable_input for fewer rows, or fewer values in a row, than the header promises.

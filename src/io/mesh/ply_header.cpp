@@ -154,6 +154,8 @@ void check_counts(const MeshSource& source, const PlyHeader& header) {
 
 int64_t size_of(PlyType type) { return kTypes[int(type)].bytes; }
 
+const char* name_of(PlyType type) { return kTypes[int(type)].name; }
+
 int PlyElement::find(const std::string& property) const {
   for (size_t i = 0; i < properties.size(); ++i)
     if (properties[i].name == property) return int(i);

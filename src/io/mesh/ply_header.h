@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "io/mesh/mesh_source.h"
+#include "isoshell/vertex_attribute.h"
 
 namespace isoshell {
 
 enum class PlyEncoding { ascii, little_endian, big_endian };
-enum class PlyType { i8, u8, i16, u16, i32, u32, f32, f64 };
+using PlyType = NumberType;
 
 int64_t size_of(PlyType type);
+const char* name_of(PlyType type);
 inline bool is_real(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }
 
 struct PlyProperty {

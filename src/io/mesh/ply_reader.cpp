@@ -1,4 +1,4 @@
-// PLY: positions, polygons and triangle strips; every other element and property is passed over.
+// PLY: positions and numbers of vertices, polygons and triangle strips; everything else is passed over.
 #include "io/mesh/mesh_readers.h"
 #include "io/mesh/ply_body.h"
 
@@ -56,10 +56,16 @@ void read_ply_body(const MeshSource& source, const PlyHeader& header, const PlyM
 
 TriangleSoup read_ply_faces(const MeshSource& source) {
   const PlyHeader header = read_ply_header(source);
-  const PlyMeshLayout layout = find_layout(source, header);
+  PlyMeshLayout layout = find_layout(source, header);
   PlyBody body(source);
+  PlyAttributes properties;
+  if (layout.vertices) properties = find_ply_attributes(*layout.vertices);
+  layout.columns = std::move(properties.columns);
+  body.attributes = std::move(properties.attributes);
   read_ply_body(source, header, layout, body);
   TriangleSoup soup = join_parts(std::move(body.vertices), body.faces);
+  soup.attributes = std::move(body.attributes);
+  soup.dropped_attributes = std::move(properties.dropped);
   soup.dirt.long_rows = body.dirt.long_rows;
   soup.dirt.surplus_rows = body.dirt.surplus_rows;
   soup.dirt.surplus_bytes = body.dirt.surplus_bytes;

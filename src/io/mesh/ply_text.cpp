@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/number_type.h"
 #include "io/mesh/ply_body.h"
 #include "io/text_scan.h"
 
@@ -59,13 +60,17 @@ class RowReader {
   int64_t& long_rows_;
 };
 
-const char* read_vertex(RowReader row, const PlyMeshLayout& layout, WorldPoint& point) {
+const char* read_vertex(RowReader row, const PlyMeshLayout& layout, int64_t number, PlyBody& body) {
+  WorldPoint& point = body.vertices.points[size_t(number)];
   double* const xyz[] = {&point.x, &point.y, &point.z};
+  auto column = layout.columns.begin();
   const int count = int(layout.vertices->properties.size());
   for (int i = 0; i < count; ++i) {
     const int axis = i == layout.xyz[0] ? 0 : i == layout.xyz[1] ? 1 : i == layout.xyz[2] ? 2 : -1;
     if (axis >= 0)
       *xyz[axis] = row.real();
+    else if (column != layout.columns.end() && column->property == i)
+      body.value_at(*column++, number) = nearest_of(layout.vertices->properties[size_t(i)].type, row.real());
     else
       row.skip(layout.vertices->properties[size_t(i)]);
   }
@@ -101,10 +106,9 @@ void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyM
   std::vector<int64_t> long_rows(size_t(rows.chunk_count()), 0);
   VertexTable& vertices = body.vertices;
   const auto read_vertices = [&](const PlyElement& element) {
-    vertices = VertexTable(source, element.count);
+    body.make_room(source, layout);
     rows.for_each(first, first + element.count, [&](int64_t row, const char* p, const char* end, int64_t chunk) {
-      return read_vertex(RowReader(text, element, p, end, long_rows[size_t(chunk)]), layout,
-                         vertices.points[size_t(row - first)]);
+      return read_vertex(RowReader(text, element, p, end, long_rows[size_t(chunk)]), layout, row - first, body);
     });
     vertices.count_nonfinite();
   };

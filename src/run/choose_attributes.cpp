@@ -1,0 +1,79 @@
+#include "run/choose_attributes.h"
+
+#include <algorithm>
+
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool has(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string listed(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+/// Empty when files of the format hold the attribute.
+std::string reason_of_format(const std::string& format, const VertexAttribute& attribute) {
+  if (format == "obj" && !(attribute.name == kColorName && attribute.components >= 3))
+    return "OBJ files hold no numbers but colours";
+  if (format == "stl") return "STL files are written without attributes";
+  if (format == "off") return "OFF files are written without attributes";
+  if (format == "vdb") return "stage files hold no attributes";
+  return "";
+}
+
+/// Of a mesh, the one place where a name can be mistyped.
+void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names& asked) {
+  Names known;
+  for (const VertexAttribute& a : soup.attributes) known.push_back(a.name);
+  for (const std::string& name : asked) {
+    if (has(known, name)) continue;
+    const auto dropped = std::find_if(soup.dropped_attributes.begin(), soup.dropped_attributes.end(),
+                                      [&](const DroppedAttribute& d) { return d.name == name; });
+    throw Error(ErrorCode::usage, "options",
+                "--attributes names '" + name + "', " +
+                    (dropped == soup.dropped_attributes.end() ? "which " + facts.name() + " does not have"
+                                                              : "but " + dropped->reason) +
+                    "; its vertices have: " + listed(known));
+  }
+}
+
+}  // namespace
+
+std::vector<VertexAttribute> choose_attributes(Input& input, const std::optional<Names>& names,
+                                               const std::string& format, AttributeReport& report, const Tell& tell) {
+  TriangleSoup& soup = input.soup;
+  if (names && input.facts.kind == InputKind::mesh)
+    check_names(input.facts, soup, *names);
+  else if (names && !names->empty() && tell)
+    tell(MessageKind::warning, input.facts.name() + ": --attributes keeps what stands at the vertices of a mesh; of " +
+                                   "clouds, volumes and stage files there is nothing");
+  report.dropped = std::move(soup.dropped_attributes);
+  std::vector<VertexAttribute> chosen;
+  for (VertexAttribute& a : soup.attributes) {
+    const std::string reason = names && !has(*names, a.name) ? "not asked for" : reason_of_format(format, a);
+    if (!reason.empty()) {
+      report.dropped.push_back({a.name, reason});
+      continue;
+    }
+    report.kept.push_back(a.name);
+    chosen.push_back(std::move(a));
+  }
+  soup.attributes.clear();
+  if (tell && !report.kept.empty())
+    tell(MessageKind::note, input.facts.name() + ": kept at vertices: " + listed(report.kept));
+  for (const DroppedAttribute& d : report.dropped)
+    if (tell)
+      tell(names && has(*names, d.name) ? MessageKind::warning : MessageKind::note,
+           input.facts.name() + ": " + d.name + " dropped: " + d.reason);
+  return chosen;
+}
+
+}  // namespace isoshell

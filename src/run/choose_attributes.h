@@ -1,0 +1,20 @@
+// Which attributes of an input a run keeps.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/message.h"
+#include "isoshell/run/record.h"
+
+namespace isoshell {
+
+/// Takes the attributes out of the input: those that were asked for (all without a list) and that files of `format`
+/// hold (everything when it is empty). The others are dropped in the report, with a note each, or a warning when they
+/// were asked for by name; a warning, too, when an input that is no mesh has nothing of that name. Throws: usage for a
+/// name that a mesh does not have, which lists what it has.
+std::vector<VertexAttribute> choose_attributes(Input& input, const std::optional<std::vector<std::string>>& names,
+                                               const std::string& format, AttributeReport& report, const Tell& tell);
+
+}  // namespace isoshell
