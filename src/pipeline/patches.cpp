@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/copy_product.h"
+#include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
@@ -28,13 +29,9 @@ bool is_crease(const FeatureCurve& curve) { return curve.kind == CurveKind::crea
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
   double sum = 0;
-  const WorldPoint o = mesh.vertices[0];
-  for (const auto& t : mesh.triangles) {
-    const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    const double ax = a.x - o.x, ay = a.y - o.y, az = a.z - o.z, bx = b.x - o.x, by = b.y - o.y, bz = b.z - o.z,
-                 cx = c.x - o.x, cy = c.y - o.y, cz = c.z - o.z;
-    sum += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
-  }
+  const WorldPoint& o = mesh.vertices[0];
+  for (const auto& t : mesh.triangles)
+    sum += dot(mesh.vertices[t[0]] - o, cross(mesh.vertices[t[1]] - o, mesh.vertices[t[2]] - o));
   return sum;
 }
 
@@ -125,9 +122,14 @@ RelaxedSeeds relax_in_patches(const Prepared& p, const SeedOptions& options, con
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const OptimizeOptions& options,
                                                 RemeshReport& report, Context& context) {
   const CutSurface& cut = *p.cut;
+  const int64_t asked = made.seeds.size();
   if (!give_up_if_refused(report, [&] { make_dual_of_seeds(cut.surface, made, report, context); })) return {};
   if (report.dual.failed_cells > 0) {
     give_up(report, std::to_string(report.dual.failed_cells) + " cells beside them are no disks");
+    return {};
+  }
+  if (made.seeds.size() != asked) {
+    give_up(report, "the patches take " + std::to_string(made.seeds.size() - asked) + " vertices more");
     return {};
   }
   OptimizedMesh optimized =

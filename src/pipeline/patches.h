@@ -11,7 +11,8 @@ namespace isoshell {
 /// none, and says in the report why where there are some that cannot be kept.
 void cut_into_patches(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
 
-/// Fixes seeds on the curves, and relaxes the others between them. `vertices`: of the result.
+/// Fixes seeds on the curves, and relaxes the others between them. `seeds.count` is that of the result's vertices: a
+/// place of a curve counts once, though each patch there has a seed.
 RelaxedSeeds relax_in_patches(const Prepared& p, const SeedOptions& seeds, const RelaxOptions& relax, Context& context);
 
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a

@@ -23,9 +23,8 @@ struct MeshWriteOptions {
 };
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with the colour, from 0 to 1, binary STL, OFF.
-/// Written under a temporary name in the same
-/// folder and renamed. `path` "-" writes standard output. Throws: unwritable_output; usage for attributes
-/// that do not fit the mesh or have names that PLY cannot hold.
+/// Written under a temporary name in the same folder and renamed. `path` "-" writes standard output. Throws:
+/// unwritable_output; usage for attributes that do not fit the mesh or have names that PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
 
 }  // namespace isoshell
