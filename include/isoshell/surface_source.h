@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/attribute.h"
 #include "isoshell/lattice.h"
-#include "isoshell/vertex_attribute.h"
 
 namespace isoshell {
 
@@ -34,7 +34,8 @@ struct TriangleSoup {
   int64_t faces_in_file = 0;         ///< polygons and strips before they were split
   uint32_t first_cap = 0xffffffffu;  ///< triangles from this one on were added to close holes
   DirtCounts dirt;
-  std::vector<VertexAttribute> attributes;           ///< as read; what repair or union changed has none
+  std::vector<Attribute> attributes;                 ///< as read; what repair or union changed has none
+  AttributeFiles files;                              ///< that attributes speak of
   std::vector<DroppedAttribute> dropped_attributes;  ///< of the file, that no reader takes
 };
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "isoshell/attribute.h"
 #include "isoshell/lattice.h"
-#include "isoshell/vertex_attribute.h"
 
 namespace isoshell {
 
@@ -16,7 +16,8 @@ struct TriangleMesh {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint8_t> gap = {};  ///< per vertex 1 where the input has no surface; empty when it has everywhere
-  std::vector<VertexAttribute> attributes = {};  ///< of the input, where they were transferred
+  std::vector<Attribute> attributes = {};  ///< of the input, where they were transferred
+  AttributeFiles files = {};               ///< that attributes speak of
 };
 
 }  // namespace isoshell

@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "isoshell/vertex_attribute.h"
+#include "isoshell/attribute.h"
 
 namespace isoshell {
 

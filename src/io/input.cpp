@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/attribute_values.h"
 #include "core/file_format.h"
 #include "io/mesh/face_collector.h"
 #include "isoshell/error.h"
@@ -50,11 +51,9 @@ void check_surface(const TriangleSoup& soup, const std::string& name) {
       }
       refuse(text.str());
     }
-  for (const VertexAttribute& a : soup.attributes)
-    if (a.components < 1 || a.values.size() != soup.vertices.size() * size_t(a.components))
-      refuse(name + ": the attribute '" + a.name + "' has " + counted(int64_t(a.values.size()), "value") + "; " +
-             counted(int64_t(soup.vertices.size()), "vertex", "vertices") + " need " + std::to_string(a.components) +
-             " each");
+  for (const Attribute& a : soup.attributes)
+    if (const std::string misfit = misfit_of(a, soup.vertices.size(), soup.triangles.size()); !misfit.empty())
+      refuse(name + ": " + misfit);
 }
 
 class Reader {
@@ -132,7 +131,7 @@ class Reader {
   void read_volume_file(const InputRequest& request) {
     input_.facts.kind = InputKind::volume;
     VolumeInfo volume;
-    hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_}, volume));
+    hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_, request.keep_creases}, volume));
     std::ostringstream text;
     text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
          << volume.voxel_size_world << ", " << counted(volume.blocks, "block")

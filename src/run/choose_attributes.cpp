@@ -19,20 +19,38 @@ std::string listed(const Names& names) {
   return text.empty() ? "none" : text;
 }
 
+bool obj_holds(const Attribute& a) {
+  if (a.domain == AttributeDomain::vertex) return a.name == kColorName && a.components >= 3;
+  if (a.domain == AttributeDomain::corner)
+    return (a.name == kUvName && a.components == 2) || (a.name == kNormalName && a.components == 3);
+  return !a.labels.empty() && (a.name == kMaterialName || a.name == kGroupName || a.name == kObjectName);
+}
+
 /// Empty when files of the format hold the attribute.
-std::string reason_of_format(const std::string& format, const VertexAttribute& attribute) {
-  if (format == "obj" && !(attribute.name == kColorName && attribute.components >= 3))
-    return "OBJ files hold no numbers but colours";
+std::string reason_of_format(const std::string& format, const Attribute& attribute) {
+  if (format == "obj" && !obj_holds(attribute))
+    return attribute.domain == AttributeDomain::face ? "OBJ files hold no numbers of faces"
+                                                     : "OBJ files hold no numbers but colours";
   if (format == "stl") return "STL files are written without attributes";
   if (format == "off") return "OFF files are written without attributes";
   if (format == "vdb") return "stage files hold no attributes";
   return "";
 }
 
+/// Of those that are kept.
+AttributeFiles files_of(const std::vector<Attribute>& kept, AttributeFiles all, const std::string& format) {
+  const auto keeps = [&](const char* name) {
+    return std::any_of(kept.begin(), kept.end(), [&](const Attribute& a) { return a.name == name; });
+  };
+  if (!keeps(kMaterialName)) all.materials.clear();
+  if (!keeps(kUvName) || format == "obj") all.textures.clear();
+  return all;
+}
+
 /// Of a mesh, the one place where a name can be mistyped.
 void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names& asked) {
   Names known;
-  for (const VertexAttribute& a : soup.attributes) known.push_back(a.name);
+  for (const Attribute& a : soup.attributes) known.push_back(a.name);
   for (const std::string& name : asked) {
     if (has(known, name)) continue;
     const auto dropped = std::find_if(soup.dropped_attributes.begin(), soup.dropped_attributes.end(),
@@ -41,23 +59,23 @@ void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names&
                 "--attributes names '" + name + "', " +
                     (dropped == soup.dropped_attributes.end() ? "which " + facts.name() + " does not have"
                                                               : "but " + dropped->reason) +
-                    "; its vertices have: " + listed(known));
+                    "; it has: " + listed(known));
   }
 }
 
 }  // namespace
 
-std::vector<VertexAttribute> choose_attributes(Input& input, const std::optional<Names>& names,
-                                               const std::string& format, AttributeReport& report, const Tell& tell) {
+void choose_attributes(Input& input, const std::optional<Names>& names, const std::string& format,
+                       AttributeReport& report, const Tell& tell) {
   TriangleSoup& soup = input.soup;
   if (names && input.facts.kind == InputKind::mesh)
     check_names(input.facts, soup, *names);
   else if (names && !names->empty() && tell)
-    tell(MessageKind::warning, input.facts.name() + ": --attributes keeps what stands at the vertices of a mesh; of " +
+    tell(MessageKind::warning, input.facts.name() + ": --attributes keeps what a mesh has beside its positions; of " +
                                    "clouds, volumes and stage files there is nothing");
   report.dropped = std::move(soup.dropped_attributes);
-  std::vector<VertexAttribute> chosen;
-  for (VertexAttribute& a : soup.attributes) {
+  std::vector<Attribute> chosen;
+  for (Attribute& a : soup.attributes) {
     const std::string reason = names && !has(*names, a.name) ? "not asked for" : reason_of_format(format, a);
     if (!reason.empty()) {
       report.dropped.push_back({a.name, reason});
@@ -66,14 +84,13 @@ std::vector<VertexAttribute> choose_attributes(Input& input, const std::optional
     report.kept.push_back(a.name);
     chosen.push_back(std::move(a));
   }
-  soup.attributes.clear();
-  if (tell && !report.kept.empty())
-    tell(MessageKind::note, input.facts.name() + ": kept at vertices: " + listed(report.kept));
+  soup.attributes = std::move(chosen);
+  soup.files = files_of(soup.attributes, std::move(soup.files), format);
+  if (tell && !report.kept.empty()) tell(MessageKind::note, input.facts.name() + ": kept: " + listed(report.kept));
   for (const DroppedAttribute& d : report.dropped)
     if (tell)
       tell(names && has(*names, d.name) ? MessageKind::warning : MessageKind::note,
            input.facts.name() + ": " + d.name + " dropped: " + d.reason);
-  return chosen;
 }
 
 }  // namespace isoshell

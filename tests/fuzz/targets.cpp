@@ -20,14 +20,24 @@ namespace {
 constexpr int64_t kMemory = 8 << 20;
 constexpr int64_t kVolumeMemory = 1 << 20;  // a surface that fills more takes seconds a run
 
+/// Every vertex, corner or face has its values.
+void check(const Attribute& a, const TriangleSoup& soup) {
+  size_t count = a.domain == AttributeDomain::vertex ? soup.vertices.size() : soup.triangles.size();
+  if (a.domain == AttributeDomain::corner) count *= 3;
+  const size_t values = a.values.size() / size_t(a.components);
+  if (a.values.size() != values * size_t(a.components)) std::abort();
+  if (a.index.size() != (a.index.empty() ? 0 : count) || (a.index.empty() && values != count)) std::abort();
+  for (const uint32_t i : a.index)
+    if (i >= values) std::abort();
+}
+
 template <TriangleSoup (*read)(const MeshSource&)>
 void run_mesh(View<const char> bytes) {
   const TriangleSoup soup = read(MeshSource("fuzz", bytes));
   for (const auto& t : soup.triangles)
     for (const uint32_t corner : t)
       if (corner >= soup.vertices.size()) std::abort();
-  for (const VertexAttribute& a : soup.attributes)
-    if (a.values.size() != soup.vertices.size() * size_t(a.components)) std::abort();
+  for (const Attribute& a : soup.attributes) check(a, soup);
 }
 
 template <PointCloud (*read)(const MeshSource&)>

@@ -17,16 +17,16 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-VertexAttribute by_position(const TriangleSoup& soup, const std::string& name, NumberType type,
-                            const std::function<double(WorldPoint)>& value) {
-  VertexAttribute a{name, type, 1, {}};
+Attribute by_position(const TriangleSoup& soup, const std::string& name, NumberType type,
+                      const std::function<double(WorldPoint)>& value) {
+  Attribute a{name, type, 1, {}};
   for (const WorldPoint& p : soup.vertices) a.values.push_back(value(p));
   return a;
 }
 
 /// Red, green and blue rise from 0 to 1 along x, y and z of this cube.
-VertexAttribute linear_color(const TriangleSoup& soup, double lo, double hi) {
-  VertexAttribute a{"color", NumberType::f32, 3, {}};
+Attribute linear_color(const TriangleSoup& soup, double lo, double hi) {
+  Attribute a{"color", NumberType::f32, 3, {}};
   for (const WorldPoint& p : soup.vertices)
     for (const double at : {p.x, p.y, p.z}) a.values.push_back((at - lo) / (hi - lo));
   return a;
@@ -50,7 +50,7 @@ TriangleSoup sheet(uint32_t n) {
 TriangleSoup plate(double thickness) {
   const TriangleSoup box = shapes::box({0, 0, 0}, {1, 1, thickness});
   TriangleSoup s;
-  VertexAttribute side{"side", NumberType::i8, 1, {}};
+  Attribute side{"side", NumberType::i8, 1, {}};
   for (const auto& t : box.triangles) {
     const auto is_at = [&](double z) {
       return std::all_of(t.begin(), t.end(), [&](uint32_t v) { return box.vertices[v].z == z; });
@@ -82,7 +82,7 @@ RunResult run_of(TriangleSoup soup, const RunRequest& request, int threads = 0) 
 }
 
 const std::vector<double>& values(const RunResult& result, const std::string& name) {
-  for (const VertexAttribute& a : result.mesh.attributes)
+  for (const Attribute& a : result.mesh.attributes)
     if (a.name == name) return a.values;
   FAIL("the result has no " + name);
   return result.mesh.attributes.front().values;
@@ -208,7 +208,7 @@ TEST_CASE("attributes: of triangles that are equally near the first counts, one 
   source.vertices = {{-9, -9, 0}, {9, -9, 0},     {0, 9, 0},     {-9, -9, 0}, {9, -9, 0},
                      {0, 9, 0},   {-9, -9, -.25}, {9, -9, -.25}, {0, 9, -.25}};
   source.triangles = {{0, 1, 2}, {3, 4, 5}, {7, 6, 8}};
-  const VertexAttribute number{"number", NumberType::f32, 1, {0, 0, 0, 1, 1, 1, 2, 2, 2}};
+  const Attribute number{"number", NumberType::f32, 1, {0, 0, 0, 1, 1, 1, 2, 2, 2}};
   const auto found = [&](double z, bool looks_up) {
     TriangleMesh mesh{{{0, 0, z}, {1, 0, z}, {0, 1, z}}, {{0, 1, 2}}};
     if (!looks_up) std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
@@ -225,8 +225,7 @@ TEST_CASE("attributes: what does not fit is refused", "[attributes]") {
   Context context;
   const TriangleSoup box = shapes::box({0, 0, 0}, {1, 1, 1});
   const TriangleMesh mesh{box.vertices, box.triangles};
-  const VertexAttribute three{"a", NumberType::f32, 1, {1, 2, 3}},
-      eight{"a", NumberType::f32, 1, std::vector<double>(8)};
+  const Attribute three{"a", NumberType::f32, 1, {1, 2, 3}}, eight{"a", NumberType::f32, 1, std::vector<double>(8)};
   CHECK(transfer_attributes(box, {}, mesh, context).empty());
   CHECK(says(error_of([&] { transfer_attributes(box, {three}, mesh, context); }), "has 3 values; 8 vertices need 1"));
   CHECK(says(error_of([&] { transfer_attributes({}, {eight}, mesh, context); }), "no triangle"));
@@ -280,9 +279,9 @@ TEST_CASE("attributes: a name that the mesh does not have is refused, with those
   request.options.values.attributes = Names{"color", "colour"};
   const Error unknown = error_of([&] { run_of(box, request); });
   CHECK(unknown.code() == ErrorCode::usage);
-  CHECK(says(unknown, "'colour', which part does not have; its vertices have: color"));
+  CHECK(says(unknown, "'colour', which part does not have; it has: color"));
   request.options.values.attributes = Names{"nx"};
-  CHECK(says(error_of([&] { run_of(box, request); }), "'nx', but normals are not kept; its vertices have: color"));
+  CHECK(says(error_of([&] { run_of(box, request); }), "'nx', but normals are not kept; it has: color"));
 }
 
 TEST_CASE("attributes: what is no mesh has none, which is said when one was asked for", "[attributes]") {

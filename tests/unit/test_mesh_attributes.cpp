@@ -27,16 +27,16 @@ void put(std::string& out, T value, bool big_endian) {
   for (size_t i = 0; i < sizeof(T); ++i) out += bytes[big_endian ? sizeof(T) - 1 - i : i];
 }
 
-const VertexAttribute& named(const std::vector<VertexAttribute>& attributes, const std::string& name) {
-  for (const VertexAttribute& a : attributes)
+const Attribute& named(const std::vector<Attribute>& attributes, const std::string& name) {
+  for (const Attribute& a : attributes)
     if (a.name == name) return a;
   FAIL("there is no attribute " + name);
   return attributes.front();
 }
 
-std::vector<std::string> names(const std::vector<VertexAttribute>& attributes) {
+std::vector<std::string> names(const std::vector<Attribute>& attributes) {
   std::vector<std::string> all;
-  for (const VertexAttribute& a : attributes) all.push_back(a.name);
+  for (const Attribute& a : attributes) all.push_back(a.name);
   return all;
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("attributes: numbers of a PLY file's vertices come with their names an
       "property int id\nproperty float nx\nproperty float ny\nproperty float nz\nproperty list uchar int near\n"
       "property float s\nproperty float t\nproperty uchar gap\n",
       {"1 2 3 4 0.1 -7 0 0 1 2 5 6 .5 .5 1", "5 6 7 8 1e300 8 0 0 1 0 .5 .5 1", "255 0 9 1 -2 9 0 0 1 1 4 .5 .5 0"});
-  CHECK(names(soup.attributes) == Names{"color", "quality", "id"});
+  REQUIRE(names(soup.attributes) == Names{"color", "quality", "id", "normal", "uv"});
   CHECK(soup.attributes[0].type == NumberType::u8);
   CHECK(soup.attributes[0].components == 4);
   CHECK(soup.attributes[0].values == Values{1, 2, 3, 4, 5, 6, 7, 8, 255, 0, 9, 1});
@@ -61,11 +61,11 @@ TEST_CASE("attributes: numbers of a PLY file's vertices come with their names an
   CHECK(soup.attributes[2].values == Values{-7, 8, 9});
   Names dropped;
   for (const DroppedAttribute& d : soup.dropped_attributes) dropped.push_back(d.name + ": " + d.reason);
-  CHECK(dropped == Names{"nx: normals are not kept, the result has its own",
-                         "ny: normals are not kept, the result has its own",
-                         "nz: normals are not kept, the result has its own", "near: lists are not kept",
-                         "s: texture coordinates are not kept", "t: texture coordinates are not kept",
-                         "gap: the result has its own flag of that name"});
+  CHECK(dropped == Names{"near: lists are not kept", "gap: the result has its own flag of that name"});
+  CHECK(soup.attributes[3].domain == AttributeDomain::corner);
+  CHECK(soup.attributes[4].domain == AttributeDomain::corner);
+  CHECK(soup.attributes[4].index == std::vector<uint32_t>{0, 1, 2});
+  CHECK(soup.attributes[4].values == Values{.5, .5, .5, .5, .5, .5});
 }
 
 TEST_CASE("attributes: both byte orders of binary PLY are read, in rows of fixed and of changing length",
@@ -143,7 +143,7 @@ TEST_CASE("attributes: PLY brings every type back, beside the flag for gaps", "[
   TriangleMesh mesh{ball.vertices, ball.triangles, std::vector<uint8_t>(ball.vertices.size(), 1)};
   const double largest[] = {127, 255, 32767, 65535, 2147483647, 4294967295., 3.5, 1e300};
   for (int type = 0; type < 8; ++type) {
-    VertexAttribute a{"p" + std::to_string(type), NumberType(type), 1, Values(ball.vertices.size(), 0)};
+    Attribute a{"p" + std::to_string(type), NumberType(type), 1, Values(ball.vertices.size(), 0)};
     a.values[1] = largest[type];
     a.values[2] = 1;
     mesh.attributes.push_back(a);
@@ -182,7 +182,7 @@ TEST_CASE("attributes: OBJ holds colours from 0 to 1 behind positions", "[mesh_f
 
 TEST_CASE("attributes: OBJ's colours are found in every part of a large file", "[mesh_file][unit]") {
   TriangleSoup torus = shapes::torus(3, 1, 200, 100);
-  VertexAttribute color{"color", NumberType::f32, 3, {}};
+  Attribute color{"color", NumberType::f32, 3, {}};
   for (size_t i = 0; i < 3 * torus.vertices.size(); ++i) color.values.push_back(double(float(i % 1000) / 1000));
   const TemporaryFolder folder;
   write_mesh(folder / "a.obj", {torus.vertices, torus.triangles, {}, {color}});
@@ -196,7 +196,7 @@ TEST_CASE("attributes: OBJ's colours are found in every part of a large file", "
 TEST_CASE("attributes: a mesh with attributes that cannot be written is refused", "[mesh_file][unit]") {
   const TemporaryFolder folder;
   const TriangleSoup box = shapes::box({0, 0, 0}, {1, 1, 1});
-  const auto refusal = [&](std::vector<VertexAttribute> attributes) {
+  const auto refusal = [&](std::vector<Attribute> attributes) {
     return error_of([&] { write_mesh(folder / "a.ply", {box.vertices, box.triangles, {}, std::move(attributes)}); });
   };
   const Values eight(8, 1);

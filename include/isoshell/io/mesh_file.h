@@ -11,8 +11,9 @@ namespace isoshell {
 enum class MeshFormat { from_name, ply, obj, stl, off };
 
 /// Reads a mesh. `path` "-" reads standard input and needs a format. Polygons are split by ear clipping, triangle
-/// strips unrolled. Numbers of PLY's vertices, and colours behind the positions of OBJ's (white where only others have
-/// one), are attributes; other properties are not taken. Dirty geometry is dropped and counted in the result, a file
+/// strips unrolled. Attributes are the numbers of PLY's vertices and faces and its lists of texture coordinates; of OBJ
+/// colours behind positions (white where only others have one), texture coordinates, normals, materials, groups and
+/// objects. Other lists are not taken. Dirty geometry is dropped and counted in the result, a file
 /// that lies throws. Throws: unreadable_input (names file and line, element or byte, the value and the remedy),
 /// nothing_to_mesh when the file is sound but holds no usable triangle.
 TriangleSoup read_mesh(const std::string& path, MeshFormat format = MeshFormat::from_name);
@@ -22,9 +23,11 @@ struct MeshWriteOptions {
   bool overwrite = false;
 };
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
-/// thousandth of the shortest edge, else float) with all attributes, OBJ with the colour, from 0 to 1, binary STL, OFF.
-/// Written under a temporary name in the same folder and renamed. `path` "-" writes standard output. Throws:
-/// unwritable_output; usage for attributes that do not fit the mesh or have names that PLY cannot hold.
+/// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted
+/// by material, object and group, binary STL, OFF. Written under a temporary name in the same folder and renamed.
+/// `path`
+/// "-" writes standard output. Throws: unwritable_output; usage for attributes that do not fit the mesh or have names
+/// that PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
 
 }  // namespace isoshell

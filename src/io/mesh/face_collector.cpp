@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 
 namespace isoshell {
 namespace {
@@ -79,6 +80,7 @@ void FaceCollector::add_polygon(const uint32_t* corners, int64_t count) {
   if (corners_.size() >= 3)
     splitter_.split(vertices_->points.data(), corners_.data(), int64_t(corners_.size()), triangles_);
   if (triangles_.size() == before) ++dirt_.degenerate_faces;
+  if (keeps_faces_) face_of_.resize(triangles_.size(), uint32_t(faces_ - 1));
 }
 
 void FaceCollector::adopt(std::vector<Triangle> triangles) {
@@ -89,6 +91,10 @@ void FaceCollector::adopt(std::vector<Triangle> triangles) {
   if (dirty == 0) {
     faces_ += int64_t(triangles.size());
     triangles_ = std::move(triangles);
+    if (keeps_faces_) {
+      face_of_.resize(triangles_.size());
+      std::iota(face_of_.begin(), face_of_.end(), 0);
+    }
   } else {
     for (const auto& [a, b, c] : triangles) add_triangle(a, b, c);
   }
@@ -108,6 +114,7 @@ void FaceCollector::add_strip(const uint32_t* corners, int64_t count) {
       triangles_.push_back({b, a, c});
     }
   }
+  if (keeps_faces_) face_of_.resize(triangles_.size(), uint32_t(faces_ - 1));
 }
 
 TriangleSoup join_parts(VertexTable vertices, std::vector<FaceCollector>& parts) {

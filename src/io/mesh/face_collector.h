@@ -29,7 +29,9 @@ struct VertexTable {
 /// Takes faces whose indices are in range; drops and counts the dirty ones and splits polygons.
 class FaceCollector {
  public:
-  explicit FaceCollector(const VertexTable& vertices) : vertices_(&vertices) {}
+  enum class Keep { triangles, faces_too };
+  explicit FaceCollector(const VertexTable& vertices, Keep keep = Keep::triangles)
+      : vertices_(&vertices), keeps_faces_(keep == Keep::faces_too) {}
 
   void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
     ++faces_;
@@ -39,6 +41,7 @@ class FaceCollector {
       ++dirt_.dropped_faces_nonfinite;
     } else {
       triangles_.push_back({a, b, c});
+      if (keeps_faces_) face_of_.push_back(uint32_t(faces_ - 1));
     }
   }
   /// A face of any number of corners. A corner that repeats the one before it is passed over, so that a quad closed to
@@ -51,12 +54,18 @@ class FaceCollector {
   void adopt(std::vector<Triangle> triangles);
   void reserve(int64_t triangles) { triangles_.reserve(size_t(triangles)); }
 
+  /// Per triangle, if that is kept, which of the faces and strips that were added it is of. Stays when parts are
+  /// joined.
+  const std::vector<uint32_t>& face_of() const { return face_of_; }
+
  private:
   friend TriangleSoup join_parts(VertexTable, std::vector<FaceCollector>&);
   bool finite(uint32_t i) const { return is_finite(vertices_->points[i]); }
 
   const VertexTable* vertices_;
+  bool keeps_faces_;
   std::vector<Triangle> triangles_;
+  std::vector<uint32_t> face_of_;
   int64_t faces_ = 0;
   DirtCounts dirt_;
   PolygonSplitter splitter_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <new>
 
+#include "core/attribute_values.h"
 #include "io/mesh/mesh_readers.h"
 #include "io/mesh/mesh_writers.h"
 #include "isoshell/error.h"
@@ -53,12 +54,9 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWri
   const MeshFormat format = format_of(path, options.format, "write_mesh");
   if (!mesh.gap.empty() && mesh.gap.size() != mesh.vertices.size())
     throw Error(ErrorCode::usage, "write_mesh", "the mesh has another number of gap flags than of vertices");
-  for (const VertexAttribute& a : mesh.attributes)
-    if (a.components < 1 || a.values.size() != mesh.vertices.size() * size_t(a.components))
-      throw Error(ErrorCode::usage, "write_mesh",
-                  "the attribute '" + a.name + "' has " + std::to_string(a.values.size()) + " values; " +
-                      std::to_string(mesh.vertices.size()) + " vertices need " + std::to_string(a.components) +
-                      " each");
+  for (const Attribute& a : mesh.attributes)
+    if (const std::string misfit = misfit_of(a, mesh.vertices.size(), mesh.triangles.size()); !misfit.empty())
+      throw Error(ErrorCode::usage, "write_mesh", misfit);
   OutputFile file(path, options.overwrite);
   switch (format) {
     case MeshFormat::ply:

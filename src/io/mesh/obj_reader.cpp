@@ -1,36 +1,69 @@
-// OBJ: positions with their colours, and faces; everything else (normals, groups, lines, curves) is passed over.
+// OBJ: positions with their colours, faces with texture coordinates, normals, objects, groups and materials; everything
+// else (smoothing groups, lines, curves) is passed over.
 #include <algorithm>
+#include <limits>
+#include <unordered_map>
 
-#include "io/mesh/face_collector.h"
+#include "io/mesh/face_corners.h"
 #include "io/mesh/mesh_readers.h"
-#include "io/text_scan.h"
+#include "io/mesh/obj_lines.h"
 
 namespace isoshell {
 namespace {
 
-struct ObjChunk {
-  TextChunk text;
-  int64_t first_vertex = 0, vertices = 0, faces = 0;
-  std::vector<double> colors = {};  ///< three a vertex; empty where no vertex has one
+constexpr uint32_t kNoValue = 0xffffffff;
+
+/// Names that the faces of a chunk have: their objects, groups or materials.
+struct ObjNames {
+  const char* attribute;
+  ObjLine line;
+  std::vector<std::string> name = {};  ///< in the order of their first lines
+  std::vector<uint32_t> of_face = {};  ///< kNoValue before the chunk's first line: that of the chunk before
+  std::unordered_map<std::string, uint32_t> number = {};
+  uint32_t now = kNoValue;
+
+  void begin(const std::string& text) {
+    const auto [at, is_new] = number.emplace(text, uint32_t(name.size()));
+    if (is_new) name.push_back(text);
+    now = at->second;
+  }
 };
 
-enum class ObjLine { other, vertex, face };
+/// How many there are of what faces name.
+struct ObjCounts {
+  int64_t vertices = 0, textures = 0, normals = 0;
 
-// What the line at p holds; p moves behind the keyword.
-ObjLine classify(const char*& p, const char* end) {
-  p = skip_blanks(p, end);
-  if (p == end || !ends_token(p + 1, end)) return ObjLine::other;
-  const char keyword = *p;
-  ++p;
-  return keyword == 'v' ? ObjLine::vertex : keyword == 'f' ? ObjLine::face : ObjLine::other;
+  void add(ObjLine line) {
+    vertices += line == ObjLine::vertex;
+    textures += line == ObjLine::texture;
+    normals += line == ObjLine::normal;
+  }
+};
+ObjCounts operator+(const ObjCounts& a, const ObjCounts& b) {
+  return {a.vertices + b.vertices, a.textures + b.textures, a.normals + b.normals};
 }
+
+struct ObjChunk {
+  TextChunk text;
+  ObjCounts before = {}, here = {};
+  int64_t faces = 0;
+  bool has_names = false;
+  std::vector<double> colors = {};  ///< three a vertex; empty where no vertex has one
+  FaceCorners corners = {};
+  std::vector<uint32_t> texture = {}, normal = {};  ///< per corner, if the file has some; kNoValue: it has none
+  ObjNames names[3] = {
+      {kObjectName, ObjLine::object}, {kGroupName, ObjLine::group}, {kMaterialName, ObjLine::material}};
+  std::vector<std::string> libraries = {};
+};
 
 void count_lines(ObjChunk& chunk) {
   const char* const end = chunk.text.end;
   for (const char* p = chunk.text.begin; p < end; p = line_end(p, end) + 1) {
     const ObjLine line = classify(p, end);
-    chunk.vertices += line == ObjLine::vertex;
+    chunk.here.add(line);
     chunk.faces += line == ObjLine::face;
+    chunk.has_names |= line == ObjLine::object || line == ObjLine::group || line == ObjLine::material;
+    if (line == ObjLine::library) chunk.libraries.push_back(rest_of_line(p, end));
   }
 }
 
@@ -45,9 +78,9 @@ bool parse_color(const char* p, const char* end, double color[3]) {
 }
 
 void read_vertices(const Text& text, ObjChunk& chunk, std::vector<WorldPoint>& points) {
-  WorldPoint* point = points.data() + chunk.first_vertex;
+  WorldPoint* point = points.data() + chunk.before.vertices;
   const char* const end = chunk.text.end;
-  const WorldPoint* const last = point + chunk.vertices;
+  const WorldPoint* const last = point + chunk.here.vertices;
   for (const char* p = chunk.text.begin; p < end && point < last; p = line_end(p, end) + 1) {
     if (classify(p, end) != ObjLine::vertex) continue;
     for (double* value : {&point->x, &point->y, &point->z}) {
@@ -57,56 +90,183 @@ void read_vertices(const Text& text, ObjChunk& chunk, std::vector<WorldPoint>& p
     }
     double color[3];
     if (p = skip_blanks(p, end); p < end && *p != '\n' && parse_color(p, end, color)) {
-      chunk.colors.resize(3 * size_t(chunk.vertices), 1);
-      std::copy(color, color + 3, &chunk.colors[3 * size_t(chunk.vertices - (last - point))]);
+      chunk.colors.resize(3 * size_t(chunk.here.vertices), 1);
+      std::copy(color, color + 3, &chunk.colors[3 * size_t(chunk.here.vertices - (last - point))]);
     }
     ++point;
   }
 }
 
+/// The values of one kind of lines, `components` a line; those that a line lacks at its end are 0, but for the first
+/// `needed`.
+void read_values(const Text& text, const ObjChunk& chunk, ObjLine kind, size_t needed, size_t components,
+                 double* values) {
+  const char* const end = chunk.text.end;
+  for (const char* p = chunk.text.begin; p < end; p = line_end(p, end) + 1) {
+    if (classify(p, end) != kind) continue;
+    for (size_t i = 0; i < components; ++i) {
+      p = skip_blanks(p, end);
+      const bool is_there = parse_real(p, end, values[i]);
+      if (!is_there && i < needed)
+        text.refuse(p, std::string(kind == ObjLine::normal ? "a normal needs three numbers"
+                                                           : "a texture coordinate needs a number") +
+                           "; found " + quoted_token(p, end) + " instead of one");
+      if (!is_there) values[i] = 0;
+    }
+    values += components;
+  }
+}
+
 /// All chunks' in one; none where no vertex has one.
-std::vector<VertexAttribute> joined_colors(std::vector<ObjChunk>& chunks, int64_t vertex_count) {
+std::vector<Attribute> joined_colors(std::vector<ObjChunk>& chunks, int64_t vertex_count) {
   if (std::all_of(chunks.begin(), chunks.end(), [](const ObjChunk& c) { return c.colors.empty(); })) return {};
-  VertexAttribute color{kColorName, NumberType::f32, 3, std::vector<double>(3 * size_t(vertex_count), 1)};
+  Attribute color{kColorName, NumberType::f32, 3, std::vector<double>(3 * size_t(vertex_count), 1)};
   for (ObjChunk& chunk : chunks) {
-    std::copy(chunk.colors.begin(), chunk.colors.end(), color.values.begin() + 3 * chunk.first_vertex);
+    std::copy(chunk.colors.begin(), chunk.colors.end(), color.values.begin() + 3 * chunk.before.vertices);
     chunk.colors = {};
   }
   return {std::move(color)};
 }
 
-// One corner, as i, i/t, i//n or i/t/n; relative when negative. Returns a 0-based index.
-uint32_t read_corner(const Text& text, const char*& p, const char* end, int64_t vertices_so_far, int64_t vertex_count) {
-  const char* const token = p;
-  int64_t index = 0;
-  if (!parse_integer(p, end, index) || !(ends_token(p, end) || *p == '/'))
-    text.refuse(token, "a face corner is " + quoted_token(token, end) + "; it must begin with a vertex number");
-  p = skip_token(p, end);
-  const int64_t vertex = index < 0 ? vertices_so_far + index : index - 1;
-  if (index == 0 || vertex < 0 || vertex >= vertex_count)
-    text.refuse(token, "a face names vertex " + std::to_string(index) + "; " +
-                           (index < 0 ? std::to_string(vertices_so_far) + " vertices come before it, so -1 to -" +
-                                            std::to_string(vertices_so_far)
-                                      : "the file holds vertices 1 to " + std::to_string(vertex_count)) +
-                           "; correct the index or restore the missing vertices");
-  return uint32_t(vertex);
+/// What is read of faces beside their vertices.
+struct ObjWanted {
+  bool textures, normals, names;
+  bool any() const { return textures || normals || names; }
+  bool corners() const { return textures || normals; }
+};
+
+/// Of what a corner names, from 1 on or, when negative, from the last one on; 0-based.
+uint32_t resolve(const Text& text, const char* token, const char* what, const char* plural, int64_t index,
+                 int64_t so_far, int64_t count) {
+  const int64_t found = index < 0 ? so_far + index : index - 1;
+  if (index == 0 || found < 0 || found >= count)
+    text.refuse(token, std::string("a face names ") + what + " " + std::to_string(index) + "; " +
+                           (index < 0 ? std::to_string(so_far) + " " + plural + " come before it, so -1 to -" +
+                                            std::to_string(so_far)
+                                      : std::string("the file holds ") + plural + " 1 to " + std::to_string(count)) +
+                           "; correct the index or restore the missing " + plural);
+  return uint32_t(found);
 }
 
-void read_faces(const Text& text, const ObjChunk& chunk, int64_t vertex_count, FaceCollector& faces) {
+/// A number behind a slash, or none. False: something else stands there.
+bool read_reference(const char*& p, const char* end, int64_t& index) {
+  if (ends_token(p, end) || *p != '/') return true;
+  ++p;
+  return ends_token(p, end) || *p == '/' || parse_integer(p, end, index);
+}
+
+/// One corner, as i, i/t, i//n or i/t/n; p moves behind it.
+class CornerReader {
+ public:
+  CornerReader(const Text& text, const ObjCounts& all, const ObjWanted& wanted)
+      : text_(text), all_(all), wanted_(wanted) {}
+
+  uint32_t read(const char*& p, const char* end, const ObjCounts& so_far, ObjChunk& to) const {
+    const char* const token = p;
+    int64_t index = 0;
+    if (!parse_integer(p, end, index) || !(ends_token(p, end) || *p == '/'))
+      text_.refuse(token, "a face corner is " + quoted_token(token, end) + "; it must begin with a vertex number");
+    const uint32_t vertex = resolve(text_, token, "vertex", "vertices", index, so_far.vertices, all_.vertices);
+    if (wanted_.corners()) read_values(token, p, end, so_far, to);
+    p = skip_token(p, end);
+    return vertex;
+  }
+
+ private:
+  void read_values(const char* token, const char*& p, const char* end, const ObjCounts& so_far, ObjChunk& to) const {
+    constexpr int64_t kAbsent = std::numeric_limits<int64_t>::min();
+    int64_t texture = kAbsent, normal = kAbsent;
+    if (!read_reference(p, end, texture) || !read_reference(p, end, normal) || !ends_token(p, end))
+      text_.refuse(token, "a face corner is " + quoted_token(token, end) +
+                              "; numbers of a vertex, a texture coordinate and a normal may stand in it, as 1/2/3");
+    if (wanted_.textures)
+      to.texture.push_back(texture == kAbsent ? kNoValue
+                                              : resolve(text_, token, "texture coordinate", "texture coordinates",
+                                                        texture, so_far.textures, all_.textures));
+    if (wanted_.normals)
+      to.normal.push_back(normal == kAbsent
+                              ? kNoValue
+                              : resolve(text_, token, "normal", "normals", normal, so_far.normals, all_.normals));
+  }
+
+  const Text& text_;
+  const ObjCounts& all_;
+  const ObjWanted& wanted_;
+};
+
+void read_faces(const Text& text, const ObjCounts& all, const ObjWanted& wanted, ObjChunk& chunk,
+                FaceCollector& faces) {
   const char* const end = chunk.text.end;
-  int64_t vertices_so_far = chunk.first_vertex, left = chunk.faces;
+  const CornerReader reader(text, all, wanted);
+  ObjCounts so_far = chunk.before;
+  int64_t left = chunk.faces;
   std::vector<uint32_t> corners;
   faces.reserve(chunk.faces);
-  for (const char* p = chunk.text.begin; p < end && left > 0; p = line_end(p, end) + 1) {
+  for (const char* p = chunk.text.begin; p < end && (left > 0 || wanted.names); p = line_end(p, end) + 1) {
     const ObjLine line = classify(p, end);
-    vertices_so_far += line == ObjLine::vertex;
+    so_far.add(line);
+    for (ObjNames& names : chunk.names)
+      if (wanted.names && line == names.line) names.begin(rest_of_line(p, end));
     if (line != ObjLine::face) continue;
     --left;
     corners.clear();
     for (p = skip_blanks(p, end); p < end && *p != '\n' && *p != '#'; p = skip_blanks(p, end))
-      corners.push_back(read_corner(text, p, end, vertices_so_far, vertex_count));
+      corners.push_back(reader.read(p, end, so_far, chunk));
     faces.add_polygon(corners.data(), int64_t(corners.size()));
+    if (wanted.corners()) {
+      chunk.corners.vertex.insert(chunk.corners.vertex.end(), corners.begin(), corners.end());
+      chunk.corners.end_face();
+    }
+    for (ObjNames& names : chunk.names)
+      if (wanted.names) names.of_face.push_back(names.now);
   }
+}
+
+/// Values of corners, by the numbers that `of_corner` of each chunk has for its corners.
+void add_corner_attribute(const std::vector<ObjChunk>& chunks, const std::vector<FaceCollector>& faces,
+                          std::vector<uint32_t> ObjChunk::*of_corner, Attribute attribute, TriangleSoup& soup) {
+  const auto none = uint32_t(attribute.values.size() / size_t(attribute.components));
+  attribute.values.insert(attribute.values.end(), size_t(attribute.components),
+                          std::numeric_limits<double>::quiet_NaN());
+  attribute.domain = AttributeDomain::corner;
+  attribute.index.resize(3 * soup.triangles.size());
+  const std::vector<size_t> first = triangles_first(faces);
+  for_each_chunk(int64_t(chunks.size()), [&](int64_t c) {
+    const ObjChunk& chunk = chunks[size_t(c)];
+    const std::vector<uint32_t>& face_of = faces[size_t(c)].face_of();
+    for (size_t t = 0; t < face_of.size(); ++t)
+      find_corners(chunk.corners, face_of[t], soup.triangles[first[size_t(c)] + t], [&](size_t i, size_t corner) {
+        const uint32_t value = (chunk.*of_corner)[corner];
+        attribute.index[3 * (first[size_t(c)] + t) + i] = value == kNoValue ? none : value;
+      });
+  });
+  const bool is_used =
+      std::any_of(attribute.index.begin(), attribute.index.end(), [&](uint32_t i) { return i != none; });
+  if (is_used) soup.attributes.push_back(std::move(attribute));
+}
+
+/// One of the three kinds of names, of all chunks. None where no line gives one.
+void add_names(const std::vector<ObjChunk>& chunks, const std::vector<FaceCollector>& faces, size_t kind,
+               TriangleSoup& soup) {
+  Attribute attribute{chunks[0].names[kind].attribute, NumberType::i32, 1, {}, AttributeDomain::face};
+  attribute.values.reserve(soup.triangles.size());
+  std::unordered_map<std::string, double> number = {{"", -1}};
+  double now = -1;
+  for (size_t c = 0; c < chunks.size(); ++c) {
+    const ObjNames& names = chunks[c].names[kind];
+    std::vector<double> of_name;
+    for (const std::string& name : names.name) {
+      const auto [at, is_new] = number.emplace(name, double(attribute.labels.size()));
+      if (is_new) attribute.labels.push_back(name);
+      of_name.push_back(at->second);
+    }
+    for (const uint32_t face : faces[c].face_of()) {
+      const uint32_t name = names.of_face[face];
+      attribute.values.push_back(name == kNoValue ? now : of_name[name]);
+    }
+    if (names.now != kNoValue) now = of_name[names.now];
+  }
+  if (!attribute.labels.empty()) soup.attributes.push_back(std::move(attribute));
 }
 
 }  // namespace
@@ -117,19 +277,40 @@ TriangleSoup read_obj(const MeshSource& source) {
   for (const TextChunk& piece : split_at_lines(text.begin(), text.end())) chunks.push_back({piece});
   const int64_t chunk_count = int64_t(chunks.size());
   for_each_chunk(chunk_count, [&](int64_t c) { count_lines(chunks[size_t(c)]); });
-  int64_t vertex_count = 0;
+  ObjCounts all;
+  ObjWanted wanted{false, false, false};
   for (ObjChunk& chunk : chunks) {
-    chunk.first_vertex = vertex_count;
-    vertex_count += chunk.vertices;
+    chunk.before = all;
+    all = all + chunk.here;
+    wanted.names |= chunk.has_names;
   }
+  wanted.textures = all.textures > 0;
+  wanted.normals = all.normals > 0;
 
-  VertexTable vertices(source, vertex_count);
-  for_each_chunk(chunk_count, [&](int64_t c) { read_vertices(text, chunks[size_t(c)], vertices.points); });
+  if (std::max(all.textures, all.normals) > kMaxSoupVertices)
+    source.refuse("holds more than " + std::to_string(kMaxSoupVertices) +
+                  " texture coordinates or normals, the most that can be read; split the file");
+  VertexTable vertices(source, all.vertices);
+  Attribute uv{kUvName, NumberType::f32, 2, std::vector<double>(2 * size_t(all.textures))};
+  Attribute normal{kNormalName, NumberType::f32, 3, std::vector<double>(3 * size_t(all.normals))};
+  for_each_chunk(chunk_count, [&](int64_t c) {
+    ObjChunk& chunk = chunks[size_t(c)];
+    read_vertices(text, chunk, vertices.points);
+    if (wanted.textures) read_values(text, chunk, ObjLine::texture, 1, 2, uv.values.data() + 2 * chunk.before.textures);
+    if (wanted.normals)
+      read_values(text, chunk, ObjLine::normal, 3, 3, normal.values.data() + 3 * chunk.before.normals);
+  });
   vertices.count_nonfinite();
-  std::vector<FaceCollector> faces(chunks.size(), FaceCollector(vertices));
-  for_each_chunk(chunk_count, [&](int64_t c) { read_faces(text, chunks[size_t(c)], vertex_count, faces[size_t(c)]); });
+  const auto keep = wanted.any() ? FaceCollector::Keep::faces_too : FaceCollector::Keep::triangles;
+  std::vector<FaceCollector> faces(chunks.size(), FaceCollector(vertices, keep));
+  for_each_chunk(chunk_count, [&](int64_t c) { read_faces(text, all, wanted, chunks[size_t(c)], faces[size_t(c)]); });
   TriangleSoup soup = join_soup(source, std::move(vertices), faces);
-  soup.attributes = joined_colors(chunks, vertex_count);
+  soup.attributes = joined_colors(chunks, all.vertices);
+  if (wanted.textures) add_corner_attribute(chunks, faces, &ObjChunk::texture, std::move(uv), soup);
+  if (wanted.normals) add_corner_attribute(chunks, faces, &ObjChunk::normal, std::move(normal), soup);
+  for (size_t kind = 0; wanted.names && kind < 3; ++kind) add_names(chunks, faces, kind, soup);
+  for (ObjChunk& chunk : chunks)
+    soup.files.materials.insert(soup.files.materials.end(), chunk.libraries.begin(), chunk.libraries.end());
   return soup;
 }
 

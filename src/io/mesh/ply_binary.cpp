@@ -230,27 +230,66 @@ bool take_triangles(const MeshSource& source, const BinaryRows& rows, const PlyE
   return true;
 }
 
-void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyElement& element, int list, bool is_strip,
-                const VertexTable& vertices, std::vector<FaceCollector>& faces) {
-  if (!is_strip && take_triangles(source, rows, element, list, vertices, faces)) return;
+/// What is kept of a row beside its corners.
+class FaceRowReader {
+ public:
+  FaceRowReader(const MeshSource& source, const BinaryRows& rows, const PlyMeshLayout& layout)
+      : source_(source), rows_(rows), layout_(layout), lists_(layout.corner_lists.size()) {}
+
+  template <class Refuse>
+  void read(int64_t offset, const std::vector<uint32_t>& vertices, PlyFaceRows& to, Refuse refuse) {
+    for (size_t i = 0; i < layout_.face_columns.size(); ++i)
+      append(offset, layout_.face_columns[i].property, to.columns[i]);
+    for (size_t i = 0; i < lists_.size(); ++i) {
+      lists_[i].clear();
+      append(offset, layout_.corner_lists[i].property, lists_[i]);
+    }
+    add_face_row(vertices, lists_, layout_, to, refuse);
+  }
+
+ private:
+  void append(int64_t offset, int property, std::vector<double>& values) const {
+    const BinaryRows::Place place = rows_.find(offset, property);
+    with_type(layout_.faces->properties[size_t(property)].type, [&](auto type) {
+      const char* p = source_.begin() + place.offset;
+      for (int64_t i = 0; i < place.length; ++i, p += sizeof(type))
+        values.push_back(double(load<decltype(type)>(p, rows_.big_endian())));
+    });
+  }
+
+  const MeshSource& source_;
+  const BinaryRows& rows_;
+  const PlyMeshLayout& layout_;
+  std::vector<std::vector<double>> lists_;
+};
+
+void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyElement& element, int list,
+                const PlyMeshLayout& layout, PlyBody& body) {
+  const bool is_strip = &element == layout.strips, keeps_rows = layout.keeps_faces();
+  const VertexTable& vertices = body.vertices;
+  std::vector<FaceCollector>& faces = body.faces;
+  if (!is_strip && !keeps_rows && take_triangles(source, rows, element, list, vertices, faces)) return;
   const size_t base = faces.size();
   const int64_t vertex_count = int64_t(vertices.points.size());
-  faces.resize(base + size_t(rows.block_count()), FaceCollector(vertices));
+  faces.resize(base + size_t(rows.block_count()), layout.collector(vertices));
+  if (keeps_rows) body.face_rows.resize(faces.size(), PlyFaceRows(layout));
   for_each_chunk(rows.block_count(), [&](int64_t block) {
     FaceCollector& out = faces[base + size_t(block)];
     out.reserve(kRowsPerBlock);
     std::vector<int64_t> corners;
     std::vector<uint32_t> scratch;
+    FaceRowReader row(source, rows, layout);
     with_type(element.properties[size_t(list)].type, [&](auto type) {
       using T = decltype(type);
       rows.each_row(block, [&](int64_t, int64_t offset) {
         const BinaryRows::Place place = rows.find(offset, list);
         const char* const p = source.begin() + place.offset;
         const auto corner = [&](int64_t i) { return as_index(load<T>(p + i * int64_t(sizeof(T)), rows.big_endian())); };
+        const auto refuse = [&](const std::string& what) { source.refuse_byte(offset, what); };
         corners.resize(size_t(place.length));
         for (int64_t i = 0; i < place.length; ++i) corners[size_t(i)] = corner(i);
-        add_ply_row(corners, is_strip, vertex_count, scratch, out,
-                    [&](const std::string& what) { source.refuse_byte(offset, what); });
+        add_ply_row(corners, is_strip, vertex_count, scratch, out, refuse);
+        if (keeps_rows) row.read(offset, scratch, body.face_rows[base + size_t(block)], refuse);
       });
     });
   });
@@ -276,9 +315,8 @@ void read_ply_binary(const MeshSource& source, const PlyHeader& header, const Pl
   }
   for (const PlyElement& element : header.elements) {
     if (&element != layout.faces && &element != layout.strips) continue;
-    const bool is_strip = &element == layout.strips;
-    const int list = is_strip ? layout.strip_corners : layout.face_corners;
-    if (element.count > 0) read_faces(source, rows_of(&element), element, list, is_strip, body.vertices, body.faces);
+    const int list = &element == layout.strips ? layout.strip_corners : layout.face_corners;
+    if (element.count > 0) read_faces(source, rows_of(&element), element, list, layout, body);
   }
 }
 

@@ -29,6 +29,7 @@ class HeaderReader {
       source_.refuse("does not begin with ply; check that it is the format its name says");
     bool has_format = false;
     while (next_line()) {
+      if (words_.size() > 2 && words_[0] == "comment") read_comment();
       if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info") continue;
       if (words_[0] == "end_header") {
         if (!has_format) refuse("the header has no format line");
@@ -72,6 +73,20 @@ class HeaderReader {
     p_ = stop + 1;
     if (*stop == '\r' && p_ < source_.end() && *p_ == '\n') ++p_;
     return true;
+  }
+
+  /// A name may hold blanks: it goes to the end of the line.
+  void read_comment() {
+    const size_t words_before_name = words_[1] == kLabelNote ? 4 : 2;
+    if (words_[1] != kTextureNote && words_[1] != kLibraryNote && words_[1] != kLabelNote) return;
+    if (words_.size() <= words_before_name) return;
+    const char* p = source_.begin() + line_;
+    for (size_t i = 0; i < words_before_name; ++i) p = skip_token(skip_blanks(p, p_), p_);
+    p = skip_blanks(p, p_);
+    const char* last = p_;
+    while (last > p && (is_blank(last[-1]) || last[-1] == '\n')) --last;
+    header_.notes.emplace_back(words_.begin() + 1, words_.begin() + int64_t(words_before_name));
+    header_.notes.back().emplace_back(p, last);
   }
 
   void read_format() {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/mesh/mesh_source.h"
-#include "isoshell/vertex_attribute.h"
+#include "isoshell/attribute.h"
 
 namespace isoshell {
 
@@ -36,10 +36,16 @@ struct PlyElement {
   bool has_list() const;
 };
 
+/// Comments that hold more than words: names of images, as MeshLab writes them, of libraries of materials, and labels.
+constexpr const char* kTextureNote = "TextureFile";
+constexpr const char* kLibraryNote = "mtllib";
+constexpr const char* kLabelNote = "label";  ///< followed by the attribute's name, the number and the label
+
 struct PlyHeader {
   PlyEncoding encoding{};
   std::vector<PlyElement> elements;
-  int64_t body = 0;  ///< offset of the first byte behind the header
+  int64_t body = 0;                             ///< offset of the first byte behind the header
+  std::vector<std::vector<std::string>> notes;  ///< words of the comments that name files or labels
 
   const PlyElement* find(const std::string& element) const;
 };

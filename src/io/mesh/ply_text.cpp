@@ -77,14 +77,32 @@ const char* read_vertex(RowReader row, const PlyMeshLayout& layout, int64_t numb
   return row.finish();
 }
 
-const char* read_corners(RowReader row, const PlyElement& element, int list, std::vector<int64_t>& corners) {
+/// What of a row of faces or strips is kept.
+struct FaceRow {
+  std::vector<int64_t> corners;
+  std::vector<std::vector<double>> lists;
+  std::vector<uint32_t> vertices;
+};
+
+/// `rows` is null, and the layout's columns and lists are passed over, where there are only triangles to keep.
+const char* read_face(RowReader row, const PlyElement& element, int list, const PlyMeshLayout& layout,
+                      PlyFaceRows* rows, FaceRow& to) {
+  size_t column = 0, corner_list = 0;
+  to.lists.resize(rows ? layout.corner_lists.size() : 0);
   for (int i = 0; i < int(element.properties.size()); ++i) {
-    if (i != list) {
-      row.skip(element.properties[size_t(i)]);
-      continue;
+    const PlyProperty& property = element.properties[size_t(i)];
+    if (i == list) {
+      to.corners.resize(size_t(row.list_length()));
+      for (int64_t& corner : to.corners) corner = row.integer();
+    } else if (rows && column < layout.face_columns.size() && layout.face_columns[column].property == i) {
+      rows->columns[column++].push_back(nearest_of(property.type, row.real()));
+    } else if (rows && corner_list < layout.corner_lists.size() && layout.corner_lists[corner_list].property == i) {
+      std::vector<double>& values = to.lists[corner_list++];
+      values.resize(size_t(row.list_length()));
+      for (double& value : values) value = nearest_of(property.type, row.real());
+    } else {
+      row.skip(property);
     }
-    corners.resize(size_t(row.list_length()));
-    for (int64_t& corner : corners) corner = row.integer();
   }
   return row.finish();
 }
@@ -115,15 +133,19 @@ void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyM
   const auto read_faces = [&](const PlyElement& element, int list) {
     std::vector<FaceCollector>& faces = body.faces;
     const size_t base = faces.size();
-    faces.resize(base + size_t(rows.chunk_count()), FaceCollector(vertices));
-    std::vector<std::vector<int64_t>> corners(size_t(rows.chunk_count()));
-    std::vector<std::vector<uint32_t>> scratch(corners.size());
+    const bool is_strip = &element == layout.strips, keeps_rows = layout.keeps_faces();
+    faces.resize(base + size_t(rows.chunk_count()), layout.collector(vertices));
+    if (keeps_rows) body.face_rows.resize(faces.size(), PlyFaceRows(layout));
+    std::vector<FaceRow> scratch(size_t(rows.chunk_count()));
     const int64_t vertex_count = int64_t(vertices.points.size());
     rows.for_each(first, first + element.count, [&](int64_t, const char* p, const char* end, int64_t chunk) {
-      const char* const stop = read_corners(RowReader(text, element, p, end, long_rows[size_t(chunk)]), element, list,
-                                            corners[size_t(chunk)]);
-      add_ply_row(corners[size_t(chunk)], &element == layout.strips, vertex_count, scratch[size_t(chunk)],
-                  faces[base + size_t(chunk)], [&](const std::string& what) { text.refuse(p, what); });
+      FaceRow& row = scratch[size_t(chunk)];
+      PlyFaceRows* const kept = keeps_rows ? &body.face_rows[base + size_t(chunk)] : nullptr;
+      const auto refuse = [&](const std::string& what) { text.refuse(p, what); };
+      const char* const stop =
+          read_face(RowReader(text, element, p, end, long_rows[size_t(chunk)]), element, list, layout, kept, row);
+      add_ply_row(row.corners, is_strip, vertex_count, row.vertices, faces[base + size_t(chunk)], refuse);
+      if (kept) add_face_row(row.vertices, row.lists, layout, *kept, refuse);
       return stop;
     });
   };

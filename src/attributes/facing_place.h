@@ -1,0 +1,25 @@
+// The place of a source that a point of another surface takes its values from.
+#pragma once
+
+#include <cmath>
+
+#include "measure/triangle_grid.h"
+
+namespace isoshell {
+
+/// The nearest point of the source, unless a triangle that looks along the normal is within half an edge's length
+/// beyond it: then the nearest of such triangles. So two sides of a thin wall stay apart.
+inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, WorldPoint normal, double edge_length) {
+  constexpr double kFarther = 0.5;
+  const MeshPoint nearest = grid.nearest(p);
+  if (grid.is_facing(nearest.triangle, normal)) return nearest;
+  const MeshPoint facing = grid.nearest_facing(p, normal, std::sqrt(nearest.distance_sq) + kFarther * edge_length);
+  return facing.triangle == MeshPoint::kNoTriangle ? nearest : facing;
+}
+
+/// The value at a place from those at its triangle's corners. Where all are the same, exactly that.
+inline double interpolate(const MeshPoint& place, double a, double b, double c) {
+  return a + place.b_part * (b - a) + place.c_part * (c - a);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,199 @@
+#include "attributes/transfer_faces.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "attributes/facing_place.h"
+#include "core/attribute_values.h"
+#include "core/number_type.h"
+#include "core/world_vector.h"
+
+namespace isoshell {
+namespace {
+
+constexpr size_t kGrain = 256;
+constexpr double kSurroundings = 1.1;  ///< of the distance from a face's middle to its corners
+constexpr double kInside = .02;  ///< of the way from a corner to the middle: there it is clear which side is meant
+constexpr double kBeside = .05;  ///< of the same distance, around a corner
+
+struct FaceShape {
+  std::array<WorldPoint, 3> corner;
+  WorldPoint middle, normal;  ///< the normal of any length
+
+  double edge_length() const {
+    return (length(corner[1] - corner[0]) + length(corner[2] - corner[1]) + length(corner[0] - corner[2])) / 3;
+  }
+  double reach() const {
+    double farthest_sq = 0;
+    for (const WorldPoint& c : corner) farthest_sq = std::max(farthest_sq, distance_sq(c, middle));
+    return std::sqrt(farthest_sq);
+  }
+};
+
+FaceShape shape_of(const TriangleMesh& mesh, size_t face) {
+  const auto& t = mesh.triangles[face];
+  const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  return {{a, b, c}, (1. / 3) * (a + b + c), doubled_area(a, b, c)};
+}
+
+/// Numbers that were seen, few of very many. Kept from one use to the next.
+class SeenNumbers {
+ public:
+  void clear() {
+    table_.assign(size_t(64), kEmpty);
+    count_ = 0;
+  }
+  /// False when it was there.
+  bool add(uint32_t number) {
+    if (2 * (count_ + 1) > table_.size()) grow();
+    uint32_t& slot = slot_of(number);
+    if (slot == number) return false;
+    slot = number;
+    ++count_;
+    return true;
+  }
+
+ private:
+  static constexpr uint32_t kEmpty = 0xffffffff;
+
+  uint32_t& slot_of(uint32_t number) {
+    size_t slot = (number * size_t(0x9e3779b97f4a7c15u)) >> 32;
+    for (slot &= table_.size() - 1; table_[slot] != kEmpty && table_[slot] != number;)
+      slot = (slot + 1) & (table_.size() - 1);
+    return table_[slot];
+  }
+  void grow() {
+    std::vector<uint32_t> old(2 * table_.size(), kEmpty);
+    old.swap(table_);
+    for (const uint32_t number : old)
+      if (number != kEmpty) slot_of(number) = number;
+  }
+
+  std::vector<uint32_t> table_;
+  size_t count_ = 0;
+};
+
+/// The part of the source around a point that continues from one triangle without a jump.
+class Surroundings {
+ public:
+  Surroundings(const WeldedSource& source, const std::vector<Jump>& jumps) : source_(source), jumps_(jumps) {}
+
+  /// Triangles that are up to `reach` farther from a point than the one to start with.
+  void find(WorldPoint p, uint32_t start, double reach) {
+    found_.assign(1, start);
+    seen_.clear();
+    seen_.add(start);
+    reach += std::sqrt(nearest(p, start).distance_sq);
+    for (size_t i = 0; i < found_.size(); ++i)
+      for (const uint32_t e : source_.edges.of_triangle[found_[i]]) {
+        if (!source_.edges.is_inner(e) || jumps_[e] != Jump::none) continue;
+        const uint32_t next = source_.edges.across(e, found_[i]);
+        if (seen_.add(next) && nearest(p, next).distance_sq <= reach * reach) found_.push_back(next);
+      }
+  }
+
+  /// Among the triangles that were found last, the smallest of those that are equally near.
+  MeshPoint nearest_of_found(WorldPoint p) const {
+    MeshPoint best;
+    for (const uint32_t t : found_) {
+      const MeshPoint here = nearest(p, t);
+      if (here.distance_sq < best.distance_sq || (here.distance_sq == best.distance_sq && t < best.triangle))
+        best = here;
+    }
+    return best;
+  }
+
+ private:
+  MeshPoint nearest(WorldPoint p, uint32_t triangle) const {
+    const auto& t = source_.mesh.triangles[triangle];
+    const auto& v = source_.mesh.vertices;
+    MeshPoint place = nearest_of_triangle(p, v[t[0]], v[t[1]], v[t[2]]);
+    place.triangle = triangle;
+    return place;
+  }
+
+  const WeldedSource& source_;
+  const std::vector<Jump>& jumps_;
+  std::vector<uint32_t> found_;
+  SeenNumbers seen_;
+};
+
+/// Corners of one vertex that have the same value share it. `values` are per corner; they end in the order of the
+/// vertices, then of the corners that had them first.
+void share_values(const TriangleMesh& mesh, Attribute& a) {
+  const size_t corners = 3 * mesh.triangles.size(), size = size_t(a.components);
+  const auto vertex_of = [&](size_t corner) { return mesh.triangles[corner / 3][corner % 3]; };
+  std::vector<uint32_t> first(mesh.vertices.size() + 1, 0), around(corners);
+  for (size_t c = 0; c < corners; ++c) ++first[vertex_of(c)];
+  for (size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+  for (size_t c = corners; c-- > 0;) around[--first[vertex_of(c)]] = uint32_t(c);
+  std::vector<double> shared;
+  a.index.resize(corners);
+  for (size_t v = 0; v + 1 < first.size(); ++v) {
+    const size_t begin = shared.size() / size;
+    for (uint32_t i = first[v]; i < first[v + 1]; ++i) {
+      const double* const value = &a.values[size * around[i]];
+      size_t at = begin;
+      while (at < shared.size() / size && !is_same(&shared[size * at], value, a.components)) ++at;
+      if (at == shared.size() / size) shared.insert(shared.end(), value, value + size);
+      a.index[around[i]] = uint32_t(at);
+    }
+  }
+  a.values = std::move(shared);
+}
+
+}  // namespace
+
+FaceTransfer::FaceTransfer(const WeldedSource& source, const TriangleMesh& mesh, Context& context)
+    : source_(source), mesh_(mesh), context_(context), under_(mesh.triangles.size()) {
+  const TriangleGrid grid(source.mesh.vertices, source.mesh.triangles);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, under_.size(), kGrain), [&](const tbb::blocked_range<size_t>& r) {
+    if (context_.cancel.load(std::memory_order_relaxed)) return;
+    for (size_t f = r.begin(); f < r.end(); ++f) {
+      const FaceShape face = shape_of(mesh_, f);
+      under_[f] = facing_place(grid, face.middle, face.normal, face.edge_length()).triangle;
+    }
+  });
+}
+
+Attribute FaceTransfer::of_faces(const Attribute& from) const {
+  Attribute to{from.name, from.type, from.components, {}, AttributeDomain::face, {}, from.labels};
+  to.values.reserve(under_.size() * size_t(from.components));
+  for (const uint32_t triangle : under_) {
+    const double* const value = value_of(from, source_.mesh.source_face[triangle]);
+    to.values.insert(to.values.end(), value, value + from.components);
+  }
+  return to;
+}
+
+Attribute FaceTransfer::of_corners(const Attribute& from, const std::vector<Jump>& jumps) const {
+  const size_t size = size_t(from.components);
+  Attribute to{from.name, from.type, from.components, std::vector<double>(3 * under_.size() * size),
+               AttributeDomain::corner};
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, under_.size(), kGrain), [&](const tbb::blocked_range<size_t>& r) {
+    Surroundings of_face(source_, jumps), of_corner(source_, jumps);
+    for (size_t f = r.begin(); f < r.end(); ++f) {
+      if (context_.cancel.load(std::memory_order_relaxed)) return;
+      const FaceShape face = shape_of(mesh_, f);
+      const double reach = face.reach();
+      of_face.find(face.middle, under_[f], kSurroundings * reach);
+      for (size_t i = 0; i < 3; ++i) {
+        const WorldPoint p = face.corner[i];
+        // Both sides of a seam that ends near by belong together, and are equally near: the corner stays on its own.
+        const uint32_t side = of_face.nearest_of_found(p + kInside * (face.middle - p)).triangle;
+        of_corner.find(p, side, kBeside * reach);
+        const MeshPoint place = of_corner.nearest_of_found(p);
+        const double* value[3];
+        for (uint32_t c = 0; c < 3; ++c) value[c] = value_of(from, source_.corner(place.triangle, c));
+        for (size_t k = 0; k < size; ++k)
+          to.values[(3 * f + i) * size + k] =
+              nearest_of(from.type, interpolate(place, value[0][k], value[1][k], value[2][k]));
+      }
+    }
+  });
+  share_values(mesh_, to);
+  return to;
+}
+
+}  // namespace isoshell
