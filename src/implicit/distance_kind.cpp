@@ -12,20 +12,6 @@ namespace {
 
 constexpr double kSlopeSlack = 0.25;  // of a voxel a voxel
 constexpr double kLeastSteep = 0.6;   // of the values looked at: on ridges and near edges distances are not as steep
-constexpr double kCubeSlack = 0.01;
-
-/// Length of a voxel's edges, 0 where they differ or are not square to each other.
-double cube_edge(const AffineMap& map) {
-  double dot[3][3] = {};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (const auto& row : map.at) dot[i][j] += row[i] * row[j];
-  const double sq = dot[0][0];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      if (std::abs(dot[i][j] - (i == j ? sq : 0)) > 2 * kCubeSlack * sq) return 0;
-  return std::sqrt(sq);
-}
 
 struct Steepness {
   int64_t values = 0, steep = 0, near = 0;

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
-#include "implicit/iso_cases.h"
+#include "implicit/crease_intersections.h"
+#include "implicit/crease_vertices.h"
 #include "implicit/tile_borders.h"
 #include "io/mesh/face_collector.h"
 #include "isoshell/error.h"
@@ -17,22 +19,14 @@
 namespace isoshell {
 namespace {
 
-constexpr double kEdgeEnd = 1.0 / 4096;  // vertices keep that far from the ends of their edges, so none coincide
-constexpr int kCentreLoop = 6;           // patches of as many corners get a vertex in their middle: they can meet
-                                         // a face of the cell twice, where a diagonal might be the neighbour's too
-
-Voxel plus(Voxel a, int32_t x, int32_t y, int32_t z) { return {a.x + x, a.y + y, a.z + z}; }
+constexpr double kMargin = 1e-4;  // voxels: sides along the lattice have values of both signs, by rounding
+constexpr int kCentreLoop = 6;    // patches of as many corners get a vertex in their middle: they can meet
+                                  // a face of the cell twice, where a diagonal might be the neighbour's too
 
 void sort_unique(std::vector<Voxel>& voxels) {
   tbb::parallel_sort(voxels.begin(), voxels.end(), comes_before);
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
 }
-
-struct Inside {
-  double iso;
-  bool below;
-  bool operator()(double value) const { return below ? value < iso : value > iso; }
-};
 
 /// What a block of cells owns: lattice edges that begin in it, by axis and corner, and the middles of patches.
 struct CellBlock {
@@ -51,14 +45,25 @@ struct CellBlock {
 
 class IsoSurface {
  public:
-  IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes)
+  IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes, bool keep_creases)
       : field_(field),
+        keep_creases_(keep_creases),
         memory_limit_bytes_(memory_limit_bytes > 0 ? memory_limit_bytes : INT64_MAX),
         inside_{iso, field.background == iso ? field.grid_class == "level set" : field.background > iso} {}
 
   TriangleSoup extract() {
     list_cell_blocks();
-    cell_.resize(origin_.size());
+    if (keep_creases_) find_creases();
+    TriangleSoup soup = extract_once();
+    if (!creases_) return soup;
+    while (take_intersecting_back(soup)) soup = extract_once();
+    tbb::parallel_for(size_t(0), soup.vertices.size(), [&](size_t v) { soup.vertices[v] = mapped(soup.vertices[v]); });
+    return soup;
+  }
+
+ private:
+  TriangleSoup extract_once() {
+    cell_.assign(origin_.size(), {});
     each_block([&](size_t b, const float* window) { count(b, window); });
     TriangleSoup soup;
     make_room(soup);
@@ -67,7 +72,22 @@ class IsoSurface {
     return soup;
   }
 
- private:
+  /// Whether vertices of creases were taken back because their triangles intersect. Each can be so twice, then cells
+  /// are as without creases, where nothing intersects.
+  bool take_intersecting_back(const TriangleSoup& soup) {
+    std::vector<uint8_t> is_crease(soup.vertices.size(), 0);
+    for (size_t b = 0; b < cell_.size(); ++b)
+      for (int64_t i = 0; i < crease_vertices(b); ++i) is_crease[size_t(first_crease_vertex(b) + i)] = 1;
+    const std::vector<uint32_t> found = find_intersecting(soup, is_crease);
+    std::vector<CreaseVertexId> ids;
+    auto next = found.begin();
+    for (size_t b = 0; b < cell_.size(); ++b)
+      for (; next != found.end() && *next < first_crease_vertex(b) + crease_vertices(b); ++next)
+        ids.push_back({uint32_t(b), uint32_t(*next - first_crease_vertex(b))});
+    if (!ids.empty()) creases_->take_back(ids);
+    return !ids.empty();
+  }
+
   /// Blocks whose cells touch a voxel with a value of its own, or lie where tiles of the two sides meet.
   void list_cell_blocks() {
     std::vector<Voxel> held = field_.blocks();
@@ -80,7 +100,7 @@ class IsoSurface {
     sort_unique(held);
     origin_.resize(8 * held.size());
     tbb::parallel_for(size_t(0), held.size(), [&](size_t i) {
-      for (int n = 0; n < 8; ++n) origin_[8 * i + size_t(n)] = neighbour(held[i], n, -kFieldBlock);
+      for (int n = 0; n < 8; ++n) origin_[8 * i + size_t(n)] = block_beside(held[i], n, -kFieldBlock);
     });
     sort_unique(origin_);
     check_memory(int64_t(origin_.size() * (sizeof(Voxel) + sizeof(CellBlock))));
@@ -101,37 +121,22 @@ class IsoSurface {
                       " MiB; resample it coarser or raise --max-memory");
   }
 
-  static Voxel neighbour(Voxel block, int corner, int32_t step) {
-    return plus(block, corner >> 2 ? step : 0, corner >> 1 & 1 ? step : 0, corner & 1 ? step : 0);
-  }
-
   template <class Work>
   void each_block(Work work) {
     tbb::parallel_for(size_t(0), origin_.size(), [&](size_t b) {
       float window[kWindow * kWindow * kWindow];
-      for (int n = 0; n < 8; ++n) {
-        const int size[3] = {n >> 2 ? 1 : 8, n >> 1 & 1 ? 1 : 8, n & 1 ? 1 : 8};
-        const int at = (n >> 2) * 8 * kWindowStride[0] + (n >> 1 & 1) * 8 * kWindowStride[1] + (n & 1) * 8;
-        field_.copy(neighbour(origin_[b], n, kFieldBlock), size, window + at);
-      }
+      read_cell_window(field_, origin_[b], window);
       work(b, window);
     });
   }
 
-  /// Calls visit(offset of the cell in its block, corner of the window, case) for the cells that the surface crosses.
-  template <class Visit>
-  void each_cut_cell(const float* window, Visit visit) const {
-    for (int offset = 0; offset < 512; ++offset) {
-      const float* corner = window + window_index(offset);
-      int inside = 0;
-      for (int c = 0; c < 8; ++c) inside |= int(inside_(corner[corner_step(c)])) << c;
-      if (inside != 0 && inside != 255) visit(offset, corner, kIsoCases.of[inside]);
-    }
+  /// Distances are not those of index coordinates where voxels are no cubes.
+  void find_creases() {
+    if (cube_edge(field_.to_world) == 0) return;
+    const double rise = usual_rise(field_, inside_, origin_);
+    inside_.margin = kMargin * rise;
+    if (rise > 0) creases_.emplace(field_, inside_, rise, origin_);
   }
-  static int window_index(int offset) {
-    return (offset >> 6) * kWindowStride[0] + (offset >> 3 & 7) * kWindowStride[1] + (offset & 7);
-  }
-  static int corner_step(int c) { return (c >> 2) * kWindowStride[0] + (c >> 1 & 1) * kWindowStride[1] + (c & 1); }
 
   void count(size_t b, const float* window) {
     CellBlock& cell = cell_[b];
@@ -144,11 +149,12 @@ class IsoSurface {
     }
     for (const auto& axis : cell.cut)
       for (const uint64_t word : axis) cell.cuts += uint32_t(popcount64(word));
-    each_cut_cell(window, [&](int, const float*, const IsoCase& loops) {
+    each_cut_cell(window, inside_, [&](int offset, const float*, int inside) {
+      const IsoCase& loops = kIsoCases.of[inside];
       for (int l = 0; l < loops.loops; ++l) {
-        const bool middle = loops.size[l] >= kCentreLoop;
-        cell.middles += middle;
-        cell.triangles += uint32_t(loops.size[l] - (middle ? 0 : 2));
+        const bool crease = creases_ && creases_->vertex(b, offset, l), middle = loops.size[l] >= kCentreLoop;
+        cell.middles += middle && !crease;
+        cell.triangles += uint32_t(loops.size[l] - (middle || crease ? 0 : 2));
       }
     });
   }
@@ -161,10 +167,11 @@ class IsoSurface {
 
   void make_room(TriangleSoup& soup) {
     int64_t vertices = 0, triangles = 0;
-    for (CellBlock& cell : cell_) {
+    for (size_t b = 0; b < cell_.size(); ++b) {
+      CellBlock& cell = cell_[b];
       cell.first_vertex = vertices;
       cell.first_triangle = triangles;
-      vertices += cell.cuts + cell.middles;
+      vertices += cell.cuts + crease_vertices(b) + cell.middles;
       triangles += cell.triangles;
     }
     if (triangles == 0) refuse_empty();
@@ -194,15 +201,20 @@ class IsoSurface {
     uint32_t owners[8];
     for (int n = 0; n < 8; ++n) {
       const auto found =
-          std::lower_bound(origin_.begin(), origin_.end(), neighbour(origin_[b], n, kFieldBlock), comes_before);
+          std::lower_bound(origin_.begin(), origin_.end(), block_beside(origin_[b], n, kFieldBlock), comes_before);
       owners[n] = uint32_t(found - origin_.begin());  // only looked at where an edge begins there: then it is listed
     }
-    int64_t middle = cell_[b].first_vertex + cell_[b].cuts, triangle = cell_[b].first_triangle;
-    each_cut_cell(window, [&](int offset, const float*, const IsoCase& loops) {
+    int64_t middle = first_crease_vertex(b) + crease_vertices(b), triangle = cell_[b].first_triangle;
+    each_cut_cell(window, inside_, [&](int offset, const float*, int inside) {
+      const IsoCase& loops = kIsoCases.of[inside];
       const int8_t* edge = loops.edge;
       for (int l = 0; l < loops.loops; edge += loops.size[l++]) {
         uint32_t vertex[12];
         for (int i = 0; i < loops.size[l]; ++i) vertex[i] = vertex_on(owners, offset, edge[i]);
+        if (const CreaseVertexId crease = creases_ ? creases_->vertex(b, offset, l) : CreaseVertexId{}) {
+          triangle += write_crease_patch(crease, vertex, loops.size[l], &soup.triangles[size_t(triangle)]);
+          continue;
+        }
         triangle += write_patch(vertex, loops.size[l], middle, &soup.triangles[size_t(triangle)]);
         if (loops.size[l] >= kCentreLoop) soup.vertices[size_t(middle++)] = middle_of(soup, vertex, loops.size[l]);
       }
@@ -218,6 +230,18 @@ class IsoSurface {
     for (int i = 0; i < size; ++i) to[i] = oriented(uint32_t(middle), vertex[i], vertex[(i + 1) % size]);
     return size;
   }
+  /// A fan whose triangles share the crease's edges with the next patches, where there are some.
+  int write_crease_patch(CreaseVertexId crease, const uint32_t* vertex, int size, std::array<uint32_t, 3>* to) const {
+    for (int i = 0; i < size; ++i) {
+      const CreaseVertexId next = creases_->beyond(crease, i);
+      to[i] = oriented(index_of(crease), vertex[i], next ? index_of(next) : vertex[(i + 1) % size]);
+    }
+    return size;
+  }
+  int64_t first_crease_vertex(size_t b) const { return cell_[b].first_vertex + cell_[b].cuts; }
+  int64_t crease_vertices(size_t b) const { return creases_ ? int64_t(creases_->vertices(b).size()) : 0; }
+  uint32_t index_of(CreaseVertexId v) const { return uint32_t(first_crease_vertex(v.block) + v.number); }
+
   std::array<uint32_t, 3> oriented(uint32_t a, uint32_t b, uint32_t c) const {
     return mirrored_ ? std::array<uint32_t, 3>{a, c, b} : std::array<uint32_t, 3>{a, b, c};
   }
@@ -235,17 +259,23 @@ class IsoSurface {
       for (int word = 0; word < 8; ++word)
         for (uint64_t bits = cell_[b].cut[axis][word]; bits; bits &= bits - 1)
           soup.vertices[size_t(vertex++)] = to_world(crossing(b, window, word * 64 + lowest_bit(bits), axis));
+    if (!creases_) return;
+    for (const CreaseVertex& v : creases_->vertices(b)) {
+      const WorldPoint& p = v.at();
+      const Voxel& o = origin_[b];
+      soup.vertices[size_t(vertex++)] = to_world({o.x + p.x, o.y + p.y, o.z + p.z});
+    }
   }
 
   /// Where the edge from a corner along an axis crosses the surface, in index coordinates.
   WorldPoint crossing(size_t b, const float* window, int offset, int axis) const {
     const float* at = window + window_index(offset);
-    const double from = finite(at[0]), to = finite(at[kWindowStride[axis]]);
-    const double t = std::clamp((inside_.iso - from) / (to - from), kEdgeEnd, 1 - kEdgeEnd);
+    const CreaseCrossing* beside_crease = creases_ ? creases_->crossing(b, axis, offset) : nullptr;
+    double t = beside_crease ? beside_crease->place : place_on_edge(at[0], at[kWindowStride[axis]], inside_.iso);
+    if (creases_) t = std::clamp(t, kCreaseEdgeEnd, 1 - kCreaseEdgeEnd);
     const Voxel o = plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7);
     return {o.x + (axis == 0 ? t : 0), o.y + (axis == 1 ? t : 0), o.z + (axis == 2 ? t : 0)};
   }
-  static double finite(float value) { return std::clamp<double>(value, -3e38, 3e38); }
 
   static WorldPoint middle_of(const TriangleSoup& soup, const uint32_t* vertex, int size) {
     WorldPoint sum{0, 0, 0};
@@ -256,7 +286,9 @@ class IsoSurface {
     return {sum.x / size, sum.y / size, sum.z / size};
   }
 
-  WorldPoint to_world(WorldPoint p) const {
+  /// With creases, vertices are mapped when all are in their places.
+  WorldPoint to_world(WorldPoint p) const { return creases_ ? p : mapped(p); }
+  WorldPoint mapped(WorldPoint p) const {
     const auto& m = field_.to_world.at;
     return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
             m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
@@ -270,11 +302,13 @@ class IsoSurface {
   }
 
   const ScalarField& field_;
+  const bool keep_creases_;
   const int64_t memory_limit_bytes_;
-  const Inside inside_;
+  Inside inside_;
   const bool mirrored_ = is_mirror(field_.to_world);
   std::vector<Voxel> origin_;    // of the blocks of cells, sorted
   std::vector<CellBlock> cell_;  // per block
+  std::optional<Creases> creases_;
 };
 
 }  // namespace
@@ -295,8 +329,8 @@ ValueRange value_range(const ScalarField& field) {
   return range;
 }
 
-TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes) {
-  return IsoSurface(field, iso, memory_limit_bytes).extract();
+TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes, bool keep_creases) {
+  return IsoSurface(field, iso, memory_limit_bytes, keep_creases).extract();
 }
 
 }  // namespace isoshell

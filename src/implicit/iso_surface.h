@@ -17,6 +17,7 @@ ValueRange value_range(const ScalarField& field);
 /// the middle of patches of six and more corners. Outside is where the background lies. Cost: linear in the blocks.
 /// Throws: unreadable_input for a NaN, nothing_to_mesh without a crossing, out_of_memory beyond 32-bit indices
 /// or the limit, where one is given.
-TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes = 0);
+TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes = 0,
+                                 bool keep_creases = false);
 
 }  // namespace isoshell

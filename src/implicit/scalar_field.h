@@ -1,6 +1,7 @@
 // A sparse scalar field on an integer lattice, whatever file it came from: blocks of 8^3 values and tiles of one value.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,20 @@ struct FieldTile {
 struct AffineMap {
   double at[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
+
+/// Length of a voxel's edges, 0 where they differ or are not square to each other.
+inline double cube_edge(const AffineMap& map) {
+  constexpr double kSlack = 0.01;
+  double dot[3][3] = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (const auto& row : map.at) dot[i][j] += row[i] * row[j];
+  const double sq = dot[0][0];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (std::abs(dot[i][j] - (i == j ? sq : 0)) > 2 * kSlack * sq) return 0;
+  return std::sqrt(sq);
+}
 
 class ScalarField {
  public:

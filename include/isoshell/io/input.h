@@ -23,6 +23,7 @@ struct InputRequest {
   std::string format;         ///< lower case, without a dot; empty: by the path
   std::string grid;           ///< of a volume, as in VolumeReadOptions; empty: the only one
   std::optional<double> iso;  ///< of a volume
+  bool keep_creases = false;  ///< of a volume, as in VolumeReadOptions; a run sets it where features are asked for
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or

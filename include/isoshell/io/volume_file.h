@@ -15,6 +15,7 @@ struct VolumeReadOptions {
   std::optional<double> iso;       ///< value of the surface; without it 0 in a level set and in unsigned distances, and
                                    ///< an error in a fog volume
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
+  bool keep_creases = false;       ///< vertices on creases and corners of distances; nothing else changes
 };
 
 /// What the values of a grid were taken for.
@@ -34,14 +35,14 @@ struct VolumeInfo {
 };
 
 /// Reads one grid and extracts the surface on which its trilinear field has the value `iso`: closed, 2-manifold, with
-/// vertices where lattice edges cross it, oriented towards the side on which the background lies. Without `iso` a grid
-/// of class unknown, or whose class says that it is unsigned, with no negative values that rise by one voxel's length a
-/// voxel holds unsigned distances. They get the signs of the two sides of their zero set first, so that it is one skin,
-/// closed over holes and with the hollows of nested surfaces. Every count and offset in the file is held to its bytes
-/// before anything is allocated by it.
-/// Throws: unreadable_input for a damaged file, a value that is not a number, and frustum transforms; nothing_to_mesh
-/// for a grid without the surface or of a type that has none (points, booleans, vectors), naming the grids there are;
-/// usage when the grid or its iso value must be named; out_of_memory over the limit.
+/// vertices where lattice edges cross it, or on its creases where these are kept, oriented towards the side on which
+/// the background lies. Without `iso` a grid of class unknown, or whose class says that it is unsigned, with no
+/// negative values that rise by one voxel's length a voxel holds unsigned distances. They get the signs of the two
+/// sides of their zero set first, so that it is one skin, closed over holes and with the hollows of nested surfaces.
+/// Every count and offset in the file is held to its bytes before anything is allocated by it. Throws: unreadable_input
+/// for a damaged file, a value that is not a number, and frustum transforms; nothing_to_mesh for a grid without the
+/// surface or of a type that has none (points, booleans, vectors), naming the grids there are; usage when the grid or
+/// its iso value must be named; out_of_memory over the limit.
 TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info);
 
 }  // namespace isoshell
