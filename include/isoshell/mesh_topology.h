@@ -25,6 +25,10 @@ struct MeshTopology {
 
   /// A closed, consistently oriented 2-manifold that uses every vertex.
   bool is_closed_manifold() const { return closed && manifold && unreferenced_vertices == 0; }
+  /// The same with so many borders, and no others.
+  bool is_manifold_with(int64_t loops) const {
+    return loops == 0 ? is_closed_manifold() : manifold && unreferenced_vertices == 0 && boundary_loops == loops;
+  }
 };
 
 /// Cost: linear in triangles for bounded valence; about 50 bytes a triangle.

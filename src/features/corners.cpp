@@ -13,12 +13,33 @@ constexpr double kSudden = .5;         // of the turn, that half the chord must 
 constexpr double kLeastChord = .25;    // of h, where a chain ends before
 constexpr double kMostSmoothed = 2;    // of h: longer edges are no noise
 constexpr int kSmoothing = 4;          // rounds
+constexpr double kLongestTooth = 4;    // of h: the sides of longer ones are curves
+constexpr double kEvenTeeth = .1;      // part of the squared bend of a tip that the tips beside it have at least
 
 /// Positions along a chain; a ring goes on behind its last.
 class Polyline {
  public:
   Polyline(const FeatureMesh& mesh, const EdgeChain& chain) : is_ring_(chain.is_ring) {
     for (const uint32_t v : chain.vertex) points_.push_back(mesh.vertices[v] - mesh.vertices[chain.vertex[0]]);
+  }
+
+  /// Whether a vertex and the two on either side of it turn to and fro, with edges up to this length: a tooth of a saw,
+  /// as the rims of scans and of deleted triangles are.
+  std::vector<uint8_t> find_teeth(double longest_world) const {
+    std::vector<uint8_t> is_tooth(points_.size(), 0);
+    const auto last = int64_t(points_.size()) - 1;
+    const int64_t margin = is_ring_ ? 0 : 3;
+    for (int64_t i = margin; last >= 5 && i + margin <= last; ++i) {
+      bool is_saw = true;
+      for (int64_t k = i - 2; k < i + 2 && is_saw; ++k) {
+        const WorldPoint a = bend(k), b = bend(k + 1);
+        const double aa = length_sq(a), bb = length_sq(b);
+        is_saw = dot(a, b) < 0 && aa > kEvenTeeth * bb && bb > kEvenTeeth * aa &&
+                 length(at(points_, k + 1) - at(points_, k)) <= longest_world;
+      }
+      is_tooth[size_t(i)] = is_saw;
+    }
+    return is_tooth;
   }
 
   /// Takes zigzags away, which alternate from vertex to vertex, and leaves what turns evenly: a vertex makes a quarter
@@ -65,6 +86,8 @@ class Polyline {
     return p[size_t(is_ring_ ? (i + last) % last : i)];
   }
 
+  WorldPoint bend(int64_t i) const { return .5 * (at(points_, i - 1) + at(points_, i + 1)) - at(points_, i); }
+
   template <class Bend>
   WorldPoint inner_bend(const Bend& bend, int64_t i) const {
     return is_ring_ || (i > 0 && i + 1 < int64_t(points_.size())) ? bend(i) : WorldPoint{0, 0, 0};
@@ -102,14 +125,15 @@ struct Candidate {
   size_t place;
 };
 
-std::vector<Candidate> candidates_on(const Polyline& line, double edge_length_world) {
+std::vector<Candidate> candidates_on(const Polyline& line, const std::vector<uint8_t>& is_tooth,
+                                     double edge_length_world) {
   const double chord = kChord * edge_length_world, least = kLeastChord * edge_length_world;
   std::vector<Candidate> found;
   for (size_t i = 0; i + 1 < line.size(); ++i) {
     const double place = line.along(i);
     if (!line.is_ring() && (place < least || line.length_world() - place < least)) continue;
     const double turn = turn_at(line, place, chord);
-    if (turn > kTurn && turn_at(line, place, chord / 2) > kSudden * turn) found.push_back({turn, i});
+    if (!is_tooth[i] && turn > kTurn && turn_at(line, place, chord / 2) > kSudden * turn) found.push_back({turn, i});
   }
   return found;
 }
@@ -118,9 +142,12 @@ std::vector<Candidate> candidates_on(const Polyline& line, double edge_length_wo
 
 std::vector<size_t> corners_inside(const FeatureMesh& mesh, const EdgeChain& chain, double edge_length_world) {
   Polyline line(mesh, chain);
+  const std::vector<uint8_t> is_tooth = chain.kind == CurveKind::border
+                                            ? line.find_teeth(kLongestTooth * edge_length_world)
+                                            : std::vector<uint8_t>(chain.vertex.size(), 0);
   line.smooth(kMostSmoothed * edge_length_world);
   line.integrate();
-  std::vector<Candidate> candidates = candidates_on(line, edge_length_world);
+  std::vector<Candidate> candidates = candidates_on(line, is_tooth, edge_length_world);
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.turn != b.turn ? a.turn > b.turn : a.place < b.place;
   });

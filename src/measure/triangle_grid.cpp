@@ -25,7 +25,8 @@ OnSegment nearest_of_segment(WorldPoint p, WorldPoint a, WorldPoint b) {
   return {dot(rest, rest), t};
 }
 
-/// In the plane where p lies over the triangle, on the edges elsewhere.
+}  // namespace
+
 MeshPoint nearest_of_triangle(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c) {
   const WorldPoint ab = b - a, ac = c - a, ap = p - a;
   const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
@@ -41,8 +42,6 @@ MeshPoint nearest_of_triangle(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoi
   if (on_bc.distance_sq == least) return {least, 1 - on_bc.part, on_bc.part};
   return {least, 0, 1 - on_ca.part};
 }
-
-}  // namespace
 
 TriangleGrid::TriangleGrid(const std::vector<WorldPoint>& vertices, const Triangles& triangles)
     : vertices_(vertices), list_(triangles) {

@@ -19,6 +19,9 @@ struct MeshPoint {
   uint32_t triangle = kNoTriangle;
 };
 
+/// In the plane where p lies over the triangle, on the edges elsewhere. Without a triangle's number.
+MeshPoint nearest_of_triangle(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c);
+
 class TriangleGrid {
  public:
   using Triangles = std::vector<std::array<uint32_t, 3>>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/world_vector.h"
+#include "repair/open_soup.h"
 #include "repair/repair_holes.h"
 #include "repair/repair_patches.h"
 #include "repair/repair_tubes.h"
@@ -91,9 +92,7 @@ TriangleSoup repaired_soup(const TriangleSoup& soup, const RepairMesh& mesh, con
   return repaired;
 }
 
-}  // namespace
-
-TriangleSoup repair_soup(const TriangleSoup& soup, const RepairOptions& options, RepairReport& report) {
+TriangleSoup repaired(const TriangleSoup& soup, const Closing& closing, bool may_drop_islands, RepairReport& report) {
   report = {};
   RepairMesh mesh(soup);
   report.joined_vertices = mesh.joined_vertices();
@@ -101,15 +100,25 @@ TriangleSoup repair_soup(const TriangleSoup& soup, const RepairOptions& options,
   drop_fins(mesh, report);
   orient_patches(mesh);
   std::vector<Cap> tubes;
-  if (options.cap_loops) tubes = find_tubes(mesh);
-  drop_islands(mesh, faces_that_join(tubes), report);
+  if (closing.holes) tubes = find_tubes(mesh);
+  if (may_drop_islands) drop_islands(mesh, faces_that_join(tubes), report);
   const auto is_dropped = [&](const Cap& tube) { return !mesh.is_live(tube.loop[0] / 3); };
   tubes.erase(std::remove_if(tubes.begin(), tubes.end(), is_dropped), tubes.end());
   const Patches patches = find_patches(mesh);
-  std::vector<Cap> caps = cap_holes(mesh, std::move(tubes), options, report);
+  std::vector<Cap> caps = cap_holes(mesh, std::move(tubes), closing, report);
   turn_outward(mesh, patches, caps);
   for (uint32_t f = 0; f < mesh.face_count(); ++f) report.turned_faces += mesh.is_live(f) && mesh.is_turned(f);
   return report.changed_anything() ? repaired_soup(soup, mesh, caps) : soup;
+}
+
+}  // namespace
+
+TriangleSoup repair_soup(const TriangleSoup& soup, const RepairOptions& options, RepairReport& report) {
+  return repaired(soup, {options.cap_loops, 0}, true, report);
+}
+
+TriangleSoup repair::repair_open_soup(const TriangleSoup& soup, double widest_gap_world, RepairReport& report) {
+  return repaired(soup, {false, widest_gap_world}, false, report);
 }
 
 }  // namespace isoshell

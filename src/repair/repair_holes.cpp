@@ -51,20 +51,22 @@ class Components {
 
 class Capper {
  public:
-  Capper(const RepairMesh& mesh, RepairReport& report) : mesh_(mesh), report_(report) {}
+  Capper(const RepairMesh& mesh, const Closing& closing, RepairReport& report)
+      : mesh_(mesh), closing_(closing), report_(report) {}
 
-  std::vector<Cap> run(std::vector<Cap> tubes, const std::vector<Loop>& loops, bool cap_loops) {
+  std::vector<Cap> run(std::vector<Cap> tubes, const std::vector<Loop>& loops) {
     for (Cap& tube : tubes) add_tube(std::move(tube));
     if (loops.empty()) return std::move(caps_);
     Components components(mesh_);
     for (const Loop& loop : loops)
-      if (!cap_loops || !cap(loop, largest_cap(loop, components.of(mesh_.from(loop[0]))))) ++report_.open_loops;
+      if (!cap(loop, largest_cap(loop, components.of(mesh_.from(loop[0]))))) ++report_.open_loops;
     return std::move(caps_);
   }
 
  private:
   /// The area of caps that make the loop a hole.
   double largest_cap(const Loop& loop, const Components::Size& component) const {
+    if (!closing_.holes) return closing_.widest_gap_world > 0 ? component.area : 0;
     Box box(mesh_.position[mesh_.from(loop[0])]);
     for (uint32_t h : loop) box.add(mesh_.position[mesh_.from(h)]);
     const bool is_short = box.diagonal_sq() <= kLargestHole * kLargestHole * component.box.diagonal_sq();
@@ -73,6 +75,7 @@ class Capper {
 
   /// The loop in one piece; where that fails because it passes vertices more than once, each simple cycle of it.
   bool cap(const Loop& loop, double largest) {
+    if (!(largest > 0)) return false;
     if (cap_in_one(loop, largest)) return true;
     const std::vector<Loop> cycles = simple_cycles(loop);
     bool all = cycles.size() > 1;
@@ -112,10 +115,10 @@ class Capper {
         cap_loop(corner, [&](uint32_t i, uint32_t j) { return may_join(vertex[i], vertex[j]); });
     if (triangles.empty() || !joins_each_pair_once(vertex, triangles)) return false;
     const double area = area_of(corner, triangles);
-    if (area > largest) return false;
+    if (area > largest || is_too_wide(area, length_of(corner))) return false;
     Cap cap = {loop, {}};
     for (const LoopTriangle& t : triangles) cap.face.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
-    count_width(area, length_of(corner));
+    count_cap(area, length_of(corner));
     add(std::move(cap), 1);
     return true;
   }
@@ -143,9 +146,13 @@ class Capper {
     add(std::move(tube), 2);
   }
 
-  void count_width(double area, double length) {
+  static double width_of(double area, double length) { return 4 * area / length; }
+  bool is_too_wide(double area, double length) const {
+    return !closing_.holes && width_of(area, length) > closing_.widest_gap_world;
+  }
+  void count_cap(double area, double length) {
     report_.cap_area_world += area;
-    report_.widest_cap_world = std::max(report_.widest_cap_world, 4 * area / length);
+    report_.widest_cap_world = std::max(report_.widest_cap_world, width_of(area, length));
   }
 
   void add(Cap cap, int loops) {
@@ -168,6 +175,7 @@ class Capper {
   }
 
   const RepairMesh& mesh_;
+  const Closing& closing_;
   RepairReport& report_;
   std::vector<Cap> caps_;
   std::unordered_set<uint64_t> chords_;  ///< edges of cap faces
@@ -175,7 +183,7 @@ class Capper {
 
 }  // namespace
 
-std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const RepairOptions& options,
+std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const Closing& closing,
                            RepairReport& report) {
   std::vector<uint8_t> is_joined(size_t(mesh.face_count()) * 3, 0);
   for (const Cap& tube : tubes)
@@ -183,7 +191,7 @@ std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const
   std::vector<Loop> loops = closed_loops(mesh);
   loops.erase(std::remove_if(loops.begin(), loops.end(), [&](const Loop& loop) { return is_joined[loop[0]] != 0; }),
               loops.end());
-  return Capper(mesh, report).run(std::move(tubes), loops, options.cap_loops);
+  return Capper(mesh, closing, report).run(std::move(tubes), loops);
 }
 
 }  // namespace isoshell::repair

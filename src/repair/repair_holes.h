@@ -6,13 +6,19 @@
 
 namespace isoshell::repair {
 
+/// Which loops are closed.
+struct Closing {
+  bool holes = true;            ///< those that are holes, see repair_soup, and tubes
+  double widest_gap_world = 0;  ///< otherwise those whose caps are this wide or less, whatever they bound
+};
+
 struct Cap {
   Loop loop;                  ///< what it closes; of a tube both its ends, one after the other
   std::vector<Corners> face;  ///< oriented like the faces around
 };
-/// Closes holes when that is asked for, all but those that tubes join, and counts the loops that stay open. Faces agree
+/// Closes loops, all but those that tubes join, and counts those that stay open. Faces agree
 /// in their patches already. Tubes come first, then caps in the order of their smallest half-edges.
-std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const RepairOptions& options,
+std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const Closing& closing,
                            RepairReport& report);
 
 }  // namespace isoshell::repair

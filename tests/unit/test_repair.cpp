@@ -4,6 +4,7 @@
 
 #include "isoshell/repair.h"
 #include "isoshell/stages.h"
+#include "repair/open_soup.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 
@@ -134,6 +135,24 @@ TEST_CASE("repair: holes stay when caps are not wanted", "[repair]") {
   const Repaired m = repaired(without(ball(), [](WorldPoint p) { return p.z > .9 || p.x > .9; }), false);
   CHECK(m.report.capped_loops == 0);
   CHECK(m.report.open_loops == 2);
+}
+
+TEST_CASE("repair: of a surface that stays open only narrow loops are closed, and small parts stay", "[repair]") {
+  const auto gone = [](WorldPoint p) { return p.z < -.3 || p.z > .97; };
+  const TriangleSoup bowl = without(ball(), gone);
+  TriangleSoup speck = bowl;
+  speck.vertices.insert(speck.vertices.end(), {{3, 0, 0}, {3.01, 0, 0}, {3, .01, 0}});
+  const auto last = uint32_t(speck.vertices.size());
+  shapes::add_triangle(speck, last - 3, last - 2, last - 1);
+  RepairReport report;
+  const TriangleSoup same = repair::repair_open_soup(speck, 0, report);
+  CHECK(triangles_of(same) == triangles_of(speck));
+  CHECK(report.open_loops == 3);
+  repair::repair_open_soup(bowl, .6, report);
+  CHECK(report.capped_loops == 1);
+  CHECK(report.open_loops == 1);
+  repair::repair_open_soup(bowl, 10, report);  // rims are loops like any
+  CHECK(report.capped_loops == 2);
 }
 
 TEST_CASE("repair: holes that touch in a vertex, and a face between them, are closed around it", "[repair]") {

@@ -1,0 +1,105 @@
+#include "isoshell/borders.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/watched.h"
+#include "core/world_vector.h"
+#include "isoshell/buffer.h"
+#include "measure/triangle_grid.h"
+#include "voxel/union_find.h"
+
+namespace isoshell {
+namespace {
+
+/// Half-edge 3 t + i runs from corner i of triangle t to the next one.
+struct HalfEdge {
+  uint32_t smaller_end, larger_end, number;
+};
+uint32_t next_in_triangle(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+
+std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
+  std::vector<HalfEdge> halves;
+  halves.reserve(3 * mesh.triangles.size());
+  for (uint32_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
+    const uint32_t u = mesh.triangles[h / 3][h % 3], v = mesh.triangles[h / 3][(h + 1) % 3];
+    if (u >= mesh.vertices.size())
+      throw Error(
+          ErrorCode::usage, "borders",
+          "a triangle names vertex " + std::to_string(u) + "; there are " + std::to_string(mesh.vertices.size()));
+    halves.push_back({std::min(u, v), std::max(u, v), h});
+  }
+  tbb::parallel_sort(halves.begin(), halves.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return std::tie(a.smaller_end, a.larger_end, a.number) < std::tie(b.smaller_end, b.larger_end, b.number);
+  });
+  return halves;
+}
+
+struct Borders {
+  std::vector<std::array<uint32_t, 3>> segments;  ///< triangles without area, which a grid of triangles takes
+  std::vector<uint32_t> vertices;
+  int64_t loops = 0;
+  double length_world = 0;
+};
+
+/// Corners are joined over edges of two triangles, to fans, and along border edges: each set is a loop then.
+Borders borders_of(const TriangleMesh& mesh) {
+  Borders borders;
+  const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+  Buffer<uint32_t> parent(int64_t(halves.size()));
+  for (int64_t c = 0; c < parent.size(); ++c) parent[c] = uint32_t(c);
+  const auto corner_at = [&](uint32_t h, uint32_t v) {
+    return mesh.triangles[h / 3][h % 3] == v ? h : next_in_triangle(h);
+  };
+  std::vector<uint32_t> border_corners;
+  for (size_t i = 0, end; i < halves.size(); i = end) {
+    const uint32_t u = halves[i].smaller_end, v = halves[i].larger_end;
+    for (end = i + 1; end < halves.size() && halves[end].smaller_end == u && halves[end].larger_end == v; ++end)
+      for (const uint32_t at : {u, v})
+        join(parent.view(), corner_at(halves[i].number, at), corner_at(halves[end].number, at));
+    if (end - i > 1) continue;
+    join(parent.view(), halves[i].number, next_in_triangle(halves[i].number));
+    border_corners.push_back(halves[i].number);
+    borders.segments.push_back({u, v, v});
+    borders.vertices.insert(borders.vertices.end(), {u, v});
+    borders.length_world += length(mesh.vertices[v] - mesh.vertices[u]);
+  }
+  for (uint32_t& c : border_corners) c = find_root(parent.view(), c);
+  for (std::vector<uint32_t>* list : {&border_corners, &borders.vertices}) {
+    std::sort(list->begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  borders.loops = int64_t(border_corners.size());
+  return borders;
+}
+
+double farthest(const TriangleMesh& from, const Borders& vertices, const TriangleMesh& to, const Borders& segments) {
+  if (vertices.vertices.empty() || segments.segments.empty()) return 0;
+  const TriangleGrid grid(to.vertices, segments.segments);
+  std::vector<double> distance_sq(vertices.vertices.size());
+  tbb::parallel_for(size_t(0), distance_sq.size(),
+                    [&](size_t i) { distance_sq[i] = grid.distance_sq(from.vertices[vertices.vertices[i]]); });
+  return std::sqrt(*std::max_element(distance_sq.begin(), distance_sq.end()));
+}
+
+}  // namespace
+
+BorderMeasures measure_borders(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context) {
+  return run_with_threads(context, [&] {
+    const Borders here = borders_of(mesh), there = borders_of(reference);
+    return BorderMeasures{here.loops,
+                          here.length_world,
+                          there.loops,
+                          there.length_world,
+                          farthest(mesh, here, reference, there),
+                          farthest(reference, there, mesh, here)};
+  });
+}
+
+}  // namespace isoshell

@@ -1,0 +1,29 @@
+// Where the triangles of a mesh on the lattice intersect one another.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "isoshell/backend.h"
+#include "isoshell/lattice_surface.h"
+
+namespace isoshell {
+
+struct BoxOfPoints {
+  PointQ8 lo, hi;
+};
+inline bool boxes_meet(const BoxOfPoints& a, const BoxOfPoints& b) {
+  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
+         b.lo.z <= a.hi.z;
+}
+
+/// Of each pair of triangles that meet outside of the corners that they share the box that both of theirs have in
+/// common, exactly tested; in the order of the pairs along the longest axis. Cost: a sort, and for each triangle a look
+/// at all that begin beside it along that axis.
+std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                                        Context& context);
+
+/// How many of the boxes are farther than this, along some axis, from each of the others.
+int64_t count_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others, int32_t reach_q8);
+
+}  // namespace isoshell

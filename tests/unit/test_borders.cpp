@@ -1,0 +1,147 @@
+// Measures of borders, intersections of triangles on the lattice, and fans that touch, on meshes that can be counted.
+#include <cmath>
+
+#include "features/jagged_paths.h"
+#include "features/separate_fans.h"
+#include "features/weld_for_features.h"
+#include "isoshell/borders.h"
+#include "measure/crossings.h"
+#include "support/catch.h"
+
+using namespace isoshell;
+
+namespace {
+
+/// A unit square of two triangles at a corner.
+void add_square(TriangleMesh& mesh, WorldPoint at) {
+  const auto first = uint32_t(mesh.vertices.size());
+  for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
+    mesh.vertices.push_back({at.x + x, at.y + y, at.z});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+Buffer<TriangleIndices> triangles_of(const std::vector<TriangleIndices>& list) {
+  Buffer<TriangleIndices> out(int64_t(list.size()));
+  std::copy(list.begin(), list.end(), out.begin());
+  return out;
+}
+Buffer<PointQ8> points_of(const std::vector<PointQ8>& list) {
+  Buffer<PointQ8> out(int64_t(list.size()));
+  std::copy(list.begin(), list.end(), out.begin());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("border measures: loops, lengths and distances both ways", "[borders]") {
+  Context context;
+  TriangleMesh mesh, reference;
+  add_square(mesh, {0, 0, 0.25});
+  add_square(reference, {0, 0, 0});
+  add_square(reference, {5, 0, 0});
+  const BorderMeasures found = measure_borders(mesh, reference, context);
+  CHECK(found.loops == 1);
+  CHECK(found.length_world == 4);
+  CHECK(found.reference_loops == 2);
+  CHECK(found.reference_length_world == 8);
+  CHECK(found.to_reference_max == 0.25);
+  CHECK(found.from_reference_max > 5);
+}
+
+TEST_CASE("border measures: loops that touch in a vertex are as many as the fans around it", "[borders]") {
+  Context context;
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
+  CHECK(measure_borders(mesh, mesh, context).loops == 2);
+  mesh.triangles.push_back({0, 2, 3});
+  CHECK(measure_borders(mesh, mesh, context).loops == 1);
+}
+
+TEST_CASE("border measures: a closed mesh has none", "[borders]") {
+  Context context;
+  TriangleMesh closed, square;
+  closed.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  closed.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  add_square(square, {0, 0, 0});
+  const BorderMeasures found = measure_borders(closed, square, context);
+  CHECK(found.loops == 0);
+  CHECK(found.length_world == 0);
+  CHECK(found.to_reference_max == 0);
+}
+
+TEST_CASE("crossings: triangles that meet outside of shared corners, and where", "[borders]") {
+  Context context;
+  const Buffer<PointQ8> points = points_of({{0, 0, 0},
+                                            {1000, 0, 0},
+                                            {0, 1000, 0},
+                                            {1000, 1000, 0},  // neighbour of the first
+                                            {100, 100, -50},
+                                            {200, 100, -50},
+                                            {150, 150, 50},  // through the first
+                                            {5000, 0, 0},
+                                            {5100, 0, 0},
+                                            {5000, 100, 0}});
+  const Buffer<TriangleIndices> triangles = triangles_of({{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {7, 8, 9}});
+  const auto found = find_crossings(points.view(), triangles.view(), context);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].lo.x == 100);
+  CHECK(found[0].hi.x == 200);
+  CHECK(count_apart(found, found, 0) == 0);
+  const std::vector<BoxOfPoints> elsewhere = {{{300, 100, 0}, {400, 200, 0}}};
+  CHECK(count_apart(found, elsewhere, 99) == 1);
+  CHECK(count_apart(found, elsewhere, 100) == 0);
+  CHECK(count_apart(found, {}, 1000) == 1);
+}
+
+TEST_CASE("fans: squares that touch in a corner get one each, and a place more is counted", "[borders]") {
+  TriangleMesh both;
+  add_square(both, {0, 0, 0});
+  add_square(both, {1, 1, 0});
+  TriangleSoup soup;
+  soup.vertices = both.vertices;
+  soup.triangles = both.triangles;
+  const FeatureMesh mesh = weld_for_features(soup);
+  REQUIRE(mesh.vertices.size() == 7);
+  std::vector<WorldPoint> position = mesh.vertices;
+  MeshTriangles triangles = mesh.triangles;
+  const std::vector<uint32_t> separated = separate_fans(position, triangles);
+  REQUIRE(separated.size() == 1);
+  CHECK(position.size() == 8);
+  CHECK(position.back().x == 1);
+  CHECK(position.back().y == 1);
+  CurveNetwork network;
+  network.curves.push_back({CurveKind::border, false, {}});
+  for (const auto& t : mesh.triangles)  // every edge of the first triangle of each square
+    for (size_t i = 0; i < 3; ++i) network.curves.push_back({CurveKind::border, false, {t[i], t[(i + 1) % 3]}});
+  network.curves.erase(network.curves.begin());
+  CHECK(count_separated_places(mesh, network, triangles) == 1);
+  CHECK(count_separated_places(mesh, {}, triangles) == 0);
+  CHECK(separate_fans(position, triangles).empty());
+}
+
+TEST_CASE("jagged paths: borders that turn to and fro are, circles, straight ones and creases are not", "[borders]") {
+  std::vector<WorldPoint> position;
+  std::vector<CurvePath> paths;
+  const auto add = [&](CurveKind kind, bool is_loop, double depth) {
+    CurvePath path;
+    path.kind = kind;
+    path.is_loop = is_loop;
+    for (uint32_t i = 0; i < 100; ++i) {
+      const double out = i % 2 == 0 ? depth : 0, r = 1000 + out, turn = 6.283185307179586 * i / 100;
+      path.vertex.push_back(uint32_t(position.size()));
+      position.push_back(is_loop ? WorldPoint{r * std::cos(turn), r * std::sin(turn), 0} : WorldPoint{60. * i, out, 0});
+    }
+    measure_path(position, path);
+    paths.push_back(path);
+  };
+  add(CurveKind::border, true, 0);
+  add(CurveKind::border, false, 0);
+  add(CurveKind::border, true, 40);
+  add(CurveKind::border, false, 40);
+  add(CurveKind::crease, true, 40);
+  find_jagged_paths(position, 100, paths);
+  const std::vector<bool> expected = {false, false, true, true, false};
+  for (size_t p = 0; p < paths.size(); ++p) CHECK(paths[p].is_jagged == expected[p]);
+}
