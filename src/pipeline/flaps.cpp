@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/copy_product.h"
+#include "core/near_points.h"
 #include "core/voxel_set.h"
 #include "isoshell/to_host.h"
 #include "pipeline/thin_walls.h"
@@ -153,23 +154,41 @@ void keep_off_surface(const Sheet& laid, const std::vector<uint32_t>& now, Sheet
 
 }  // namespace
 
-bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
-  const SiteSet flaps = sites_of_flaps(*OnHost(p.sites), *OnHost(p.sheet));
-  if (flaps.voxels.voxel_count() == 0) return false;
-  const SiteSet& sites = on_host(p.sites);
-  const Sheet laid = std::move(on_host(p.sheet));
-  const VoxelSet grown = host_copy(build_shell(flaps, {grown_vox}, context)).voxels;
-  LeafMasks leaves;
-  add(leaves, sites.voxels);
-  add(leaves, grown);
-  p.grown = {grown_vox, true, {voxel_set_of(leaves, sites.voxels), sites.hollows.to_host()}};
-  p.sheet = {};
+void grow_at(Prepared& p, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
+  const SiteSet solid = host_copy(solid_voxels_of(p));
   const SheetOptions options{closing_of_solid(p), smallest_component_q16, kNoGenus, false};
+  const Sheet laid = std::move(on_host(p.sheet));
+  const VoxelSet grown = host_copy(build_shell(where, {grown_vox}, context)).voxels;
+  LeafMasks leaves;
+  add(leaves, solid.voxels);
+  add(leaves, grown);
+  if (!p.grown) p.grown = {grown_vox, true, {}};
+  p.grown.voxels = {voxel_set_of(leaves, solid.voxels), solid.hollows.to_host()};
+  p.sheet = {};
   p.sheet = build_proxy(p.grown.voxels, p.surface.frame, options, context);
   const std::vector<uint32_t> now = lay_as(laid, grown, on_host(p.sheet));
   keep_off_surface(laid, now, p.sheet);
   p.sheet.topology.bridged_vertices = laid.topology.bridged_vertices;  // the proxy has no sources of its own
+}
+
+bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
+  const SiteSet flaps = sites_of_flaps(*OnHost(p.sites), *OnHost(p.sheet));
+  if (flaps.voxels.voxel_count() == 0) return false;
+  grow_at(p, flaps, grown_vox, smallest_component_q16, context);
   return true;
+}
+
+SiteSet sites_near(const SiteSet& sites, const std::vector<PointQ8>& points, double reach_vox) {
+  const OnHost<SiteSet> here(sites);
+  const NearPoints near(points, reach_vox * kOneVoxelQ8);
+  const VoxelSetView voxels = here->voxels.view();
+  LeafMasks leaves;
+  for (int64_t leaf = 0; leaf < voxels.leaf_key.size; ++leaf)
+    for_each_active(voxels, leaf, [&](int offset, int64_t) {
+      const Voxel v = voxel_at(leaf_of_key(voxels.leaf_key[leaf]), offset);
+      if (near.holds({v.x * kOneVoxelQ8, v.y * kOneVoxelQ8, v.z * kOneVoxelQ8})) add(leaves, v);
+    });
+  return {voxel_set_of(leaves, here->voxels)};
 }
 
 }  // namespace isoshell

@@ -12,4 +12,8 @@ namespace isoshell {
 void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, SeededMesh& mesh,
                            RemeshReport& report, Context& context);
 
+/// The same on a surface as it is, of whose seeds some are fixed.
+void resolve_intersections(const SurfaceMesh& surface, const OptimizeOptions& options, SeededMesh& mesh,
+                           RemeshReport& report, Context& context);
+
 }  // namespace isoshell

@@ -1,0 +1,142 @@
+// flip_flat_edges (see flip_flat_edges.h).
+#include "features/flip_flat_edges.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/world_vector.h"
+#include "features/mesh_fans.h"
+#include "features/split_edges.h"
+#include "isoshell/voxel_set.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kMostOffPlaneQ8 = 0.5;
+constexpr size_t kMostFlipsPerEdge = 8;  ///< far more than it takes; rounding may not make it endless
+constexpr double kRoundedAway = 1e-9;    ///< sums of two angles of 180 degrees, as in grids, are not told from it
+
+/// Half-edge 3 t + i runs from corner i of triangle t to the next one. Of the triangles beside an edge, a to b, c is
+/// the corner of the one that passes it so, d that of the other.
+class FlatEdges {
+ public:
+  explicit FlatEdges(FineMesh& mesh) : mesh_(mesh), twin_(3 * mesh.triangles.size(), kNone) {
+    for (const CurvePath& path : mesh.paths)
+      for (size_t i = 0; i < path.edge_count(); ++i) on_path_.push_back(edge_key(path.vertex[i], path.edge_end(i)));
+    std::sort(on_path_.begin(), on_path_.end());
+    find_twins();
+  }
+
+  void flip_all() {
+    std::vector<uint32_t> waiting;
+    for (uint32_t h = 0; h < twin_.size(); ++h)
+      if (twin_[h] != kNone && h == canonical(h) && should_flip(h)) waiting.push_back(h);
+    std::sort(waiting.begin(), waiting.end(), [&](uint32_t g, uint32_t h) {
+      if (from(g) != from(h)) return is_before(at(from(g)), at(from(h)));
+      return is_before(at(to(g)), at(to(h)));
+    });
+    for (size_t left = kMostFlipsPerEdge * twin_.size(); !waiting.empty() && left > 0; --left) {
+      uint32_t h = waiting.back();
+      waiting.pop_back();
+      if (twin_[h] == kNone) continue;
+      h = canonical(h);
+      if (!should_flip(h)) continue;
+      const uint32_t t = h - h % 3, u = twin_[h] - twin_[h] % 3;
+      flip(h);
+      waiting.insert(waiting.end(), {t, t + 2, u, u + 2});
+    }
+  }
+
+ private:
+  static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  uint32_t from(uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
+  uint32_t to(uint32_t h) const { return from(next(h)); }
+  uint32_t opposite(uint32_t h) const { return from(next(next(h))); }
+  const WorldPoint& at(uint32_t v) const { return mesh_.position[v]; }
+  uint32_t canonical(uint32_t h) const { return is_before(at(from(h)), at(to(h))) ? h : twin_[h]; }
+
+  /// Where the two triangles of an edge pass it in opposite directions, and no path does.
+  void find_twins() {
+    std::vector<std::pair<uint64_t, uint32_t>> edges(twin_.size());
+    tbb::parallel_for(size_t(0), edges.size(), [&](size_t h) {
+      edges[h] = {edge_key(from(uint32_t(h)), to(uint32_t(h))), uint32_t(h)};
+    });
+    tbb::parallel_sort(edges.begin(), edges.end());
+    for (size_t first = 0, last = 0; first < edges.size(); first = last) {
+      while (last < edges.size() && edges[last].first == edges[first].first) ++last;
+      const uint32_t g = edges[first].second, h = edges[last - 1].second;
+      if (last - first != 2 || from(g) != to(h)) continue;
+      if (std::binary_search(on_path_.begin(), on_path_.end(), edges[first].first)) continue;
+      twin_[g] = h;
+      twin_[h] = g;
+    }
+  }
+
+  /// Whether the angles at c and d are more than 180 degrees together, and the edge between them would do as well and
+  /// be the only one.
+  bool should_flip(uint32_t h) const {
+    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(twin_[h]));
+    const WorldPoint at_c = cross(b - a, c - a), at_d = cross(a - b, d - b);
+    const double area_c = length(at_c), area_d = length(at_d), ab = length(b - a);
+    const double left = dot(a - c, b - c) * area_d, right = dot(a - d, b - d) * area_c;
+    if (left + right >= -kRoundedAway * (std::abs(left) + std::abs(right))) return false;
+    const WorldPoint both = {at_c.x + at_d.x, at_c.y + at_d.y, at_c.z + at_d.z};
+    if (std::abs(dot(at_c, d - a)) > kMostOffPlaneQ8 * length(both)) return false;
+    const auto faces_so = [&](const WorldPoint& n, double area) {
+      return dot(n, both) > 0 || area <= kMostOffPlaneQ8 * ab;
+    };
+    if (!faces_so(at_c, area_c) || !faces_so(at_d, area_d)) return false;
+    if (dot(cross(d - a, c - a), both) <= 0 || dot(cross(c - b, d - b), both) <= 0) return false;
+    return length(d - c) <= std::max({ab, length(c - a), length(c - b), length(d - a), length(d - b)}) &&
+           !is_beside(next(next(h)), opposite(twin_[h]));
+  }
+
+  /// Whether an edge joins the vertex that a half-edge begins at to another one, in the fan of its triangle.
+  bool is_beside(uint32_t begin, uint32_t other) const {
+    for (uint32_t h = begin; h != kNone;) {
+      const uint32_t before = next(next(h));
+      if (to(h) == other || from(before) == other) return true;
+      h = twin_[before];
+      if (h == begin) return false;
+    }
+    for (uint32_t h = twin_[begin]; h != kNone; h = twin_[next(h)])
+      if (to(next(h)) == other || opposite(next(h)) == other) return true;
+    return false;
+  }
+
+  /// The triangles a, b, c and b, a, d become a, d, c and b, c, d.
+  void flip(uint32_t h) {
+    const uint32_t g = twin_[h], t = h - h % 3, u = g - g % 3;
+    const uint32_t a = from(h), b = to(h), c = opposite(h), d = opposite(g);
+    const uint32_t at_ad = twin_[next(g)], at_ca = twin_[next(next(h))], at_bc = twin_[next(h)],
+                   at_db = twin_[next(next(g))];
+    mesh_.triangles[t / 3] = {a, d, c};
+    mesh_.triangles[u / 3] = {b, c, d};
+    connect(t, at_ad);
+    connect(t + 1, u + 1);
+    connect(t + 2, at_ca);
+    connect(u, at_bc);
+    connect(u + 2, at_db);
+  }
+  void connect(uint32_t g, uint32_t h) {
+    twin_[g] = h;
+    if (h != kNone) twin_[h] = g;
+  }
+
+  FineMesh& mesh_;
+  std::vector<uint32_t> twin_;  ///< kNone where an edge stays
+  std::vector<uint64_t> on_path_;
+};
+
+}  // namespace
+
+FineMesh flip_flat_edges(FineMesh mesh) {
+  FlatEdges(mesh).flip_all();
+  return mesh;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,14 @@
+// Better triangles where the input is flat.
+#pragma once
+
+#include "features/refine_mesh.h"
+
+namespace isoshell {
+
+/// Flips edges between two triangles in a plane until the mesh is Delaunay there: parts have long thin triangles in
+/// their flat faces, whose vertices are no neighbours of those that are near to them, and cells of seeds would come in
+/// pieces. The surface stays as it is to half a step of the lattice, edges of paths stay, and no edge becomes longer
+/// than those around it. Result: independent of the order of triangles. Cost: a sort of the half-edges.
+FineMesh flip_flat_edges(FineMesh mesh);
+
+}  // namespace isoshell

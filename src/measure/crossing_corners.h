@@ -1,0 +1,15 @@
+// Where a mesh intersects itself.
+#pragma once
+
+#include <vector>
+
+#include "isoshell/stages.h"
+
+namespace isoshell {
+
+/// The corners of triangles that intersect others, exactly tested: by x, y and z, each position once. `joined`: of the
+/// first vertices the one that each is a copy of (see FixedSeeds). In host memory. Cost: a sort of the triangles by the
+/// cells that they reach into.
+std::vector<PointQ8> crossing_corners(const DualMesh& mesh, View<const uint32_t> joined);
+
+}  // namespace isoshell
