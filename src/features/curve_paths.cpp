@@ -70,7 +70,6 @@ std::vector<std::vector<uint32_t>> parts_between_corners(const FeatureCurve& cur
   return parts;
 }
 
-/// Segments that keep edges of the result apart from one another: see segments_of.
 void find_least_segments(const std::vector<char>& turns, std::vector<CurvePath>& paths) {
   std::map<uint64_t, int> between;
   for (const CurvePath& path : paths)

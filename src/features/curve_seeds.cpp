@@ -2,39 +2,31 @@
 #include "features/curve_seeds.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "features/curve_paths.h"
 #include "isoshell/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
-/// Per segment where along a curve it begins; an open curve ends with a seed, too. The points nearest to equal
-/// arclengths, each beyond the one before.
-std::vector<size_t> seed_points(const CutCurve& curve, double edge_length_q8) {
-  const auto points = int64_t(curve.place.size());
-  const int64_t most = curve.is_loop ? points : points - 1;
-  const int64_t segments = std::min(most, segments_of(curve.length_q8, curve.least_segments, edge_length_q8));
-  const double step = curve.length_q8 / double(segments);
-  std::vector<size_t> out{0};
-  for (int64_t i = 1; i < segments; ++i) {
-    const double target = step * double(i);
-    const int64_t after = std::lower_bound(curve.at_q8.begin(), curve.at_q8.end(), target) - curve.at_q8.begin();
-    const bool is_before =
-        after == points || target - curve.at_q8[size_t(after - 1)] <= curve.at_q8[size_t(after)] - target;
-    const int64_t nearest = is_before ? after - 1 : after;
-    out.push_back(size_t(std::clamp(nearest, int64_t(out.back()) + 1, most - (segments - i))));
+/// Every second segment's ends, level times.
+std::vector<size_t> seeds_of_level(const CutCurve& curve, int level) {
+  std::vector<size_t> seeds = curve.seeds;
+  const size_t end = curve.is_loop ? 0 : 1;  // seeds beyond the last segment
+  for (; level > 0; --level) {
+    const size_t segments = seeds.size() - end, coarse = std::max((segments + 1) / 2, size_t(curve.least_segments));
+    if (coarse >= segments) break;
+    std::vector<size_t> next;
+    for (size_t i = 0; i < coarse + end; ++i) next.push_back(seeds[i * segments / coarse]);
+    seeds = std::move(next);
   }
-  if (!curve.is_loop) out.push_back(curve.place.size() - 1);
-  return out;
+  return seeds;
 }
 
 /// Per place the place of the nearest seed along its curve; places that are seeds are their own.
-std::vector<uint32_t> nearest_seed_places(const CutSurface& cut, double edge_length_q8) {
+std::vector<uint32_t> nearest_seed_places(const CutSurface& cut, int level) {
   std::vector<uint32_t> nearest(cut.copies_first.size() - 1, kNone);
   for (const CutCurve& curve : cut.curves) {
-    const std::vector<size_t> seeds = seed_points(curve, edge_length_q8);
+    const std::vector<size_t> seeds = seeds_of_level(curve, level);
     for (size_t s = 0; s < seeds.size(); ++s) {
       nearest[curve.place[seeds[s]]] = curve.place[seeds[s]];
       const bool is_last = s + 1 == seeds.size();
@@ -79,11 +71,11 @@ int64_t count_places(const FixedSeeds& fixed) {
   return places;
 }
 
-SeedSet seeds_on_curves(const CutSurface& cut, double edge_length_world) {
+SeedSet seeds_on_curves(const CutSurface& cut, int level) {
   const SurfaceMesh& surface = cut.surface;
   SeedSet seeds;
   if (cut.curves.empty()) return seeds;
-  const std::vector<uint32_t> nearest = nearest_seed_places(cut, edge_length_world / cut.voxel_size * kOneVoxelQ8);
+  const std::vector<uint32_t> nearest = nearest_seed_places(cut, level);
   std::vector<uint32_t> home, joined;
   for (uint32_t p = 0; p < nearest.size(); ++p) {
     if (nearest[p] != p) continue;

@@ -9,15 +9,16 @@
 
 #include "core/watched.h"
 #include "core/world_vector.h"
+#include "features/edge_lengths.h"
+#include "features/flip_flat_edges.h"
+#include "features/jagged_paths.h"
+#include "features/path_seeds.h"
 #include "features/refine_mesh.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 
 namespace isoshell {
 namespace {
-
-constexpr double kEdgesOfLength = 4;                 ///< fine edges along one edge of the result
-constexpr double kLongestEdgeQ8 = 16 * kOneVoxelQ8;  ///< well within the reach of blocks
 
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
@@ -29,14 +30,20 @@ PointQ8 rounded(const WorldPoint& p) {
   return {nearest(p.x), nearest(p.y), nearest(p.z)};
 }
 
-FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame, double edge_length_q8,
-                 Context& context) {
+/// Cut at the one edge length first, then once more where lengths are less, with a vertex for every seed of a path.
+FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
+                 const CutOptions& options, Context& context) {
   FineMesh fine;
   for (const WorldPoint& p : mesh.vertices) fine.position.push_back(on_lattice(frame, p));
+  fine.edge_length.assign(fine.position.size(), options.edge_length_world / frame.voxel_size * kOneVoxelQ8);
   fine.triangles = mesh.triangles;
   fine.paths = curve_paths(fine.position, fine.triangles, network);
-  return refine_mesh(std::move(fine), {std::min(edge_length_q8 / kEdgesOfLength, kLongestEdgeQ8), edge_length_q8},
-                     context);
+  find_jagged_paths(fine.position, options.edge_length_world / frame.voxel_size * kOneVoxelQ8, fine.paths);
+  fine = refine_mesh(std::move(fine), context);
+  if (options.vertices > 0) vary_edge_lengths(fine, options.vertices);
+  check_cancel(context, "features");
+  place_path_seeds(fine);
+  return flip_flat_edges(refine_mesh(std::move(fine), context));
 }
 
 std::vector<uint64_t> edges_of(const std::vector<CurvePath>& paths) {
@@ -75,7 +82,8 @@ std::vector<uint32_t> number_places(const FineMesh& mesh, CutSurface& cut) {
   for (const uint32_t v : corners) place[v] = count++;
   cut.corner_count = count;
   for (const CurvePath& path : mesh.paths) {
-    CutCurve curve{path.curve, path.kind, path.is_loop, {}, path.at, path.length, path.least_segments};
+    CutCurve curve{path.curve, path.kind, path.is_loop, {}, path.at, path.length, path.least_segments, {}};
+    for (const PathPoint& seed : path.seeds) curve.seeds.push_back(seed.edge);
     for (const uint32_t v : path.vertex) {
       if (place[v] == kNone) place[v] = count++;
       curve.place.push_back(place[v]);
@@ -109,6 +117,19 @@ void list_copies(const MeshFans& fans, const std::vector<uint32_t>& place_of_fin
     if (cut.place[v] != kNone) cut.copies[size_t(next[cut.place[v]]++)] = uint32_t(v);
 }
 
+/// Gives the surface the lengths, where they vary.
+void set_lengths(const FineMesh& mesh, const MeshFans& fans, const std::vector<uint32_t>& number,
+                 SurfaceMesh& surface) {
+  const auto [least, largest] = std::minmax_element(mesh.edge_length.begin(), mesh.edge_length.end());
+  if (*least == *largest) return;
+  EdgeLengths& lengths = surface.lengths;
+  lengths.at = Buffer<uint32_t>(surface.vertex_count());
+  const auto whole = [](double l) { return uint32_t(std::max(1.0, std::floor(l + 0.5))); };
+  for (size_t f = 0; f < number.size(); ++f) lengths.at[number[f]] = whole(mesh.edge_length[fans.vertex[f]]);
+  lengths.least = whole(*least);
+  lengths.largest = whole(*largest);
+}
+
 void require_edge_length(double edge_length_world) {
   if (edge_length_world > 0 && std::isfinite(edge_length_world)) return;
   throw Error(ErrorCode::usage, "features",
@@ -118,17 +139,18 @@ void require_edge_length(double edge_length_world) {
 }  // namespace
 
 CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
-                       double edge_length_world, Context& context) {
-  require_edge_length(edge_length_world);
+                       const CutOptions& options, Context& context) {
+  require_edge_length(options.edge_length_world);
   return run_with_threads(context, [&] {
-    const FineMesh fine = refined(mesh, network, frame, edge_length_world / frame.voxel_size * kOneVoxelQ8, context);
+    const FineMesh fine = refined(mesh, network, frame, options, context);
     const MeshFans fans = find_fans(fine.triangles, int64_t(fine.position.size()), edges_of(fine.paths));
     check_cancel(context, "features");
     CutSurface cut;
     cut.voxel_size = frame.voxel_size;
-    cut.edge_length_world = edge_length_world;
     MadeSurface made = make_surface_mesh(cut_triangles(fine, fans, frame), context);
+    cut.longest_edge_q8 = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
     cut.surface = std::move(made.surface);
+    set_lengths(fine, fans, made.number, cut.surface);
     list_copies(fans, number_places(fine, cut), made.number, cut);
     return cut;
   });

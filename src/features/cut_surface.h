@@ -19,6 +19,7 @@ struct CutCurve {
   std::vector<double> at_q8;    ///< per place the arclength from the first one
   double length_q8 = 0;
   int64_t least_segments = 1;  ///< that keep edges of the result apart
+  std::vector<size_t> seeds;   ///< ascending: which of the places are seeds; both ends of an open curve are
 };
 
 /// A surface cut open along curves. A place is a point of a curve, of which every fan of triangles around it has a
@@ -27,24 +28,29 @@ struct CutCurve {
 struct CutSurface {
   SurfaceMesh surface;  ///< cut into patches, with triangles that may have no area: they were thinner than a step
   double voxel_size = 1;
-  double edge_length_world = 0;  ///< aimed at
+  double longest_edge_q8 = 0;  ///< aimed at
   std::vector<CutCurve> curves;
   int64_t corner_count = 0;
   std::vector<uint32_t> place;        ///< per vertex of the surface; kNone off borders
   std::vector<int64_t> copies_first;  ///< per place, and one more: offsets into copies
   std::vector<uint32_t> copies;       ///< border vertices, ascending per place
+  int64_t seeds = 0;                  ///< that a run asks for, copies at a place counted once; who cuts it says so
 };
 
-/// Snaps a mesh to the lattice, with edges cut into quarters of the edge length aimed at and a vertex wherever that
-/// length puts a seed on a curve, and cuts it along every edge of the network: each component of triangles is a patch.
-/// Vertices are snapped last, and what falls together then keeps its triangles, without area: so a patch stays the
-/// manifold that it is in the input. Result: independent of the order of triangles. Cost: sorts of the fine edges.
-/// Throws: usage where the network lacks a border or non-manifold edge, or triangles are too long and thin.
-CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
-                       double edge_length_world, Context& context);
+struct CutOptions {
+  double edge_length_world = 0;  ///< aimed at, everywhere the same
+  int64_t vertices = 0;          ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
+};
 
-/// The edge length of a mesh with so many vertices. Triangles of that size fill the area; a border has more vertices
-/// than the area beside it, half of one an edge, and where three sheets meet there are as many fewer.
+/// Snaps a mesh to the lattice, with edges cut into quarters of the edge length aimed at and a vertex wherever a seed
+/// of a curve belongs, and cuts it along every edge of the network: each component of triangles is a patch. Vertices
+/// are snapped last, and what falls together then keeps its triangles, without area: so a patch stays the manifold that
+/// it is in the input. Result: independent of the order of triangles. Cost: sorts of the fine edges. Throws: usage
+/// where the network lacks a border or non-manifold edge, or triangles are too long and thin.
+CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
+                       const CutOptions& options, Context& context);
+
+/// The edge length of a mesh with so many vertices, where it is the same everywhere (see vertices_of_lengths).
 double edge_length_for(const FeatureMesh& mesh, const CurveNetwork& network, int64_t vertices);
 
 }  // namespace isoshell

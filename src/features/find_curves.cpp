@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "features/corners.h"
 #include "features/creases.h"
@@ -26,15 +27,47 @@ void check(const CurveOptions& options) {
                     " degrees or more; give an angle above 0 and at most 180");
 }
 
+/// Ascending.
+std::vector<uint32_t> seam_edges(const MeshEdges& edges, const CurveOptions& options) {
+  std::vector<uint32_t> found;
+  for (auto [a, b] : options.seams) {
+    if (b < a) std::swap(a, b);
+    const auto at =
+        std::lower_bound(edges.edges.begin(), edges.edges.end(), std::array<uint32_t, 2>{a, b},
+                         [](const FeatureEdge& e, const std::array<uint32_t, 2>& end) { return e.end < end; });
+    if (at != edges.edges.end() && at->end == std::array<uint32_t, 2>{a, b} && at->use == EdgeUse::inner)
+      found.push_back(uint32_t(at - edges.edges.begin()));
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+/// Creases on seams become seams that remember their turn: nothing drops them.
+std::vector<CurveEdge> with_seams(const std::vector<CurveEdge>& curve_edges, const std::vector<uint32_t>& seams) {
+  std::vector<CurveEdge> all;
+  auto next = curve_edges.begin();
+  for (const uint32_t e : seams) {
+    for (; next != curve_edges.end() && next->edge < e; ++next) all.push_back(*next);
+    const bool is_crease = next != curve_edges.end() && next->edge == e;
+    all.push_back({e, CurveKind::seam, is_crease ? next++->turn : 0});
+  }
+  all.insert(all.end(), next, curve_edges.end());
+  return all;
+}
+
 std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges& edges, const CurveOptions& options,
                                         CreaseReport& report) {
-  const std::vector<CurveEdge> fixed = find_fixed_curve_edges(edges);
-  if (options.mode == CreaseMode::off) return fixed;
-  return drop_small_creases(mesh, edges,
-                            options.mode == CreaseMode::threshold
-                                ? with_creases_above(mesh, edges, fixed, options.degrees)
-                                : with_creases_beside_smooth(mesh, edges, fixed, options.edge_length_world, report),
-                            options.edge_length_world);
+  std::vector<CurveEdge> found = find_fixed_curve_edges(edges);
+  if (options.mode == CreaseMode::threshold) found = with_creases_above(mesh, edges, found, options.degrees);
+  if (options.mode == CreaseMode::automatic)
+    found = with_creases_beside_smooth(mesh, edges, found, options.edge_length_world, report);
+  if (!options.seams.empty()) found = with_seams(found, seam_edges(edges, options));
+  if (options.mode != CreaseMode::off)
+    found = drop_small_creases(mesh, edges, std::move(found), options.edge_length_world);
+  for (CurveEdge& c : found)
+    if (c.kind == CurveKind::seam && c.turn > 0) c.kind = CurveKind::crease;
+  return found;
 }
 
 /// A curve, and its smallest edge, which it is sorted by.

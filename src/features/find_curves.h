@@ -1,6 +1,9 @@
 // Where a mesh is not smooth: its borders, non-manifold edges and creases, as curves between corners.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "features/feature_mesh.h"
 
 namespace isoshell {
@@ -13,8 +16,9 @@ enum class CreaseMode : uint8_t {
 
 struct CurveOptions {
   CreaseMode mode = CreaseMode::automatic;
-  double degrees = 40;           ///< of mode threshold, above 0 and at most 180
-  double edge_length_world = 0;  ///< h, the edge length that the result aims at; above 0
+  double degrees = 40;                              ///< of mode threshold, above 0 and at most 180
+  double edge_length_world = 0;                     ///< h, the edge length that the result aims at; above 0
+  std::vector<std::array<uint32_t, 2>> seams = {};  ///< ends of edges that are curves, too; others are passed over
 };
 
 /// What was decided about creases.
@@ -25,10 +29,11 @@ struct CreaseReport {
   int64_t components_without_creases = 0;  ///< of those, taken for a scan or an organic shape as a whole
 };
 
-/// Result: every border and non-manifold edge, and the creases of the mode, less dangling and looping ones shorter than
-/// 2 h. Corners are vertices with another number of curve edges than two or edges of two kinds, and those where a curve
-/// turns by more than 45 degrees between chords of .7 h. An open curve runs from its smaller corner (from the smaller
-/// edge of two at the same corner); a loop from its smallest vertex along the smaller edge. Throws: usage.
+/// Result: every border and non-manifold edge, the seams, and the creases of the mode, less dangling and looping ones
+/// shorter than 2 h. A seam at a crease is a crease. Corners are vertices with another number of curve edges than two
+/// or edges of two kinds, and those where a curve turns by more than 45 degrees between chords of .7 h. An open curve
+/// runs from its smaller corner (from the smaller edge of two at the same corner); a loop from its smallest vertex
+/// along the smaller edge. Throws: usage.
 CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report = nullptr);
 
 }  // namespace isoshell

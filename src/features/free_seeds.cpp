@@ -1,10 +1,13 @@
-// add_free_seeds (see curve_seeds.h).
+// See free_seeds.h.
+#include "features/free_seeds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "features/curve_seeds.h"
+#include "features/mesh_fans.h"
 #include "isoshell/error.h"
 #include "voxel/exact_int.h"
 #include "voxel/random.h"
@@ -12,14 +15,7 @@
 namespace isoshell {
 namespace {
 
-struct Patch {
-  int64_t area2_q16 = 0;            ///< doubled
-  int64_t euler = 0, inside = 0;    ///< Euler characteristic; vertices off the border
-  int64_t fixed = 0;                ///< seeds on its border
-  std::vector<uint32_t> triangles;  ///< those with a vertex inside
-  double demand = 0;                ///< seeds inside
-  int64_t least = 0, seeds = 0;
-};
+constexpr int64_t kFewestOfClosed = 4;  ///< vertices of a closed surface
 
 int64_t doubled_area(const SurfaceMesh& surface, TriangleIndices t) {
   const Vec64 n = cross(difference(surface.position[t.b], surface.position[t.a]),
@@ -27,75 +23,126 @@ int64_t doubled_area(const SurfaceMesh& surface, TriangleIndices t) {
   return int64_t(isqrt(uint64_t(dot(n, n))));
 }
 
-/// What the patches are, in half-edges for their characteristic: 2 E is the corners and the border edges.
-std::vector<Patch> measure_patches(const CutSurface& cut, const SeedSet& fixed) {
+/// Shares `whole` by demand, the rest by the largest remainders; of equal ones the first.
+std::vector<int64_t> shared(int64_t whole, const std::vector<double>& demand) {
+  const double sum = std::accumulate(demand.begin(), demand.end(), 0.0);
+  std::vector<int64_t> out;
+  std::vector<double> remainder;
+  int64_t rest = whole;
+  for (const double d : demand) {
+    const double share = sum > 0 ? double(whole) * (d / sum) : 0;
+    out.push_back(int64_t(share));
+    rest -= out.back();
+    remainder.push_back(share - double(out.back()));
+  }
+  std::vector<size_t> order(demand.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return remainder[a] > remainder[b]; });
+  for (size_t i = 0; rest > 0; i = (i + 1) % order.size(), --rest) ++out[order[i]];
+  return out;
+}
+
+/// The edges of a mesh that have two triangles, ascending.
+std::vector<uint64_t> inner_edges(const Buffer<TriangleIndices>& triangles) {
+  std::vector<uint64_t> edges, out;
+  for (const TriangleIndices& t : triangles)
+    edges.insert(edges.end(), {edge_key(t.a, t.b), edge_key(t.b, t.c), edge_key(t.c, t.a)});
+  std::sort(edges.begin(), edges.end());
+  for (size_t i = 0; i + 1 < edges.size(); ++i)
+    if (edges[i] == edges[i + 1]) out.push_back(edges[i]);
+  return out;
+}
+
+}  // namespace
+
+FreeSeeds::FreeSeeds(const CutSurface& cut) : cut_(cut) {
   const SurfaceMesh& surface = cut.surface;
-  std::vector<Patch> patches(surface.patch.empty() ? 1 : size_t(surface.patch[surface.vertex_count() - 1]) + 1);
-  const auto patch_of = [&](uint32_t v) -> Patch& { return patches[surface.patch.empty() ? 0 : surface.patch[v]]; };
+  patches_.resize(surface.patch.empty() ? 1 : size_t(surface.patch[surface.vertex_count() - 1]) + 1);
+  // In half-edges for the characteristic: 2 E is the corners and the border edges.
   for (uint32_t v = 0; v < surface.vertex_count(); ++v) {
-    const bool is_inside = cut.place[v] == kNone;
-    patch_of(v).inside += is_inside ? 1 : 0;
-    patch_of(v).euler += is_inside ? 2 : 1;
+    Patch& patch = patches_[patch_of(v)];
+    patch.inside += is_inside(v) ? 1 : 0;
+    patch.euler += is_inside(v) ? 2 : 1;
   }
   for (int64_t t = 0; t < surface.triangles.size(); ++t) {
     const TriangleIndices i = surface.triangles[t];
-    Patch& patch = patch_of(i.a);
-    patch.area2_q16 += doubled_area(surface, i);
+    Patch& patch = patches_[patch_of(i.a)];
+    patch.share += seed_share(i);
     patch.euler -= 1;
-    if (cut.place[i.a] == kNone || cut.place[i.b] == kNone || cut.place[i.c] == kNone)
-      patch.triangles.push_back(uint32_t(t));
+    if (is_inside(i.a) || is_inside(i.b) || is_inside(i.c)) patch.triangles.push_back(uint32_t(t));
   }
-  for (Patch& patch : patches) patch.euler /= 2;
-  for (int64_t s = 0; s < fixed.fixed.count; ++s) ++patch_of(fixed.home[s]).fixed;
-  return patches;
+  for (Patch& patch : patches_) patch.euler /= 2;
 }
 
-/// What Euler's formula leaves for the inside of every patch, at the edge length that gives `vertices` in all.
-void find_demand(int64_t free, std::vector<Patch>& patches) {
-  double area = 0, taken = 0;
-  for (const Patch& p : patches) {
-    area += double(p.area2_q16);
-    taken += double(p.fixed) / 2 - double(p.euler);
-  }
-  const double per_area = (double(free) + taken) / std::max(area, 1.0);  // all patches have `free` inside
-  for (Patch& p : patches) {
-    p.least = p.fixed == 0 ? 4 : 0;  // a closed surface has four vertices or more
-    p.demand = std::max(0.0, double(p.area2_q16) * per_area - double(p.fixed) / 2 + double(p.euler) - double(p.least));
-    if (p.inside < 2) p.demand = 0;
-  }
+/// A triangle's share of the seeds: its doubled area over the square of its edge length, the least being 1.
+int64_t FreeSeeds::seed_share(TriangleIndices t) const {
+  const EdgeLengths& lengths = cut_.surface.lengths;
+  const int64_t area2 = std::max<int64_t>(1, doubled_area(cut_.surface, t));
+  if (lengths.at.empty()) return area2;
+  const double ratio =
+      3 * double(lengths.least) / (double(lengths.at[t.a]) + double(lengths.at[t.b]) + double(lengths.at[t.c]));
+  return std::max<int64_t>(1, int64_t(double(area2) * ratio * ratio));
 }
 
-/// Shares `free` seeds by demand, the rest by the largest remainders; of equal ones the first patch.
-void share_seeds(int64_t free, std::vector<Patch>& patches) {
-  for (const Patch& p : patches) free -= p.least;
-  double demand = 0;
-  for (const Patch& p : patches) demand += p.demand;
-  if (!(demand > 0))
-    for (Patch& p : patches) demand += p.demand = p.inside < 2 ? 0 : double(p.area2_q16);
-  std::vector<double> remainder;
-  int64_t rest = free;
-  for (Patch& p : patches) {
-    const double share = demand > 0 ? double(free) * (p.demand / demand) : 0;
-    const auto whole = int64_t(share);
-    p.seeds = p.least + whole;
-    rest -= whole;
-    remainder.push_back(share - double(whole));
-  }
-  std::vector<size_t> order(patches.size());
-  std::iota(order.begin(), order.end(), size_t(0));
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return remainder[a] > remainder[b]; });
-  for (size_t i = 0; rest > 0; i = (i + 1) % order.size(), --rest) ++patches[order[i]].seeds;
+/// Fixed seeds on the border of each patch.
+FreeSeeds::Counts FreeSeeds::fixed_of(const SeedSet& fixed) const {
+  Counts out(patches_.size(), 0);
+  for (int64_t s = 0; s < fixed.fixed.count; ++s) ++out[patch_of(fixed.home[s])];
+  return out;
 }
 
-struct FreeSeed {
-  PointQ8 position;
-  uint32_t home;
-};
+FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) const {
+  const Counts on_border = fixed_of(fixed);
+  const int64_t places = count_places(fixed.fixed);
+  int64_t least = 0;
+  double shares = 0, taken = 0;
+  for (size_t p = 0; p < patches_.size(); ++p) {
+    least += on_border[p] == 0 ? kFewestOfClosed : 0;
+    shares += double(patches_[p].share);
+    taken += double(on_border[p]) / 2 - double(patches_[p].euler);
+  }
+  if (vertices < places + least)
+    throw Error(ErrorCode::usage, "features",
+                std::to_string(vertices) + " vertices are too few: curves and corners take " + std::to_string(places) +
+                    (least > 0 ? ", and closed parts without curves " + std::to_string(least) : std::string()) +
+                    "; use more vertices, or a higher angle from which on edges are features");
+  const double per_share = (double(vertices - places) + taken) / shares;
+  std::vector<double> demand, area;
+  for (size_t p = 0; p < patches_.size(); ++p) {
+    const Patch& patch = patches_[p];
+    const bool has_room = patch.inside >= 2;
+    const double inner = double(patch.share) * per_share - double(on_border[p]) / 2 + double(patch.euler) -
+                         double(on_border[p] == 0 ? kFewestOfClosed : 0);
+    demand.push_back(has_room ? std::max(0.0, inner) : 0);
+    area.push_back(has_room ? double(patch.share) : 0);
+  }
+  const bool is_asked = std::any_of(demand.begin(), demand.end(), [](double d) { return d > 0; });
+  Counts out = shared(vertices - places - least, is_asked ? demand : area);
+  for (size_t p = 0; p < patches_.size(); ++p) {
+    out[p] += on_border[p] == 0 ? kFewestOfClosed : 0;
+    if (2 * out[p] > patches_[p].inside)
+      throw Error(ErrorCode::usage, "features",
+                  std::to_string(out[p]) + " seeds are too many for patch " + std::to_string(p) + ", which has " +
+                      std::to_string(patches_[p].inside) +
+                      " vertices inside; cut the surface for a shorter edge length, or use fewer vertices");
+  }
+  return out;
+}
+
+FreeSeeds::Counts FreeSeeds::coarser(const SeedSet& fixed, const Counts& finer) const {
+  const Counts on_border = fixed_of(fixed);
+  Counts out;
+  for (size_t p = 0; p < patches_.size(); ++p) {  // f inner vertices and b on the border have 3 f + b - 3 x inner edges
+    const int64_t count = (finer[p] - on_border[p] + 3 * patches_[p].euler + 3) / 4;
+    out.push_back(std::clamp<int64_t>(count, on_border[p] == 0 ? kFewestOfClosed : 0, finer[p]));
+  }
+  return out;
+}
 
 /// A point at random in a triangle, as place_seeds takes it; its home is the corner of the largest weight that is not
 /// on a border.
-FreeSeed seed_in(const CutSurface& cut, uint32_t triangle, uint64_t r) {
-  const SurfaceMesh& surface = cut.surface;
+FreeSeeds::FreeSeed FreeSeeds::seed_in(uint32_t triangle, uint64_t r) const {
+  const SurfaceMesh& surface = cut_.surface;
   const TriangleIndices t = surface.triangles[triangle];
   constexpr int64_t kOne = 1 << 20;
   int64_t u = int64_t(r & 0xfffff), v = int64_t(r >> 20 & 0xfffff);
@@ -110,72 +157,118 @@ FreeSeed seed_in(const CutSurface& cut, uint32_t triangle, uint64_t r) {
   const int64_t weight[3] = {kOne - u - v, u, v};
   int64_t most = -1;
   for (int i = 0; i < 3; ++i)
-    if (cut.place[corner[i]] == kNone && weight[i] > most) most = weight[i], seed.home = corner[i];
+    if (is_inside(corner[i]) && weight[i] > most) most = weight[i], seed.home = corner[i];
   return seed;
 }
 
-/// One seed in each of as many strata of equal area as a patch has seeds, along its triangles.
-void spread_seeds(const CutSurface& cut, const Patch& patch, uint64_t seed, std::vector<FreeSeed>& out) {
+/// One seed in each of as many strata of equal shares as seeds are asked for, along the triangles.
+void FreeSeeds::spread(const Patch& patch, int64_t count, uint64_t seed, std::vector<FreeSeed>& out) const {
+  if (count == 0) return;
   std::vector<int64_t> before;
   int64_t total = 0;
   for (const uint32_t t : patch.triangles) {
     before.push_back(total);
-    total += std::max<int64_t>(1, doubled_area(cut.surface, cut.surface.triangles[t]));
+    total += seed_share(cut_.surface.triangles[t]);
   }
-  const int64_t width = patch.seeds > 0 ? total / patch.seeds : 0, rest = patch.seeds > 0 ? total % patch.seeds : 0;
-  for (int64_t i = 0; i < patch.seeds; ++i) {
-    const uint64_t r = random_bits(seed, uint64_t(out.size()));
+  const int64_t width = total / count, rest = total % count;
+  for (int64_t i = 0; i < count; ++i) {
+    const uint64_t r = random_bits(seed, uint64_t(patch.triangles[0]) << 32 | uint64_t(i));
     const auto fraction_24 = int64_t(r >> 40);
     const int64_t target =
-        width * i + rest * i / patch.seeds + (width >> 24) * fraction_24 + ((width & 0xffffff) * fraction_24 >> 24);
+        width * i + rest * i / count + (width >> 24) * fraction_24 + ((width & 0xffffff) * fraction_24 >> 24);
     const auto after = std::upper_bound(before.begin(), before.end(), target);
-    out.push_back(seed_in(cut, patch.triangles[size_t(after - before.begin() - 1)], r));
+    out.push_back(seed_in(patch.triangles[size_t(after - before.begin() - 1)], r));
   }
 }
 
-void require_room(int64_t vertices, int64_t places, const std::vector<Patch>& patches) {
-  int64_t least = 0;
-  for (const Patch& p : patches) least += p.fixed == 0 ? 4 : 0;
-  if (vertices >= places + least) return;
-  throw Error(ErrorCode::usage, "features",
-              std::to_string(vertices) + " vertices are too few: curves and corners take " + std::to_string(places) +
-                  (least > 0 ? ", and closed parts without curves " + std::to_string(least) : std::string()) +
-                  "; use more vertices, or a higher angle from which on edges are features");
-}
-
-void require_fine_patches(const std::vector<Patch>& patches) {
-  for (size_t p = 0; p < patches.size(); ++p)
-    if (2 * patches[p].seeds > patches[p].inside)
-      throw Error(ErrorCode::usage, "features",
-                  std::to_string(patches[p].seeds) + " seeds are too many for patch " + std::to_string(p) +
-                      ", which has " + std::to_string(patches[p].inside) +
-                      " vertices inside; cut the surface for a shorter edge length, or use fewer vertices");
-}
-
-}  // namespace
-
-SeedSet add_free_seeds(const CutSurface& cut, SeedSet fixed, int64_t vertices, uint64_t seed) {
-  std::vector<Patch> patches = measure_patches(cut, fixed);
-  const int64_t places = count_places(fixed.fixed);
-  require_room(vertices, places, patches);
-  find_demand(vertices - places, patches);
-  share_seeds(vertices - places, patches);
-  require_fine_patches(patches);
-  std::vector<FreeSeed> free;
-  for (const Patch& patch : patches) spread_seeds(cut, patch, seed, free);
-
-  const int64_t first = fixed.fixed.count, count = first + int64_t(free.size());
+SeedSet FreeSeeds::with_fixed(SeedSet fixed, const Placed& placed) const {
+  int64_t count = fixed.fixed.count;
+  for (const std::vector<FreeSeed>& in_patch : placed) count += int64_t(in_patch.size());
   SeedSet out;
   out.position = Buffer<PointQ8>(count);
   out.normal = Buffer<Normal8>(count);
   out.home = Buffer<uint32_t>(count);
-  for (int64_t s = 0; s < count; ++s) {
-    out.home[s] = s < first ? fixed.home[s] : free[size_t(s - first)].home;
-    out.position[s] = s < first ? fixed.position[s] : free[size_t(s - first)].position;
-    out.normal[s] = cut.surface.normal[out.home[s]];
-  }
+  int64_t s = 0;
+  for (; s < fixed.fixed.count; ++s) out.position[s] = fixed.position[s], out.home[s] = fixed.home[s];
+  for (const std::vector<FreeSeed>& in_patch : placed)
+    for (const FreeSeed& seed : in_patch) out.position[s] = seed.position, out.home[s] = seed.home, ++s;
+  for (s = 0; s < count; ++s) out.normal[s] = cut_.surface.normal[out.home[s]];
   out.fixed = std::move(fixed.fixed);
   return out;
+}
+
+SeedSet FreeSeeds::add(SeedSet fixed, const Counts& counts, uint64_t seed) const {
+  Placed placed(patches_.size());
+  for (size_t p = 0; p < patches_.size(); ++p) spread(patches_[p], counts[p], seed, placed[p]);
+  return with_fixed(std::move(fixed), placed);
+}
+
+/// Downhill over neighbours; kNone where that ends on a border.
+uint32_t FreeSeeds::inside_near(uint32_t from, PointQ8 target) const {
+  const SurfaceMesh& surface = cut_.surface;
+  uint32_t at = from;
+  for (;;) {
+    uint32_t next = at;
+    int64_t best = distance_sq_q16(surface.position[at], target);
+    for (int64_t n = surface.vertex_first[at]; n < surface.vertex_first[at + 1]; ++n) {
+      const TriangleIndices t = surface.triangles[surface.vertex_triangles[n]];
+      for (const uint32_t v : {t.a, t.b, t.c}) {
+        const int64_t d = distance_sq_q16(surface.position[v], target);
+        if (d < best || (d == best && v < next)) best = d, next = v;
+      }
+    }
+    if (next == at) return is_inside(at) ? at : kNone;
+    at = next;
+  }
+}
+
+FreeSeeds::Placed FreeSeeds::middles_of_edges(const SeededMesh& coarse, Placed placed, const Counts& counts) const {
+  struct Middle {
+    int64_t size;  ///< the square of the edge, beside the lengths there
+    uint64_t edge;
+  };
+  const SeedSet& seeds = coarse.seeds;
+  const EdgeLengths& lengths = cut_.surface.lengths;
+  std::vector<std::vector<Middle>> middles(patches_.size());
+  for (const uint64_t edge : inner_edges(coarse.mesh.triangles)) {
+    const uint32_t a = seeds.home[int64_t(edge >> 32)], b = seeds.home[int64_t(uint32_t(edge))];
+    double size = double(distance_sq_q16(seeds.position[int64_t(edge >> 32)], seeds.position[int64_t(uint32_t(edge))]));
+    if (!lengths.at.empty()) {
+      const double ratio = 2 * double(lengths.least) / (double(lengths.at[a]) + double(lengths.at[b]));
+      size = size * ratio * ratio;
+    }
+    middles[patch_of(a)].push_back({int64_t(size), edge});
+  }
+  std::vector<char> is_taken(size_t(cut_.surface.vertex_count()), 0);
+  for (const auto& in_patch : placed)
+    for (const FreeSeed& seed : in_patch) is_taken[seed.home] = 1;
+  for (size_t p = 0; p < patches_.size(); ++p) {
+    std::sort(middles[p].begin(), middles[p].end(),
+              [](const Middle& m, const Middle& n) { return m.size != n.size ? m.size > n.size : m.edge < n.edge; });
+    for (const Middle& m : middles[p]) {
+      if (int64_t(placed[p].size()) >= counts[p]) break;
+      const auto a = int64_t(m.edge >> 32), b = int64_t(uint32_t(m.edge));
+      const PointQ8 u = seeds.position[a], v = seeds.position[b];
+      const uint32_t home = inside_near(seeds.home[a], {(u.x + v.x) >> 1, (u.y + v.y) >> 1, (u.z + v.z) >> 1});
+      if (home == kNone || is_taken[home]) continue;
+      is_taken[home] = 1;
+      placed[p].push_back({cut_.surface.position[home], home});
+    }
+  }
+  return placed;
+}
+
+SeedSet FreeSeeds::add_finer(SeedSet fixed, const Counts& counts, const SeededMesh& coarse, uint64_t seed) const {
+  Placed placed(patches_.size());
+  for (int64_t s = coarse.seeds.fixed.count; s < coarse.seeds.size(); ++s) {
+    std::vector<FreeSeed>& in_patch = placed[patch_of(coarse.seeds.home[s])];
+    if (int64_t(in_patch.size()) < counts[patch_of(coarse.seeds.home[s])])
+      in_patch.push_back({coarse.seeds.position[s], coarse.seeds.home[s]});
+  }
+  placed = middles_of_edges(coarse, std::move(placed), counts);
+  for (size_t p = 0; p < patches_.size(); ++p)
+    spread(patches_[p], counts[p] - int64_t(placed[p].size()), seed, placed[p]);
+  return with_fixed(std::move(fixed), placed);
 }
 
 }  // namespace isoshell

@@ -20,8 +20,7 @@ using Chain = std::vector<uint32_t>;  ///< vertices along an edge, with both end
 /// Fills some triangles. Vertices that are new inside of them are numbered from `first_new` on.
 class Filling {
  public:
-  Filling(const std::vector<WorldPoint>& position, double longest)
-      : position_(position), first_new_(uint32_t(position.size())), longest_(longest) {}
+  explicit Filling(const FineMesh& mesh) : mesh_(mesh), first_new_(uint32_t(mesh.position.size())) {}
 
   /// Between three chains, each of which ends where the next one begins: where one has no inner points across the other
   /// two; else four parts, between the middles.
@@ -38,10 +37,12 @@ class Filling {
   }
 
   std::vector<WorldPoint> inside;
+  std::vector<double> inside_length;
   MeshTriangles triangles;
 
  private:
-  const WorldPoint& at(uint32_t v) const { return v < first_new_ ? position_[v] : inside[v - first_new_]; }
+  const WorldPoint& at(uint32_t v) const { return v < first_new_ ? mesh_.position[v] : inside[v - first_new_]; }
+  double length_at(uint32_t v) const { return v < first_new_ ? mesh_.edge_length[v] : inside_length[v - first_new_]; }
 
   /// Two chains that meet in the last point of the first; an edge joins their other ends. From that edge on, each step
   /// takes the shorter diagonal; of two that are as long the one to the point that comes first.
@@ -82,19 +83,20 @@ class Filling {
   /// A new chain inside.
   Chain straight(uint32_t u, uint32_t v) {
     const WorldPoint p = at(u), q = at(v);
-    const int64_t parts = parts_of(p, q, longest_);
+    const double length_u = length_at(u), length_v = length_at(v);
+    const int64_t parts = parts_of(p, q, longest_fine_edge((length_u + length_v) / 2));
     Chain chain{u};
     for (int64_t i = 1; i < parts; ++i) {
       chain.push_back(first_new_ + uint32_t(inside.size()));
       inside.push_back(point_between(p, q, i, parts));
+      inside_length.push_back(value_between(length_u, length_v, i, parts));
     }
     chain.push_back(v);
     return chain;
   }
 
-  const std::vector<WorldPoint>& position_;
+  const FineMesh& mesh_;
   uint32_t first_new_;
-  double longest_;
 };
 
 constexpr size_t kTogether = 64;  ///< triangles that are filled by one task
@@ -116,15 +118,16 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
     const auto moved = [&](uint32_t v) { return v < outside ? v : v + shift; };
     for (const auto& t : f.triangles) mesh.triangles.push_back({moved(t[0]), moved(t[1]), moved(t[2])});
     mesh.position.insert(mesh.position.end(), f.inside.begin(), f.inside.end());
+    mesh.edge_length.insert(mesh.edge_length.end(), f.inside_length.begin(), f.inside_length.end());
   }
 }
 
 }  // namespace
 
-FineMesh refine_mesh(FineMesh mesh, const RefineOptions& options, Context& context) {
-  const SplitEdges edges(mesh, options);
+FineMesh refine_mesh(FineMesh mesh, Context& context) {
+  const SplitEdges edges(mesh);
   const size_t tasks = (mesh.triangles.size() + kTogether - 1) / kTogether;
-  std::vector<Filling> fillings(tasks, Filling(mesh.position, options.longest));
+  std::vector<Filling> fillings(tasks, Filling(mesh));
   tbb::parallel_for(size_t(0), tasks, [&](size_t task) {
     for (size_t t = task * kTogether; t < std::min(mesh.triangles.size(), (task + 1) * kTogether); ++t) {
       if (context.cancel.load(std::memory_order_relaxed)) return;

@@ -17,31 +17,80 @@
 namespace isoshell {
 namespace {
 
-/// Where a path's edge i is to be cut: at its seeds, and between these into equal parts. A seed that is as good as at a
-/// vertex takes that vertex: an edge that short would help nobody.
-std::vector<WorldPoint> cut_path_edge(const FineMesh& mesh, const CurvePath& path, size_t i, double step, double near,
-                                      double longest) {
-  const WorldPoint &from = mesh.position[path.vertex[i]], &to = mesh.position[path.edge_end(i)];
-  const double begin = path.at[i], end = i + 1 < path.at.size() ? path.at[i + 1] : path.length;
-  std::vector<WorldPoint> stops{from};
-  for (double s = std::ceil((begin + near) / step); s * step <= end - near; ++s)
-    stops.push_back(from + (s * step - begin) / (end - begin) * (to - from));
-  stops.push_back(to);
-  std::vector<WorldPoint> out;
+/// Inner points of an edge, with the edge length at each.
+struct InnerPoints {
+  std::vector<WorldPoint> position;
+  std::vector<double> edge_length;
+};
+
+double longest_between(const FineMesh& mesh, uint32_t u, uint32_t v) {
+  return longest_fine_edge((mesh.edge_length[u] + mesh.edge_length[v]) / 2);
+}
+
+/// Cuts edge i of a path at its seeds, and between them into equal parts. The next seed of the path is `seed`; where
+/// they come to be, counted from the beginning of the edge, is appended to `seed_at`.
+InnerPoints cut_path_edge(const FineMesh& mesh, const CurvePath& path, size_t i, size_t& seed,
+                          std::vector<size_t>& seed_at) {
+  const uint32_t u = path.vertex[i], v = path.edge_end(i);
+  const WorldPoint &from = mesh.position[u], &to = mesh.position[v];
+  std::vector<double> stops{0};
+  for (; seed < path.seeds.size() && path.seeds[seed].edge == i; ++seed)
+    if (path.seeds[seed].part > 0)
+      stops.push_back(path.seeds[seed].part);
+    else
+      seed_at.push_back(0);
+  stops.push_back(1);
+  const auto at = [&](double part) { return part == 1 ? to : from + part * (to - from); };
+  const auto length_at = [&](double part) {
+    return mesh.edge_length[u] + part * (mesh.edge_length[v] - mesh.edge_length[u]);
+  };
+  InnerPoints out;
   for (size_t k = 0; k + 1 < stops.size(); ++k) {
-    const int64_t parts = parts_of(stops[k], stops[k + 1], longest);
-    for (int64_t j = k > 0 ? 0 : 1; j < parts; ++j) out.push_back(point_between(stops[k], stops[k + 1], j, parts));
+    const WorldPoint a = at(stops[k]), b = at(stops[k + 1]);
+    const int64_t parts = parts_of(a, b, longest_between(mesh, u, v));
+    if (k > 0) seed_at.push_back(out.position.size() + 1);
+    for (int64_t j = k > 0 ? 0 : 1; j < parts; ++j) {
+      out.position.push_back(point_between(a, b, j, parts));
+      out.edge_length.push_back(value_between(length_at(stops[k]), length_at(stops[k + 1]), j, parts));
+    }
   }
   return out;
 }
 
+/// What path edges are cut into, from the end of the smaller number. Their seeds then are at the vertices that they
+/// will have.
+std::map<uint64_t, InnerPoints> cut_paths(FineMesh& mesh) {
+  std::map<uint64_t, InnerPoints> cut;
+  for (CurvePath& path : mesh.paths) {
+    std::vector<PathPoint> seeds;
+    size_t seed = 0, before = 0;
+    for (size_t i = 0; i < path.edge_count(); ++i) {
+      const uint32_t u = path.vertex[i], v = path.edge_end(i);
+      InnerPoints& points = cut[edge_key(u, v)];
+      std::vector<size_t> seed_at;
+      points = cut_path_edge(mesh, path, i, seed, seed_at);
+      for (const size_t at : seed_at) seeds.push_back({before + at, 0});
+      before += points.position.size() + 1;
+      if (u < v) continue;  // from the smaller number
+      std::reverse(points.position.begin(), points.position.end());
+      std::reverse(points.edge_length.begin(), points.edge_length.end());
+    }
+    if (seed < path.seeds.size()) seeds.push_back({before, 0});
+    path.seeds = std::move(seeds);
+  }
+  return cut;
+}
+
 /// Far more than well-shaped triangles of the same area take, and no more than can be numbered.
-double most_points(const FineMesh& mesh, double longest) {
+double most_points(const FineMesh& mesh) {
   constexpr double kTimesTheNeed = 32, kAlways = 1 << 20, kCountable = kNone / 8;
-  double area = 0;
-  for (const auto& t : mesh.triangles)
-    area += triangle_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
-  return std::min(kTimesTheNeed * (area / (longest * longest) + double(mesh.triangles.size())) + kAlways, kCountable);
+  double need = double(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const double longest =
+        longest_fine_edge((mesh.edge_length[t[0]] + mesh.edge_length[t[1]] + mesh.edge_length[t[2]]) / 3);
+    need += triangle_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]) / (longest * longest);
+  }
+  return std::min(kTimesTheNeed * need + kAlways, kCountable);
 }
 
 }  // namespace
@@ -57,48 +106,49 @@ WorldPoint point_between(const WorldPoint& a, const WorldPoint& b, int64_t i, in
   return i == 0 ? a : a + double(i) / double(parts) * (b - a);
 }
 
-SplitEdges::SplitEdges(FineMesh& mesh, const RefineOptions& options) : longest_(options.longest) {
+double longest_fine_edge(double edge_length) {
+  constexpr double kPartsOfEdge = 4, kLongestQ8 = 16 * kOneVoxelQ8;
+  return std::min(edge_length / kPartsOfEdge, kLongestQ8);
+}
+
+SplitEdges::SplitEdges(FineMesh& mesh) {
   list_edges(mesh);
   const size_t vertices = mesh.position.size();
-  std::map<uint64_t, std::vector<WorldPoint>> on_path;
-  for (const CurvePath& path : mesh.paths) {
-    const double step = path.length / double(segments_of(path.length, path.least_segments, options.edge_length));
-    constexpr double kNearPart = 32;
-    const double near = std::min(step, options.edge_length) / kNearPart;
-    for (size_t i = 0; i < path.edge_count(); ++i) {
-      const uint32_t u = path.vertex[i], v = path.edge_end(i);
-      std::vector<WorldPoint>& points = on_path[edge_key(u, v)];
-      points = cut_path_edge(mesh, path, i, step, near, longest_);
-      if (u > v) std::reverse(points.begin(), points.end());
-    }
-  }
+  const std::map<uint64_t, InnerPoints> on_path = cut_paths(mesh);
   double total = 0;
-  const double most = most_points(mesh, longest_);
+  const double most = most_points(mesh);
   for (Edge& e : edges_) {
     const auto found = on_path.find(e.key);
-    const WorldPoint &a = mesh.position[e.key >> 32], &b = mesh.position[uint32_t(e.key)];
-    const double count =
-        found != on_path.end() ? double(found->second.size()) : std::sqrt(distance_sq(a, b)) / longest_;
-    total += count;
+    const auto u = uint32_t(e.key >> 32), v = uint32_t(e.key);
+    const WorldPoint &a = mesh.position[u], &b = mesh.position[v];
+    const double longest = longest_between(mesh, u, v);
+    total += found != on_path.end() ? double(found->second.position.size()) : std::sqrt(distance_sq(a, b)) / longest;
     if (total > most)
       throw Error(ErrorCode::usage, "features",
-                  "edges of at most " + std::to_string(longest_ / kOneVoxelQ8) + " voxels take more than " +
+                  "edges of at most " + std::to_string(longest / kOneVoxelQ8) + " voxels take more than " +
                       std::to_string(int64_t(most)) +
                       " points on the input's edges, far more than its area needs: it " +
                       "has long thin triangles; mesh the input without features, give it better triangles first, or " +
                       "ask for longer edges");
-    e.count = uint32_t(found != on_path.end() ? int64_t(found->second.size()) : parts_of(a, b, longest_) - 1);
+    e.count = uint32_t(found != on_path.end() ? int64_t(found->second.position.size()) : parts_of(a, b, longest) - 1);
   }
   uint32_t next = uint32_t(vertices);
   for (Edge& e : edges_) e.first = next, next += e.count;
   mesh.position.resize(next);
+  mesh.edge_length.resize(next);
   tbb::parallel_for(size_t(0), edges_.size(), [&](size_t i) {
     const Edge& e = edges_[i];
     const auto found = on_path.find(e.key);
-    const WorldPoint a = mesh.position[e.key >> 32], b = mesh.position[uint32_t(e.key)];
-    for (uint32_t k = 0; k < e.count; ++k)
+    const auto u = uint32_t(e.key >> 32), v = uint32_t(e.key);
+    for (uint32_t k = 0; k < e.count; ++k) {
+      const bool is_on_path = found != on_path.end();
       mesh.position[e.first + k] =
-          found != on_path.end() ? found->second[k] : point_between(a, b, int64_t(k) + 1, int64_t(e.count) + 1);
+          is_on_path ? found->second.position[k]
+                     : point_between(mesh.position[u], mesh.position[v], int64_t(k) + 1, int64_t(e.count) + 1);
+      mesh.edge_length[e.first + k] =
+          is_on_path ? found->second.edge_length[k]
+                     : value_between(mesh.edge_length[u], mesh.edge_length[v], int64_t(k) + 1, int64_t(e.count) + 1);
+    }
   });
   split_paths(mesh);
 }
@@ -126,12 +176,11 @@ void SplitEdges::append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out
 
 void SplitEdges::split_paths(FineMesh& mesh) const {
   for (CurvePath& path : mesh.paths) {
-    CurvePath fine = path;
-    fine.vertex.clear();
-    for (size_t i = 0; i < path.edge_count(); ++i) append_chain(path.vertex[i], path.edge_end(i), fine.vertex);
-    if (!path.is_loop) fine.vertex.push_back(path.vertex.back());
-    measure_path(mesh.position, fine);
-    path = std::move(fine);
+    std::vector<uint32_t> fine;
+    for (size_t i = 0; i < path.edge_count(); ++i) append_chain(path.vertex[i], path.edge_end(i), fine);
+    if (!path.is_loop) fine.push_back(path.vertex.back());
+    path.vertex = std::move(fine);
+    measure_path(mesh.position, path);
   }
 }
 

@@ -7,15 +7,21 @@ namespace isoshell {
 
 /// Comes before in position: what does not depend on how vertices are numbered.
 bool is_before(const WorldPoint& a, const WorldPoint& b);
+/// The longest that a fine edge may be where the result has edges of such a length: well within the reach of blocks.
+double longest_fine_edge(double edge_length);
 /// How many equal parts of at most `longest` a line takes, and where part i of so many begins. The same from both ends.
 int64_t parts_of(const WorldPoint& a, const WorldPoint& b, double longest);
 WorldPoint point_between(const WorldPoint& a, const WorldPoint& b, int64_t i, int64_t parts);
+/// The value there, of the values at both ends.
+inline double value_between(double a, double b, int64_t i, int64_t parts) {
+  return a == b ? a : (a * double(parts - i) + b * double(i)) / double(parts);
+}
 
 /// The inner points of edges: consecutive vertices from the end of the smaller number to the other.
 class SplitEdges {
  public:
   /// Appends their vertices to the mesh, and cuts its paths.
-  SplitEdges(FineMesh& mesh, const RefineOptions& options);
+  explicit SplitEdges(FineMesh& mesh);
   /// The vertices from u to v along their edge, without v.
   void append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const;
 
@@ -28,7 +34,6 @@ class SplitEdges {
   void list_edges(const FineMesh& mesh);
   void split_paths(FineMesh& mesh) const;
 
-  double longest_;
   std::vector<Edge> edges_;  ///< ascending
 };
 

@@ -56,9 +56,12 @@ RemeshOptions checked(RemeshOptions o) {
   check("gradation", o.gradation, option_range::gradation);
   if (o.features.creases == Features::Creases::threshold)
     check("features.degrees", o.features.degrees, option_range::crease);
-  if (o.method == Method::shell && o.features.creases != Features::Creases::off)
+  if (o.method == Method::shell && o.features.creases == Features::Creases::threshold)
     throw Error(ErrorCode::usage, "options",
                 "features need the method sheet: the paper's loop on the shell knows no curves");
+  if (o.method == Method::shell && o.boundary == Boundary::keep)
+    throw Error(ErrorCode::usage, "options",
+                "borders are kept by the method sheet: the paper's loop on the shell knows none");
   if (o.method == Method::shell && (o.sizing || o.adaptivity > 0))
     throw Error(ErrorCode::usage, "options",
                 "a sizing field and adaptivity need the method sheet: the paper's loop on the shell has even cells");

@@ -9,27 +9,16 @@
 #include "core/seed_count.h"
 #include "isoshell/to_host.h"
 #include "pipeline/choose_grid.h"
+#include "pipeline/relax_level.h"
 #include "pipeline/thin_walls.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int kMaxLevels = 3;
-constexpr int64_t kFewestSeeds = 64;  // of a level
 constexpr int64_t kFewestPerComponent = 12;
-constexpr int64_t kMostRepairPerMille = 60;
 constexpr int64_t kFewestSeedsPerHandle = 50;   // that a coarse proxy has too many or too few
 constexpr int64_t kFewestVerticesPerSeed = 24;  // of a coarse proxy: cells are nearly four voxels wide or more
-constexpr int32_t kCoarsePasses = 60;
-constexpr int32_t kCoarseTolerancePpb = 30000;
-constexpr int32_t kCoarseSmoothingSteps = 40;
-// Small levels, which cost little, relax again after their flips.
-constexpr int64_t kMostSeedsTwice = 3000;
-constexpr int32_t kPassesAgain = 30;
-// Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes.
-constexpr int32_t kFinestPasses = 40;
-constexpr int32_t kFinestTolerancePpb = 500000;
 
 /// A triangulation with V vertices and Euler number chi has 4 V - 3 chi after one split.
 int64_t coarser_count(int64_t count, const SheetTopology& topology) {
@@ -48,30 +37,6 @@ std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
   }
   std::reverse(counts.begin(), counts.end());
   return counts;
-}
-
-/// Relaxes a coarse level. Returns its dual with as many vertices as it had seeds, flipped and smoothed, so that the
-/// cells of the seeds that it is split into meet as its triangles do; none when the level is too coarse for the shape.
-std::optional<SeededMesh> relax_coarse(const Sheet& sheet, const RelaxOptions& relax, SeedSet seeds, Context& context) {
-  const int64_t asked = seeds.size();
-  seeds = relax_on_sheet(sheet, std::move(seeds), relax, context).seeds;
-  Triangulation dual = triangulate_dual(sheet, std::move(seeds), {}, context);
-  if (dual.report.failed_cells > 0 || dual.seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
-  SeededMesh mesh = collapse_edges(sheet, std::move(dual), {asked}, context);
-  OptimizeOptions optimize;
-  optimize.smoothing_steps = kCoarseSmoothingSteps;
-  optimize.for_seeds = true;
-  return optimize_mesh(sheet, std::move(mesh), optimize, context);
-}
-
-/// Relaxes a level once, and again from there if it is small. The first round stands where cells are no disks after the
-/// second one.
-std::optional<SeededMesh> relax_level(const Sheet& sheet, const RelaxOptions& relax, SeedSet seeds, Context& context) {
-  std::optional<SeededMesh> first = relax_coarse(sheet, relax, std::move(seeds), context);
-  if (!first || first->seeds.size() > kMostSeedsTwice) return first;
-  const RelaxOptions again{kPassesAgain, relax.tolerance_ppb, relax.max_step_q8};
-  std::optional<SeededMesh> second = relax_coarse(sheet, again, to_host(first->seeds), context);
-  return second ? std::move(second) : std::move(first);
 }
 
 /// How many cells of the smallest size would cover the sheet, over the number of its cells.
@@ -140,9 +105,7 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& option
                              bool tolerance_asked, Context& context) {
   require_seed_count(prepared.sheet, options.count);
   std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
-  RelaxOptions coarse = relax, finest = relax;
-  coarse.max_passes = kCoarsePasses;
-  if (!tolerance_asked) coarse.tolerance_ppb = kCoarseTolerancePpb;
+  const RelaxOptions coarse = for_coarse_level(relax, tolerance_asked);
   const CoarseProxies proxies(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
@@ -157,13 +120,9 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& option
     const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
     if (halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
   }
-  if (seeds.size() == 0) {
-    seeds = place_seeds(prepared.sheet, options, context);
-  } else {
-    finest.max_passes = std::min(relax.max_passes, kFinestPasses);
-    if (!tolerance_asked) finest.tolerance_ppb = kFinestTolerancePpb;
-  }
-  return relax_on_sheet(prepared.sheet, std::move(seeds), finest, context);
+  if (seeds.size() > 0)
+    return relax_on_sheet(prepared.sheet, std::move(seeds), for_finest_level(relax, tolerance_asked), context);
+  return relax_on_sheet(prepared.sheet, place_seeds(prepared.sheet, options, context), relax, context);
 }
 
 }  // namespace isoshell

@@ -2,29 +2,55 @@
 #include "pipeline/patches.h"
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 
+#include "attributes/seams.h"
 #include "core/copy_product.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
+#include "features/free_seeds.h"
+#include "features/halve_segments.h"
+#include "features/separate_fans.h"
 #include "features/weld_for_features.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
+#include "isoshell/readable.h"
+#include "isoshell/to_host.h"
+#include "measure/crossing_corners.h"
+#include "measure/crossings.h"
+#include "measure/triangle_grid.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/dual_of_seeds.h"
+#include "pipeline/relax_level.h"
+#include "pipeline/resolve_intersections.h"
 #include "pipeline/timed.h"
 
 namespace isoshell {
 namespace {
 
 CurveOptions curve_options(const RemeshOptions& options, double edge_length_world) {
-  const bool automatic = options.features.creases == Features::Creases::automatic;
-  return {automatic ? CreaseMode::automatic : CreaseMode::threshold, options.features.degrees, edge_length_world};
+  const Features::Creases creases = options.features.creases;
+  const CreaseMode mode = creases == Features::Creases::off         ? CreaseMode::off
+                          : creases == Features::Creases::automatic ? CreaseMode::automatic
+                                                                    : CreaseMode::threshold;
+  return {mode, options.features.degrees, edge_length_world};
 }
 
-bool is_crease(const FeatureCurve& curve) { return curve.kind == CurveKind::crease; }
+constexpr int kRoundsOfShorterSegments = 1;  ///< each costs a whole relaxation
+
+int64_t count_kind(const CurveNetwork& network, CurveKind kind) {
+  return std::count_if(network.curves.begin(), network.curves.end(),
+                       [=](const FeatureCurve& curve) { return curve.kind == kind; });
+}
+
+/// Of a surface that the options leave open.
+bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
+  return options.boundary == Boundary::keep && !p.surface.topology.closed;
+}
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
@@ -35,12 +61,20 @@ double six_volumes(const FeatureMesh& mesh) {
   return sum;
 }
 
+/// The same of a surface whose borders stay: gaps that had to be closed were closed by faces.
+std::string obstacle_to_borders(const Prepared& p, const CurveNetwork& network) {
+  if (count_kind(network, CurveKind::non_manifold) > 0)
+    return "the surface has edges of more than two faces, or faces that disagree about the outside";
+  if (!p.sheet.lengths.at.empty()) return "edge lengths vary";
+  return "";
+}
+
 /// What keeps the surface from being its own input's triangles; empty where nothing does. Faces that a union cut count
 /// as closed whatever their edges are.
 std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetwork& network) {
   const InputTopology& input = p.surface.topology;
-  const bool all_creases = std::all_of(network.curves.begin(), network.curves.end(), is_crease);
-  if (!input.closed || !input.oriented || !all_creases)
+  const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam);
+  if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
     return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
   if (six_volumes(mesh) < 0) return "the faces look inwards";
   if (p.surface.first_cap != kNone) return "holes were capped";
@@ -66,9 +100,18 @@ int64_t patches_of(const CutSurface& cut) {
 }
 
 void give_up(RemeshReport& report, const std::string& why) {
-  report.features.given_up = why;
-  report.features.patches = report.features.vertices = 0;
-  report.warnings.push_back(std::to_string(report.features.curves) + " creases are not kept: " + why);
+  FeatureReport& features = report.features;
+  const int64_t creases = features.curves - features.seams;
+  std::string what;
+  const auto add = [&](const std::string& kind) { what += (what.empty() ? "" : " and ") + kind; };
+  if (features.border_loops > 0) add("borders");
+  if (creases > 0) add(counted(creases, "crease"));
+  if (features.seams > 0) add(counted(features.seams, "seam"));
+  report.warnings.push_back(what + " are not kept: " + why +
+                            (features.border_loops > 0 ? "; the result is closed" : "") +
+                            (features.seams > 0 ? "; triangles lie across seams" : ""));
+  features.given_up = why;
+  features.patches = features.vertices = features.border_loops = 0;
 }
 
 /// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
@@ -84,67 +127,242 @@ bool give_up_if_refused(RemeshReport& report, Work work) {
   }
 }
 
-/// Throws: usage where they do not fit into the patches.
-SeedSet first_seeds(const CutSurface& cut, const SeedOptions& options) {
-  return add_free_seeds(cut, seeds_on_curves(cut, cut.edge_length_world), options.count, options.seed);
+SeededMesh fetched(const SeededMesh& made) {
+  SeededMesh out;
+  out.mesh = to_host(made.mesh);
+  out.seeds = to_host(made.seeds);
+  return out;
 }
 
-}  // namespace
-
-void cut_into_patches(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {
-  if (options.features.creases == Features::Creases::off) return;
-  timed(report, "features", context, [&] {
-    const double area_world = p.surface.topology.area_world;
-    const int64_t vertices = vertex_target(options, p);
-    const FeatureMesh mesh = weld_for_features(soup_of(*OnHost(p.surface)));
-    const CurveNetwork network = find_curves(mesh, curve_options(options, usual_edge_length(options, area_world)));
-    FeatureReport& found = report.features;
-    found.curves = std::count_if(network.curves.begin(), network.curves.end(), is_crease);
-    found.corners = int64_t(network.corners.size());
-    if (found.curves == 0) return;
-    if (const std::string why = obstacle(p, mesh, network); !why.empty()) return give_up(report, why);
-    const double edge_world = edge_length_for(mesh, network, vertices);
-    give_up_if_refused(report, [&] {
-      auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, edge_world, context));
-      const SeedSet seeds = first_seeds(*cut, {vertices, options.seed});
-      found.vertices = count_places(seeds.fixed);
-      found.patches = patches_of(*cut);
-      p.cut = std::move(cut);
-    });
-  });
+/// The mesh once every fan of triangles has a vertex of its own, as in the result.
+struct SeparatedMesh {
+  int64_t more_places = 0;  ///< vertices of the result that are at places of others
+  int64_t border_loops = 0;
+};
+SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
+  TriangleMesh apart;
+  apart.vertices = mesh.vertices;
+  apart.triangles = mesh.triangles;
+  const bool is_other = !separate_fans(apart.vertices, apart.triangles).empty();
+  return {is_other ? count_separated_places(mesh, network, apart.triangles) : 0, check_mesh(apart).boundary_loops};
 }
 
-RelaxedSeeds relax_in_patches(const Prepared& p, const SeedOptions& options, const RelaxOptions& relax,
-                              Context& context) {
-  return relax_on_sheet(p.cut->surface, first_seeds(*p.cut, options), relax, context);
+int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_open) {
+  return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
 }
 
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const OptimizeOptions& options,
-                                                RemeshReport& report, Context& context) {
-  const CutSurface& cut = *p.cut;
+/// As many boxes of intersections of the result as are farther than an edge from those of the input.
+int64_t count_new_crossings(const Prepared& p, const DualMesh& mesh, Context& context) {
+  const OnHost<LatticeSurface> input(p.surface);
+  const auto edge_q8 = int32_t(p.cut->longest_edge_q8);
+  return count_apart(find_crossings(mesh.position.view(), mesh.triangles.view(), context),
+                     find_crossings(input->points.view(), input->triangles.view(), context), edge_q8);
+}
+
+/// Flags vertices on faces that close gaps.
+void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
+  const uint32_t first_cap = p.surface.first_cap;
+  if (first_cap == kNone) return;
+  const OnHost<LatticeSurface> surface(p.surface);
+  const TriangleMesh input = to_world(*surface);
+  const TriangleGrid grid(input);
+  mesh.gap.resize(mesh.vertices.size());
+  for (size_t v = 0; v < mesh.vertices.size(); ++v)
+    report.vertices += mesh.gap[v] = surface->source_face[grid.nearest(mesh.vertices[v]).triangle] >= first_cap;
+  for (size_t t = 0; t < input.triangles.size(); ++t) {
+    const auto& [a, b, c] = input.triangles[t];
+    if (surface->source_face[int64_t(t)] >= first_cap)
+      report.area_world += triangle_area(input.vertices[a], input.vertices[b], input.vertices[c]);
+  }
+}
+
+/// A vertex for every fan of triangles: parts that touch in a vertex only, and borders that pass one twice, part there,
+/// by a step of the lattice into the fan, as many files know vertices by position. Triangles begin at their smallest
+/// vertex then, and are sorted.
+void part_fans(TriangleMesh& mesh, double step_world) {
+  const size_t parted = separate_fans(mesh.vertices, mesh.triangles).size(), first = mesh.vertices.size() - parted;
+  if (parted == 0) return;
+  std::vector<WorldPoint> inward(parted, WorldPoint{0, 0, 0});
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t v : t)
+      for (const uint32_t u : t)
+        if (v >= first) inward[v - first] = inward[v - first] + (mesh.vertices[u] - mesh.vertices[v]);
+  for (size_t i = 0; i < parted; ++i)
+    if (const double far = length(inward[i]); far > 0)
+      mesh.vertices[first + i] = mesh.vertices[first + i] + (step_world / far) * inward[i];
+  for (auto& t : mesh.triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(mesh.triangles.begin(), mesh.triangles.end());
+}
+
+/// Whether triangles intersect nowhere but, with borders that are kept, where the input's do.
+bool has_no_new_crossings(const Prepared& p, const SeededMesh& made, const RemeshReport& report, Context& context) {
+  if (report.post.self_intersections == 0) return true;
+  if (report.features.border_loops == 0) return false;
+  return count_new_crossings(p, join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed).mesh, context) == 0;
+}
+
+/// Makes the mesh of relaxed seeds. Result: why it cannot be the run's; empty where it can.
+std::string mesh_patches(const Prepared& p, const CutSurface& cut, SeededMesh& made, const OptimizeOptions& options,
+                         RemeshReport& report, Context& context) {
   const int64_t asked = made.seeds.size();
-  if (!give_up_if_refused(report, [&] { make_dual_of_seeds(cut.surface, made, report, context); })) return {};
-  if (report.dual.failed_cells > 0) {
-    give_up(report, std::to_string(report.dual.failed_cells) + " cells beside them are no disks");
-    return {};
-  }
-  if (made.seeds.size() != asked) {
-    give_up(report, "the patches take " + std::to_string(made.seeds.size() - asked) + " vertices more");
-    return {};
-  }
+  report.post = {};
+  make_dual_of_seeds(cut.surface, made, report, context);
+  if (report.dual.failed_cells > 0) return std::to_string(report.dual.failed_cells) + " cells beside them are no disks";
+  if (made.seeds.size() != asked)
+    return "the patches take " + std::to_string(made.seeds.size() - asked) + " vertices more";
   OptimizedMesh optimized =
       timed(report, "post", context, [&] { return optimize_mesh(cut.surface, std::move(made), options, context); });
   report.post = optimized.report;
   made = std::move(optimized);
-  if (report.post.self_intersections > 0) {
-    give_up(report, std::to_string(report.post.self_intersections) + " pairs of triangles would intersect");
-    return {};
+  if (has_no_new_crossings(p, made, report, context)) return "";
+  timed(report, "untangle", context, [&] { resolve_intersections(cut.surface, options, made, report, context); });
+  if (has_no_new_crossings(p, made, report, context)) return "";
+  return std::to_string(report.post.self_intersections) + " pairs of triangles would intersect";
+}
+
+/// With more seeds on the curves near triangles that intersect; null where there is no curve.
+std::shared_ptr<const CutSurface> with_shorter_segments(const CutSurface& cut, const SeededMesh& made) {
+  const OnHost<SeedSet> seeds(made.seeds);
+  std::optional<CutSurface> shorter =
+      halve_segments(cut, crossing_corners(*OnHost(made.mesh), seeds->fixed.joined.view()), cut.longest_edge_q8);
+  return shorter ? std::make_shared<CutSurface>(std::move(*shorter)) : nullptr;
+}
+
+/// Says which attributes have none that could be kept.
+Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double edge_length_world, RemeshReport& report,
+               Context& context) {
+  if (!source || source->attributes.empty()) return {};
+  return timed(report, "features", context, [&] {
+    Seams seams = find_seams(*source, options.attributes, edge_length_world);
+    for (const DroppedAttribute& d : seams.dropped)
+      report.warnings.push_back("triangles may lie across the seams of " + d.name + ": " + d.reason);
+    return seams;
+  });
+}
+
+/// The mesh's vertices where the ends of seams were snapped to; of seams that are no longer there none.
+std::vector<std::array<uint32_t, 2>> vertices_of(const Seams& seams, const FeatureMesh& mesh,
+                                                 const LatticeFrame& frame) {
+  const auto is_before = [](const WorldPoint& a, const WorldPoint& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  };
+  std::vector<std::array<uint32_t, 2>> found;
+  for (const auto& edge : seams.edges) {
+    std::array<uint32_t, 2> vertex{kNone, kNone};
+    for (size_t i = 0; i < 2; ++i) {
+      const WorldPoint p = frame.to_world(frame.snap(edge[i]));
+      const auto at = std::lower_bound(mesh.vertices.begin(), mesh.vertices.end(), p, is_before);
+      if (at != mesh.vertices.end() && !is_before(p, *at)) vertex[i] = uint32_t(at - mesh.vertices.begin());
+    }
+    if (vertex[0] != kNone && vertex[1] != kNone && vertex[0] != vertex[1]) found.push_back(vertex);
   }
-  TriangleMesh mesh = to_world(join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed).mesh, p.surface.frame);
-  if (!check_mesh(mesh).is_closed_manifold()) {
-    give_up(report, "parts that touch in a point or edge would make no manifold");
-    return {};
+  return found;
+}
+
+/// False where there are curves that could not be kept, as the report says.
+bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
+               RemeshReport& report, Context& context) {
+  const CurveNetwork network = find_curves(mesh, curves);
+  const int64_t borders = count_kind(network, CurveKind::border);
+  const bool is_open = borders > 0 && may_keep_borders(options, p);
+  FeatureReport& found = report.features;
+  found.seams = count_kind(network, CurveKind::seam);
+  found.curves = count_kind(network, CurveKind::crease) + found.seams;
+  found.corners = int64_t(network.corners.size());
+  if (found.curves == 0 && !is_open) return true;
+  if (is_open) found.border_loops = borders;  // until they are put together
+  if (const std::string why = is_open ? obstacle_to_borders(p, network) : obstacle(p, mesh, network); !why.empty()) {
+    give_up(report, why);
+    return false;
   }
+  return give_up_if_refused(report, [&] {
+    const SeparatedMesh apart = separated(mesh, network);
+    found.border_loops = apart.border_loops;
+    const int64_t seeds_asked = vertices_of(options, p, is_open) - apart.more_places;
+    CutOptions how{edge_length_for(mesh, network, seeds_asked), 0};
+    if (curves.mode != CreaseMode::off) how.vertices = seeds_asked;
+    auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
+    cut->seeds = seeds_asked;
+    const SeedSet fixed = seeds_on_curves(*cut, 0);
+    FreeSeeds(*cut).counts(fixed, seeds_asked);  // there is room
+    found.vertices = count_places(fixed.fixed);
+    found.patches = patches_of(*cut);
+    found.given_up.clear();
+    p.cut = std::move(cut);
+  });
+}
+
+}  // namespace
+
+void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, Prepared& p, RemeshReport& report,
+                      Context& context) {
+  if (options.method != Method::sheet) return;
+  const double edge_world = usual_edge_length(options, p.surface.topology.area_world);
+  const Seams seams = seams_of(source, options, edge_world, report, context);
+  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !may_keep_borders(options, p))
+    return;
+  timed(report, "features", context, [&] {
+    const FeatureMesh mesh = weld_for_features(soup_of(*OnHost(p.surface)));
+    CurveOptions curves = curve_options(options, edge_world);
+    curves.seams = vertices_of(seams, mesh, p.surface.frame);
+    if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
+    curves.seams.clear();
+    cut_along(mesh, curves, options, p, report, context);
+  });
+}
+
+RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
+  const FreeSeeds free_seeds(cut);
+  std::vector<SeedSet> fixed;  // fine to coarse
+  std::vector<FreeSeeds::Counts> counts;
+  for (int level = 0; level < kMaxLevels; ++level) {
+    SeedSet on_curves = seeds_on_curves(cut, level);
+    FreeSeeds::Counts in_patches =
+        level == 0 ? free_seeds.counts(on_curves, options.seeds.count) : free_seeds.coarser(on_curves, counts.back());
+    if (level > 0 && std::accumulate(in_patches.begin(), in_patches.end(), on_curves.size()) < kFewestSeeds) break;
+    fixed.push_back(std::move(on_curves));
+    counts.push_back(std::move(in_patches));
+  }
+  std::optional<SeededMesh> coarser;
+  for (size_t level = fixed.size(); level-- > 0;) {
+    SeedSet seeds =
+        coarser ? free_seeds.add_finer(std::move(fixed[level]), counts[level], fetched(*coarser), options.seeds.seed)
+                : free_seeds.add(std::move(fixed[level]), counts[level], options.seeds.seed);
+    if (level == 0) return relax_on_sheet(cut.surface, std::move(seeds), options.relax, context);
+    coarser =
+        relax_level(cut.surface, for_coarse_level(options.relax, options.tolerance_asked), std::move(seeds), context);
+  }
+  return {};
+}
+
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
+                                                RemeshReport& report, Context& context) {
+  std::shared_ptr<const CutSurface> cut = p.cut;
+  std::optional<TriangleMesh> mesh;
+  give_up_if_refused(report, [&] {
+    std::string why = mesh_patches(p, *cut, made, options.optimize, report, context);
+    const auto intersects = [&] { return !why.empty() && report.post.self_intersections > 0; };
+    for (int rounds = kRoundsOfShorterSegments; intersects() && rounds > 0; --rounds) {
+      cut = with_shorter_segments(*cut, made);
+      if (!cut) break;
+      made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
+      why = mesh_patches(p, *cut, made, options.optimize, report, context);
+    }
+    if (!why.empty()) return give_up(report, why);
+    mesh = to_world(join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed).mesh, p.surface.frame);
+    part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
+    if (check_mesh(*mesh).is_manifold_with(report.features.border_loops)) return;
+    mesh.reset();
+    give_up(report, "parts that touch would make no manifold");
+  });
+  if (!mesh || !report.features.given_up.empty()) return {};
+  if (const int64_t crossings = report.post.self_intersections; crossings > 0)
+    report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
+                              " where the input's own triangles do");
+  report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
+  report.sheet.bridged_vertices = 0;
+  flag_caps(p, *mesh, report.gaps);
+  report.features.vertices = count_places(OnHost(made.seeds)->fixed);
   report.features.kept = report.post_done = true;
   return mesh;
 }

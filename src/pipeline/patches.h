@@ -1,4 +1,5 @@
-// A run whose result keeps the input's creases: on the input's own triangles, cut along its curves into patches.
+// A run whose result keeps the input's creases or borders: on the input's own triangles, cut along its curves into
+// patches.
 #pragma once
 
 #include <optional>
@@ -7,18 +8,28 @@
 
 namespace isoshell {
 
-/// Finds the features that the options ask for, and cuts the surface along them. Leaves p.cut empty where there are
-/// none, and says in the report why where there are some that cannot be kept.
-void cut_into_patches(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
+/// Finds the creases and borders that the options ask for, and the seams of the attributes of `source`, and cuts the
+/// surface along them. Leaves p.cut empty where there are none, and says in the report why where there are some that
+/// cannot be kept. Seams are found again by the positions of their ends: what repair left as it was, and no union cut,
+/// has them. Null: what the surface comes from is not known, as in a run that resumes.
+void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, Prepared& p, RemeshReport& report,
+                      Context& context);
 
-/// Fixes seeds on the curves, and relaxes the others between them. `seeds.count` is that of the result's vertices: a
-/// place of a curve counts once, though each patch there has a seed.
-RelaxedSeeds relax_in_patches(const Prepared& p, const SeedOptions& seeds, const RelaxOptions& relax, Context& context);
+struct PatchOptions {
+  SeedOptions seeds;  ///< the count is that of the result's vertices: a place of a curve counts once
+  RelaxOptions relax;
+  bool tolerance_asked = false;  ///< coarse levels have it, too
+  OptimizeOptions optimize;
+};
+
+/// Fixes seeds on the curves, one for each patch there, and relaxes the others between them, coarse to fine.
+RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context);
 
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
-/// curve counted once. None where cells are no disks, triangles intersect, or patches touch elsewhere than along a
-/// curve: report.features says so.
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const OptimizeOptions& options,
+/// curve counted once. Where triangles intersect, curves get more seeds there, and all seeds are relaxed again. None
+/// where that does not end it, cells are no disks, or patches touch along edges that are on no curve: report.features
+/// says so. With borders that are kept triangles may intersect where the input's do.
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
                                                 RemeshReport& report, Context& context);
 
 }  // namespace isoshell

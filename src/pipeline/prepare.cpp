@@ -20,6 +20,7 @@
 #include "pipeline/timed.h"
 #include "repair/hollows.h"
 #include "repair/joined_components.h"
+#include "repair/open_soup.h"
 
 namespace isoshell {
 namespace {
@@ -172,6 +173,7 @@ std::optional<int32_t> asked_closing(const RemeshOptions& options, const InputTo
                                      const LatticeFrame& frame) {
   if (options.closing_world) {
     const double r = std::ceil(*options.closing_world / frame.voxel_size / 2);
+    if (r > kMaxClosingVox && options.boundary == Boundary::keep) return kMaxClosingVox;  // caps close wider gaps
     if (r > kMaxClosingVox) {
       std::ostringstream text;
       text << "a gap of " << *options.closing_world << " is " << 2 * r << " voxels wide on this grid; at most "
@@ -223,7 +225,8 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
   return false;
 }
 
-void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+void finish(Prepared& p, const TriangleSoup* source, const RemeshOptions& options, RemeshReport& report,
+            Context& context) {
   if (options.want_shell || options.method == Method::shell) {
     p.shell = timed(report, "shell", context, [&] { return build_shell(p.sites, {options.band_vox}, context); });
     report.active_voxels = p.shell.voxels.voxel_count();
@@ -241,7 +244,7 @@ void finish(Prepared& p, const RemeshOptions& options, RemeshReport& report, Con
   report.topology_compared = can_compare(report.input);
   report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
   timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
-  cut_into_patches(options, p, report, context);
+  cut_into_patches(options, source, p, report, context);
   note_digest(options, report, context, "surface", p.surface);
   note_digest(options, report, context, "sites", p.sites);
   note_digest(options, report, context, "samples", p.samples);
@@ -277,9 +280,10 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& in
   return resolution;
 }
 
-/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
-Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
-                              RemeshReport& report, Context& context) {
+/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest. The soup is that of `source`,
+/// repaired.
+Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const TriangleSoup& source,
+                              const RemeshOptions& options, RemeshReport& report, Context& context) {
   const auto [lo, hi] = bounding_box(soup);
   const bool free_grid = !options.resolution && !options.voxel_size_world;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
@@ -314,9 +318,20 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
       best = std::move(p);
     }
   }
-  finish(best, options, report, context);
-  warn_of_topology(best, input, options, report);
+  finish(best, &source, options, report, context);
+  if (report.features.border_loops == 0) warn_of_topology(best, input, options, report);
   return best;
+}
+
+/// Borders that are kept are those wider than the gaps that were asked to be closed; where nothing was, those of no
+/// holes.
+TriangleSoup repaired(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+                      RepairReport& report) {
+  const bool is_chosen = !options.closing_vox && !options.closing_world;
+  if (options.boundary == Boundary::close || is_chosen) return repair_soup(soup, {is_chosen}, report);
+  const double widest_gap_world =
+      options.closing_world ? *options.closing_world : 2. * *options.closing_vox * voxel_edge(soup, input, options);
+  return repair::repair_open_soup(soup, widest_gap_world, report);
 }
 
 }  // namespace
@@ -327,7 +342,7 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
   Prepared p = Preparation(options, report, context).from(std::move(surface), closing);
-  finish(p, options, report, context);
+  finish(p, nullptr, options, report, context);
   return p;
 }
 
@@ -343,8 +358,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   InputTopology input = given;
   const auto measure = [&] { return measure_topology(*current, context).topology; };
   if (!given.closed || !given.oriented) {
-    const bool closing_chosen = !options.closing_vox && !options.closing_world;
-    changed = timed(report, "mend", context, [&] { return repair_soup(soup, {closing_chosen}, report.mend); });
+    changed = timed(report, "mend", context, [&] { return repaired(soup, given, options, report.mend); });
     current = &changed;
     input = timed(report, "topology", context, measure);
   }
@@ -359,7 +373,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
       if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
     }
   }
-  Prepared prepared = prepare_on_best_grid(*current, input, options, report, context);
+  Prepared prepared = prepare_on_best_grid(*current, input, soup, options, report, context);
   report.input = given;
   return prepared;
 }

@@ -2,14 +2,20 @@
 // triangulate (11). Line 10, flood_shell, makes the Voronoi volume that is saved; the dual is taken on the sheet.
 #include "isoshell/remesh.h"
 
+#include <sstream>
+
 #include "core/copy_product.h"
+#include "features/cut_surface.h"
 #include "isoshell/to_host.h"
+#include "measure/crossing_corners.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/hierarchy.h"
+#include "pipeline/merge_walls.h"
 #include "pipeline/patches.h"
 #include "pipeline/resolve_intersections.h"
+#include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
@@ -58,15 +64,19 @@ void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapR
   report.area_world = gap_area_world(p.sheet, gaps);
 }
 
+PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize) {
+  return {{p.cut->seeds, options.seed}, relax_options(options), options.tolerance.has_value(), optimize};
+}
+
 /// On the patches of a cut surface, or on the sheet.
 SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patches, RemeshReport& report,
                     Context& context) {
   const RemeshOptions options = checked(asked);
-  const SeedOptions seed_options{vertex_target(options, p), options.seed};
+  const SeedOptions seed_options{in_patches ? p.cut->seeds : vertex_target(options, p), options.seed};
   RelaxedSeeds relaxed;
   if (in_patches) {
     relaxed = timed(report, "relax", context,
-                    [&] { return relax_in_patches(p, seed_options, relax_options(options), context); });
+                    [&] { return relax_in_patches(*p.cut, patch_options(p, options, {}), context); });
   } else if (options.method == Method::sheet) {
     relaxed = timed(report, "relax", context, [&] {
       return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), context);
@@ -87,6 +97,70 @@ SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patch
   return seeds;
 }
 
+/// Dual, repair and the final mesh on the sheet.
+void mesh_on_sheet(const Prepared& p, const OptimizeOptions& options, SeededMesh& made, RemeshReport& report,
+                   Context& context) {
+  report.post = {};
+  report.post_done = false;
+  make_dual_of_seeds(p.sheet, made, report, context);
+  if (report.dual.failed_cells > 0) return;
+  OptimizedMesh optimized =
+      timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), options, context); });
+  report.post = optimized.report;
+  made = std::move(optimized);
+  if (report.post.self_intersections > 0)
+    timed(report, "untangle", context, [&] { resolve_intersections(p, options, made, report, context); });
+  report.post_done = true;
+}
+
+/// Merges walls where triangles intersect, and makes the mesh anew, while that leaves fewer that do. Null where nothing
+/// was merged.
+std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptions asked,
+                                                  const OptimizeOptions& optimize, SeededMesh& made,
+                                                  RemeshReport& report, Context& context) {
+  asked.method = Method::sheet;
+  const RemeshOptions options = checked(asked);
+  std::unique_ptr<MergedWalls> best;
+  std::vector<PointQ8> points;
+  for (int merge = 0; merge < kMostMerges && report.post.self_intersections > 0; ++merge) {
+    const std::vector<PointQ8> more = crossing_corners(*OnHost(made.mesh), {});
+    points.insert(points.end(), more.begin(), more.end());
+    auto merged = std::make_unique<MergedWalls>(
+        timed(report, "merge", context, [&] { return merge_walls(p, points, merge, options, context); }));
+    RemeshReport tried = report;
+    SeededMesh again;
+    again.seeds = relax_seeds(merged->prepared, options, false, tried, context);
+    mesh_on_sheet(merged->prepared, optimize, again, tried, context);
+    if (!tried.post_done || tried.post.self_intersections >= report.post.self_intersections) {
+      report.times = std::move(tried.times);
+      continue;
+    }
+    report = std::move(tried);
+    made = std::move(again);
+    best = std::move(merged);
+  }
+  if (best) report_merge(*best, points, report);
+  return best;
+}
+
+/// What is not as it should be.
+void warn_of_mesh(const Prepared& p, const SeededMesh& made, int64_t asked, RemeshReport& report) {
+  if (report.dual.failed_cells > 0)
+    report.warnings.push_back(
+        std::to_string(report.dual.failed_cells) +
+        " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
+  if (made.seeds.size() != asked)
+    report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
+                              std::to_string(asked) + ": its topology needs them at this resolution");
+  if (report.post.self_intersections == 0) return;
+  const WorldPoint at = p.surface.frame.to_world(crossing_corners(*OnHost(made.mesh), {}).front());
+  report.intersection_at = at;
+  std::ostringstream text;
+  text << report.post.self_intersections << " pairs of triangles intersect, near " << at.x << ' ' << at.y << ' ' << at.z
+       << ": parts of the surface are nearer to one another than its edges are long; ask for more --vertices";
+  report.warnings.push_back(text.str());
+}
+
 }  // namespace
 
 SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
@@ -102,38 +176,23 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   const GiveSeedsBack give_back{made.seeds, seeds};
   made.seeds = std::move(seeds);
   if (p.cut && made.seeds.fixed.count > 0) {
-    if (std::optional<TriangleMesh> mesh = triangulate_patches(p, made, optimize, report, context)) {
+    if (std::optional<TriangleMesh> mesh =
+            triangulate_patches(p, made, patch_options(p, checked(options), optimize), report, context)) {
       note_digest(options, report, context, "mesh", *mesh);
       return std::move(*mesh);
     }
     report.post = {};
+    if (!p.surface.topology.closed) warn_of_topology(p, p.surface.topology, options, report);
     made.seeds = relax_seeds(p, options, false, report, context);
   }
   const int64_t asked = made.seeds.size();
-  make_dual_of_seeds(p.sheet, made, report, context);
-  if (report.dual.failed_cells > 0)
-    report.warnings.push_back(
-        std::to_string(report.dual.failed_cells) +
-        " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
-  if (made.seeds.size() != asked)
-    report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
-                              std::to_string(asked) + ": its topology needs them at this resolution");
-  if (report.dual.failed_cells == 0) {
-    OptimizedMesh optimized =
-        timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), optimize, context); });
-    report.post = optimized.report;
-    made = std::move(optimized);
-    if (report.post.self_intersections > 0)
-      timed(report, "untangle", context, [&] { resolve_intersections(p, optimize, made, report, context); });
-    report.post_done = true;
-  }
-  if (report.post.self_intersections > 0)
-    report.warnings.push_back(std::to_string(report.post.self_intersections) +
-                              " pairs of triangles intersect: parts of the surface are nearer to one another than its "
-                              "edges are long; ask for more --vertices");
-  measure_edges(p.sheet, made.seeds, made.mesh, report.sizing, context);
-  TriangleMesh mesh = to_world(made.mesh, p.surface.frame);
-  flag_gaps(p, made.seeds, mesh, report.gaps);
+  mesh_on_sheet(p, optimize, made, report, context);
+  const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, options, optimize, made, report, context);
+  const Prepared& meshed = merged ? merged->prepared : p;
+  warn_of_mesh(meshed, made, asked, report);
+  measure_edges(meshed.sheet, made.seeds, made.mesh, report.sizing, context);
+  TriangleMesh mesh = to_world(made.mesh, meshed.surface.frame);
+  flag_gaps(meshed, made.seeds, mesh, report.gaps);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;
 }

@@ -4,12 +4,14 @@
 #include <tuple>
 
 #include "features/curve_seeds.h"
+#include "features/free_seeds.h"
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/feature_shapes.h"
 #include "support/open_surfaces.h"
 #include "voxel/random.h"
+#include "voxel/snap.h"
 
 using namespace isoshell;
 
@@ -27,10 +29,17 @@ LatticeFrame frame_of(const FeatureMesh& mesh) {
   const auto [lo, hi] = bounding_box(soup_of(mesh));
   return LatticeFrame::around(lo, hi, 50);
 }
-CutSurface cut_of(const FeatureShape& shape, double edge = kEdge, int threads = 0) {
+CutSurface cut_of(const FeatureShape& shape, CutOptions options = {kEdge, 0}, int threads = 0) {
   Context context;
   context.threads = threads;
-  return cut_surface(shape.mesh, shape.network, frame_of(shape.mesh), edge, context);
+  return cut_surface(shape.mesh, shape.network, frame_of(shape.mesh), options, context);
+}
+/// With free seeds for so many vertices.
+SeedSet seeds_of(const CutSurface& cut, int64_t vertices, uint64_t seed) {
+  const FreeSeeds free(cut);
+  SeedSet fixed = seeds_on_curves(cut, 0);
+  const FreeSeeds::Counts counts = free.counts(fixed, vertices);
+  return free.add(std::move(fixed), counts, seed);
 }
 double length_q8(PointQ8 a, PointQ8 b) { return std::sqrt(double(distance_sq_q16(a, b))); }
 
@@ -123,25 +132,30 @@ TEST_CASE("cut surface: places on borders are where the curves are, each with al
 }
 
 TEST_CASE("cut surface: does not depend on the order of triangles, or on threads", "[cut_surface][stage]") {
-  for (FeatureShape shape : feature_shapes()) {
-    INFO(shape.name);
-    const auto expected = triangles_of(cut_of(shape));
-    CHECK(triangles_of(cut_of(shape, kEdge, 1)) == expected);
-    auto& triangles = shape.mesh.triangles;
-    for (size_t i = triangles.size() - 1; i > 0; --i) {
-      std::swap(triangles[i], triangles[random_bits(3, i) % (i + 1)]);
-      std::rotate(triangles[i].begin(), triangles[i].begin() + int64_t(random_bits(4, i) % 3), triangles[i].end());
+  for (const FeatureShape& given : feature_shapes()) {
+    INFO(given.name);
+    for (const int64_t vertices : {0, 500}) {
+      const CutOptions options{kEdge, vertices};
+      FeatureShape shape = given;
+      const auto expected = triangles_of(cut_of(shape, options));
+      CHECK((triangles_of(cut_of(shape, options, 1)) == expected));
+      auto& triangles = shape.mesh.triangles;
+      for (size_t i = triangles.size() - 1; i > 0; --i) {
+        std::swap(triangles[i], triangles[random_bits(3, i) % (i + 1)]);
+        std::rotate(triangles[i].begin(), triangles[i].begin() + int64_t(random_bits(4, i) % 3), triangles[i].end());
+      }
+      CHECK((triangles_of(cut_of(shape, options)) == expected));
     }
-    CHECK(triangles_of(cut_of(shape)) == expected);
   }
 }
 
-TEST_CASE("fixed seeds: follow every curve at equal arclengths, and each owns a vertex", "[cut_surface][stage]") {
+TEST_CASE("fixed seeds: follow every curve about one edge length apart, and each owns a vertex",
+          "[cut_surface][stage]") {
   for (const FeatureShape& shape : feature_shapes())
     for (const double edge : {kEdge, 2.3, 30.}) {
       INFO(shape.name << ", edge " << edge);
-      const CutSurface cut = cut_of(shape, edge);
-      const SeedSet seeds = seeds_on_curves(cut, edge);
+      const CutSurface cut = cut_of(shape, {edge, 0});
+      const SeedSet seeds = seeds_on_curves(cut, 0);
       const auto& of_vertex = seeds.fixed.of_vertex;
       std::map<uint32_t, std::vector<uint32_t>> at_place;
       for (uint32_t s = 0; s < seeds.size(); ++s) {
@@ -160,19 +174,73 @@ TEST_CASE("fixed seeds: follow every curve at equal arclengths, and each owns a 
           if (at_place.count(curve.place[i])) at.push_back(curve.at_q8[i]);
         if (curve.is_loop) at.push_back(curve.length_q8);
         const double edge_q8 = edge / cut.voxel_size * kOneVoxelQ8;
-        const auto segments = std::max(curve.least_segments, int64_t(std::lround(curve.length_q8 / edge_q8)));
-        REQUIRE(int64_t(at.size()) == segments + 1);
-        for (size_t i = 1; i < at.size(); ++i)
-          CHECK(std::abs((at[i] - at[i - 1]) * double(segments) / curve.length_q8 - 1) < 0.07);
+        const auto segments = int64_t(at.size()) - 1;
+        REQUIRE(segments >= curve.least_segments);
+        if (curve.length_q8 > 2 * double(curve.least_segments) * edge_q8) {
+          CHECK(std::abs(double(segments) - curve.length_q8 / edge_q8) < 0.1 * double(segments) + 0.6);
+          for (size_t i = 1; i < at.size(); ++i) {
+            CHECK(at[i] - at[i - 1] < 1.3 * edge_q8);
+            CHECK(at[i] - at[i - 1] > 0.7 * edge_q8);
+          }
+        }
+        if (segments == curve.least_segments && segments > 1)
+          for (size_t i = 1; i < at.size(); ++i)
+            CHECK(std::abs((at[i] - at[i - 1]) * double(segments) / curve.length_q8 - 1) < 0.3);
       }
     }
+}
+
+TEST_CASE("fixed seeds: are where a curve bends", "[cut_surface][stage]") {
+  // A fold along a zigzag, whose bends are 1 apart: edges of .9 or 1.1 would cut them off at most places.
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> at;
+  FeatureShape shape{"zigzag", {}, {}, 2, 2};
+  shape.mesh = grid_mesh(
+      12, 2, [](uint32_t, uint32_t) { return true; }, [](uint32_t, uint32_t j) { return j == 1 ? 1. : 0.; }, at);
+  std::set<EdgeEnds> creases;
+  for (uint32_t i = 0; i < 12; ++i) {
+    creases.insert(ends(at[{i, 1}], at[{i + 1, 1}]));
+    shape.mesh.vertices[at[{i, 1}]].y += i % 2 ? 0.15 : -0.15;
+  }
+  shape.network = network_of(shape.mesh, creases);
+  for (const double edge : {0.9, 1.1}) {
+    const CutSurface cut = cut_of(shape, {edge, 0});
+    std::set<Place> seeds;
+    for (const CutCurve& curve : cut.curves)
+      for (const size_t i : curve.seeds)
+        seeds.insert(place_of(cut.surface.position[cut.copies[size_t(cut.copies_first[curve.place[i]])]]));
+    const LatticeFrame frame = frame_of(shape.mesh);
+    int missed = 0;
+    for (uint32_t i = 1; i < 12; ++i) {
+      const WorldPoint p = shape.mesh.vertices[at[{i, 1}]];
+      missed += !seeds.count(place_of(snap_point(frame, p)));
+    }
+    CHECK(missed == 0);
+  }
+}
+
+TEST_CASE("fixed seeds: coarser levels have every second one, and corners", "[cut_surface][stage]") {
+  for (const FeatureShape& shape : feature_shapes()) {
+    INFO(shape.name);
+    const CutSurface cut = cut_of(shape, {0.3, 0});
+    std::vector<std::set<uint32_t>> places;
+    for (const int level : {0, 1, 2}) {
+      const SeedSet seeds = seeds_on_curves(cut, level);
+      places.emplace_back();
+      for (const uint32_t home : seeds.home) places.back().insert(cut.place[home]);
+      for (uint32_t p = 0; p < cut.corner_count; ++p) CHECK(places.back().count(p) == 1);
+      if (level == 0) continue;
+      const auto& finer = places[size_t(level) - 1];
+      CHECK(std::includes(finer.begin(), finer.end(), places.back().begin(), places.back().end()));
+      CHECK(places.back().size() < 0.7 * double(finer.size()) + double(cut.corner_count));
+    }
+  }
 }
 
 TEST_CASE("fixed seeds: border vertices belong to the nearest along their side of the curve", "[cut_surface][stage]") {
   for (const FeatureShape& shape : feature_shapes()) {
     INFO(shape.name);
     const CutSurface cut = cut_of(shape);
-    const SeedSet seeds = seeds_on_curves(cut, kEdge);
+    const SeedSet seeds = seeds_on_curves(cut, 0);
     const auto& of_vertex = seeds.fixed.of_vertex;
     for (int64_t v = 0; v < cut.surface.vertex_count(); ++v)
       CHECK((of_vertex[v] == kNone) == (cut.surface.border_before[v] == kNone));
@@ -204,8 +272,8 @@ TEST_CASE("free seeds: the joined result has as many vertices as asked for, in p
     for (const int64_t vertices : {300, 701}) {
       INFO(shape.name << ", " << vertices);
       const double edge = edge_length_for(shape.mesh, shape.network, vertices);
-      const CutSurface cut = cut_of(shape, edge);
-      const SeedSet seeds = add_free_seeds(cut, seeds_on_curves(cut, edge), vertices, 5);
+      const CutSurface cut = cut_of(shape, {edge, 0});
+      const SeedSet seeds = seeds_of(cut, vertices, 5);
       CHECK(distinct_joined(seeds) + seeds.size() - seeds.fixed.count == vertices);
       std::map<uint32_t, int> in_patch;
       for (int64_t s = seeds.fixed.count; s < seeds.size(); ++s) {
@@ -214,9 +282,85 @@ TEST_CASE("free seeds: the joined result has as many vertices as asked for, in p
       }
       if (shape.name == "cube")
         for (const auto& [patch, count] : in_patch) CHECK(std::abs(count - in_patch[0]) <= 1);
-      const SeedSet other = add_free_seeds(cut, seeds_on_curves(cut, edge), vertices, 6);
+      const SeedSet other = seeds_of(cut, vertices, 6);
       CHECK(!std::equal(seeds.home.begin(), seeds.home.end(), other.home.begin()));
     }
+}
+
+TEST_CASE("free seeds: a finer level keeps those of the coarser one, and has as many as asked for",
+          "[cut_surface][stage]") {
+  Context context;
+  for (const FeatureShape& shape : {feature_cube(), feature_cylinder(40), feature_plate()}) {
+    INFO(shape.name);
+    const CutSurface cut = cut_of(shape, {edge_length_for(shape.mesh, shape.network, 1000), 0});
+    const FreeSeeds free(cut);
+    SeedSet fine = seeds_on_curves(cut, 0), fixed = seeds_on_curves(cut, 1);
+    const FreeSeeds::Counts counts = free.counts(fine, 1000), fewer = free.coarser(fixed, counts);
+    for (size_t p = 0; p < counts.size(); ++p) CHECK(std::abs(4 * fewer[p] - counts[p]) < counts[p] / 2 + 8);
+    SeedSet seeds = relax_on_sheet(cut.surface, free.add(std::move(fixed), fewer, 1), {20}, context).seeds;
+    const Triangulation coarse = triangulate_dual(cut.surface, std::move(seeds), {}, context);
+    REQUIRE(coarse.report.failed_cells == 0);
+    const SeedSet finer = free.add_finer(std::move(fine), counts, coarse, 1);
+    CHECK(distinct_joined(finer) + finer.size() - finer.fixed.count == 1000);
+    std::set<uint32_t> homes(finer.home.begin() + finer.fixed.count, finer.home.end());
+    int64_t lost = 0;
+    for (int64_t s = coarse.seeds.fixed.count; s < coarse.seeds.size(); ++s) lost += !homes.count(coarse.seeds.home[s]);
+    CHECK(lost == 0);
+    CHECK(int64_t(homes.size()) > (finer.size() - finer.fixed.count) * 97 / 100);
+  }
+}
+
+TEST_CASE("edge lengths: are shorter around holes and between close curves, and fill the mesh",
+          "[cut_surface][stage]") {
+  // A sheet of 20 x 20 with a hole of 2, which 12 edges of 1.2 would not go around well; and a strip of .5 along a
+  // side.
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> at;
+  FeatureShape shape{"sheet", {}, {}, 2, 3};
+  shape.mesh = grid_mesh(
+      40, 40, [](uint32_t i, uint32_t j) { return !(i >= 19 && i < 21 && j >= 19 && j < 21); },
+      [](uint32_t, uint32_t) { return 0.; }, at);
+  for (WorldPoint& p : shape.mesh.vertices) p.x /= 2, p.y /= 2;
+  std::set<EdgeEnds> creases;
+  for (uint32_t j = 0; j < 40; ++j) creases.insert(ends(at[{1, j}], at[{1, j + 1}]));
+  shape.network = network_of(shape.mesh, creases);
+  const int64_t vertices = 400;
+  const double even = edge_length_for(shape.mesh, shape.network, vertices);
+  const CutSurface cut = cut_of(shape, {even, vertices});
+  const SurfaceMesh& surface = cut.surface;
+  REQUIRE(surface.lengths.at.size() == surface.vertex_count());
+  const auto longest_near = [&](double x, double y, double reach) {
+    const LatticeFrame frame = frame_of(shape.mesh);
+    uint32_t longest = 0;
+    for (int64_t v = 0; v < surface.vertex_count(); ++v) {
+      const WorldPoint p = frame.to_world(surface.position[v]);
+      if (std::hypot(p.x - x, p.y - y) < reach) longest = std::max(longest, surface.lengths.at[v]);
+    }
+    return longest * frame.voxel_size / kOneVoxelQ8;
+  };
+  CHECK(longest_near(10, 10, 0.8) < 0.6 * even);
+  CHECK(longest_near(0.25, 5, 0.4) < 1.6 * 0.5 + 0.2);
+  CHECK(surface.lengths.largest * cut.voxel_size / kOneVoxelQ8 > even);
+  CHECK(4 * (surface.lengths.least + 1) >= surface.lengths.largest);
+  double filled = 0;
+  int64_t too_steep = 0;
+  for (const TriangleIndices& t : surface.triangles) {
+    const uint32_t corner[3] = {t.a, t.b, t.c};
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t u = corner[i], v = corner[(i + 1) % 3];
+      sum += surface.lengths.at[u];
+      too_steep += std::abs(double(surface.lengths.at[u]) - double(surface.lengths.at[v])) >
+                   0.3 * length_q8(surface.position[u], surface.position[v]) + 3;  // a fifth along the first cuts
+    }
+    const Vec64 n = cross(difference(surface.position[t.b], surface.position[t.a]),
+                          difference(surface.position[t.c], surface.position[t.a]));
+    filled += std::sqrt(double(dot(n, n)) / 3) / (sum * sum / 9);
+  }
+  CHECK(too_steep == 0);
+  CHECK(filled > 0.8 * double(vertices));  // borders have the rest
+  CHECK(filled < 1.01 * double(vertices));
+  const FeatureShape cube = feature_cube();
+  CHECK(cut_of(cube, {edge_length_for(cube.mesh, cube.network, 600), 600}).surface.lengths.at.empty());
 }
 
 TEST_CASE("edge length: a mesh of that length has about as many vertices as asked for", "[cut_surface][stage]") {
@@ -248,15 +392,13 @@ TEST_CASE("cut surface: what it can not cut, or seed, is an error that says why"
   const FeatureShape book = feature_book(), cube = feature_cube();
   Context context;
   const auto cut = [&](const FeatureMesh& mesh, const CurveNetwork& network, double edge) {
-    return usage_error([&] { cut_surface(mesh, network, frame_of(mesh), edge, context); });
+    return usage_error([&] { cut_surface(mesh, network, frame_of(mesh), {edge, 0}, context); });
   };
   CHECK(cut(book.mesh, {}, kEdge).find("is on no curve") != std::string::npos);
   CHECK(cut(cube.mesh, feature_plate().network, kEdge).find("find the curves on this very mesh") != std::string::npos);
   CHECK(cut(cube.mesh, cube.network, 0).find("edge length") != std::string::npos);
   const CutSurface fine = cut_of(cube);
-  CHECK(usage_error([&] {
-          add_free_seeds(fine, seeds_on_curves(fine, kEdge), 20, 0);
-        }).find("curves and corners take") != std::string::npos);
+  CHECK(usage_error([&] { seeds_of(fine, 20, 0); }).find("curves and corners take") != std::string::npos);
 
   FeatureMesh needles;
   constexpr uint32_t kCount = 20000;

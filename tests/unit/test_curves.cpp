@@ -282,6 +282,29 @@ TEST_CASE("curves: the border of a sheet has the corners of the sheet, and that 
   CHECK(v[1] < v.back());
 }
 
+TEST_CASE("curves: teeth of a jagged border are no corners, those of long teeth and of battlements are",
+          "[curves][unit]") {
+  // A fan around the origin, whose rim goes in and out: by every vertex, or by two and two.
+  const auto rim = [](uint32_t count, const std::function<bool(uint32_t)>& is_out, double depth) {
+    TriangleSoup soup;
+    soup.vertices.push_back({0, 0, 0});
+    for (uint32_t i = 0; i < count; ++i) {
+      const double r = is_out(i) ? 1 + depth : 1, turn = kTau * i / count;
+      soup.vertices.push_back({r * std::cos(turn), r * std::sin(turn), 0});
+    }
+    for (uint32_t i = 0; i < count; ++i) shapes::add_triangle(soup, 0, 1 + i, 1 + (i + 1) % count);
+    return soup;
+  };
+  const auto corners = [](const TriangleSoup& soup, double edge_length) {
+    return find_curves(weld_for_features(soup), {CreaseMode::off, 0, edge_length}).corners.size();
+  };
+  const auto every_other = [](uint32_t i) { return i % 2 == 0; };
+  const auto two_and_two = [](uint32_t i) { return i % 4 < 2; };
+  CHECK(corners(rim(64, every_other, .1), .06) == 0);
+  CHECK(corners(rim(64, every_other, .1), .02) == 64);
+  CHECK(corners(rim(64, two_and_two, .3), .06) == 64);
+}
+
 TEST_CASE("curves: an edge of three triangles is a curve, and borders end where it does", "[curves][unit]") {
   TriangleSoup soup;
   soup.vertices = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 1, 0}, {-1, 1, 1}, {-1, -1, 0}, {-1, -1, 1}};

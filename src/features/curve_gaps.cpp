@@ -1,0 +1,136 @@
+// limit_by_gaps (see length_limits.h).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+
+#include "core/world_vector.h"
+#include "features/length_limits.h"
+#include "isoshell/voxel_set.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kEdgeOfGap = 1.5;  ///< longest edge along a strip over its width
+constexpr double kNarrow = 0.35;    ///< width over the way along the curves, below which a strip is narrow
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Where a vertex is on paths.
+struct OnPath {
+  uint32_t path;
+  size_t index;
+  double at;
+};
+
+/// Per vertex the vertex of a path that is nearest along edges, within reach; kNone beyond it. Of two that are as near
+/// the smaller one.
+std::vector<uint32_t> nearest_on_paths(const FineMesh& mesh, const VertexGraph& graph, double reach) {
+  std::vector<double> distance(mesh.position.size(), kFar);
+  std::vector<uint32_t> nearest(mesh.position.size(), kNone);
+  using Entry = std::tuple<double, uint32_t, uint32_t>;  // distance, nearest, vertex
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const auto offer = [&](double way, uint32_t from, uint32_t v) {
+    if (std::tie(way, from) >= std::tie(distance[v], nearest[v])) return;
+    distance[v] = way;
+    nearest[v] = from;
+    queue.push({way, from, v});
+  };
+  for (const CurvePath& path : mesh.paths)
+    for (const uint32_t v : path.vertex) offer(0, v, v);
+  while (!queue.empty()) {
+    const auto [way, from, v] = queue.top();
+    queue.pop();
+    if (std::tie(way, from) > std::tie(distance[v], nearest[v])) continue;
+    for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
+      const uint32_t u = graph.neighbour[size_t(i)];
+      const double there = way + std::sqrt(distance_sq(mesh.position[v], mesh.position[u]));
+      if (there <= reach) offer(there, from, u);
+    }
+  }
+  return nearest;
+}
+
+double distance_to_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
+  const double whole = distance_sq(a, b);
+  const double part = whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
+  return std::sqrt(distance_sq(p, a + part * (b - a)));
+}
+
+/// How far points of paths are from one another along them.
+class WaysAlongPaths {
+ public:
+  explicit WaysAlongPaths(const FineMesh& mesh) : paths_(mesh.paths), first_(mesh.position.size() + 1, 0) {
+    for (const CurvePath& path : paths_)
+      for (const uint32_t v : path.vertex) ++first_[v + 1];
+    for (size_t v = 0; v + 1 < first_.size(); ++v) first_[v + 1] += first_[v];
+    on_path_.resize(size_t(first_.back()));
+    std::vector<int64_t> next(first_.begin(), first_.end() - 1);
+    for (uint32_t p = 0; p < paths_.size(); ++p)
+      for (size_t i = 0; i < paths_[p].vertex.size(); ++i)
+        on_path_[size_t(next[paths_[p].vertex[i]]++)] = {p, i, paths_[p].at[i]};
+  }
+
+  /// By one path, or two that meet in a corner; infinite where neither leads from one to the other.
+  double between(uint32_t u, uint32_t v) const {
+    double way = kFar;
+    for (int64_t i = first_[u]; i < first_[u + 1]; ++i)
+      for (int64_t j = first_[v]; j < first_[v + 1]; ++j)
+        way = std::min(way, between(on_path_[size_t(i)], on_path_[size_t(j)]));
+    return way;
+  }
+
+  /// From a point to the edges of paths around a vertex.
+  double straight_to(uint32_t v, const WorldPoint& from, const std::vector<WorldPoint>& position) const {
+    double least = kFar;
+    for (int64_t i = first_[v]; i < first_[v + 1]; ++i) {
+      const CurvePath& path = paths_[on_path_[size_t(i)].path];
+      const size_t n = path.vertex.size(), k = on_path_[size_t(i)].index;
+      if (k > 0 || path.is_loop)
+        least = std::min(least, distance_to_segment(from, position[path.vertex[(k + n - 1) % n]], position[v]));
+      if (k + 1 < n || path.is_loop)
+        least = std::min(least, distance_to_segment(from, position[v], position[path.vertex[(k + 1) % n]]));
+    }
+    return least;
+  }
+
+ private:
+  double between(const OnPath& a, const OnPath& b) const {
+    const CurvePath &p = paths_[a.path], &q = paths_[b.path];
+    const double straight = std::abs(a.at - b.at);
+    if (a.path == b.path && p.is_jagged) return 0;  // between teeth are no strips
+    if (a.path == b.path)
+      return p.is_loop || p.vertex.front() == p.vertex.back() ? std::min(straight, p.length - straight) : straight;
+    if (p.is_loop || q.is_loop) return kFar;
+    double way = kFar;
+    for (const bool p_ends : {false, true})
+      for (const bool q_ends : {false, true})
+        if ((p_ends ? p.vertex.back() : p.vertex.front()) == (q_ends ? q.vertex.back() : q.vertex.front()))
+          way = std::min(way, (p_ends ? p.length - a.at : a.at) + (q_ends ? q.length - b.at : b.at));
+    return way;
+  }
+
+  const std::vector<CurvePath>& paths_;
+  std::vector<int64_t> first_;
+  std::vector<OnPath> on_path_;
+};
+
+}  // namespace
+
+void limit_by_gaps(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit) {
+  const std::vector<uint32_t> nearest = nearest_on_paths(mesh, graph, e / 2);
+  const WaysAlongPaths ways(mesh);
+  for (uint32_t u = 0; u < nearest.size(); ++u)
+    for (int64_t i = graph.first[u]; i < graph.first[u + 1]; ++i) {
+      const uint32_t v = graph.neighbour[size_t(i)], a = nearest[u], b = nearest[v];
+      if (v < u || a == kNone || b == kNone || a == b) continue;
+      const double way = ways.between(a, b);
+      if (length(mesh.position[b] - mesh.position[a]) >= kNarrow * way) continue;
+      const double gap = std::min(ways.straight_to(a, mesh.position[b], mesh.position),
+                                  ways.straight_to(b, mesh.position[a], mesh.position));
+      if (gap * kEdgeOfGap >= e) continue;
+      for (const uint32_t w : {u, v, a, b}) limit[w] = std::min(limit[w], kEdgeOfGap * gap);
+    }
+}
+
+}  // namespace isoshell

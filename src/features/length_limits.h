@@ -1,0 +1,23 @@
+// How long edges of the result may be beside curves and where the surface bends. All lengths are in 1/256 voxel; `e` is
+// the edge length at which the fine mesh was cut. What limits nothing leaves a vertex's limit as it is.
+#pragma once
+
+#include <vector>
+
+#include "features/vertex_graph.h"
+
+namespace isoshell {
+
+/// Longest edge over the radius of a curve or surface.
+constexpr double kEdgeOfRadius = 0.35;
+
+/// On paths: by how far they turn within e, all turns of one direction; and by their own lengths.
+void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::vector<CurvePath>& paths, double e,
+                          std::vector<double>& limit);
+/// Off paths: by how far normals, averaged within about e / 2, turn. Sums of integers: no order shows.
+void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit);
+/// Beside strips between two curves, or two parts of one, by their width. Curves that meet at 40 degrees or more leave
+/// one another alone there.
+void limit_by_gaps(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit);
+
+}  // namespace isoshell

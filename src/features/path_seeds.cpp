@@ -1,0 +1,122 @@
+// See path_seeds.h.
+#include "features/path_seeds.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/world_vector.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kStep = 0.125;   ///< between places to choose from, in edge lengths
+constexpr double kTooSoon = 0.4;  ///< of a step
+constexpr double kLongest = 1.6;  ///< segment, in edge lengths
+constexpr double kCostOfDistance = 10;
+
+/// A place where a seed may be.
+struct Candidate {
+  PathPoint point;
+  WorldPoint position;
+  double segments;     ///< from the beginning of the path
+  double edge_length;  ///< there
+};
+
+/// All vertices, except those that follow too soon, and points between them. A loop ends with its first vertex.
+std::vector<Candidate> list_candidates(const FineMesh& mesh, const CurvePath& path) {
+  const std::vector<double> segments = segments_along(mesh, path);
+  const double step = std::min(kStep, segments.back() / (4 * double(path.least_segments)));
+  std::vector<Candidate> out;
+  for (size_t i = 0; i < path.edge_count(); ++i) {
+    const uint32_t u = path.vertex[i], v = path.edge_end(i);
+    const WorldPoint &a = mesh.position[u], &b = mesh.position[v];
+    const double whole = segments[i + 1] - segments[i];
+    const auto parts = std::max<int64_t>(1, int64_t(std::ceil(whole / step)));
+    for (int64_t k = 0; k < parts; ++k) {
+      const double part = double(k) / double(parts), at = segments[i] + part * whole;
+      if (!out.empty() && at < out.back().segments + kTooSoon * step) continue;
+      out.push_back({{i, part}, a + part * (b - a), at, (1 - part) * mesh.edge_length[u] + part * mesh.edge_length[v]});
+    }
+  }
+  while (out.size() > 1 && segments.back() < out.back().segments + kTooSoon * step) out.pop_back();
+  const uint32_t end = path.edge_end(path.edge_count() - 1);
+  out.push_back({{path.edge_count(), 0}, mesh.position[end], segments.back(), mesh.edge_length[end]});
+  return out;
+}
+
+double distance_to_chord_sq(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
+  const double whole = distance_sq(a, b);
+  const double part = whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
+  return distance_sq(p, a + part * (b - a));
+}
+
+double cost_of(const std::vector<Candidate>& c, size_t from, size_t to) {
+  const double uneven = c[to].segments - c[from].segments - 1;
+  double farthest_sq = 0;
+  for (size_t i = from + 1; i < to; ++i)
+    farthest_sq = std::max(farthest_sq, distance_to_chord_sq(c[i].position, c[from].position, c[to].position));
+  const double edge = (c[from].edge_length + c[to].edge_length) / 2;
+  return uneven * uneven + kCostOfDistance * farthest_sq / (edge * edge);
+}
+
+/// The cheapest way from the first to the last.
+std::vector<size_t> cheapest(const std::vector<Candidate>& c) {
+  std::vector<double> cost(c.size(), std::numeric_limits<double>::infinity());
+  std::vector<size_t> before(c.size(), 0);
+  cost[0] = 0;
+  for (size_t to = 1; to < c.size(); ++to)
+    for (size_t from = to; from-- > 0;) {
+      if (from + 1 < to && c[to].segments - c[from].segments > kLongest) break;
+      const double sum = cost[from] + cost_of(c, from, to);
+      if (sum < cost[to]) cost[to] = sum, before[to] = from;
+    }
+  std::vector<size_t> way{c.size() - 1};
+  while (way.back() != 0) way.push_back(before[way.back()]);
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+/// As many equal segments, for paths that need more than the cheapest way has.
+std::vector<size_t> even(const std::vector<Candidate>& c, size_t segments) {
+  std::vector<size_t> way{0};
+  for (size_t s = 1; s < segments; ++s) {
+    const double target = c.back().segments * double(s) / double(segments);
+    size_t i = way.back() + 1;
+    while (i + (segments - s) < c.size() - 1 && std::abs(c[i + 1].segments - target) < std::abs(c[i].segments - target))
+      ++i;
+    way.push_back(i);
+  }
+  way.push_back(c.size() - 1);
+  return way;
+}
+
+}  // namespace
+
+std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) {
+  std::vector<double> out{0};
+  for (size_t i = 0; i < path.edge_count(); ++i) {
+    const uint32_t u = path.vertex[i], v = path.edge_end(i);
+    const double end = i + 1 < path.at.size() ? path.at[i + 1] : path.length;
+    out.push_back(out.back() + (end - path.at[i]) * 2 / (mesh.edge_length[u] + mesh.edge_length[v]));
+  }
+  return out;
+}
+
+void place_path_seeds(FineMesh& mesh) {
+  tbb::parallel_for(size_t(0), mesh.paths.size(), [&](size_t p) {
+    CurvePath& path = mesh.paths[p];
+    const std::vector<Candidate> candidates = list_candidates(mesh, path);
+    const auto least = size_t(path.least_segments);
+    const auto nearest = std::min(size_t(candidates.back().segments + 0.5), candidates.size() - 1);
+    std::vector<size_t> way = path.is_jagged ? even(candidates, std::max<size_t>(1, nearest)) : cheapest(candidates);
+    if (way.size() - 1 < least) way = even(candidates, least);
+    path.seeds.clear();
+    for (const size_t i : way) path.seeds.push_back(candidates[i].point);
+    if (path.is_loop) path.seeds.pop_back();
+  });
+}
+
+}  // namespace isoshell

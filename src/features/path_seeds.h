@@ -1,0 +1,18 @@
+// Where the seeds of a path belong.
+#pragma once
+
+#include "features/refine_mesh.h"
+
+namespace isoshell {
+
+/// How many edges of the lengths aimed at lie between the first vertex of a path and every other; of a loop there is
+/// one more number, all around it.
+std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path);
+
+/// Gives every path its seeds: about one edge length apart, and rather at vertices where it bends, so that the chords
+/// between them stay on it. Of all choices that with the least sum, over the segments, of (length / edge length - 1)^2
+/// + 10 (distance of the path from the chord / edge length)^2; on jagged paths equal segments. Cost: linear in the
+/// length of paths over that of edges.
+void place_path_seeds(FineMesh& mesh);
+
+}  // namespace isoshell

@@ -1,0 +1,58 @@
+// See relax_level.h.
+#include "pipeline/relax_level.h"
+
+#include <algorithm>
+
+#include "core/copy_product.h"
+#include "isoshell/to_host.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kMostRepairPerMille = 60;
+constexpr int32_t kCoarsePasses = 60;
+constexpr int32_t kCoarseTolerancePpb = 30000;
+constexpr int32_t kCoarseSmoothingSteps = 40;
+// Small levels, which cost little, relax again after their flips.
+constexpr int64_t kMostSeedsTwice = 3000;
+constexpr int32_t kPassesAgain = 30;
+// Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes.
+constexpr int32_t kFinestPasses = 40;
+constexpr int32_t kFinestTolerancePpb = 500000;
+
+std::optional<SeededMesh> relax_coarse(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+                                       Context& context) {
+  const int64_t asked = seeds.size();
+  seeds = relax_on_sheet(surface, std::move(seeds), relax, context).seeds;
+  Triangulation dual = triangulate_dual(surface, std::move(seeds), {}, context);
+  if (dual.report.failed_cells > 0 || dual.seeds.size() - asked > asked * kMostRepairPerMille / 1000) return {};
+  SeededMesh mesh = collapse_edges(surface, std::move(dual), {asked}, context);
+  OptimizeOptions optimize;
+  optimize.smoothing_steps = kCoarseSmoothingSteps;
+  optimize.for_seeds = true;
+  return optimize_mesh(surface, std::move(mesh), optimize, context);
+}
+
+}  // namespace
+
+RelaxOptions for_coarse_level(RelaxOptions relax, bool tolerance_asked) {
+  relax.max_passes = kCoarsePasses;
+  if (!tolerance_asked) relax.tolerance_ppb = kCoarseTolerancePpb;
+  return relax;
+}
+RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_asked) {
+  relax.max_passes = std::min(relax.max_passes, kFinestPasses);
+  if (!tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
+  return relax;
+}
+
+std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+                                      Context& context) {
+  std::optional<SeededMesh> first = relax_coarse(surface, relax, std::move(seeds), context);
+  if (!first || first->seeds.size() > kMostSeedsTwice) return first;
+  const RelaxOptions again{kPassesAgain, relax.tolerance_ppb, relax.max_step_q8};
+  std::optional<SeededMesh> second = relax_coarse(surface, again, to_host(first->seeds), context);
+  return second ? std::move(second) : std::move(first);
+}
+
+}  // namespace isoshell
