@@ -2,6 +2,7 @@
 #pragma once
 
 #include "isoshell/boolean_union.h"
+#include "isoshell/borders.h"
 #include "isoshell/device_info.h"
 #include "isoshell/digest.h"
 #include "isoshell/distance.h"

@@ -25,11 +25,17 @@ enum class Method {
 struct Features {
   enum class Creases {
     off,        ///< none: sharp edges are rounded off
-    automatic,  ///< those of crisp parts, and none of a scan
+    automatic,  ///< those of crisp parts, and none of a scan; none with the method shell
     threshold,  ///< all whose faces turn by `degrees` or more
   };
-  Creases creases = Creases::off;
+  Creases creases = Creases::automatic;
   double degrees = 0;  ///< only of a threshold
+};
+
+/// What becomes of the borders of a surface that is not closed.
+enum class Boundary {
+  close,  ///< narrow holes are capped or bridged, and the result is closed
+  keep,   ///< borders wider than the gaps to close are borders of the result
 };
 
 /// What has no value is chosen by the run. The numbers that stood for that before, 0 or -1 by option, mean it still.
@@ -50,23 +56,34 @@ struct RemeshOptions {
   double adaptivity = 0;                      ///< part of the vertices that goes by curvature, 0 to 1
   double gradation = 1.2;                     ///< most that an edge may be longer than its neighbours, above 1
   Fit fit = Fit::balanced;
-  bool uniform_area = false;  ///< triangles of even size rather than of the best shape
-  Features features;          ///< need the method sheet
-  /// Names of the vertex attributes that a run keeps; without a value all. remesh() itself makes positions only.
+  bool uniform_area = false;            ///< triangles of even size rather than of the best shape
+  Features features;                    ///< a threshold needs the method sheet
+  Boundary boundary = Boundary::close;  ///< keep needs the method sheet
+  /// Names of the attributes that a run keeps; without a value all. Where texture coordinates, materials or groups that
+  /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;
   bool outer_only = false;    ///< drop what lies inside of a closed surface
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
   bool want_digests = false;  ///< fill RemeshReport::digests
 };
 
-/// What was kept of the input's creases.
+/// What was kept of the input's creases and borders.
 struct FeatureReport {
-  bool kept = false;     ///< the result has the curves as edges
-  std::string given_up;  ///< why there are none, though curves were found; empty otherwise
-  int64_t patches = 0;   ///< of the surface between the curves
-  int64_t curves = 0;
-  int64_t corners = 0;   ///< where curves end or turn sharply
-  int64_t vertices = 0;  ///< of the result on curves
+  bool kept = false;         ///< the result has the curves as edges
+  std::string given_up;      ///< why there are none, though curves were found; empty otherwise
+  int64_t patches = 0;       ///< of the surface between the curves
+  int64_t curves = 0;        ///< creases and seams
+  int64_t seams = 0;         ///< of the curves: where attributes jump and the surface does not turn
+  int64_t corners = 0;       ///< where curves end or turn sharply
+  int64_t vertices = 0;      ///< of the result on curves
+  int64_t border_loops = 0;  ///< of the result
+};
+
+/// Walls that were nearer to one another than edges can follow, and became one: the last resort against intersections.
+struct MergeReport {
+  int32_t grown_vox = 0;   ///< walls there grew so far to each side; 0: none were merged
+  int64_t places = 0;      ///< corners of triangles that intersected before
+  WorldPoint at{0, 0, 0};  ///< one of them
 };
 
 struct StageTime {
@@ -91,6 +108,8 @@ struct RemeshReport {
   DualReport dual;
   OptimizeReport post;                      ///< of the final mesh, when post_done
   int64_t seeds_against_intersections = 0;  ///< put in where triangles intersected; others were taken out for them
+  MergeReport merged;
+  std::optional<WorldPoint> intersection_at;  ///< a corner of triangles that intersect in the result
   SizingReport sizing;
   GapReport gaps;
   FeatureReport features;

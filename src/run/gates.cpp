@@ -25,6 +25,8 @@ void set_gate(const std::string& gate, Gates& gates) {
     gates.genus = parse_count("--require genus", value);
   else if (name == "components" && has_value)
     gates.components = parse_count("--require components", value);
+  else if (name == "boundary-loops" && has_value)
+    gates.boundary_loops = parse_count("--require boundary-loops", value);
   else if (name == "min-angle" && has_value) {
     gates.min_angle_deg = parse_number("--require min-angle", value);
     check_range("--require min-angle", *gates.min_angle_deg, {0, 60});
@@ -33,8 +35,8 @@ void set_gate(const std::string& gate, Gates& gates) {
     check_range("--require max-deviation", *gates.max_deviation_world, {});
   } else {
     refuse("--require has '" + gate +
-           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, min-angle=DEG, "
-           "max-deviation=W");
+           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, "
+           "boundary-loops=N, min-angle=DEG, max-deviation=W");
   }
 }
 
@@ -57,6 +59,9 @@ std::string deviation_text(double limit_world, const MeshDistance& distance) {
   return text.str();
 }
 
+/// With borders that are kept, triangles intersect only where the input's do.
+bool are_the_inputs(const RunRecord& record) { return record.report.features.border_loops > 0; }
+
 }  // namespace
 
 Gates parse_gates(const std::string& list) {
@@ -68,6 +73,10 @@ Gates parse_gates(const std::string& list) {
 
 std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
   std::vector<std::string> missed;
+  if (const auto pairs = record.report.post.self_intersections;
+      pairs > 0 && !g.allow_intersections && !g.no_self_intersections && !are_the_inputs(record))
+    missed.push_back("the result intersects itself in " + counted(pairs, "pair", "pairs") +
+                     " of triangles; --allow-intersections takes it as it is");
   if (!g.any()) return missed;
   const MeshTopology& t = measured(record.topology, "topology");
   const RemeshReport& report = record.report;
@@ -75,7 +84,10 @@ std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
     if (!met) missed.push_back(text);
   };
   if (g.closed) gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
-  if (g.manifold) gate(t.is_closed_manifold(), "manifold: the mesh is not a closed 2-manifold");
+  if (g.manifold)
+    gate(t.is_manifold_with(report.features.border_loops),
+         report.features.border_loops > 0 ? "manifold: the mesh is not a 2-manifold with the borders that were kept"
+                                          : "manifold: the mesh is not a closed 2-manifold");
   if (g.no_self_intersections)
     gate(report.post_done && report.post.self_intersections == 0,
          "no-self-intersections: " + intersections_text(report));
@@ -85,6 +97,9 @@ std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
   if (g.components)
     gate(t.components == *g.components,
          "components=" + std::to_string(*g.components) + ": the mesh has " + std::to_string(t.components));
+  if (g.boundary_loops)
+    gate(t.boundary_loops == *g.boundary_loops,
+         "boundary-loops=" + std::to_string(*g.boundary_loops) + ": the mesh has " + std::to_string(t.boundary_loops));
   if (g.min_angle_deg) {
     const double smallest = measured(record.quality, "quality").theta_min_deg;
     std::ostringstream text;

@@ -46,8 +46,14 @@ Fit parse_fit(const std::string& option, const std::string& text) {
 
 const char* fit_name(Fit fit) { return fit == Fit::surface ? "surface" : "balanced"; }
 
+Boundary parse_boundary(const std::string& option, const std::string& text) {
+  return parse_choice<Boundary>(option, text, {{"close", Boundary::close}, {"keep", Boundary::keep}});
+}
+
+const char* boundary_name(Boundary boundary) { return boundary == Boundary::keep ? "keep" : "close"; }
+
 Features parse_features(const std::string& option, const std::string& text) {
-  if (text == "off") return {};
+  if (text == "off") return {Features::Creases::off, 0};
   if (text == "auto") return {Features::Creases::automatic, 0};
   const double degrees = parse_number(option + " is neither off nor auto: the angle of creases", text);
   check_range(option, degrees, option_range::crease);

@@ -121,6 +121,7 @@ Json json_of(const RemeshOptions& o) {
           {"fit", fit_name(o.fit)},
           {"uniform-area", o.uniform_area},
           {"features", features_text(o.features)},
+          {"boundary", boundary_name(o.boundary)},
           {"attributes", attributes_text(o.attributes)},
           {"adaptivity", o.adaptivity},
           {"gradation", o.gradation},
@@ -177,6 +178,7 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
   if (const auto text = members.text("fit")) o.fit = parse_fit("fit", *text);
   members.take("uniform-area", o.uniform_area);
   if (const auto text = members.text_or_number("features")) o.features = parse_features("features", *text);
+  if (const auto text = members.text("boundary")) o.boundary = parse_boundary("boundary", *text);
   if (const auto text = members.text("attributes")) o.attributes = parse_attributes("attributes", *text);
   members.take("adaptivity", o.adaptivity, option_range::adaptivity);
   members.take("gradation", o.gradation, option_range::gradation);
@@ -189,8 +191,10 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
 }
 
 void check_method(const AskedOptions& options) {
-  if (options.values.method == Method::shell && options.values.features.creases != Features::Creases::off)
-    refuse("--features needs --method sheet: the paper's loop on the shell knows no curves");
+  if (options.values.method == Method::shell && options.values.features.creases == Features::Creases::threshold)
+    refuse("--features DEG needs --method sheet: the paper's loop on the shell knows no curves");
+  if (options.values.method == Method::shell && options.values.boundary == Boundary::keep)
+    refuse("--boundary keep needs --method sheet: the paper's loop on the shell knows no borders");
   if (options.values.method == Method::shell && (!options.sizing.empty() || options.values.adaptivity > 0))
     refuse("--sizing and --adaptivity need --method sheet: the paper's loop on the shell has even cells");
 }

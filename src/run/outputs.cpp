@@ -58,9 +58,12 @@ OutputRequest named_output(const std::string& path, const std::string& format, S
   return output;
 }
 
-void check_features(const Features& features, const RunRequest& r) {
-  const bool keeps_voronoi = !r.save_voronoi.empty() || r.stop_after == StopAfter::voronoi;
-  if (features.creases == Features::Creases::off || !keeps_voronoi) return;
+Features possible_features(const RemeshOptions& options, const RunRequest& r) {
+  if (r.save_voronoi.empty() && r.stop_after != StopAfter::voronoi) return options.features;
+  if (options.boundary == Boundary::keep)
+    refuse_use(
+        "a Voronoi stage file does not hold the seeds of borders; give --boundary close, or keep a shell instead");
+  if (options.features.creases != Features::Creases::threshold) return {Features::Creases::off, 0};
   refuse_use("a Voronoi stage file does not hold the seeds of creases; give --features off, or keep a shell instead");
 }
 
@@ -68,7 +71,7 @@ void check_request(const RunRequest& r) {
   check_method(r.options);
   if (r.gates.any() && r.stop_after != StopAfter::mesh) refuse_use("--require needs a mesh; leave out --stop-after");
   if (r.save_shell == "-" || r.save_voronoi == "-") refuse_vdb_to_pipe();
-  check_features(r.options.values.features, r);
+  possible_features(r.options.values, r);
   if (r.output.path == "-" && r.statistics == "-") refuse_use("OUTPUT and --stats cannot both be standard output");
   named_output(r.output.path, r.output.format, r.stop_after);  // refuses what the run does not end with
   if (!r.options.sizing.empty() && !can_write_vdb()) read_sizing(r.options.sizing);  // says that there is no OpenVDB

@@ -16,8 +16,8 @@ std::string preview_path(const std::string& path);
 /// would share one file.
 void check_outputs(const RunRequest& request);
 
-/// Refuses to keep a Voronoi stage file of a run that keeps features: asked for, or those of the stage file it resumes.
-/// Throws: usage.
-void check_features(const Features& features, const RunRequest& request);
+/// What a run can keep of the features that are asked for, or that the stage file has that it resumes: a Voronoi stage
+/// file holds none. Throws: usage where a threshold, or that borders are kept, is asked for and such a file.
+Features possible_features(const RemeshOptions& options, const RunRequest& request);
 
 }  // namespace isoshell

@@ -1,5 +1,6 @@
 #include "run/resume.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -33,8 +34,10 @@ bool is_chosen(const RemeshOptions& o) { return !o.closing_vox && !o.closing_wor
 /// Whether a run that asks for this closing would have made the file.
 bool gives_closing(const RemeshOptions& asked, const AskedOptions& kept, const StageFile& file) {
   if (is_chosen(asked)) return kept.was_given("close-gaps") && is_chosen(kept.values);
-  const double closing_vox = asked.closing_world ? std::ceil(*asked.closing_world / file.surface.frame.voxel_size / 2)
-                                                 : double(*asked.closing_vox);
+  const double closing_vox =
+      asked.closing_world
+          ? std::min<double>(std::ceil(*asked.closing_world / file.surface.frame.voxel_size / 2), kMaxClosingVox)
+          : double(*asked.closing_vox);
   return closing_vox == file.info.closing_vox;
 }
 
@@ -71,6 +74,7 @@ void check_shell(const Held& held, const StageFile& file, const RemeshOptions& a
   held.check("voxel-size", !asked.voxel_size_world || gives_grid(*asked.voxel_size_world, frame), frame.voxel_size);
   held.check("band", asked.band_vox == file.shell.band_vox, file.shell.band_vox);
   held.check("close-gaps", gives_closing(asked, kept, file), std::to_string(2 * file.info.closing_vox) + "vox");
+  held.check("boundary", asked.boundary == kept.values.boundary, boundary_name(kept.values.boundary));
   held.check("outer-only", asked.outer_only == kept.values.outer_only, kept.values.outer_only ? "given" : "not given");
 }
 
@@ -101,6 +105,7 @@ AskedOptions adopt_options(const StageFile& file, const std::string& path, const
   RemeshOptions& o = settled.values;
   o.band_vox = file.shell.band_vox;
   o.outer_only = kept.values.outer_only;
+  o.boundary = kept.values.boundary;
   o.resolution = kept.values.resolution;
   o.voxel_size_world = kept.values.voxel_size_world;
   o.closing_vox = kept.values.closing_vox;

@@ -73,11 +73,15 @@ class Run {
 
  private:
   RunResult steps(Input input) {
-    const std::vector<VertexAttribute> attributes =
-        choose_attributes(input, options_.values.attributes, stops_early() ? "vdb" : record_.output.format,
-                          record_.attributes, [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+    choose_attributes(input, options_.values.attributes, stops_early() ? "vdb" : record_.output.format,
+                      record_.attributes, [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+    // A Voronoi stage file does not hold the seeds of patches: then nothing is cut along seams.
+    std::vector<Attribute> attributes;
+    const bool follows_seams = request_.save_voronoi.empty();
+    if (!follows_seams) attributes.swap(input.soup.attributes);
     read_sizing_field();
     Prepared prepared = step("prepare", [&] { return prepare_from(input); });
+    if (follows_seams) attributes.swap(input.soup.attributes);
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name())) warn(text);
     if (measures_all()) step("risks", [&] { count_risks(prepared); });
     save_shell_if_asked(prepared);
@@ -89,10 +93,10 @@ class Run {
         step("triangulate", [&] { return triangulate(prepared, seeds, options_.values, record_.report, context_); });
     step("measure", [&] { measure(mesh); });
     if (measures_all() || request_.gates.max_deviation_world)
-      step("distance",
-           [&] { record_.distance = measure_distance(mesh, to_world(to_host(prepared.surface)), context_); });
+      step("distance", [&] { measure_distances(mesh, to_world(to_host(prepared.surface))); });
     if (!attributes.empty())
       mesh.attributes = step("attributes", [&] { return transfer_attributes(input.soup, attributes, mesh, context_); });
+    mesh.files = std::move(input.soup.files);
     const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
@@ -157,7 +161,11 @@ class Run {
 
   Input read() {
     return step("read", [&] {
-      Input input = read_input(request_.input, context_.memory_limit_bytes,
+      InputRequest request = request_.input;
+      // Only where features are asked for by name: it takes several times as long, for smooth volumes, too.
+      request.keep_creases =
+          options_.was_given("features") && options_.values.features.creases != Features::Creases::off;
+      Input input = read_input(request, context_.memory_limit_bytes,
                                [&](MessageKind kind, const std::string& text) { tell(kind, text); });
       take(input);
       return input;
@@ -169,7 +177,7 @@ class Run {
     if (!input.stage) return;
     options_ = adopt_options(*input.stage, input.facts.path, options_);
     check_method(options_);
-    check_features(options_.values.features, request_);
+    possible_features(options_.values, request_);  // refuses those of the stage file
     if (input.stage->seeds && request_.stop_after == StopAfter::shell)
       throw Error(ErrorCode::usage, "options", "INPUT is past the shell already; leave out --stop-after shell");
   }
@@ -181,9 +189,11 @@ class Run {
   }
 
   Prepared prepare_from(Input& input) {
-    if (!input.stage) return prepare(input.soup, options_.values, record_.report, context_);
-    return prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options_.values, record_.report,
-                   context_);
+    RemeshOptions options = options_.values;
+    options.features = possible_features(options, request_);
+    if (!input.stage) return prepare(input.soup, options, record_.report, context_);
+    if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
+    return prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, record_.report, context_);
   }
 
   SeedSet relaxed_seeds(Input& input, const Prepared& prepared) {
@@ -240,10 +250,17 @@ class Run {
     record_.triangles = int64_t(mesh.triangles.size());
     if (request_.measures == Measures::none && !measures_all() && !request_.gates.any()) return;
     record_.topology = check_mesh(mesh);
-    if (!record_.topology->is_closed_manifold() && record_.report.dual.failed_cells == 0)
-      warn("the result is not a closed 2-manifold, which should not be: please report the input");
+    const int64_t borders = record_.report.features.border_loops;
+    if (!record_.topology->is_manifold_with(borders) && record_.report.dual.failed_cells == 0)
+      warn(std::string("the result is not a ") + (borders > 0 ? "" : "closed ") +
+           "2-manifold, which should not be: please report the input");
     record_.quality = measure_quality(mesh);
     for (const std::string& text : warnings_of_quality(mesh, *record_.quality)) warn(text);
+  }
+
+  void measure_distances(const TriangleMesh& mesh, const TriangleMesh& input) {
+    record_.distance = measure_distance(mesh, input, context_);
+    if (record_.report.features.border_loops > 0) record_.borders = measure_borders(mesh, input, context_);
   }
 
   void count_risks(const Prepared& p) {

@@ -115,6 +115,12 @@ Json attributes_json(const AttributeReport& r) {
   return {{"kept", kept}, {"dropped", dropped}};
 }
 
+/// Walls that became one.
+Json merged_json(const RemeshReport& r) {
+  if (r.merged.grown_vox == 0) return nullptr;
+  return {{"grown", r.merged.grown_vox * r.frame.voxel_size}, {"places", r.merged.places}, {"at", point(r.merged.at)}};
+}
+
 Json topology_json(const RunRecord& r) {
   Json j = {{"components", nullptr},
             {"genus", nullptr},
@@ -124,6 +130,8 @@ Json topology_json(const RunRecord& r) {
             {"nonmanifold_edges", nullptr},
             {"nonmanifold_vertices", nullptr},
             {"self_intersections", r.report.post_done ? Json(r.report.post.self_intersections) : Json()},
+            {"intersection_at", point(r.report.intersection_at)},
+            {"merged", merged_json(r.report)},
             {"sheet_components", r.report.sheet.components},
             {"sheet_genus", r.report.sheet.genus},
             {"cut_handles", r.report.sheet.cut_handles},
@@ -136,7 +144,7 @@ Json topology_json(const RunRecord& r) {
   j["components"] = t.components;
   j["genus"] = known(t.genus);
   j["closed"] = t.closed;
-  j["manifold"] = t.is_closed_manifold();
+  j["manifold"] = t.is_manifold_with(r.report.features.border_loops);
   j["boundary_loops"] = t.boundary_loops;
   j["nonmanifold_edges"] = t.nonmanifold_edges;
   j["nonmanifold_vertices"] = t.nonmanifold_vertices;
@@ -175,10 +183,27 @@ Json distance_json(const std::optional<MeshDistance>& d) {
   return j;
 }
 
-/// Creases of the input, and whether the result has them.
+/// Creases and borders of the input, and whether the result has them.
 Json features_json(const FeatureReport& f) {
-  return {{"kept", f.kept},       {"curves", f.curves},     {"corners", f.corners},
-          {"patches", f.patches}, {"vertices", f.vertices}, {"given_up", known(f.given_up)}};
+  return {{"kept", f.kept},
+          {"curves", f.curves},
+          {"seams", f.seams},
+          {"corners", f.corners},
+          {"patches", f.patches},
+          {"vertices", f.vertices},
+          {"border_loops", f.border_loops},
+          {"given_up", known(f.given_up)}};
+}
+
+/// Of the result, and how far they are from those of the input as it was meshed.
+Json borders_json(const std::optional<BorderMeasures>& b) {
+  if (!b) return nullptr;
+  return {{"loops", b->loops},
+          {"length", b->length_world},
+          {"input_loops", b->reference_loops},
+          {"input_length", b->reference_length_world},
+          {"to_input_max", b->to_reference_max},
+          {"from_input_max", b->from_reference_max}};
 }
 
 Json sizing_json(const SizingReport& s) {
@@ -219,6 +244,7 @@ std::string statistics_json(const RunRecord& r) {
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
   j["features"] = features_json(r.report.features);
+  j["borders"] = borders_json(r.borders);
   j["sizing"] = sizing_json(r.report.sizing);
   j["distance"] = distance_json(r.distance);
   j["energy"] = r.report.relax.energy;

@@ -43,7 +43,8 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
   note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
   note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
-  note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
+  if (report.features.border_loops == 0)
+    note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
   return warnings;
 }
 

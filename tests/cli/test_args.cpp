@@ -89,6 +89,8 @@ TEST_CASE("args: gates are a list", "[cli][args]") {
   CHECK(g.components == 2);
   CHECK(g.min_angle_deg == 20.5);
   CHECK(g.max_deviation_world == 0.1);
+  CHECK_FALSE(g.allow_intersections);
+  CHECK(arguments({"--allow-intersections"}).run.gates.allow_intersections);
   CHECK(contains(refusal({"a.obj", "b.ply", "--require", "genus"}), "genus=G"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--require", "watertight"}), "closed"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--require", "max-deviation=-1"}), "--require max-deviation"));

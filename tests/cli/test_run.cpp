@@ -227,25 +227,6 @@ TEST_CASE("run: a PLY cloud with a face that is none is meshed as the cloud, wit
   CHECK(folder.content("face.off") == folder.content("cloud.off"));
 }
 
-TEST_CASE("run: numbers at the vertices of a file reach the result, and a wrong name lists them", "[cli]") {
-  Folder folder;
-  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 48);
-  TriangleMesh mesh{ball.vertices, ball.triangles};
-  mesh.attributes = {{"color", NumberType::u8, 3, std::vector<double>(3 * ball.vertices.size(), 77)},
-                     {"heat", NumberType::f64, 1, std::vector<double>(ball.vertices.size(), 0.1)}};
-  write_mesh(folder / "ball.ply", mesh);
-  REQUIRE(folder.run("ball.ply out.ply --stats s.json" + kQuick).status == 0);
-  const std::vector<VertexAttribute> found = read_mesh(folder / "out.ply").attributes;
-  REQUIRE(found.size() == 2);
-  CHECK(found[0].type == NumberType::u8);
-  CHECK(found[0].values == std::vector<double>(900, 77));
-  CHECK(found[1].values == std::vector<double>(300, 0.1));
-  CHECK(Json::parse(folder.content("s.json"))["attributes"]["kept"] == Json({"color", "heat"}));
-  const auto wrong = folder.run("ball.ply wrong.ply --attributes heat,age" + kQuick);
-  CHECK(wrong.status == 2);
-  CHECK(contains(wrong.err, "'age', which ball.ply does not have; its vertices have: color, heat"));
-}
-
 TEST_CASE("run: an angle that is poor is said with its place", "[cli]") {
   Folder folder;
   folder.write_off("wire.off", shapes::torus(1, .02, 200, 12));

@@ -25,6 +25,7 @@ inline RemeshOptions options(int64_t vertices, int32_t resolution, Method method
   o.method = method;
   o.closing_vox = closing_vox;
   o.want_shell = o.want_digests = true;
+  o.features.creases = Features::Creases::off;
   return o;
 }
 

@@ -124,7 +124,7 @@ TEST_CASE("features: a smooth shape is remeshed as if none were looked for", "[f
   TestContext context;
   const TriangleSoup soup = shapes::torus(2, 0.7, 96, 48);
   RemeshOptions without = keeping_creases(600);
-  without.features = {};
+  without.features.creases = Features::Creases::off;
   const RemeshResult result = remesh(soup, keeping_creases(600), context);
   CHECK_FALSE(result.report.features.kept);
   CHECK(result.report.features.curves == 0);
@@ -165,10 +165,12 @@ TEST_CASE("features: the bytes are the same for any number of threads", "[featur
   CHECK(digest(remesh(soup, keeping_creases(700), one).mesh) == digest(remesh(soup, keeping_creases(700), more).mesh));
 }
 
-TEST_CASE("features: the paper's loop on the shell refuses them", "[features]") {
+TEST_CASE("features: the paper's loop on the shell keeps none, and refuses an angle", "[features]") {
   TestContext context;
   RemeshOptions options = keeping_creases(100);
   options.method = Method::shell;
+  CHECK_FALSE(remesh(shapes::box({0, 0, 0}, {1, 1, 1}), options, context).report.features.kept);
+  options.features = {Features::Creases::threshold, 30};
   CHECK_THROWS_AS(remesh(shapes::box({0, 0, 0}, {1, 1, 1}), options, context), Error);
 }
 

@@ -39,13 +39,14 @@ RunRecord good_record() {
 
 TEST_CASE("gates: a list sets them, an empty one none", "[gates]") {
   CHECK_FALSE(parse_gates("").any());
-  const Gates g =
-      parse_gates("closed,manifold,no-self-intersections,genus=3,components=2,min-angle=20.5,max-deviation=0.1");
+  const Gates g = parse_gates(
+      "closed,manifold,no-self-intersections,genus=3,components=2,boundary-loops=4,min-angle=20.5,max-deviation=0.1");
   CHECK(g.closed);
   CHECK(g.manifold);
   CHECK(g.no_self_intersections);
   CHECK(g.genus == 3);
   CHECK(g.components == 2);
+  CHECK(g.boundary_loops == 4);
   CHECK(g.min_angle_deg == 20.5);
   CHECK(g.max_deviation_world == 0.1);
 }
@@ -88,6 +89,35 @@ TEST_CASE("gates: each that is missed is one sentence with what is there", "[gat
         });
   bad.report.post_done = false;
   CHECK(contains(missed_gates(parse_gates("no-self-intersections"), bad).at(0), "was not tested"));
+}
+
+TEST_CASE("gates: a result that intersects itself is missed once, unless that is allowed", "[gates]") {
+  RunRecord bad = good_record();
+  bad.report.post.self_intersections = 3;
+  Gates gates;
+  CHECK_FALSE(gates.any());
+  CHECK(missed_gates(gates, bad) ==
+        std::vector<std::string>{
+            "the result intersects itself in 3 pairs of triangles; --allow-intersections takes it as it is"});
+  CHECK(missed_gates(parse_gates("no-self-intersections"), bad) ==
+        std::vector<std::string>{"no-self-intersections: 3 pairs intersect"});
+  gates.allow_intersections = true;
+  CHECK(missed_gates(gates, bad).empty());
+}
+
+TEST_CASE("gates: an open mesh is a manifold with the borders that were kept, and closed it is not", "[gates]") {
+  RunRecord open = good_record();
+  open.topology->closed = false;
+  open.topology->boundary_loops = 2;
+  CHECK(missed_gates(parse_gates("boundary-loops=2"), open).empty());
+  CHECK(missed_gates(parse_gates("boundary-loops=0,manifold"), open) ==
+        std::vector<std::string>{"manifold: the mesh is not a closed 2-manifold", "boundary-loops=0: the mesh has 2"});
+  open.report.features.border_loops = 2;
+  CHECK(missed_gates(parse_gates("manifold,boundary-loops=2"), open).empty());
+  CHECK(missed_gates(parse_gates("closed"), open).size() == 1);
+  open.report.features.border_loops = 3;
+  CHECK(missed_gates(parse_gates("manifold"), open) ==
+        std::vector<std::string>{"manifold: the mesh is not a 2-manifold with the borders that were kept"});
 }
 
 TEST_CASE("gates: a record without what they ask for is refused", "[gates]") {

@@ -205,6 +205,7 @@ TEST_CASE("prepare: where closing fills open surfaces to less than half an edge,
 TEST_CASE("prepare: more handles than vertices can show are closed, and it is said", "[prepare]") {
   RemeshOptions options;
   options.vertices = 400;
+  options.features.creases = Features::Creases::off;
   const TriangleSoup sieve = shapes::sieve(9, 1, 1, 1);
   TestContext context;
   const RemeshResult few = remesh(sieve, options, context);

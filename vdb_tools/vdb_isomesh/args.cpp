@@ -31,8 +31,9 @@ struct Raw {
   double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0, iso = 0, adaptivity = 0, gradation = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
   std::string input, input_format, output, output_format;
-  std::string seed, close_gaps, method, fit, features, attributes, device, stop_after, require, max_memory, progress;
-  bool verbose = false, quiet = false, help = false, version = false;
+  bool allow_intersections = false, verbose = false, quiet = false, help = false, version = false;
+  std::string seed, close_gaps, method, fit, features, boundary, attributes, device, stop_after, require, max_memory,
+      progress;
   std::vector<std::string> reals;  ///< options that take any number, not only whole ones
 };
 
@@ -91,9 +92,14 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   option(shape, "--features", raw.features, "auto|off|DEG",
          "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
          "or more; off: none",
-         "off");
+         "auto");
+  option(shape, "--boundary", raw.boundary, "close|keep",
+         "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
+         "--close-gaps are borders of the result",
+         "close");
   option(shape, "--attributes", raw.attributes, "all|none|LIST",
-         "what stands at the vertices of a mesh and is kept: names separated by commas, color for red, green and blue",
+         "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
+         "normal, material, group",
          "all");
   flag(shape, "--uniform-area", values.uniform_area, "prefer triangles of equal area to triangles of the best shape");
 
@@ -113,8 +119,10 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* process = "Run";
   option(process, "--require", raw.require, "LIST",
          "exit with status 6 unless the result meets every requirement of this comma-separated list: closed, manifold, "
-         "no-self-intersections, genus=G, components=N, min-angle=DEG (smallest angle in degrees), max-deviation=W "
-         "(distance between result and input in world units)");
+         "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG (smallest angle in degrees), "
+         "max-deviation=W (distance between result and input in world units)");
+  flag(process, "--allow-intersections", raw.allow_intersections,
+       "exit with status 0, not 6, where the result intersects itself");
   option(process, "--device", raw.device, "auto|cpu|cuda[:N]", "device to run on", "auto");
   option(process, "--threads", raw.threads, "N", "number of CPU threads", "all");
   option(process, "--max-memory", raw.max_memory, "SIZE",
@@ -171,6 +179,7 @@ void settle_options(const Raw& raw, AskedOptions& asked) {
   if (!raw.close_gaps.empty()) set_gap_width("--close-gaps", raw.close_gaps, o);
   if (!raw.method.empty()) o.method = parse_method("--method", raw.method);
   if (!raw.features.empty()) o.features = parse_features("--features", raw.features);
+  if (!raw.boundary.empty()) o.boundary = parse_boundary("--boundary", raw.boundary);
   if (asked.was_given("attributes")) o.attributes = parse_attributes("--attributes", raw.attributes);
   check_method(asked);
   if (!raw.fit.empty()) o.fit = parse_fit("--fit", raw.fit);
@@ -198,6 +207,7 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
                                              {"json", ProgressMode::json}});
   if (!raw.max_memory.empty()) a.max_memory_bytes = parse_size_bytes(raw.max_memory);
   run.gates = parse_gates(raw.require);
+  run.gates.allow_intersections = raw.allow_intersections;
   if (raw.verbose && raw.quiet) refuse("--verbose and --quiet exclude each other");
   a.verbosity = raw.quiet ? 0 : raw.verbose ? 2 : 1;
   if (a.verbosity == 0) run.measures = Measures::none;

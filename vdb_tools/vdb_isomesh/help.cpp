@@ -72,8 +72,8 @@ std::string help_text(const CLI::App& app) {
   }
   text +=
       "\nExit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read, 4 output cannot be\n"
-      "written, 5 nothing to mesh, 6 a requirement of --require is not met, 7 over the memory limit or\n"
-      "out of memory, 8 no such device, 130 interrupted.\n";
+      "written, 5 nothing to mesh, 6 a requirement of --require is not met or the result intersects\n"
+      "itself, 7 over the memory limit or out of memory, 8 no such device, 130 interrupted.\n";
   return text;
 }
 

@@ -72,7 +72,9 @@ void tell_result(const RunRecord& record, Console& console) {
     const MeshTopology& t = *record.topology;
     text << counted(t.components, "component") << ", "
          << (t.is_closed_manifold() ? "closed 2-manifold of genus " + std::to_string(t.genus)
-                                    : "not a closed 2-manifold")
+             : t.is_manifold_with(record.report.features.border_loops)
+                 ? "2-manifold with " + counted(t.boundary_loops, "border")
+                 : "not a closed 2-manifold")
          << ", ";
   }
   if (record.quality) text << "smallest angle " << record.quality->theta_min_deg << ", ";

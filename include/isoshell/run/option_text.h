@@ -43,6 +43,10 @@ const char* method_name(Method method);
 Fit parse_fit(const std::string& option, const std::string& text);
 const char* fit_name(Fit fit);
 
+/// "close" or "keep". Throws: usage.
+Boundary parse_boundary(const std::string& option, const std::string& text);
+const char* boundary_name(Boundary boundary);
+
 /// "off", "auto", or the angle in degrees from which on edges are creases. Throws: usage.
 Features parse_features(const std::string& option, const std::string& text);
 std::string features_text(const Features& features);

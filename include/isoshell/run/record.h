@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/borders.h"
 #include "isoshell/device_info.h"
 #include "isoshell/distance.h"
 #include "isoshell/io/input.h"
@@ -21,7 +22,7 @@ struct OutputRequest {
   std::string format;  ///< lower case, without a dot
 };
 
-/// What stands at the vertices of the input, by name.
+/// What the input has beside its positions, by name.
 struct AttributeReport {
   std::vector<std::string> kept;
   std::vector<DroppedAttribute> dropped;
@@ -35,10 +36,11 @@ struct RunRecord {
   std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
   std::optional<MeshQuality> quality;
   std::optional<MeshDistance> distance;   ///< of the result and the input, as repaired
+  std::optional<BorderMeasures> borders;  ///< the same, of a run that kept borders
   int64_t vertices = -1, triangles = -1;  ///< of the result; -1 when the run stopped before it
-  AttributeReport attributes;             ///< of the vertices
-  int64_t risky_sites = -1;               ///< with two walls in one voxel; -1: not counted
-  std::vector<StageTime> times;           ///< of the steps around the stages, whose own are in the report
+  AttributeReport attributes;
+  int64_t risky_sites = -1;      ///< with two walls in one voxel; -1: not counted
+  std::vector<StageTime> times;  ///< of the steps around the stages, whose own are in the report
   double total_ms = 0;
   DeviceInfo device;
   int64_t host_peak_bytes = 0, device_peak_bytes = 0;  ///< of the process, at any time
