@@ -12,12 +12,23 @@ struct OneSidedDistance {
   double mean = 0, rms = 0;  ///< of the area samples
   double max = 0;            ///< of the area samples and the vertices: a lower bound, the true one may lie between them
 };
+/// Between the normals at area samples of one mesh and those of the other one there, in degrees; 0 to 90, since it does
+/// not matter which way triangles face.
+struct NormalDeviation {
+  double mean_deg = 0, max_deg = 0;
+};
 struct MeshDistance {
   OneSidedDistance to_reference, from_reference;
   double diagonal = 0;  ///< of the reference's bounding box
+  NormalDeviation normal_to_reference, normal_from_reference;
 
   /// The Hausdorff distance, as far as the samples show it.
   double largest() const { return to_reference.max > from_reference.max ? to_reference.max : from_reference.max; }
+  /// The larger of both mean deviations of the normals.
+  double normal_deviation_deg() const {
+    return normal_to_reference.mean_deg > normal_from_reference.mean_deg ? normal_to_reference.mean_deg
+                                                                         : normal_from_reference.mean_deg;
+  }
 };
 
 constexpr int64_t kDistanceSamples = 50000;   ///< of each mesh
@@ -25,7 +36,8 @@ constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh th
 
 /// Result: each mesh has one sample in each of kDistanceSamples strata of equal area, along its triangles, and every
 /// n-th vertex, n the smallest that leaves at most kDistanceVertices; the distances are exact up to rounding, sums run
-/// in one fixed shape. Cost: about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160.
+/// in one fixed shape. Normals of a sample are compared with the nearest triangle; where they turn, with those that lie
+/// within a ten-thousandth of the diagonal beyond it, too: beside a crease either side of it may be the nearest. Cost: about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160.
 /// Throws: usage when a mesh has no triangle or names a vertex that it does not have.
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context);
 

@@ -11,6 +11,7 @@
 #include "isoshell/io/input.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/point_file.h"
+#include "isoshell/io/polyline_file.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"

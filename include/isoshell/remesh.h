@@ -10,6 +10,7 @@
 
 #include "isoshell/boolean_union.h"
 #include "isoshell/gaps.h"
+#include "isoshell/polylines.h"
 #include "isoshell/repair.h"
 #include "isoshell/sizing.h"
 #include "isoshell/stages.h"
@@ -29,7 +30,11 @@ struct Features {
     threshold,  ///< all whose faces turn by `degrees` or more
   };
   Creases creases = Creases::automatic;
-  double degrees = 0;  ///< only of a threshold
+  double degrees = 0;          ///< only of a threshold
+  std::string line_file = {};  ///< where a run reads `lines` from; remesh() itself reads no file
+  std::shared_ptr<const Polylines> lines = {};  ///< become edges of the result, whatever the creases; null: none
+
+  bool has_lines() const { return lines || !line_file.empty(); }
 };
 
 /// What becomes of the borders of a surface that is not closed.
@@ -62,21 +67,36 @@ struct RemeshOptions {
   /// Names of the attributes that a run keeps; without a value all. Where texture coordinates, materials or groups that
   /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;
+  bool color_features = false;  ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
   bool outer_only = false;    ///< drop what lies inside of a closed surface
   bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
   bool want_digests = false;  ///< fill RemeshReport::digests
 };
 
+/// A curve of the input that the result does not have.
+struct LostCurve {
+  int64_t index = 0;        ///< among the curves that were found; of a line that was given its segment
+  std::string kind;         ///< "crease", "seam", "line" or "border"
+  double length_world = 0;  ///< along it
+  WorldPoint at{0, 0, 0};   ///< where it begins
+  std::string reason;
+};
+
 /// What was kept of the input's creases and borders.
 struct FeatureReport {
-  bool kept = false;         ///< the result has the curves as edges
-  std::string given_up;      ///< why there are none, though curves were found; empty otherwise
-  int64_t patches = 0;       ///< of the surface between the curves
-  int64_t curves = 0;        ///< creases and seams
-  int64_t seams = 0;         ///< of the curves: where attributes jump and the surface does not turn
-  int64_t corners = 0;       ///< where curves end or turn sharply
-  int64_t vertices = 0;      ///< of the result on curves
-  int64_t border_loops = 0;  ///< of the result
+  bool kept = false;             ///< the result has the curves as edges
+  std::string given_up;          ///< why there are none, though curves were found; empty otherwise
+  int64_t patches = 0;           ///< of the surface between the curves
+  int64_t curves = 0;            ///< creases, seams and lines
+  int64_t seams = 0;             ///< of the curves: where attributes jump and the surface does not turn
+  int64_t lines = 0;             ///< of the curves: where lines were given and the surface does not turn
+  int64_t corners = 0;           ///< where curves end or turn sharply
+  int64_t vertices = 0;          ///< of the result on curves
+  int64_t segments = 0;          ///< edges of the result on curves, borders too
+  int64_t border_loops = 0;      ///< of the result
+  double length_world = 0;       ///< of the curves found
+  double passed_over_world = 0;  ///< length of sharp edges that were not taken for creases: of scans, or too short
+  std::vector<LostCurve> lost;   ///< in the order of the curves, after the lines
 };
 
 /// Walls that were nearer to one another than edges can follow, and became one: the last resort against intersections.

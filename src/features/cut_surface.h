@@ -4,6 +4,7 @@
 #include "features/feature_mesh.h"
 #include "isoshell/backend.h"
 #include "isoshell/lattice.h"
+#include "isoshell/remesh.h"
 #include "isoshell/seed_set.h"
 #include "isoshell/surface_mesh.h"
 
@@ -35,6 +36,7 @@ struct CutSurface {
   std::vector<int64_t> copies_first;  ///< per place, and one more: offsets into copies
   std::vector<uint32_t> copies;       ///< border vertices, ascending per place
   int64_t seeds = 0;                  ///< that a run asks for, copies at a place counted once; who cuts it says so
+  std::vector<LostCurve> if_lost;     ///< what a report says of the network's curves then, likewise
 };
 
 struct CutOptions {

@@ -22,6 +22,7 @@ enum class CurveKind : uint8_t {
   non_manifold,  ///< edges of three triangles or more, or of two that pass them the same way
   crease,        ///< edges between triangles at an angle
   seam,          ///< edges where an attribute of corners or faces jumps
+  line,          ///< edges on a line that was given
 };
 
 /// A path along edges of the mesh whose inner vertices are on no other curve. Both ends of one that is no loop are

@@ -27,10 +27,10 @@ void check(const CurveOptions& options) {
                     " degrees or more; give an angle above 0 and at most 180");
 }
 
-/// Ascending.
-std::vector<uint32_t> seam_edges(const MeshEdges& edges, const CurveOptions& options) {
+/// Those that are inner edges of the mesh, ascending.
+std::vector<uint32_t> inner_edges(const MeshEdges& edges, const std::vector<std::array<uint32_t, 2>>& ends) {
   std::vector<uint32_t> found;
-  for (auto [a, b] : options.seams) {
+  for (auto [a, b] : ends) {
     if (b < a) std::swap(a, b);
     const auto at =
         std::lower_bound(edges.edges.begin(), edges.edges.end(), std::array<uint32_t, 2>{a, b},
@@ -43,14 +43,15 @@ std::vector<uint32_t> seam_edges(const MeshEdges& edges, const CurveOptions& opt
   return found;
 }
 
-/// Creases on seams become seams that remember their turn: nothing drops them.
-std::vector<CurveEdge> with_seams(const std::vector<CurveEdge>& curve_edges, const std::vector<uint32_t>& seams) {
+/// Creases on what is added take its kind and remember their turn: nothing drops them.
+std::vector<CurveEdge> with_edges(const std::vector<CurveEdge>& curve_edges, const std::vector<uint32_t>& added,
+                                  CurveKind kind) {
   std::vector<CurveEdge> all;
   auto next = curve_edges.begin();
-  for (const uint32_t e : seams) {
+  for (const uint32_t e : added) {
     for (; next != curve_edges.end() && next->edge < e; ++next) all.push_back(*next);
     const bool is_crease = next != curve_edges.end() && next->edge == e;
-    all.push_back({e, CurveKind::seam, is_crease ? next++->turn : 0});
+    all.push_back({e, kind, is_crease ? next++->turn : 0});
   }
   all.insert(all.end(), next, curve_edges.end());
   return all;
@@ -62,11 +63,12 @@ std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges
   if (options.mode == CreaseMode::threshold) found = with_creases_above(mesh, edges, found, options.degrees);
   if (options.mode == CreaseMode::automatic)
     found = with_creases_beside_smooth(mesh, edges, found, options.edge_length_world, report);
-  if (!options.seams.empty()) found = with_seams(found, seam_edges(edges, options));
+  if (!options.lines.empty()) found = with_edges(found, inner_edges(edges, options.lines), CurveKind::line);
+  if (!options.seams.empty()) found = with_edges(found, inner_edges(edges, options.seams), CurveKind::seam);
   if (options.mode != CreaseMode::off)
     found = drop_small_creases(mesh, edges, std::move(found), options.edge_length_world);
   for (CurveEdge& c : found)
-    if (c.kind == CurveKind::seam && c.turn > 0) c.kind = CurveKind::crease;
+    if ((c.kind == CurveKind::seam || c.kind == CurveKind::line) && c.turn > 0) c.kind = CurveKind::crease;
   return found;
 }
 

@@ -19,6 +19,7 @@ struct CurveOptions {
   double degrees = 40;                              ///< of mode threshold, above 0 and at most 180
   double edge_length_world = 0;                     ///< h, the edge length that the result aims at; above 0
   std::vector<std::array<uint32_t, 2>> seams = {};  ///< ends of edges that are curves, too; others are passed over
+  std::vector<std::array<uint32_t, 2>> lines = {};  ///< likewise
 };
 
 /// What was decided about creases.
@@ -29,8 +30,8 @@ struct CreaseReport {
   int64_t components_without_creases = 0;  ///< of those, taken for a scan or an organic shape as a whole
 };
 
-/// Result: every border and non-manifold edge, the seams, and the creases of the mode, less dangling and looping ones
-/// shorter than 2 h. A seam at a crease is a crease. Corners are vertices with another number of curve edges than two
+/// Result: every border and non-manifold edge, the seams and lines, and the creases of the mode, less dangling and
+/// looping ones shorter than 2 h. A seam or line at a crease is a crease, a line at a seam is a seam. Corners are vertices with another number of curve edges than two
 /// or edges of two kinds, and those where a curve turns by more than 45 degrees between chords of .7 h. An open curve
 /// runs from its smaller corner (from the smaller edge of two at the same corner); a loop from its smallest vertex
 /// along the smaller edge. Throws: usage.

@@ -16,6 +16,10 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kChunk = 512;
+constexpr double kDegrees = 57.29577951308232;
+constexpr double kAlignedDeg = 10, kAlignedCosine = .984807753012208;  ///< normals that turn by more may be of another
+                                                                       ///< side of a crease
+constexpr double kBeyondNearest = 1e-4;        ///< of the diagonal: how far beyond it others are looked for
 
 void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
@@ -35,10 +39,12 @@ class AreaSamples {
     for (const auto& t : mesh.triangles)
       area_until_.push_back(sum += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
   }
-  WorldPoint operator[](int64_t number) const {
+  size_t triangle_of(int64_t number) const {
     const double at = area_until_.back() * ((double(number) + part(number, 0)) / double(kDistanceSamples));
-    const auto found = std::upper_bound(area_until_.begin(), area_until_.end() - 1, at);
-    const auto& t = mesh_.triangles[size_t(found - area_until_.begin())];
+    return size_t(std::upper_bound(area_until_.begin(), area_until_.end() - 1, at) - area_until_.begin());
+  }
+  WorldPoint operator[](int64_t number) const {
+    const auto& t = mesh_.triangles[triangle_of(number)];
     const double root = std::sqrt(part(number, 1)), turn = part(number, 2);
     const WorldPoint a = mesh_.vertices[t[0]], b = mesh_.vertices[t[1]], c = mesh_.vertices[t[2]];
     const double u = root * (1 - turn), v = root * turn;
@@ -58,20 +64,56 @@ class AreaSamples {
 
 struct Sums {
   double sum = 0, sum_sq = 0, max_sq = 0;
+  double turn_sum_deg = 0, turn_max_deg = 0;
+};
+
+WorldPoint normal_of(const TriangleMesh& mesh, size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return doubled_area(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+}
+
+double angle_between_deg(const WorldPoint& a, const WorldPoint& b) {
+  return kDegrees * std::atan2(length(cross(a, b)), std::abs(dot(a, b)));
+}
+
+/// Turns of normals between a mesh and the one of the grid.
+class NormalTurns {
+ public:
+  NormalTurns(const TriangleMesh& from, const TriangleMesh& to, const TriangleGrid& grid, double diagonal)
+      : from_(from), to_(to), grid_(grid), beyond_(kBeyondNearest * diagonal) {}
+
+  double at(const WorldPoint& p, size_t triangle, const MeshPoint& nearest) const {
+    const WorldPoint normal = normal_of(from_, triangle);
+    const double size = length(normal), turn = angle_between_deg(normal, normal_of(to_, nearest.triangle));
+    if (!(size > 0) || turn < kAlignedDeg) return turn;
+    const MeshPoint aligned =
+        grid_.nearest_aligned(p, 1 / size * normal, kAlignedCosine, std::sqrt(nearest.distance_sq) + beyond_);
+    return aligned.triangle == MeshPoint::kNoTriangle ? turn
+                                                      : angle_between_deg(normal, normal_of(to_, aligned.triangle));
+  }
+
+ private:
+  const TriangleMesh &from_, &to_;
+  const TriangleGrid& grid_;
+  double beyond_;
 };
 
 /// A search may be long where triangles are, so each point asks whether to go on.
-template <class PointAt>
-Sums sum_over(int64_t count, const TriangleGrid& to, const Context& context, PointAt point_at) {
+template <class PointAt, class TurnAt>
+Sums sum_over(int64_t count, const TriangleGrid& to, const Context& context, PointAt point_at, TurnAt turn_deg_at) {
   std::vector<Sums> parts(size_t((count + kChunk - 1) / kChunk));
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
     const int64_t end = std::min(count, int64_t(c + 1) * kChunk);
     for (int64_t i = int64_t(c) * kChunk; i < end; ++i) {
       if (context.cancel.load(std::memory_order_relaxed)) return;
-      const double distance_sq = to.distance_sq(point_at(i));
-      parts[c].sum += std::sqrt(distance_sq);
-      parts[c].sum_sq += distance_sq;
-      parts[c].max_sq = std::max(parts[c].max_sq, distance_sq);
+      const WorldPoint p = point_at(i);
+      const MeshPoint nearest = to.nearest(p);
+      const double turn_deg = turn_deg_at(i, p, nearest);
+      parts[c].sum += std::sqrt(nearest.distance_sq);
+      parts[c].sum_sq += nearest.distance_sq;
+      parts[c].max_sq = std::max(parts[c].max_sq, nearest.distance_sq);
+      parts[c].turn_sum_deg += turn_deg;
+      parts[c].turn_max_deg = std::max(parts[c].turn_max_deg, turn_deg);
     }
   });
   check_cancel(context, "distance");
@@ -80,21 +122,32 @@ Sums sum_over(int64_t count, const TriangleGrid& to, const Context& context, Poi
     all.sum += part.sum;
     all.sum_sq += part.sum_sq;
     all.max_sq = std::max(all.max_sq, part.max_sq);
+    all.turn_sum_deg += part.turn_sum_deg;
+    all.turn_max_deg = std::max(all.turn_max_deg, part.turn_max_deg);
   }
   return all;
 }
 
-OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to, const Context& context) {
+struct OneSide {
+  OneSidedDistance distance;
+  NormalDeviation normals;
+};
+OneSide one_sided(const TriangleMesh& from, const TriangleMesh& to, double diagonal, const Context& context) {
   check_cancel(context, "distance");
   const TriangleGrid grid(to);
   const AreaSamples samples(from);
   const auto vertices = int64_t(from.vertices.size());
   const int64_t stride = (vertices + kDistanceVertices - 1) / kDistanceVertices;
-  const Sums inside = sum_over(kDistanceSamples, grid, context, [&](int64_t i) { return samples[i]; });
-  const Sums corners = sum_over((vertices + stride - 1) / stride, grid, context,
-                                [&](int64_t i) { return from.vertices[size_t(i * stride)]; });
+  const NormalTurns turns(from, to, grid, diagonal);
+  const Sums inside = sum_over(
+      kDistanceSamples, grid, context, [&](int64_t i) { return samples[i]; },
+      [&](int64_t i, const WorldPoint& p, const MeshPoint& near) { return turns.at(p, samples.triangle_of(i), near); });
+  const Sums corners = sum_over(
+      (vertices + stride - 1) / stride, grid, context, [&](int64_t i) { return from.vertices[size_t(i * stride)]; },
+      [](int64_t, const WorldPoint&, const MeshPoint&) { return 0.; });
   const double count = double(kDistanceSamples);
-  return {inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))};
+  return {{inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))},
+          {inside.turn_sum_deg / count, inside.turn_max_deg}};
 }
 
 double diagonal(const TriangleMesh& mesh) {
@@ -115,7 +168,9 @@ MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& refe
   check(mesh);
   check(reference);
   return run_with_threads(context, [&] {
-    return MeshDistance{one_sided(mesh, reference, context), one_sided(reference, mesh, context), diagonal(reference)};
+    const double size = diagonal(reference);
+    const OneSide to = one_sided(mesh, reference, size, context), from = one_sided(reference, mesh, size, context);
+    return MeshDistance{to.distance, from.distance, size, to.normals, from.normals};
   });
 }
 

@@ -168,4 +168,12 @@ MeshPoint TriangleGrid::nearest_facing(WorldPoint p, WorldPoint direction, doubl
   return search(p, farthest * farthest, [&](uint32_t triangle) { return is_facing(triangle, direction); });
 }
 
+MeshPoint TriangleGrid::nearest_aligned(WorldPoint p, WorldPoint normal, double least_cosine, double farthest) const {
+  return search(p, farthest * farthest, [&](uint32_t triangle) {
+    const auto& t = list_[triangle];
+    const WorldPoint along = doubled_area(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]);
+    return std::abs(dot(along, normal)) >= least_cosine * length(along);
+  });
+}
+
 }  // namespace isoshell

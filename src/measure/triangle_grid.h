@@ -35,6 +35,9 @@ class TriangleGrid {
   /// The same among triangles whose normals are less than a right angle from `direction`, and at most so far from p;
   /// kNoTriangle where there is none.
   MeshPoint nearest_facing(WorldPoint p, WorldPoint direction, double farthest) const;
+  /// The same among triangles whose normals are nearly along the line of `normal`, which has length 1: the cosine of
+  /// the angle between them is so large or larger.
+  MeshPoint nearest_aligned(WorldPoint p, WorldPoint normal, double least_cosine, double farthest) const;
   bool is_facing(size_t triangle, WorldPoint direction) const;
   double distance_sq(WorldPoint p) const { return nearest(p).distance_sq; }
 

@@ -56,7 +56,7 @@ RemeshOptions checked(RemeshOptions o) {
   check("gradation", o.gradation, option_range::gradation);
   if (o.features.creases == Features::Creases::threshold)
     check("features.degrees", o.features.degrees, option_range::crease);
-  if (o.method == Method::shell && o.features.creases == Features::Creases::threshold)
+  if (o.method == Method::shell && (o.features.creases == Features::Creases::threshold || o.features.lines))
     throw Error(ErrorCode::usage, "options",
                 "features need the method sheet: the paper's loop on the shell knows no curves");
   if (o.method == Method::shell && o.boundary == Boundary::keep)

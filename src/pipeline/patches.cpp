@@ -25,6 +25,9 @@
 #include "measure/triangle_grid.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/dual_of_seeds.h"
+#include "pipeline/feature_report.h"
+#include "pipeline/given_lines.h"
+#include "pipeline/part_fans.h"
 #include "pipeline/relax_level.h"
 #include "pipeline/resolve_intersections.h"
 #include "pipeline/timed.h"
@@ -41,11 +44,6 @@ CurveOptions curve_options(const RemeshOptions& options, double edge_length_worl
 }
 
 constexpr int kRoundsOfShorterSegments = 1;  ///< each costs a whole relaxation
-
-int64_t count_kind(const CurveNetwork& network, CurveKind kind) {
-  return std::count_if(network.curves.begin(), network.curves.end(),
-                       [=](const FeatureCurve& curve) { return curve.kind == kind; });
-}
 
 /// Of a surface that the options leave open.
 bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
@@ -73,7 +71,8 @@ std::string obstacle_to_borders(const Prepared& p, const CurveNetwork& network) 
 /// as closed whatever their edges are.
 std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetwork& network) {
   const InputTopology& input = p.surface.topology;
-  const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam);
+  const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam) +
+                         count_kind(network, CurveKind::line);
   if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
     return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
   if (six_volumes(mesh) < 0) return "the faces look inwards";
@@ -99,30 +98,15 @@ int64_t patches_of(const CutSurface& cut) {
   return int64_t(last) + 1;
 }
 
-void give_up(RemeshReport& report, const std::string& why) {
-  FeatureReport& features = report.features;
-  const int64_t creases = features.curves - features.seams;
-  std::string what;
-  const auto add = [&](const std::string& kind) { what += (what.empty() ? "" : " and ") + kind; };
-  if (features.border_loops > 0) add("borders");
-  if (creases > 0) add(counted(creases, "crease"));
-  if (features.seams > 0) add(counted(features.seams, "seam"));
-  report.warnings.push_back(what + " are not kept: " + why +
-                            (features.border_loops > 0 ? "; the result is closed" : "") +
-                            (features.seams > 0 ? "; triangles lie across seams" : ""));
-  features.given_up = why;
-  features.patches = features.vertices = features.border_loops = 0;
-}
-
 /// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
 template <class Work>
-bool give_up_if_refused(RemeshReport& report, Work work) {
+bool give_up_if_refused(RemeshReport& report, const std::vector<LostCurve>& curves, Work work) {
   try {
     work();
     return true;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::usage) throw;
-    give_up(report, error.what());
+    give_up(report, curves, error.what());
     return false;
   }
 }
@@ -174,24 +158,6 @@ void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
     if (surface->source_face[int64_t(t)] >= first_cap)
       report.area_world += triangle_area(input.vertices[a], input.vertices[b], input.vertices[c]);
   }
-}
-
-/// A vertex for every fan of triangles: parts that touch in a vertex only, and borders that pass one twice, part there,
-/// by a step of the lattice into the fan, as many files know vertices by position. Triangles begin at their smallest
-/// vertex then, and are sorted.
-void part_fans(TriangleMesh& mesh, double step_world) {
-  const size_t parted = separate_fans(mesh.vertices, mesh.triangles).size(), first = mesh.vertices.size() - parted;
-  if (parted == 0) return;
-  std::vector<WorldPoint> inward(parted, WorldPoint{0, 0, 0});
-  for (const auto& t : mesh.triangles)
-    for (const uint32_t v : t)
-      for (const uint32_t u : t)
-        if (v >= first) inward[v - first] = inward[v - first] + (mesh.vertices[u] - mesh.vertices[v]);
-  for (size_t i = 0; i < parted; ++i)
-    if (const double far = length(inward[i]); far > 0)
-      mesh.vertices[first + i] = mesh.vertices[first + i] + (step_world / far) * inward[i];
-  for (auto& t : mesh.triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  std::sort(mesh.triangles.begin(), mesh.triangles.end());
 }
 
 /// Whether triangles intersect nowhere but, with borders that are kept, where the input's do.
@@ -262,20 +228,19 @@ std::vector<std::array<uint32_t, 2>> vertices_of(const Seams& seams, const Featu
 /// False where there are curves that could not be kept, as the report says.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
                RemeshReport& report, Context& context) {
-  const CurveNetwork network = find_curves(mesh, curves);
-  const int64_t borders = count_kind(network, CurveKind::border);
-  const bool is_open = borders > 0 && may_keep_borders(options, p);
+  CreaseReport creases;
+  const CurveNetwork network = find_curves(mesh, curves, &creases);
+  const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
   FeatureReport& found = report.features;
-  found.seams = count_kind(network, CurveKind::seam);
-  found.curves = count_kind(network, CurveKind::crease) + found.seams;
-  found.corners = int64_t(network.corners.size());
+  report_found(mesh, network, is_open, found);
+  found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
   if (found.curves == 0 && !is_open) return true;
-  if (is_open) found.border_loops = borders;  // until they are put together
+  const std::vector<LostCurve> if_lost = describe(mesh, network);
   if (const std::string why = is_open ? obstacle_to_borders(p, network) : obstacle(p, mesh, network); !why.empty()) {
-    give_up(report, why);
+    give_up(report, if_lost, why);
     return false;
   }
-  return give_up_if_refused(report, [&] {
+  return give_up_if_refused(report, if_lost, [&] {
     const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;
     const int64_t seeds_asked = vertices_of(options, p, is_open) - apart.more_places;
@@ -283,6 +248,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
     if (curves.mode != CreaseMode::off) how.vertices = seeds_asked;
     auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
     cut->seeds = seeds_asked;
+    cut->if_lost = if_lost;
     const SeedSet fixed = seeds_on_curves(*cut, 0);
     FreeSeeds(*cut).counts(fixed, seeds_asked);  // there is room
     found.vertices = count_places(fixed.fixed);
@@ -292,6 +258,12 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
   });
 }
 
+/// Forgets which curves were lost beside seams, from the first on: they have another try.
+void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
+  const auto is_no_seam = [](const LostCurve& curve) { return curve.kind != name_of(CurveKind::seam); };
+  lost.erase(std::remove_if(lost.begin() + int64_t(first), lost.end(), is_no_seam), lost.end());
+}
+
 }  // namespace
 
 void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, Prepared& p, RemeshReport& report,
@@ -299,13 +271,24 @@ void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, 
   if (options.method != Method::sheet) return;
   const double edge_world = usual_edge_length(options, p.surface.topology.area_world);
   const Seams seams = seams_of(source, options, edge_world, report, context);
-  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !may_keep_borders(options, p))
+  const std::shared_ptr<const Polylines>& lines = options.features.lines;
+  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines &&
+      !may_keep_borders(options, p))
     return;
   timed(report, "features", context, [&] {
-    const FeatureMesh mesh = weld_for_features(soup_of(*OnHost(p.surface)));
+    FeatureMesh mesh = weld_for_features(soup_of(*OnHost(p.surface)));
     CurveOptions curves = curve_options(options, edge_world);
     curves.seams = vertices_of(seams, mesh, p.surface.frame);
+    if (lines) {
+      MeshWithLines embedded =
+          with_given_lines(std::move(mesh), *lines, curves.seams, edge_world, p.surface.frame.voxel_size, report);
+      mesh = std::move(embedded.mesh);
+      curves.lines = std::move(embedded.edges);
+      curves.seams = std::move(embedded.followed);
+    }
+    const size_t lost_lines = report.features.lost.size();
     if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
+    keep_lost_seams(report.features.lost, lost_lines);
     curves.seams.clear();
     cut_along(mesh, curves, options, p, report, context);
   });
@@ -339,7 +322,8 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
                                                 RemeshReport& report, Context& context) {
   std::shared_ptr<const CutSurface> cut = p.cut;
   std::optional<TriangleMesh> mesh;
-  give_up_if_refused(report, [&] {
+  const std::vector<LostCurve>& if_lost = p.cut->if_lost;
+  give_up_if_refused(report, if_lost, [&] {
     std::string why = mesh_patches(p, *cut, made, options.optimize, report, context);
     const auto intersects = [&] { return !why.empty() && report.post.self_intersections > 0; };
     for (int rounds = kRoundsOfShorterSegments; intersects() && rounds > 0; --rounds) {
@@ -348,12 +332,14 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
       made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
       why = mesh_patches(p, *cut, made, options.optimize, report, context);
     }
-    if (!why.empty()) return give_up(report, why);
-    mesh = to_world(join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed).mesh, p.surface.frame);
+    if (!why.empty()) return give_up(report, if_lost, why);
+    const JoinedMesh joined = join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed);
+    mesh = to_world(joined.mesh, p.surface.frame);
+    mesh->features = features_of(*cut, made, joined);
     part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
     if (check_mesh(*mesh).is_manifold_with(report.features.border_loops)) return;
     mesh.reset();
-    give_up(report, "parts that touch would make no manifold");
+    give_up(report, if_lost, "parts that touch would make no manifold");
   });
   if (!mesh || !report.features.given_up.empty()) return {};
   if (const int64_t crossings = report.post.self_intersections; crossings > 0)
@@ -363,6 +349,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   report.sheet.bridged_vertices = 0;
   flag_caps(p, *mesh, report.gaps);
   report.features.vertices = count_places(OnHost(made.seeds)->fixed);
+  report.features.segments = int64_t(mesh->features.curve_edges.size());
   report.features.kept = report.post_done = true;
   return mesh;
 }

@@ -21,6 +21,8 @@ void set_gate(const std::string& gate, Gates& gates) {
     gates.manifold = true;
   else if (name == "no-self-intersections" && !has_value)
     gates.no_self_intersections = true;
+  else if (name == "features" && !has_value)
+    gates.features = true;
   else if (name == "genus" && has_value)
     gates.genus = parse_count("--require genus", value);
   else if (name == "components" && has_value)
@@ -33,10 +35,13 @@ void set_gate(const std::string& gate, Gates& gates) {
   } else if (name == "max-deviation" && has_value) {
     gates.max_deviation_world = parse_number("--require max-deviation", value);
     check_range("--require max-deviation", *gates.max_deviation_world, {});
+  } else if (name == "normal-deviation" && has_value) {
+    gates.normal_deviation_deg = parse_number("--require normal-deviation", value);
+    check_range("--require normal-deviation", *gates.normal_deviation_deg, {0, 90});
   } else {
     refuse("--require has '" + gate +
            "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, "
-           "boundary-loops=N, min-angle=DEG, max-deviation=W");
+           "boundary-loops=N, min-angle=DEG, max-deviation=W, normal-deviation=DEG, features");
   }
 }
 
@@ -56,6 +61,25 @@ std::string deviation_text(double limit_world, const MeshDistance& distance) {
   std::ostringstream text;
   text << "max-deviation=" << limit_world << ": the result is up to " << distance.to_reference.max
        << " from the input, the input up to " << distance.from_reference.max << " from the result";
+  return text.str();
+}
+
+std::string normals_text(double limit_deg, const MeshDistance& distance) {
+  std::ostringstream text;
+  text << "normal-deviation=" << limit_deg << ": normals of the result deviate by " << distance.normal_to_reference.mean_deg
+       << " degrees on average from the input's, and those of the input by " << distance.normal_from_reference.mean_deg
+       << " from the result's";
+  return text.str();
+}
+
+std::string lost_text(const FeatureReport& features) {
+  if (features.lost.empty()) return "features: " + features.given_up;
+  const LostCurve& first = features.lost.front();
+  std::ostringstream text;
+  text << "features: " << counted(int64_t(features.lost.size()), "curve") << " of the input "
+       << (features.lost.size() == 1 ? "is" : "are") << " lost; the first, a " << first.kind << " of length "
+       << first.length_world << " from " << first.at.x << ' ' << first.at.y << ' ' << first.at.z << ": "
+       << first.reason;
   return text.str();
 }
 
@@ -110,6 +134,11 @@ std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
     const MeshDistance& distance = measured(record.distance, "distance");
     gate(distance.largest() <= *g.max_deviation_world, deviation_text(*g.max_deviation_world, distance));
   }
+  if (g.normal_deviation_deg) {
+    const MeshDistance& distance = measured(record.distance, "deviation of normals");
+    gate(distance.normal_deviation_deg() <= *g.normal_deviation_deg, normals_text(*g.normal_deviation_deg, distance));
+  }
+  if (g.features) gate(report.features.lost.empty() && report.features.given_up.empty(), lost_text(report.features));
   return missed;
 }
 

@@ -53,20 +53,32 @@ Boundary parse_boundary(const std::string& option, const std::string& text) {
 const char* boundary_name(Boundary boundary) { return boundary == Boundary::keep ? "keep" : "close"; }
 
 Features parse_features(const std::string& option, const std::string& text) {
-  if (text == "off") return {Features::Creases::off, 0};
-  if (text == "auto") return {Features::Creases::automatic, 0};
-  const double degrees = parse_number(option + " is neither off nor auto: the angle of creases", text);
-  check_range(option, degrees, option_range::crease);
-  return {Features::Creases::threshold, degrees};
+  const size_t comma = text.find(',');
+  const std::string creases = text.substr(0, comma);
+  Features features;
+  if (comma != std::string::npos) {
+    features.line_file = text.substr(comma + 1);
+    if (features.line_file.empty()) refuse(option + " is '" + text + "'; behind the comma stands a file of lines");
+  }
+  if (creases == "off") {
+    features.creases = Features::Creases::off;
+  } else if (creases != "auto") {
+    features.creases = Features::Creases::threshold;
+    features.degrees = parse_number(option + " is neither off nor auto: the angle of creases", creases);
+    check_range(option, features.degrees, option_range::crease);
+  }
+  return features;
 }
 
 std::string features_text(const Features& features) {
-  if (features.creases == Features::Creases::off) return "off";
-  if (features.creases == Features::Creases::automatic) return "auto";
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(17);
-  text << features.degrees;
+  if (features.creases == Features::Creases::threshold)
+    text << features.degrees;
+  else
+    text << (features.creases == Features::Creases::off ? "off" : "auto");
+  if (!features.line_file.empty()) text << ',' << features.line_file;
   return text.str();
 }
 

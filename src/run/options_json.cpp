@@ -123,6 +123,7 @@ Json json_of(const RemeshOptions& o) {
           {"features", features_text(o.features)},
           {"boundary", boundary_name(o.boundary)},
           {"attributes", attributes_text(o.attributes)},
+          {"color-features", o.color_features},
           {"adaptivity", o.adaptivity},
           {"gradation", o.gradation},
           {kSizing, o.sizing ? o.sizing->source() : ""},
@@ -180,6 +181,7 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
   if (const auto text = members.text_or_number("features")) o.features = parse_features("features", *text);
   if (const auto text = members.text("boundary")) o.boundary = parse_boundary("boundary", *text);
   if (const auto text = members.text("attributes")) o.attributes = parse_attributes("attributes", *text);
+  members.take("color-features", o.color_features);
   members.take("adaptivity", o.adaptivity, option_range::adaptivity);
   members.take("gradation", o.gradation, option_range::gradation);
   asked.sizing = members.text(kSizing).value_or("");
@@ -193,6 +195,8 @@ AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown)
 void check_method(const AskedOptions& options) {
   if (options.values.method == Method::shell && options.values.features.creases == Features::Creases::threshold)
     refuse("--features DEG needs --method sheet: the paper's loop on the shell knows no curves");
+  if (options.values.method == Method::shell && options.values.features.has_lines())
+    refuse("lines in --features need --method sheet: the paper's loop on the shell knows no curves");
   if (options.values.method == Method::shell && options.values.boundary == Boundary::keep)
     refuse("--boundary keep needs --method sheet: the paper's loop on the shell knows no borders");
   if (options.values.method == Method::shell && (!options.sizing.empty() || options.values.adaptivity > 0))

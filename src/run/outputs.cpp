@@ -63,8 +63,9 @@ Features possible_features(const RemeshOptions& options, const RunRequest& r) {
   if (options.boundary == Boundary::keep)
     refuse_use(
         "a Voronoi stage file does not hold the seeds of borders; give --boundary close, or keep a shell instead");
-  if (options.features.creases != Features::Creases::threshold) return {Features::Creases::off, 0};
-  refuse_use("a Voronoi stage file does not hold the seeds of creases; give --features off, or keep a shell instead");
+  if (options.features.creases != Features::Creases::threshold && !options.features.has_lines())
+    return {Features::Creases::off, 0};
+  refuse_use("a Voronoi stage file does not hold the seeds of creases and lines; give --features off, or keep a shell instead");
 }
 
 void check_request(const RunRequest& r) {
@@ -73,7 +74,10 @@ void check_request(const RunRequest& r) {
   if (r.save_shell == "-" || r.save_voronoi == "-") refuse_vdb_to_pipe();
   possible_features(r.options.values, r);
   if (r.output.path == "-" && r.statistics == "-") refuse_use("OUTPUT and --stats cannot both be standard output");
-  named_output(r.output.path, r.output.format, r.stop_after);  // refuses what the run does not end with
+  const OutputRequest output = named_output(r.output.path, r.output.format, r.stop_after);  // may refuse it
+  if (r.options.values.color_features && r.stop_after == StopAfter::mesh && !output.path.empty() &&
+      output.format != "ply")
+    refuse_use("--color-features needs a PLY file; OUTPUT is '" + output.path + "'");
   if (!r.options.sizing.empty() && !can_write_vdb()) read_sizing(r.options.sizing);  // says that there is no OpenVDB
 }
 

@@ -124,6 +124,7 @@ AskedOptions adopt_options(const StageFile& file, const std::string& path, const
   keep("seed", &RemeshOptions::seed);
   keep("uniform-area", &RemeshOptions::uniform_area);
   keep("features", &RemeshOptions::features);
+  keep("color-features", &RemeshOptions::color_features);
   keep("adaptivity", &RemeshOptions::adaptivity);
   keep("gradation", &RemeshOptions::gradation);
   keep("fit", &RemeshOptions::fit);

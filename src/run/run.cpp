@@ -9,10 +9,12 @@
 #include "isoshell/error.h"
 #include "isoshell/gaps.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/io/polyline_file.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/to_host.h"
 #include "isoshell/transfer_attributes.h"
 #include "run/choose_attributes.h"
+#include "run/color_features.h"
 #include "run/outputs.h"
 #include "run/process_memory.h"
 #include "run/resume.h"
@@ -80,6 +82,7 @@ class Run {
     const bool follows_seams = request_.save_voronoi.empty();
     if (!follows_seams) attributes.swap(input.soup.attributes);
     read_sizing_field();
+    read_lines();
     Prepared prepared = step("prepare", [&] { return prepare_from(input); });
     if (follows_seams) attributes.swap(input.soup.attributes);
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name())) warn(text);
@@ -92,15 +95,17 @@ class Run {
     TriangleMesh mesh =
         step("triangulate", [&] { return triangulate(prepared, seeds, options_.values, record_.report, context_); });
     step("measure", [&] { measure(mesh); });
-    if (measures_all() || request_.gates.max_deviation_world)
+    if (measures_all() || request_.gates.needs_distance())
       step("distance", [&] { measure_distances(mesh, to_world(to_host(prepared.surface))); });
     if (!attributes.empty())
       mesh.attributes = step("attributes", [&] { return transfer_attributes(input.soup, attributes, mesh, context_); });
     mesh.files = std::move(input.soup.files);
+    if (options_.values.color_features) color_features(mesh, record_.attributes);
     const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
-        write_mesh(output.path, mesh, {mesh_format(output.format), request_.overwrite});
+        write_mesh(output.path, mesh,
+                   {mesh_format(output.format), request_.overwrite, options_.values.color_features});
       });
     return finish(std::move(mesh));
   }
@@ -186,6 +191,13 @@ class Run {
     if (options_.sizing.empty()) return;
     options_.values.sizing = step("sizing", [&] { return read_sizing(options_.sizing, context_.memory_limit_bytes); });
     tell(MessageKind::note, "sizing: " + options_.sizing);
+  }
+
+  void read_lines() {
+    Features& features = options_.values.features;
+    if (features.line_file.empty()) return;
+    features.lines = step("lines", [&] { return read_polylines(features.line_file); });
+    tell(MessageKind::note, "lines to keep: " + features.line_file);
   }
 
   Prepared prepare_from(Input& input) {

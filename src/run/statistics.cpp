@@ -183,16 +183,36 @@ Json distance_json(const std::optional<MeshDistance>& d) {
   return j;
 }
 
-/// Creases and borders of the input, and whether the result has them.
+/// Creases, seams, lines and borders of the input, and whether the result has them.
 Json features_json(const FeatureReport& f) {
+  Json lost = Json::array();
+  for (const LostCurve& curve : f.lost)
+    lost.push_back({{"index", curve.index},
+                    {"kind", curve.kind},
+                    {"length", curve.length_world},
+                    {"at", point(curve.at)},
+                    {"reason", curve.reason}});
   return {{"kept", f.kept},
           {"curves", f.curves},
           {"seams", f.seams},
+          {"lines", f.lines},
           {"corners", f.corners},
           {"patches", f.patches},
           {"vertices", f.vertices},
+          {"segments", f.segments},
           {"border_loops", f.border_loops},
-          {"given_up", known(f.given_up)}};
+          {"length", f.length_world},
+          {"passed_over", f.passed_over_world},
+          {"given_up", known(f.given_up)},
+          {"lost", lost}};
+}
+
+Json normals_json(const std::optional<MeshDistance>& d) {
+  if (!d) return nullptr;
+  return {{"to_input_mean_deg", d->normal_to_reference.mean_deg},
+          {"to_input_max_deg", d->normal_to_reference.max_deg},
+          {"from_input_mean_deg", d->normal_from_reference.mean_deg},
+          {"from_input_max_deg", d->normal_from_reference.max_deg}};
 }
 
 /// Of the result, and how far they are from those of the input as it was meshed.
@@ -247,6 +267,7 @@ std::string statistics_json(const RunRecord& r) {
   j["borders"] = borders_json(r.borders);
   j["sizing"] = sizing_json(r.report.sizing);
   j["distance"] = distance_json(r.distance);
+  j["normals"] = normals_json(r.distance);
   j["energy"] = r.report.relax.energy;
   j["timings_ms"] = timings_json(r);
   j["memory_bytes"] = {

@@ -40,7 +40,8 @@ RunRecord good_record() {
 TEST_CASE("gates: a list sets them, an empty one none", "[gates]") {
   CHECK_FALSE(parse_gates("").any());
   const Gates g = parse_gates(
-      "closed,manifold,no-self-intersections,genus=3,components=2,boundary-loops=4,min-angle=20.5,max-deviation=0.1");
+      "closed,manifold,no-self-intersections,genus=3,components=2,boundary-loops=4,min-angle=20.5,max-deviation=0.1,"
+      "normal-deviation=1.5,features");
   CHECK(g.closed);
   CHECK(g.manifold);
   CHECK(g.no_self_intersections);
@@ -49,6 +50,10 @@ TEST_CASE("gates: a list sets them, an empty one none", "[gates]") {
   CHECK(g.boundary_loops == 4);
   CHECK(g.min_angle_deg == 20.5);
   CHECK(g.max_deviation_world == 0.1);
+  CHECK(g.normal_deviation_deg == 1.5);
+  CHECK(g.features);
+  CHECK(g.needs_distance());
+  CHECK_FALSE(parse_gates("features").needs_distance());
 }
 
 TEST_CASE("gates: what is no gate is refused with those there are", "[gates]") {
@@ -58,6 +63,8 @@ TEST_CASE("gates: what is no gate is refused with those there are", "[gates]") {
   CHECK(contains(refusal("genus=-1"), "whole number"));
   CHECK(contains(refusal("min-angle=61"), "0 to 60"));
   CHECK(contains(refusal("max-deviation=-1"), "--require max-deviation"));
+  CHECK(contains(refusal("normal-deviation=91"), "0 to 90"));
+  CHECK(contains(refusal("features=1"), "gates are closed"));
 }
 
 TEST_CASE("gates: a record that meets all of them misses none", "[gates]") {
@@ -105,6 +112,23 @@ TEST_CASE("gates: a result that intersects itself is missed once, unless that is
   CHECK(missed_gates(gates, bad).empty());
 }
 
+TEST_CASE("gates: a lost curve is named, and the larger mean of normals counts", "[gates]") {
+  RunRecord record = good_record();
+  CHECK(missed_gates(parse_gates("features,normal-deviation=0"), record).empty());
+  record.distance->normal_to_reference = {.5, 40};
+  record.distance->normal_from_reference = {1.5, 60};
+  CHECK(missed_gates(parse_gates("normal-deviation=1.5"), record).empty());
+  CHECK(missed_gates(parse_gates("normal-deviation=1"), record) ==
+        std::vector<std::string>{"normal-deviation=1: normals of the result deviate by 0.5 degrees on average from the "
+                                 "input's, and those of the input by 1.5 from the result's"});
+  record.report.features.given_up = "holes were capped";
+  CHECK(missed_gates(parse_gates("features"), record) == std::vector<std::string>{"features: holes were capped"});
+  record.report.features.lost = {{3, "crease", 2, {1, 2, 3}, "holes were capped"}};
+  CHECK(missed_gates(parse_gates("features"), record) ==
+        std::vector<std::string>{"features: 1 curve of the input is lost; the first, a crease of length 2 from 1 2 3: "
+                                 "holes were capped"});
+}
+
 TEST_CASE("gates: an open mesh is a manifold with the borders that were kept, and closed it is not", "[gates]") {
   RunRecord open = good_record();
   open.topology->closed = false;
@@ -126,4 +150,5 @@ TEST_CASE("gates: a record without what they ask for is refused", "[gates]") {
   RunRecord record = good_record();
   record.distance.reset();
   CHECK_THROWS_AS(missed_gates(parse_gates("max-deviation=1"), record), Error);
+  CHECK_THROWS_AS(missed_gates(parse_gates("normal-deviation=1"), record), Error);
 }

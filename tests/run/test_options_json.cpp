@@ -43,7 +43,7 @@ TEST_CASE("options json: what is not given is the number that always stood for i
       options_json(RemeshOptions{}) ==
       R"({"vertices":10000,"edge-length":0.0,"band":2,"outer-only":false,"method":"sheet","iterations":0,)"
       R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","uniform-area":false,"features":"auto",)"
-      R"("boundary":"close","attributes":"all","adaptivity":0.0,"gradation":1.2,"sizing":"","resolution":0,"voxel-size":0.0,"close-gaps":"auto"})");
+      R"("boundary":"close","attributes":"all","color-features":false,"adaptivity":0.0,"gradation":1.2,"sizing":"","resolution":0,"voxel-size":0.0,"close-gaps":"auto"})");
   const AskedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
   CHECK_FALSE(back.values.edge_length_world);
@@ -73,7 +73,8 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.gradation = 1.5;
   o.fit = Fit::surface;
   o.uniform_area = true;
-  o.features = {Features::Creases::threshold, 33.25};
+  o.features = {Features::Creases::threshold, 33.25, "marks.obj", nullptr};
+  o.color_features = true;
   o.boundary = Boundary::keep;
   o.attributes = {"color", "quality"};
   o.outer_only = true;
@@ -96,6 +97,8 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.uniform_area);
   CHECK(b.features.creases == Features::Creases::threshold);
   CHECK(b.features.degrees == 33.25);
+  CHECK(b.features.line_file == "marks.obj");
+  CHECK(b.color_features);
   CHECK(b.boundary == Boundary::keep);
   CHECK(b.attributes == o.attributes);
   CHECK(b.outer_only);

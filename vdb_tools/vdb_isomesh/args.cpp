@@ -89,9 +89,9 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* shape = "Shape of the result";
   option(shape, "--fit", raw.fit, "balanced|surface",
          "balanced: vertices where the mesh is closest to the surface; surface: vertices on the surface", "balanced");
-  option(shape, "--features", raw.features, "auto|off|DEG",
+  option(shape, "--features", raw.features, "auto|off|DEG[,FILE]",
          "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
-         "or more; off: none",
+         "or more; off: none; and the lines of FILE, OBJ (l) or PLY (edges), as auto,curves.obj",
          "auto");
   option(shape, "--boundary", raw.boundary, "close|keep",
          "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
@@ -101,6 +101,8 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
          "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
          "normal, material, group",
          "all");
+  flag(shape, "--color-features", values.color_features,
+       "color faces by patch and vertices by curve and corner, and write the edges of curves; in PLY");
   flag(shape, "--uniform-area", values.uniform_area, "prefer triangles of equal area to triangles of the best shape");
 
   const char* files = "Files";
@@ -120,7 +122,8 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   option(process, "--require", raw.require, "LIST",
          "exit with status 6 unless the result meets every requirement of this comma-separated list: closed, manifold, "
          "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG (smallest angle in degrees), "
-         "max-deviation=W (distance between result and input in world units)");
+         "max-deviation=W (distance between result and input in world units), normal-deviation=DEG (mean angle between "
+         "normals of result and input), features (no curve of the input is lost)");
   flag(process, "--allow-intersections", raw.allow_intersections,
        "exit with status 0, not 6, where the result intersects itself");
   option(process, "--device", raw.device, "auto|cpu|cuda[:N]", "device to run on", "auto");

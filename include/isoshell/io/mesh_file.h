@@ -21,6 +21,7 @@ TriangleSoup read_mesh(const std::string& path, MeshFormat format = MeshFormat::
 struct MeshWriteOptions {
   MeshFormat format = MeshFormat::from_name;
   bool overwrite = false;
+  bool curve_edges = false;  ///< also the edges of the mesh's curves: an element edge, in PLY only
 };
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted

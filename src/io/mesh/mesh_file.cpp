@@ -60,7 +60,7 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWri
   OutputFile file(path, options.overwrite);
   switch (format) {
     case MeshFormat::ply:
-      write_ply(file, mesh);
+      write_ply(file, mesh, options.curve_edges);
       break;
     case MeshFormat::obj:
       write_obj(file, mesh);

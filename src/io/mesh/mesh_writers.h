@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-void write_ply(OutputFile& file, const TriangleMesh& mesh);
+void write_ply(OutputFile& file, const TriangleMesh& mesh, bool with_curve_edges);
 void write_obj(OutputFile& file, const TriangleMesh& mesh);
 void write_stl(OutputFile& file, const TriangleMesh& mesh);
 void write_off(OutputFile& file, const TriangleMesh& mesh);

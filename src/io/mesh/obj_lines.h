@@ -7,7 +7,7 @@
 
 namespace isoshell {
 
-enum class ObjLine { other, vertex, texture, normal, face, object, group, material, library };
+enum class ObjLine { other, vertex, texture, normal, face, line, object, group, material, library };
 
 /// p moves behind the keyword.
 inline ObjLine classify(const char*& p, const char* end) {
@@ -21,6 +21,8 @@ inline ObjLine classify(const char*& p, const char* end) {
         return ObjLine::vertex;
       case 'f':
         return ObjLine::face;
+      case 'l':
+        return ObjLine::line;
       case 'g':
         return ObjLine::group;
       case 'o':

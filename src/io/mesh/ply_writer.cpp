@@ -33,7 +33,8 @@ std::vector<size_t> corners_of(const TriangleMesh& mesh) {
 
 class PlyWriter {
  public:
-  PlyWriter(OutputFile& file, const TriangleMesh& mesh) : file_(file), mesh_(mesh) {
+  PlyWriter(OutputFile& file, const TriangleMesh& mesh, bool with_curve_edges) : file_(file), mesh_(mesh) {
+    if (with_curve_edges) edges_ = &mesh.features.curve_edges;
     for (const Attribute& a : mesh.attributes)
       (is_of_vertices(a, mesh)               ? of_vertices_
        : a.domain == AttributeDomain::corner ? of_corners_
@@ -51,6 +52,7 @@ class PlyWriter {
     else
       write_vertices<float>();
     write_faces();
+    if (edges_) write_edges();
   }
 
  private:
@@ -75,6 +77,9 @@ class PlyWriter {
       text += property(std::string("list uchar ") + name_of(a->type), ply_list_name(*a), names);
     for (const Attribute* a : of_faces_)
       for (const std::string& name : ply_names(*a)) text += property(name_of(a->type), name, names);
+    if (edges_)
+      text += "element edge " + std::to_string(edges_->size()) +
+              "\nproperty uint vertex1\nproperty uint vertex2\nproperty uint curve\n";
     file_.write(text + "end_header\n");
   }
 
@@ -129,14 +134,24 @@ class PlyWriter {
     });
   }
 
+  void write_edges() {
+    write_rows(file_, int64_t(edges_->size()), 12, [&](int64_t i, RowBuffer& out) {
+      const MeshCurveEdge& edge = (*edges_)[size_t(i)];
+      for (const uint32_t number : {edge.vertex[0], edge.vertex[1], edge.curve}) out.put_binary(number);
+    });
+  }
+
   OutputFile& file_;
   const TriangleMesh& mesh_;
+  const std::vector<MeshCurveEdge>* edges_ = nullptr;  ///< null: not asked for
   std::vector<const Attribute*> of_vertices_, of_corners_, of_faces_;
   std::vector<size_t> corner_of_vertex_;
 };
 
 }  // namespace
 
-void write_ply(OutputFile& file, const TriangleMesh& mesh) { PlyWriter(file, mesh).write(); }
+void write_ply(OutputFile& file, const TriangleMesh& mesh, bool with_curve_edges) {
+  PlyWriter(file, mesh, with_curve_edges).write();
+}
 
 }  // namespace isoshell

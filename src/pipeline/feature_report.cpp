@@ -1,0 +1,126 @@
+// See feature_report.h.
+#include "pipeline/feature_report.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/copy_product.h"
+#include "core/world_vector.h"
+#include "features/curve_paths.h"
+#include "isoshell/readable.h"
+
+namespace isoshell {
+namespace {
+
+double length_of(const FeatureMesh& mesh, const FeatureCurve& curve) {
+  CurvePath path;
+  path.vertex = curve.vertex;
+  path.is_loop = curve.is_loop;
+  measure_path(mesh.vertices, path);
+  return path.length;
+}
+
+/// The patch of every triangle of the joined mesh: patches share vertices there, but no triangle has two.
+std::vector<uint32_t> patches_of(const CutSurface& cut, const DualMesh& open, const SeedSet& seeds,
+                                 const Buffer<uint32_t>& vertex_of) {
+  if (cut.surface.patch.empty()) return std::vector<uint32_t>(size_t(open.triangles.size()), 0);
+  std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
+  for (const TriangleIndices& t : open.triangles) {
+    std::array<uint32_t, 3> joined{vertex_of[t.a], vertex_of[t.b], vertex_of[t.c]};
+    std::rotate(joined.begin(), std::min_element(joined.begin(), joined.end()), joined.end());
+    triangles.push_back({joined, cut.surface.patch[seeds.home[t.a]]});
+  }
+  std::sort(triangles.begin(), triangles.end());
+  std::vector<uint32_t> patch;
+  for (const auto& t : triangles) patch.push_back(t.second);
+  return patch;
+}
+
+}  // namespace
+
+const char* name_of(CurveKind kind) {
+  switch (kind) {
+    case CurveKind::border:
+      return "border";
+    case CurveKind::non_manifold:
+      return "edge of three faces";
+    case CurveKind::crease:
+      return "crease";
+    case CurveKind::seam:
+      return "seam";
+    default:
+      return "line";
+  }
+}
+
+int64_t count_kind(const CurveNetwork& network, CurveKind kind) {
+  return std::count_if(network.curves.begin(), network.curves.end(),
+                       [=](const FeatureCurve& curve) { return curve.kind == kind; });
+}
+
+void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool keeps_borders, FeatureReport& report) {
+  report.seams = count_kind(network, CurveKind::seam);
+  report.lines = count_kind(network, CurveKind::line);
+  report.curves = count_kind(network, CurveKind::crease) + report.seams + report.lines;
+  report.corners = int64_t(network.corners.size());
+  report.length_world = 0;
+  for (const FeatureCurve& curve : network.curves)
+    if (curve.kind != CurveKind::border && curve.kind != CurveKind::non_manifold)
+      report.length_world += length_of(mesh, curve);
+  if (keeps_borders) report.border_loops = count_kind(network, CurveKind::border);  // until they are put together
+}
+
+std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network) {
+  std::vector<LostCurve> curves;
+  for (size_t c = 0; c < network.curves.size(); ++c) {
+    const FeatureCurve& curve = network.curves[c];
+    curves.push_back(
+        {int64_t(c), name_of(curve.kind), length_of(mesh, curve), mesh.vertices[curve.vertex.front()], ""});
+  }
+  return curves;
+}
+
+void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why) {
+  FeatureReport& features = report.features;
+  const int64_t creases = features.curves - features.seams - features.lines;
+  std::string what;
+  const auto add = [&](const std::string& kind) { what += (what.empty() ? "" : " and ") + kind; };
+  if (features.border_loops > 0) add("borders");
+  if (creases > 0) add(counted(creases, "crease"));
+  if (features.seams > 0) add(counted(features.seams, "seam"));
+  if (features.lines > 0) add(counted(features.lines, "line"));
+  report.warnings.push_back(what + " are not kept: " + why +
+                            (features.border_loops > 0 ? "; the result is closed" : "") +
+                            (features.seams > 0 ? "; triangles lie across seams" : ""));
+  for (const LostCurve& curve : curves) {
+    const bool is_wanted = curve.kind != name_of(CurveKind::non_manifold) &&
+                           (curve.kind != name_of(CurveKind::border) || features.border_loops > 0);
+    if (!is_wanted) continue;
+    features.lost.push_back(curve);
+    features.lost.back().reason = why;
+  }
+  features.given_up = why;
+  features.patches = features.vertices = features.segments = features.border_loops = 0;
+}
+
+MeshFeatures features_of(const CutSurface& cut, const SeededMesh& made, const JoinedMesh& joined) {
+  const OnHost<DualMesh> open(made.mesh);
+  const OnHost<SeedSet> seeds(made.seeds);
+  MeshFeatures found;
+  found.patch = patches_of(cut, *open, *seeds, joined.vertex_of);
+  std::vector<uint32_t> vertex_at(cut.copies_first.size() - 1, kNone);  // per place
+  for (int64_t s = 0; s < seeds->fixed.count; ++s) vertex_at[cut.place[seeds->home[s]]] = joined.vertex_of[s];
+  for (const CutCurve& curve : cut.curves)
+    for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < curve.seeds.size(); ++i) {
+      const uint32_t u = vertex_at[curve.place[curve.seeds[i]]],
+                     v = vertex_at[curve.place[curve.seeds[(i + 1) % curve.seeds.size()]]];
+      found.curve_edges.push_back({{std::min(u, v), std::max(u, v)}, curve.curve});
+    }
+  std::sort(found.curve_edges.begin(), found.curve_edges.end(),
+            [](const MeshCurveEdge& a, const MeshCurveEdge& b) { return a.vertex < b.vertex; });
+  for (int64_t p = 0; p < cut.corner_count; ++p) found.corners.push_back(vertex_at[size_t(p)]);
+  std::sort(found.corners.begin(), found.corners.end());
+  return found;
+}
+
+}  // namespace isoshell

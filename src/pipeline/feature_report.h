@@ -1,0 +1,29 @@
+// What a run says of the curves of its input: which of them the result has, where, and which are lost.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "features/cut_surface.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// "border", "edge of three faces", "crease", "seam" or "line".
+const char* name_of(CurveKind kind);
+
+int64_t count_kind(const CurveNetwork& network, CurveKind kind);
+
+/// Fills in what was found. Borders of the input count as loops that are kept when `keeps_borders`.
+void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool keeps_borders, FeatureReport& report);
+
+/// Every curve as the report names it, should it be lost.
+std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);
+
+/// Says that none of the curves is kept, and warns.
+void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why);
+
+/// The patches and curves of a mesh whose fixed seeds are on the curves of the cut surface.
+MeshFeatures features_of(const CutSurface& cut, const SeededMesh& made, const JoinedMesh& joined);
+
+}  // namespace isoshell
