@@ -245,7 +245,7 @@ class LineEmbedder {
 
 }  // namespace
 
-MeshWithLines embed_lines(FeatureMesh mesh, const LinesOnMesh& lines, const EdgeList& followed,
+MeshWithLines embed_lines(FeatureMesh mesh, const LinesOnMesh& lines, const std::vector<EdgeList>& followed,
                           double tolerance_world) {
   LineEmbedder embedder(std::move(mesh), tolerance_world);
   std::vector<uint32_t> vertex;
@@ -259,7 +259,7 @@ MeshWithLines embed_lines(FeatureMesh mesh, const LinesOnMesh& lines, const Edge
     out.edges.insert(out.edges.end(), way.begin(), way.end());
   }
   out.edges = embedder.mesh().parts_of(std::move(out.edges));
-  out.followed = embedder.mesh().parts_of(followed);
+  for (const EdgeList& edges : followed) out.followed.push_back(embedder.mesh().parts_of(edges));
   out.mesh = embedder.mesh().take();
   return out;
 }

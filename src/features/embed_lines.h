@@ -24,7 +24,7 @@ using EdgeList = std::vector<std::array<uint32_t, 2>>;
 struct MeshWithLines {
   FeatureMesh mesh;                   ///< the same surface, cut into more triangles
   EdgeList edges;                     ///< that the segments run along, ascending, the smaller end first
-  EdgeList followed;                  ///< the parts of the edges that were to be followed
+  std::vector<EdgeList> followed;     ///< the parts of the edges that were to be followed
   std::vector<size_t> lost_segments;  ///< ascending: those for which the surface leads no way
 };
 
@@ -34,6 +34,7 @@ struct MeshWithLines {
 /// order. Vertices, and triangles that are not cut, keep their numbers. A segment is lost where the surface ends, leads
 /// another way, or makes it more than three times as long. Cost: O(mesh), and O(triangles cut) times what meets in a
 /// vertex.
-MeshWithLines embed_lines(FeatureMesh mesh, const LinesOnMesh& lines, const EdgeList& followed, double tolerance_world);
+MeshWithLines embed_lines(FeatureMesh mesh, const LinesOnMesh& lines, const std::vector<EdgeList>& followed,
+                          double tolerance_world);
 
 }  // namespace isoshell

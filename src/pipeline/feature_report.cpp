@@ -2,6 +2,7 @@
 #include "pipeline/feature_report.h"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "core/copy_product.h"
@@ -68,6 +69,23 @@ void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool kee
     if (curve.kind != CurveKind::border && curve.kind != CurveKind::non_manifold)
       report.length_world += length_of(mesh, curve);
   if (keeps_borders) report.border_loops = count_kind(network, CurveKind::border);  // until they are put together
+}
+
+void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, RemeshReport& report) {
+  int64_t edges = 0;
+  const WorldPoint* at = nullptr;
+  for (const FeatureCurve& curve : network.curves) {
+    if (curve.kind != CurveKind::non_manifold) continue;
+    edges += int64_t(curve.vertex.size()) - (curve.is_loop ? 0 : 1);
+    if (!at) at = &mesh.vertices[curve.vertex.front()];
+  }
+  if (!at) return;
+  std::ostringstream text;
+  text << counted(edges, "edge") << " of more than two faces, or of two that disagree about the outside, the first at "
+       << at->x << ' ' << at->y << ' ' << at->z
+       << ": a result that is a manifold cannot have them, and follows the surface around";
+  std::vector<std::string>& all = report.warnings;
+  if (std::find(all.begin(), all.end(), text.str()) == all.end()) all.push_back(text.str());
 }
 
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network) {

@@ -17,6 +17,9 @@ int64_t count_kind(const CurveNetwork& network, CurveKind kind);
 /// Fills in what was found. Borders of the input count as loops that are kept when `keeps_borders`.
 void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool keeps_borders, FeatureReport& report);
 
+/// Warns of edges of more than two faces, once, and says where: no result has them.
+void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, RemeshReport& report);
+
 /// Every curve as the report names it, should it be lost.
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);
 

@@ -75,7 +75,7 @@ void tell(const Polylines& lines, std::vector<LostCurve> lost, RemeshReport& rep
 
 }  // namespace
 
-MeshWithLines with_given_lines(FeatureMesh mesh, const Polylines& lines, const EdgeList& followed,
+MeshWithLines with_given_lines(FeatureMesh mesh, const Polylines& lines, const std::vector<EdgeList>& followed,
                                double edge_length_world, double voxel_size, RemeshReport& report) {
   check(lines);
   const double limit = kFarthest * edge_length_world;

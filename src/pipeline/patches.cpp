@@ -206,14 +206,14 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
   });
 }
 
-/// The mesh's vertices where the ends of seams were snapped to; of seams that are no longer there none.
-std::vector<std::array<uint32_t, 2>> vertices_of(const Seams& seams, const FeatureMesh& mesh,
-                                                 const LatticeFrame& frame) {
+/// The mesh's vertices where the ends of edges were snapped to; of edges that are no longer there none.
+EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const FeatureMesh& mesh,
+                     const LatticeFrame& frame) {
   const auto is_before = [](const WorldPoint& a, const WorldPoint& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   };
-  std::vector<std::array<uint32_t, 2>> found;
-  for (const auto& edge : seams.edges) {
+  EdgeList found;
+  for (const auto& edge : edges) {
     std::array<uint32_t, 2> vertex{kNone, kNone};
     for (size_t i = 0; i < 2; ++i) {
       const WorldPoint p = frame.to_world(frame.snap(edge[i]));
@@ -233,6 +233,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
   const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
   FeatureReport& found = report.features;
   report_found(mesh, network, is_open, found);
+  warn_of_branches(mesh, network, report);
   found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
   if (found.curves == 0 && !is_open) return true;
   const std::vector<LostCurve> if_lost = describe(mesh, network);
@@ -266,11 +267,11 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
 
 }  // namespace
 
-void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, Prepared& p, RemeshReport& report,
+void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
                       Context& context) {
   if (options.method != Method::sheet) return;
   const double edge_world = usual_edge_length(options, p.surface.topology.area_world);
-  const Seams seams = seams_of(source, options, edge_world, report, context);
+  const Seams seams = seams_of(source.soup, options, edge_world, report, context);
   const std::shared_ptr<const Polylines>& lines = options.features.lines;
   if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines &&
       !may_keep_borders(options, p))
@@ -278,13 +279,15 @@ void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, 
   timed(report, "features", context, [&] {
     FeatureMesh mesh = weld_for_features(soup_of(*OnHost(p.surface)));
     CurveOptions curves = curve_options(options, edge_world);
-    curves.seams = vertices_of(seams, mesh, p.surface.frame);
+    curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
+    if (curves.mode != CreaseMode::off) curves.lines = vertices_of(source.interfaces, mesh, p.surface.frame);
     if (lines) {
-      MeshWithLines embedded =
-          with_given_lines(std::move(mesh), *lines, curves.seams, edge_world, p.surface.frame.voxel_size, report);
+      MeshWithLines embedded = with_given_lines(std::move(mesh), *lines, {curves.seams, curves.lines}, edge_world,
+                                                p.surface.frame.voxel_size, report);
       mesh = std::move(embedded.mesh);
-      curves.lines = std::move(embedded.edges);
-      curves.seams = std::move(embedded.followed);
+      curves.seams = std::move(embedded.followed[0]);
+      curves.lines = std::move(embedded.followed[1]);
+      curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
     }
     const size_t lost_lines = report.features.lost.size();
     if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;

@@ -8,11 +8,17 @@
 
 namespace isoshell {
 
+/// What a surface comes from.
+struct PatchSource {
+  const TriangleSoup* soup = nullptr;                  ///< null: not known, as in a run that resumes
+  std::vector<std::array<WorldPoint, 2>> interfaces = {};  ///< edges where parts met, which are curves beside creases
+};
+
 /// Finds the creases and borders that the options ask for, and the seams of the attributes of `source`, and cuts the
 /// surface along them. Leaves p.cut empty where there are none, and says in the report why where there are some that
 /// cannot be kept. Seams are found again by the positions of their ends: what repair left as it was, and no union cut,
-/// has them. Null: what the surface comes from is not known, as in a run that resumes.
-void cut_into_patches(const RemeshOptions& options, const TriangleSoup* source, Prepared& p, RemeshReport& report,
+/// has them, and so are interfaces.
+void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
                       Context& context);
 
 struct PatchOptions {

@@ -13,6 +13,7 @@
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/flaps.h"
+#include "pipeline/joined_parts.h"
 #include "pipeline/patches.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
@@ -225,7 +226,7 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
   return false;
 }
 
-void finish(Prepared& p, const TriangleSoup* source, const RemeshOptions& options, RemeshReport& report,
+void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options, RemeshReport& report,
             Context& context) {
   if (options.want_shell || options.method == Method::shell) {
     p.shell = timed(report, "shell", context, [&] { return build_shell(p.sites, {options.band_vox}, context); });
@@ -282,7 +283,7 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& in
 
 /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest. The soup is that of `source`,
 /// repaired.
-Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const TriangleSoup& source,
+Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const PatchSource& source,
                               const RemeshOptions& options, RemeshReport& report, Context& context) {
   const auto [lo, hi] = bounding_box(soup);
   const bool free_grid = !options.resolution && !options.voxel_size_world;
@@ -318,7 +319,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
       best = std::move(p);
     }
   }
-  finish(best, &source, options, report, context);
+  finish(best, source, options, report, context);
   if (report.features.border_loops == 0) warn_of_topology(best, input, options, report);
   return best;
 }
@@ -342,7 +343,7 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
   Prepared p = Preparation(options, report, context).from(std::move(surface), closing);
-  finish(p, nullptr, options, report, context);
+  finish(p, {}, options, report, context);
   return p;
 }
 
@@ -357,7 +358,13 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const TriangleSoup* current = &soup;
   InputTopology input = given;
   const auto measure = [&] { return measure_topology(*current, context).topology; };
-  if (!given.closed || !given.oriented) {
+  PatchSource source{&soup, {}};
+  if (std::optional<JoinedParts> joined = join_parts(soup, measured, report, context)) {
+    changed = std::move(joined->soup);
+    source.interfaces = std::move(joined->interfaces);
+    current = &changed;
+    input = joined->topology;
+  } else if (!given.closed || !given.oriented) {
     changed = timed(report, "mend", context, [&] { return repaired(soup, given, options, report.mend); });
     current = &changed;
     input = timed(report, "topology", context, measure);
@@ -373,7 +380,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
       if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
     }
   }
-  Prepared prepared = prepare_on_best_grid(*current, input, soup, options, report, context);
+  Prepared prepared = prepare_on_best_grid(*current, input, source, options, report, context);
   report.input = given;
   return prepared;
 }

@@ -132,11 +132,11 @@ TEST_CASE("lines: two that cross have a vertex there, and edges that are followe
   for (const FeatureEdge& e : find_mesh_edges(mesh).edges)
     if (length(mesh.vertices[e.end[1]] - mesh.vertices[e.end[0]]) < 1.1) rim.push_back(e.end);
   REQUIRE(rim.size() == 12);
-  const MeshWithLines made = embed_lines(mesh, cross, rim, kTolerance);
+  const MeshWithLines made = embed_lines(mesh, cross, {rim}, kTolerance);
   check_mesh_of(made, mesh);
   CHECK(made.lost_segments.empty());
-  CHECK(made.followed.size() == 13);
-  CHECK(length_of(made.mesh, made.followed) == Approx(12));
+  CHECK(made.followed.at(0).size() == 13);
+  CHECK(length_of(made.mesh, made.followed[0]) == Approx(12));
   CHECK(std::any_of(made.mesh.vertices.begin(), made.mesh.vertices.end(),
                     [](const WorldPoint& p) { return length(p - WorldPoint{.5, .45, 1}) < 1e-6; }));
 }
