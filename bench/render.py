@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Renders a triangle mesh (PLY binary little-endian, OBJ, OFF) to a PNG: flat shading, edges drawn, orthographic.
+Faces of a PLY have their colours, and the edges of its element edge are drawn bold.
 
 usage: render.py MESH OUT.png [--size N] [--view X,Y,Z] [--up X,Y,Z] [--zoom F] [--no-edges]
 Needs numpy only.
@@ -15,24 +16,35 @@ def read_mesh(path):
     data = open(path, "rb").read()
     if path.endswith(".ply"):
         head, body = data.split(b"end_header\n", 1)
-        lines = head.decode().split("\n")
-        nv = next(int(l.split()[2]) for l in lines if l.startswith("element vertex"))
-        nf = next(int(l.split()[2]) for l in lines if l.startswith("element face"))
-        types = {"float": "<f4", "double": "<f8", "uchar": "u1"}
-        row = np.dtype([(l.split()[2], types[l.split()[1]]) for l in lines if l.split()[:1] == ["property"] and "list" not in l])
-        table = np.frombuffer(body, row, nv)
-        v = np.stack([table["x"], table["y"], table["z"]], axis=1).astype(float)
-        faces = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<i4", 3)]), nf, nv * row.itemsize)
-        return v, faces["i"].astype(int)
+        types = {"float": "<f4", "double": "<f8", "uchar": "u1", "uint": "<u4", "int": "<i4"}
+        tables, rows = {}, []
+        for words in (l.split() for l in head.decode().split("\n")):
+            if words[:1] == ["element"]:
+                rows.append((words[1], int(words[2]), []))
+            elif words[:2] == ["property", "list"]:
+                rows[-1][2].extend([("n", "u1"), ("corner", "<i4", 3)])
+            elif words[:1] == ["property"]:
+                rows[-1][2].append((words[2], types[words[1]]))
+        at = 0
+        for name, count, row in rows:
+            tables[name] = np.frombuffer(body, np.dtype(row), count, at)
+            at += tables[name].nbytes
+        columns = lambda name, parts: np.stack([tables[name][c] for c in parts], axis=1).astype(float)
+        faces = tables["face"]
+        colours = columns("face", ("red", "green", "blue")) if "red" in faces.dtype.names else None
+        curves = set()
+        if "edge" in tables:
+            curves = {(min(e), max(e)) for e in columns("edge", ("vertex1", "vertex2")).astype(int).tolist()}
+        return columns("vertex", "xyz"), faces["corner"].astype(int), colours, curves
     text = data.decode().split("\n")
     if path.endswith(".off"):
         tokens = [t for l in text if not l.startswith("#") for t in l.split()][1:]
         nv, nf = int(tokens[0]), int(tokens[1])
         v = np.array(tokens[3:3 + 3 * nv], float).reshape(nv, 3)
-        return v, np.array(tokens[3 + 3 * nv:3 + 3 * nv + 4 * nf], int).reshape(nf, 4)[:, 1:]
+        return v, np.array(tokens[3 + 3 * nv:3 + 3 * nv + 4 * nf], int).reshape(nf, 4)[:, 1:], None, set()
     v = [l.split()[1:4] for l in text if l.startswith("v ")]
     f = [[int(w.split("/")[0]) - 1 for w in l.split()[1:4]] for l in text if l.startswith("f ")]
-    return np.array(v, float), np.array(f)
+    return np.array(v, float), np.array(f), None, set()
 
 
 def write_png(path, image):
@@ -44,7 +56,7 @@ def write_png(path, image):
                            + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-def render(v, f, size, view, up, zoom, edges):
+def render(v, f, colours, curves, size, view, up, zoom, edges):
     back = view / np.linalg.norm(view)
     right = np.cross(up, back)
     right /= np.linalg.norm(right)
@@ -57,7 +69,7 @@ def render(v, f, size, view, up, zoom, edges):
     image = np.full((size, size, 3), 255, np.uint8)
     depth = np.full((size, size), -1e30)
     light = np.array([0.35, 0.45, 0.82])
-    for t in f:
+    for number, t in enumerate(f):
         a, b, c = p[t]
         n = np.cross(*((v[t[1:]] - v[t[0]]) @ axes.T))
         if not np.linalg.norm(n):
@@ -78,12 +90,19 @@ def render(v, f, size, view, up, zoom, edges):
         if not hit.any():
             continue
         front = np.array([205, 216, 232]) if n[2] > 0 else np.array([232, 120, 110])
+        if colours is not None and n[2] > 0:
+            front = colours[number]
         colour = np.where(True, front * (0.35 + 0.65 * abs(n @ light)), 0)
         block = np.broadcast_to(colour, hit.shape + (3,)).copy()
         if edges:
             height = abs(det) / np.array([np.hypot(*(c - b)[:2]), np.hypot(*(a - c)[:2]), np.hypot(*(b - a)[:2])]).clip(1e-9)
-            near = np.minimum(np.minimum(w0 * height[0], w1 * height[1]), w2 * height[2])
+            away = [w * h for w, h in zip((w0, w1, w2), height)]  # from the side opposite of each corner
+            near = np.minimum(np.minimum(away[0], away[1]), away[2])
             block = np.where((near < 0.6)[..., None], block * 0.35, block)
+            for i in range(3):
+                ends = (int(t[(i + 1) % 3]), int(t[(i + 2) % 3]))
+                if (min(ends), max(ends)) in curves:
+                    block = np.where((away[i] < 2)[..., None], 0, block)
         image[y0:y1 + 1, x0:x1 + 1][hit] = block[hit].clip(0, 255).astype(np.uint8)
         depth[y0:y1 + 1, x0:x1 + 1][hit] = z[hit]
     return image
@@ -100,8 +119,8 @@ def main():
     args.add_argument("--no-edges", action="store_true")
     a = args.parse_args()
     vector = lambda s: np.array([float(x) for x in s.split(",")])
-    v, f = read_mesh(a.mesh)
-    write_png(a.png, render(v, f, a.size, vector(a.view), vector(a.up), a.zoom, not a.no_edges))
+    v, f, colours, curves = read_mesh(a.mesh)
+    write_png(a.png, render(v, f, colours, curves, a.size, vector(a.view), vector(a.up), a.zoom, not a.no_edges))
 
 
 if __name__ == "__main__":

@@ -37,8 +37,9 @@ constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh th
 /// Result: each mesh has one sample in each of kDistanceSamples strata of equal area, along its triangles, and every
 /// n-th vertex, n the smallest that leaves at most kDistanceVertices; the distances are exact up to rounding, sums run
 /// in one fixed shape. Normals of a sample are compared with the nearest triangle; where they turn, with those that lie
-/// within a ten-thousandth of the diagonal beyond it, too: beside a crease either side of it may be the nearest. Cost: about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160.
-/// Throws: usage when a mesh has no triangle or names a vertex that it does not have.
+/// within a ten-thousandth of the diagonal beyond it, too: beside a crease either side of it may be the nearest. Cost:
+/// about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160. Throws: usage when a mesh has no
+/// triangle or names a vertex that it does not have.
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context);
 
 /// The triangles of the input as the stages see it: snapped, and repaired where it was.

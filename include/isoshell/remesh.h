@@ -30,8 +30,8 @@ struct Features {
     threshold,  ///< all whose faces turn by `degrees` or more
   };
   Creases creases = Creases::automatic;
-  double degrees = 0;          ///< only of a threshold
-  std::string line_file = {};  ///< where a run reads `lines` from; remesh() itself reads no file
+  double degrees = 0;                           ///< only of a threshold
+  std::string line_file = {};                   ///< where a run reads `lines` from; remesh() itself reads no file
   std::shared_ptr<const Polylines> lines = {};  ///< become edges of the result, whatever the creases; null: none
 
   bool has_lines() const { return lines || !line_file.empty(); }
@@ -68,9 +68,9 @@ struct RemeshOptions {
   /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;
   bool color_features = false;  ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
-  bool outer_only = false;    ///< drop what lies inside of a closed surface
-  bool want_shell = false;    ///< build the shell even when the method does not need it, to keep it
-  bool want_digests = false;  ///< fill RemeshReport::digests
+  bool outer_only = false;      ///< drop what lies inside of a closed surface
+  bool want_shell = false;      ///< build the shell even when the method does not need it, to keep it
+  bool want_digests = false;    ///< fill RemeshReport::digests
 };
 
 /// A curve of the input that the result does not have.

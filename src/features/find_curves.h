@@ -31,10 +31,10 @@ struct CreaseReport {
 };
 
 /// Result: every border and non-manifold edge, the seams and lines, and the creases of the mode, less dangling and
-/// looping ones shorter than 2 h. A seam or line at a crease is a crease, a line at a seam is a seam. Corners are vertices with another number of curve edges than two
-/// or edges of two kinds, and those where a curve turns by more than 45 degrees between chords of .7 h. An open curve
-/// runs from its smaller corner (from the smaller edge of two at the same corner); a loop from its smallest vertex
-/// along the smaller edge. Throws: usage.
+/// looping ones shorter than 2 h. A seam or line at a crease is a crease, a line at a seam is a seam. Corners are
+/// vertices with another number of curve edges than two or edges of two kinds, and those where a curve turns by more
+/// than 45 degrees between chords of .7 h. An open curve runs from its smaller corner (from the smaller edge of two at
+/// the same corner); a loop from its smallest vertex along the smaller edge. Throws: usage.
 CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report = nullptr);
 
 }  // namespace isoshell

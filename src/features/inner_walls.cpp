@@ -17,7 +17,7 @@ uint32_t side(uint32_t triangle, bool is_front) { return 2 * triangle + (is_fron
 /// A triangle at an edge, seen along the edge.
 struct FaceAtEdge {
   uint32_t triangle;
-  bool rises;    ///< passes the edge from its smaller end
+  bool rises;   ///< passes the edge from its smaller end
   double x, y;  ///< direction to its third corner
   bool is_upper() const { return y > 0 || (y == 0 && x > 0); }
 };

@@ -8,8 +8,8 @@
 namespace isoshell {
 
 struct WithoutWalls {
-  FeatureMesh mesh;                                  ///< the solid's surface, which looks outward
-  int64_t walls = 0;                                 ///< triangles that were dropped
+  FeatureMesh mesh;                                   ///< the solid's surface, which looks outward
+  int64_t walls = 0;                                  ///< triangles that were dropped
   std::vector<std::array<WorldPoint, 2>> interfaces;  ///< edges of the surface where walls met it
 };
 

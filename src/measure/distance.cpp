@@ -19,7 +19,7 @@ constexpr int64_t kChunk = 512;
 constexpr double kDegrees = 57.29577951308232;
 constexpr double kAlignedDeg = 10, kAlignedCosine = .984807753012208;  ///< normals that turn by more may be of another
                                                                        ///< side of a crease
-constexpr double kBeyondNearest = 1e-4;        ///< of the diagonal: how far beyond it others are looked for
+constexpr double kBeyondNearest = 1e-4;  ///< of the diagonal: how far beyond it others are looked for
 
 void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
@@ -142,9 +142,9 @@ OneSide one_sided(const TriangleMesh& from, const TriangleMesh& to, double diago
   const Sums inside = sum_over(
       kDistanceSamples, grid, context, [&](int64_t i) { return samples[i]; },
       [&](int64_t i, const WorldPoint& p, const MeshPoint& near) { return turns.at(p, samples.triangle_of(i), near); });
-  const Sums corners = sum_over(
-      (vertices + stride - 1) / stride, grid, context, [&](int64_t i) { return from.vertices[size_t(i * stride)]; },
-      [](int64_t, const WorldPoint&, const MeshPoint&) { return 0.; });
+  const Sums corners = sum_over((vertices + stride - 1) / stride, grid, context,
+                                [&](int64_t i) { return from.vertices[size_t(i * stride)]; },
+                                [](int64_t, const WorldPoint&, const MeshPoint&) { return 0.; });
   const double count = double(kDistanceSamples);
   return {{inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))},
           {inside.turn_sum_deg / count, inside.turn_max_deg}};

@@ -13,7 +13,7 @@
 namespace isoshell {
 namespace {
 
-constexpr double kFarthest = .5;      ///< of an edge length, from the surface
+constexpr double kFarthest = .5;         ///< of an edge length, from the surface
 constexpr double kSameVertex = 1. / 32;  ///< of a voxel: what is nearer becomes one vertex
 
 /// Throws: usage for lines that no reader made.

@@ -27,8 +27,7 @@ void sort_triangles(TriangleMesh& mesh) {
   for (auto& t : mesh.triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   std::vector<uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](uint32_t a, uint32_t b) { return mesh.triangles[a] < mesh.triangles[b]; });
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return mesh.triangles[a] < mesh.triangles[b]; });
   const std::vector<uint32_t> patch = mesh.features.patch;
   for (size_t i = 0; i < patch.size(); ++i) mesh.features.patch[i] = patch[order[i]];
   std::sort(mesh.triangles.begin(), mesh.triangles.end());

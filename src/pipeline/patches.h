@@ -10,7 +10,7 @@ namespace isoshell {
 
 /// What a surface comes from.
 struct PatchSource {
-  const TriangleSoup* soup = nullptr;                  ///< null: not known, as in a run that resumes
+  const TriangleSoup* soup = nullptr;                      ///< null: not known, as in a run that resumes
   std::vector<std::array<WorldPoint, 2>> interfaces = {};  ///< edges where parts met, which are curves beside creases
 };
 

@@ -36,7 +36,7 @@ void drop_colors(TriangleMesh& mesh, AttributeReport& report) {
   if (std::none_of(all.begin(), all.end(), is_color)) return;
   all.erase(std::remove_if(all.begin(), all.end(), is_color), all.end());
   report.kept.erase(std::remove(report.kept.begin(), report.kept.end(), kColorName), report.kept.end());
-  report.dropped.push_back({kColorName, "the colors show the features"});
+  report.dropped.push_back({kColorName, "the colours show the features"});
 }
 
 }  // namespace

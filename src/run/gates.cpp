@@ -66,9 +66,9 @@ std::string deviation_text(double limit_world, const MeshDistance& distance) {
 
 std::string normals_text(double limit_deg, const MeshDistance& distance) {
   std::ostringstream text;
-  text << "normal-deviation=" << limit_deg << ": normals of the result deviate by " << distance.normal_to_reference.mean_deg
-       << " degrees on average from the input's, and those of the input by " << distance.normal_from_reference.mean_deg
-       << " from the result's";
+  text << "normal-deviation=" << limit_deg << ": normals of the result deviate by "
+       << distance.normal_to_reference.mean_deg << " degrees on average from the input's, and those of the input by "
+       << distance.normal_from_reference.mean_deg << " from the result's";
   return text.str();
 }
 

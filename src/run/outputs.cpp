@@ -65,7 +65,9 @@ Features possible_features(const RemeshOptions& options, const RunRequest& r) {
         "a Voronoi stage file does not hold the seeds of borders; give --boundary close, or keep a shell instead");
   if (options.features.creases != Features::Creases::threshold && !options.features.has_lines())
     return {Features::Creases::off, 0};
-  refuse_use("a Voronoi stage file does not hold the seeds of creases and lines; give --features off, or keep a shell instead");
+  refuse_use(
+      "a Voronoi stage file does not hold the seeds of creases and lines; give --features off, or keep a shell "
+      "instead");
 }
 
 void check_request(const RunRequest& r) {

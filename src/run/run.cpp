@@ -104,8 +104,7 @@ class Run {
     const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
-        write_mesh(output.path, mesh,
-                   {mesh_format(output.format), request_.overwrite, options_.values.color_features});
+        write_mesh(output.path, mesh, {mesh_format(output.format), request_.overwrite, options_.values.color_features});
       });
     return finish(std::move(mesh));
   }

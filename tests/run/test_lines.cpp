@@ -75,7 +75,8 @@ TEST_CASE("lines: a great circle on a sphere becomes edges of the result", "[lin
   CHECK(result.report.features.curves == 1);
   CHECK(result.report.features.patches == 2);
   const double fine = result.report.frame.voxel_size / 32;
-  const double on = length_where(result.mesh, [&](const WorldPoint& p) { return std::abs(dot(p, circle.axis)) < fine; });
+  const double on =
+      length_where(result.mesh, [&](const WorldPoint& p) { return std::abs(dot(p, circle.axis)) < fine; });
   CHECK(on == Approx(6.283185307179586).epsilon(.01));
   CHECK(measure_quality(result.mesh).theta_min_deg > 30);
   CHECK(measure_quality(result.mesh).q_avg > .95);
@@ -107,10 +108,9 @@ TEST_CASE("lines: patches lie on one side of a line each", "[lines]") {
 
 TEST_CASE("lines: those of a box meet its creases, and are edges beside them", "[lines]") {
   TestContext context;
-  const Polylines cross{{{-1, -1, 1}, {1, 1, 1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}},
-                        {{0, 1}, {2, 3}, {3, 4}}, "", {}};
-  const RemeshResult result = remesh(shapes::box({-1, -1, -1}, {1, 1, 1}),
-                                     keeping(cross, 1500, Features::Creases::automatic), context);
+  const Polylines cross{{{-1, -1, 1}, {1, 1, 1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}, {{0, 1}, {2, 3}, {3, 4}}, "", {}};
+  const RemeshResult result =
+      remesh(shapes::box({-1, -1, -1}, {1, 1, 1}), keeping(cross, 1500, Features::Creases::automatic), context);
   check_valid(result, 1500);
   CHECK(result.report.features.lines >= 4);
   const double fine = result.report.frame.voxel_size / 32;
@@ -119,8 +119,9 @@ TEST_CASE("lines: those of a box meet its creases, and are edges beside them", "
         Approx(2 * std::sqrt(2.)).epsilon(1e-3));
   CHECK(length_where(result.mesh, [&](const WorldPoint& p) { return on_top(p) && std::abs(p.y) < fine; }) ==
         Approx(2).epsilon(1e-3));
-  CHECK(length_where(result.mesh, [&](const WorldPoint& p) { return std::abs(p.x - 1) < fine && std::abs(p.y) < fine; }) ==
-        Approx(2).epsilon(1e-3));
+  CHECK(length_where(result.mesh, [&](const WorldPoint& p) {
+          return std::abs(p.x - 1) < fine && std::abs(p.y) < fine;
+        }) == Approx(2).epsilon(1e-3));
 }
 
 TEST_CASE("lines: an open one ends in the middle of a face", "[lines]") {
@@ -132,7 +133,8 @@ TEST_CASE("lines: an open one ends in the middle of a face", "[lines]") {
   double marked = 0;
   for (const MeshCurveEdge& e : result.mesh.features.curve_edges) {
     const WorldPoint &a = result.mesh.vertices[e.vertex[0]], &b = result.mesh.vertices[e.vertex[1]];
-    if (std::abs(a.x) < .9 && std::abs(b.x) < .9 && a.z > .99 && b.z > .99 && std::abs(a.y) < .9) marked += length(b - a);
+    if (std::abs(a.x) < .9 && std::abs(b.x) < .9 && a.z > .99 && b.z > .99 && std::abs(a.y) < .9)
+      marked += length(b - a);
   }
   CHECK(marked == Approx(std::sqrt(1.09)).epsilon(.01));
 }
@@ -176,4 +178,46 @@ TEST_CASE("lines: the bytes are the same for any number of threads", "[lines]") 
   const TriangleSoup soup = shapes::sphere({0, 0, 0}, 1, 64);
   CHECK(digest(remesh(soup, keeping(circle.lines, 700), one).mesh) ==
         digest(remesh(soup, keeping(circle.lines, 700), more).mesh));
+}
+
+TEST_CASE("interfaces: parts that share a wall become one solid, and the ring around it edges", "[lines][walls]") {
+  TestContext context;
+  const TriangleSoup parts = shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1, 0, 0}, {2, 1, 1}));
+  TriangleSoup single = parts;  // the wall once
+  single.triangles.erase(single.triangles.begin() + 12, single.triangles.begin() + 14);
+  for (const TriangleSoup& soup : {parts, single}) {
+    RemeshOptions options;
+    options.vertices = 1000;
+    const RemeshResult result = remesh(soup, options, context);
+    check_valid(result, 1000);
+    CHECK(result.report.features.lines == 4);
+    CHECK(result.report.features.curves == 20);
+    const double fine = result.report.frame.voxel_size / 32;
+    CHECK(length_where(result.mesh, [&](const WorldPoint& p) { return std::abs(p.x - 1) < fine; }) ==
+          Approx(4).epsilon(1e-3));
+    REQUIRE_FALSE(result.report.warnings.empty());
+    CHECK(result.report.warnings[0].find("2 triangles between parts left out, solid is on both sides; 4 edges") == 0);
+
+    options.features.creases = Features::Creases::off;
+    CHECK(remesh(soup, options, context).report.features.curves == 0);
+  }
+}
+
+TEST_CASE("interfaces: edges of three sheets are no edges of a manifold, and the run says where they are",
+          "[lines][walls]") {
+  TestContext context;
+  TriangleSoup tee;
+  tee.vertices = {{0, 0, 0}, {0, 4, 0}, {4, 0, 0}, {4, 4, 0}, {-4, 0, 0}, {-4, 4, 0}, {0, 0, 4}, {0, 4, 4}};
+  for (const uint32_t page : {2u, 4u, 6u}) {
+    tee.triangles.push_back({0, page, page + 1});
+    tee.triangles.push_back({0, page + 1, 1});
+  }
+  RemeshOptions options;
+  options.vertices = 800;
+  const RemeshResult result = remesh(tee, options, context);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  int said = 0;
+  for (const std::string& text : result.report.warnings)
+    said += text.find("1 edge of more than two faces") == 0 && text.find("the first at 0 0 0") != std::string::npos;
+  CHECK(said == 1);
 }

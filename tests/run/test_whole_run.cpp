@@ -74,16 +74,16 @@ TEST_CASE("whole run: statistics have the keys of schema 1, whether written or a
   const RunResult result = run(input_of(ball(), "ball"), request, context);
   const Json j = Json::parse(statistics_json(result.record));
   CHECK(j == Json::parse(get_file(folder / "s.json")));
-  CHECK(keys(j) == std::set<std::string>{"schema",   "version",    "options",      "input",      "output",
-                                         "grid",     "counts",     "gaps",         "attributes", "topology",
-                                         "features", "quality",    "sizing",       "borders",    "distance",
-                                         "energy",   "timings_ms", "memory_bytes", "device",     "device_details",
-                                         "digests",  "warnings"});
+  CHECK(keys(j) == std::set<std::string>{"schema",         "version", "options",    "input",        "output",
+                                         "grid",           "counts",  "gaps",       "attributes",   "topology",
+                                         "features",       "quality", "sizing",     "borders",      "distance",
+                                         "normals",        "energy",  "timings_ms", "memory_bytes", "device",
+                                         "device_details", "digests", "warnings"});
   CHECK(j["schema"] == 1);
   CHECK(keys(j["options"]) == std::set<std::string>{"vertices", "edge-length", "band", "outer-only", "method",
                                                     "iterations", "tolerance", "step", "seed", "fit", "uniform-area",
-                                                    "features", "boundary", "attributes", "adaptivity", "gradation",
-                                                    "sizing"});
+                                                    "features", "boundary", "attributes", "color-features",
+                                                    "adaptivity", "gradation", "sizing"});
   CHECK(keys(j["grid"]) == std::set<std::string>{"resolution", "voxel_size", "band", "closing", "grown"});
   CHECK(j["input"]["path"] == "ball");
   CHECK(j["output"]["format"] == "ply");

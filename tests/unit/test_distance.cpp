@@ -103,3 +103,40 @@ TEST_CASE("distance: threads change nothing, and a cancelled context ends it", "
   cancelled.cancel = true;
   CHECK_THROWS_AS(measure_distance(torus, other, cancelled), Error);
 }
+
+TEST_CASE("distance: normals of a mesh deviate from its own by nothing, beside creases, too", "[distance][unit]") {
+  for (const TriangleSoup& soup : {shapes::torus(2, 0.7, 60, 30), shapes::box({0, 0, 0}, {1, 2, 3})}) {
+    const MeshDistance d = distance(mesh_of(soup), mesh_of(soup));
+    CHECK(d.normal_to_reference.mean_deg < 1e-6);
+    CHECK(d.normal_to_reference.max_deg < 1e-5);
+    CHECK(d.normal_from_reference.max_deg < 1e-5);
+    CHECK(d.normal_deviation_deg() < 1e-6);
+  }
+}
+
+TEST_CASE("distance: normals of a tilted square deviate by its tilt, whichever way it faces", "[distance][unit]") {
+  TriangleMesh tilted = square(1, 0);
+  for (WorldPoint& p : tilted.vertices) p.z = p.x * 0.5773502691896258;  // 30 degrees
+  for (int turn = 0; turn < 2; ++turn) {
+    const MeshDistance d = distance(tilted, square(3, -0.1));
+    CHECK(d.normal_to_reference.mean_deg == Approx(30));
+    CHECK(d.normal_to_reference.max_deg == Approx(30));
+    CHECK(d.normal_from_reference.mean_deg == Approx(30));
+    CHECK(d.normal_deviation_deg() == Approx(30));
+    for (auto& t : tilted.triangles) std::swap(t[1], t[2]);
+  }
+}
+
+TEST_CASE("distance: a rounded crease shows in the normals", "[distance][unit]") {
+  const TriangleMesh box = mesh_of(shapes::box({0, 0, 0}, {1, 1, 1}));
+  TriangleMesh cut = box;  // the vertex at 1 1 1 moved inward
+  cut.vertices[7] = {.8, .8, .8};
+  const MeshDistance d = distance(cut, box);
+  CHECK(d.normal_to_reference.max_deg > 10);
+  CHECK(d.normal_from_reference.max_deg > 10);
+  CHECK(d.normal_from_reference.mean_deg > 1);
+  CHECK(d.normal_from_reference.mean_deg < 20);
+  const MeshDistance one = distance(cut, box, 1);
+  CHECK(one.normal_to_reference.mean_deg == d.normal_to_reference.mean_deg);
+  CHECK(one.normal_from_reference.mean_deg == d.normal_from_reference.mean_deg);
+}

@@ -25,8 +25,7 @@ LinesOnMesh lines_on(const FeatureMesh& mesh, const std::vector<WorldPoint>& poi
     const MeshPoint on = grid.nearest(p);
     const auto& [a, b, c] = mesh.triangles[on.triangle];
     const WorldPoint& o = mesh.vertices[a];
-    lines.points.push_back(
-        {on.triangle, o + on.b_part * (mesh.vertices[b] - o) + on.c_part * (mesh.vertices[c] - o)});
+    lines.points.push_back({on.triangle, o + on.b_part * (mesh.vertices[b] - o) + on.c_part * (mesh.vertices[c] - o)});
   }
   return lines;
 }
@@ -89,8 +88,7 @@ TEST_CASE("lines: one straight line may run along many edges", "[lines][unit]") 
 
 TEST_CASE("lines: one from face to face goes over the edge between them", "[lines][unit]") {
   const FeatureMesh mesh = weld_for_features(shapes::box({0, 0, 0}, {1, 1, 1}));
-  const MeshWithLines made =
-      embed_lines(mesh, lines_on(mesh, {{.3, .4, 1}, {1, .45, .7}}, {{0, 1}}), {}, kTolerance);
+  const MeshWithLines made = embed_lines(mesh, lines_on(mesh, {{.3, .4, 1}, {1, .45, .7}}, {{0, 1}}), {}, kTolerance);
   check_mesh_of(made, mesh);
   CHECK(made.lost_segments.empty());
   double shortest = 2;  // of the plane's way: through (1, y, 1)
@@ -125,9 +123,8 @@ TEST_CASE("lines: a great circle through any points lies in its plane", "[lines]
 
 TEST_CASE("lines: two that cross have a vertex there, and edges that are followed are split", "[lines][unit]") {
   const FeatureMesh mesh = weld_for_features(shapes::box({0, 0, 0}, {1, 1, 1}));
-  const LinesOnMesh cross =
-      lines_on(mesh, {{.2, .2, 1}, {.8, .7, 1}, {.2, .7, 1}, {.8, .2, 1}, {.5, .5, 1}, {.5, -0., .5}},
-               {{0, 1}, {2, 3}, {4, 5}});
+  const LinesOnMesh cross = lines_on(
+      mesh, {{.2, .2, 1}, {.8, .7, 1}, {.2, .7, 1}, {.8, .2, 1}, {.5, .5, 1}, {.5, -0., .5}}, {{0, 1}, {2, 3}, {4, 5}});
   EdgeList rim;
   for (const FeatureEdge& e : find_mesh_edges(mesh).edges)
     if (length(mesh.vertices[e.end[1]] - mesh.vertices[e.end[0]]) < 1.1) rim.push_back(e.end);
@@ -137,15 +134,16 @@ TEST_CASE("lines: two that cross have a vertex there, and edges that are followe
   CHECK(made.lost_segments.empty());
   CHECK(made.followed.at(0).size() == 13);
   CHECK(length_of(made.mesh, made.followed[0]) == Approx(12));
-  CHECK(std::any_of(made.mesh.vertices.begin(), made.mesh.vertices.end(),
-                    [](const WorldPoint& p) { return length(p - WorldPoint{.5, .45, 1}) < 1e-6; }));
+  CHECK(std::any_of(made.mesh.vertices.begin(), made.mesh.vertices.end(), [](const WorldPoint& p) {
+    return length(p - WorldPoint{.5, .45, 1}) < 1e-6;
+  }));
 }
 
 TEST_CASE("lines: a segment over a hole is lost, and the others stay", "[lines][unit]") {
   TriangleSoup two = shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({2, 0, 0}, {3, 1, 1}));
   const FeatureMesh mesh = weld_for_features(two);
-  const MeshWithLines made = embed_lines(
-      mesh, lines_on(mesh, {{.3, .3, 1}, {.6, .4, 1}, {2.5, .5, 1}}, {{0, 1}, {1, 2}}), {}, kTolerance);
+  const MeshWithLines made =
+      embed_lines(mesh, lines_on(mesh, {{.3, .3, 1}, {.6, .4, 1}, {2.5, .5, 1}}, {{0, 1}, {1, 2}}), {}, kTolerance);
   CHECK(made.lost_segments == std::vector<size_t>{1});
   CHECK(length_of(made.mesh, made.edges) == Approx(std::sqrt(.1)));
 }
@@ -154,8 +152,8 @@ TEST_CASE("lines: random ones leave a closed surface of the same area", "[lines]
   for (uint64_t seed = 0; seed < 8; ++seed) {
     INFO("seed " << seed);
     const auto part = [&](uint64_t i) { return double(random_bits(seed, i) >> 11) / 9007199254740992.0; };
-    const FeatureMesh mesh = weld_for_features(seed % 2 == 0 ? shapes::torus(2, .7, 24, 12)
-                                                             : shapes::box({0, 0, 0}, {1, 2, 1}));
+    const FeatureMesh mesh =
+        weld_for_features(seed % 2 == 0 ? shapes::torus(2, .7, 24, 12) : shapes::box({0, 0, 0}, {1, 2, 1}));
     std::vector<WorldPoint> points;
     std::vector<std::array<uint32_t, 2>> segments;
     for (uint32_t i = 0; i < 20; ++i) {

@@ -66,8 +66,9 @@ TEST_CASE("polylines: files that lie are refused with their place", "[polylines]
   CHECK(says(refusal_of("obj", ""), "holds no line"));
   CHECK(says(refusal_of("ply", kPlyHeader + "0 1\n2 3\n"), "edge 1 names vertex 3; the file holds vertices 0 to 2"));
   CHECK(says(refusal_of("ply", kPlyHeader + "0 1\n"), "line 7: element edge promises 2 rows of at least 4 bytes"));
-  CHECK(says(refusal_of("ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                               "property float z\nelement edge 1\nproperty int from\nend_header\n0 0 0\n0\n"),
+  CHECK(says(refusal_of("ply",
+                        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                        "property float z\nelement edge 1\nproperty int from\nend_header\n0 0 0\n0\n"),
              "element edge has no number named vertex1"));
   const Error other = error_of([] { read_polylines("lines.stl"); });
   CHECK(other.code() == ErrorCode::usage);

@@ -102,7 +102,7 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
          "normal, material, group",
          "all");
   flag(shape, "--color-features", values.color_features,
-       "color faces by patch and vertices by curve and corner, and write the edges of curves; in PLY");
+       "colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY");
   flag(shape, "--uniform-area", values.uniform_area, "prefer triangles of equal area to triangles of the best shape");
 
   const char* files = "Files";
