@@ -4,7 +4,6 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "core/watched.h"
 #include "voxel/intersect.h"
@@ -46,33 +45,46 @@ int longest_axis(const std::vector<BoxedTriangle>& boxes) {
 
 }  // namespace
 
-std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
-                                        Context& context) {
+std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                                                    View<const uint32_t> joined, const std::atomic<bool>& stop) {
   if (triangles.size == 0) return {};
+  const auto id = [&](uint32_t v) { return v < joined.size ? joined[v] : v; };
   const auto corners = [&](uint32_t t) {
     const TriangleIndices i = triangles[t];
-    return CornersOfTriangle{{i.a, i.b, i.c}, {position[i.a], position[i.b], position[i.c]}};
+    return CornersOfTriangle{{id(i.a), id(i.b), id(i.c)}, {position[i.a], position[i.b], position[i.c]}};
+  };
+  std::vector<BoxedTriangle> boxes(size_t(triangles.size));
+  for (uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = {box_of(corners(t)), t};
+  const int axis = longest_axis(boxes);
+  tbb::parallel_sort(boxes.begin(), boxes.end(), [&](const BoxedTriangle& a, const BoxedTriangle& b) {
+    const int32_t u = along(a.box.lo, axis), v = along(b.box.lo, axis);
+    return u != v ? u < v : a.triangle < b.triangle;
+  });
+  std::vector<std::vector<std::array<uint32_t, 2>>> parts((boxes.size() + kChunk - 1) / kChunk);
+  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    for (size_t i = c * kChunk; i < std::min(boxes.size(), (c + 1) * kChunk); ++i)
+      for (size_t j = i + 1; j < boxes.size() && along(boxes[j].box.lo, axis) <= along(boxes[i].box.hi, axis); ++j)
+        if (boxes_meet(boxes[i].box, boxes[j].box) &&
+            triangles_intersect(corners(boxes[i].triangle), corners(boxes[j].triangle)))
+          parts[c].push_back({boxes[i].triangle, boxes[j].triangle});
+  });
+  std::vector<std::array<uint32_t, 2>> found;
+  for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+  return found;
+}
+
+std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                                        Context& context) {
+  const auto box = [&](uint32_t t) {
+    const TriangleIndices i = triangles[t];
+    return box_of({{i.a, i.b, i.c}, {position[i.a], position[i.b], position[i.c]}});
   };
   return run_with_threads(context, [&] {
-    std::vector<BoxedTriangle> boxes(size_t(triangles.size));
-    for (uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = {box_of(corners(t)), t};
-    const int axis = longest_axis(boxes);
-    tbb::parallel_sort(boxes.begin(), boxes.end(), [&](const BoxedTriangle& a, const BoxedTriangle& b) {
-      const int32_t u = along(a.box.lo, axis), v = along(b.box.lo, axis);
-      return u != v ? u < v : a.triangle < b.triangle;
-    });
-    std::vector<std::vector<BoxOfPoints>> parts((boxes.size() + kChunk - 1) / kChunk);
-    tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
-      if (context.cancel.load(std::memory_order_relaxed)) return;
-      for (size_t i = c * kChunk; i < std::min(boxes.size(), (c + 1) * kChunk); ++i)
-        for (size_t j = i + 1; j < boxes.size() && along(boxes[j].box.lo, axis) <= along(boxes[i].box.hi, axis); ++j)
-          if (boxes_meet(boxes[i].box, boxes[j].box) &&
-              triangles_intersect(corners(boxes[i].triangle), corners(boxes[j].triangle)))
-            parts[c].push_back(common_of(boxes[i].box, boxes[j].box));
-    });
-    check_cancel(context, "crossings");
     std::vector<BoxOfPoints> found;
-    for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+    for (const auto& [a, b] : crossing_pairs(position, triangles, {}, context.cancel))
+      found.push_back(common_of(box(a), box(b)));
+    check_cancel(context, "crossings");
     return found;
   });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <vector>
 
 #include "isoshell/backend.h"
@@ -17,9 +18,13 @@ inline bool boxes_meet(const BoxOfPoints& a, const BoxOfPoints& b) {
          b.lo.z <= a.hi.z;
 }
 
-/// Of each pair of triangles that meet outside of the corners that they share the box that both of theirs have in
-/// common, exactly tested; in the order of the pairs along the longest axis. Cost: a sort, and for each triangle a look
-/// at all that begin beside it along that axis.
+/// The pairs of triangles that meet outside of the corners that they share, exactly tested; in their order along the
+/// longest axis. `joined`: of the first vertices the one that each is a copy of (see FixedSeeds). Some are missing once
+/// `stop` is set. Cost: a sort, and for each triangle a look at all that begin beside it along that axis.
+std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                                                    View<const uint32_t> joined, const std::atomic<bool>& stop);
+
+/// Of each of these pairs the box that those of both triangles have in common. Throws: interrupted.
 std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                         Context& context);
 

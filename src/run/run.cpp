@@ -100,7 +100,7 @@ class Run {
     if (!attributes.empty())
       mesh.attributes = step("attributes", [&] { return transfer_attributes(input.soup, attributes, mesh, context_); });
     mesh.files = std::move(input.soup.files);
-    if (options_.values.color_features) color_features(mesh, record_.attributes);
+    if (options_.values.color_features) show_features(mesh);
     const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
@@ -272,6 +272,11 @@ class Run {
   void measure_distances(const TriangleMesh& mesh, const TriangleMesh& input) {
     record_.distance = measure_distance(mesh, input, context_);
     if (record_.report.features.border_loops > 0) record_.borders = measure_borders(mesh, input, context_);
+  }
+
+  void show_features(TriangleMesh& mesh) {
+    if (mesh.features.patch.empty()) warn("the result has no curves that colours could show");
+    color_features(mesh, record_.attributes);
   }
 
   void count_risks(const Prepared& p) {

@@ -40,6 +40,15 @@ void run_mesh(View<const char> bytes) {
   for (const Attribute& a : soup.attributes) check(a, soup);
 }
 
+template <Polylines (*read)(const MeshSource&)>
+void run_lines(View<const char> bytes) {
+  const Polylines lines = read(MeshSource("fuzz", bytes));
+  if (lines.segments.empty()) std::abort();
+  for (const auto& segment : lines.segments)
+    for (const uint32_t end : segment)
+      if (end >= lines.points.size()) std::abort();
+}
+
 template <PointCloud (*read)(const MeshSource&)>
 void run_points(View<const char> bytes) {
   const PointCloud cloud = read(MeshSource("fuzz", bytes));
@@ -72,6 +81,8 @@ const std::vector<Target>& targets() {
                                           {"off", run_mesh<read_off>},
                                           {"ply", run_mesh<read_ply>},
                                           {"stl", run_mesh<read_stl>},
+                                          {"obj_lines", run_lines<read_obj_lines>},
+                                          {"ply_edges", run_lines<read_ply_edges>},
                                           {"ply_points", run_points<read_ply_points>},
                                           {"xyz", run_points<read_xyz>},
                                           {"pcd", run_points<read_pcd>},

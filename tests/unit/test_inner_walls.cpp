@@ -75,8 +75,8 @@ TEST_CASE("inner walls: a hollow between parts stays one", "[walls][unit]") {
 
 TEST_CASE("inner walls: without walls, with borders or fins nothing is dropped", "[walls][unit]") {
   CHECK_FALSE(drop_inner_walls(weld_for_features(shapes::box({0, 0, 0}, {1, 1, 1}))));
-  CHECK_FALSE(drop_inner_walls(weld_for_features(shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}),
-                                                                  shapes::box({1, 1, 0}, {2, 2, 1})))));
+  CHECK_FALSE(drop_inner_walls(
+      weld_for_features(shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1, 1, 0}, {2, 2, 1})))));
   TriangleSoup open = boxes_in_a_row(2);
   open.triangles.pop_back();
   CHECK_FALSE(drop_inner_walls(weld_for_features(open)));

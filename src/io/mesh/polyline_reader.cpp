@@ -4,7 +4,7 @@
 #include <unordered_set>
 
 #include "core/file_format.h"
-#include "io/mesh/mesh_source.h"
+#include "io/mesh/mesh_readers.h"
 #include "io/mesh/obj_lines.h"
 #include "io/mesh/ply_body.h"
 #include "isoshell/error.h"
@@ -60,7 +60,8 @@ std::vector<uint32_t> read_line(const Text& text, const char* p, const char* end
   return vertices;
 }
 
-void read_obj_lines(const MeshSource& source, Polylines& lines) {
+Polylines parse_obj(const MeshSource& source) {
+  Polylines lines;
   const Text text(source, Text::Continuation::backslash);
   const char* const end = text.end();
   const auto each_line = [&](auto read) {
@@ -82,6 +83,7 @@ void read_obj_lines(const MeshSource& source, Polylines& lines) {
     const std::vector<uint32_t> along = read_line(text, p, end, so_far, int64_t(lines.points.size()));
     for (size_t i = 0; i + 1 < along.size(); ++i) segments.add(along[i], along[i + 1], number);
   });
+  return lines;
 }
 
 /// Numbers of an element, which are read as if they were positions.
@@ -107,7 +109,8 @@ std::string number_text(double value) {
   return is_whole ? std::to_string(int64_t(value)) : std::to_string(value);
 }
 
-void read_ply_edges(const MeshSource& source, Polylines& lines) {
+Polylines parse_ply(const MeshSource& source) {
+  Polylines lines;
   const PlyHeader header = read_ply_header(source);
   lines.points = read_numbers(source, header, "vertex", {"x", "y", "z"});
   const std::vector<WorldPoint> ends = read_numbers(source, header, "edge", {"vertex1", "vertex2", "vertex2"});
@@ -130,9 +133,24 @@ void read_ply_edges(const MeshSource& source, Polylines& lines) {
     segments.add(vertex[0], vertex[1], 0);
   }
   lines.lines.clear();  // rows are no lines of the file
+  return lines;
 }
 
 }  // namespace
+
+Polylines read_obj_lines(const MeshSource& source) {
+  Polylines lines = parse_obj(source);
+  if (lines.segments.empty()) source.refuse("holds no line of two vertices; lines begin with l, as l 1 2 3");
+  lines.source = source.name();
+  return lines;
+}
+
+Polylines read_ply_edges(const MeshSource& source) {
+  Polylines lines = parse_ply(source);
+  if (lines.segments.empty()) source.refuse("holds no edges; they are an element edge with vertex1 and vertex2");
+  lines.source = source.name();
+  return lines;
+}
 
 std::string Polylines::name_of(size_t segment) const {
   const std::string number =
@@ -145,17 +163,8 @@ std::shared_ptr<const Polylines> read_polylines(const std::string& path) {
   if (format != "obj" && format != "ply")
     throw Error(ErrorCode::usage, "features",
                 path + ": lines are read from OBJ and PLY files; give a name that ends in .obj or .ply");
-  auto lines = std::make_shared<Polylines>();
-  lines->source = path;
   const MeshSource source(path);
-  if (format == "obj")
-    read_obj_lines(source, *lines);
-  else
-    read_ply_edges(source, *lines);
-  if (lines->segments.empty())
-    source.refuse(format == "obj" ? "holds no line of two vertices; lines begin with l, as l 1 2 3"
-                                  : "holds no edges; they are an element edge with vertex1 and vertex2");
-  return lines;
+  return std::make_shared<Polylines>(format == "obj" ? read_obj_lines(source) : read_ply_edges(source));
 }
 
 }  // namespace isoshell
