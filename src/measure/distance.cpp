@@ -17,9 +17,9 @@ namespace {
 
 constexpr int64_t kChunk = 512;
 constexpr double kDegrees = 57.29577951308232;
-constexpr double kAlignedDeg = 10, kAlignedCosine = .984807753012208;  ///< normals that turn by more may be of another
-                                                                       ///< side of a crease
-constexpr double kBeyondNearest = 1e-4;  ///< of the diagonal: how far beyond it others are looked for
+constexpr double kOtherSideDeg = 30;  ///< normals that turn by more may be of the other side of a crease,
+constexpr double kAlignedCosine = .984807753012208;  ///< if those of this side turn by 10 degrees or less
+constexpr double kBeyondNearest = 1e-4;              ///< of the diagonal: how far beyond it others are looked for
 
 void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
@@ -85,7 +85,7 @@ class NormalTurns {
   double at(const WorldPoint& p, size_t triangle, const MeshPoint& nearest) const {
     const WorldPoint normal = normal_of(from_, triangle);
     const double size = length(normal), turn = angle_between_deg(normal, normal_of(to_, nearest.triangle));
-    if (!(size > 0) || turn < kAlignedDeg) return turn;
+    if (!(size > 0) || turn < kOtherSideDeg) return turn;
     const MeshPoint aligned =
         grid_.nearest_aligned(p, 1 / size * normal, kAlignedCosine, std::sqrt(nearest.distance_sq) + beyond_);
     return aligned.triangle == MeshPoint::kNoTriangle ? turn
