@@ -18,7 +18,8 @@ struct Inside {
   double iso;
   bool below;
   double margin = 0;  ///< values that are not this much inside of the surface count as outside
-  bool operator()(double value) const { return below ? value < iso - margin : value > iso + margin; }
+  double limit() const { return below ? iso - margin : iso + margin; }
+  bool operator()(double value) const { return below ? value < limit() : value > limit(); }
 };
 
 inline Voxel plus(Voxel a, int32_t x, int32_t y, int32_t z) { return {a.x + x, a.y + y, a.z + z}; }
@@ -41,16 +42,40 @@ inline void read_cell_window(const ScalarField& field, Voxel block, float* windo
   }
 }
 
+/// Which points of a window lie inside: 1, others 0.
+struct InsidePoints {
+  uint8_t at[kWindow * kWindow * kWindow];
+
+  InsidePoints(const float* window, Inside is_inside) {
+    const double limit = is_inside.limit();
+    // One comparison a loop: then several points are looked at at once.
+    if (is_inside.below)
+      for (int i = 0; i < kWindow * kWindow * kWindow; ++i) at[i] = window[i] < limit;
+    else
+      for (int i = 0; i < kWindow * kWindow * kWindow; ++i) at[i] = window[i] > limit;
+  }
+};
+
 /// Calls visit(offset of the cell in its block, corner of the window, bits of the corners inside) for the cells that
 /// the surface crosses.
 template <class Visit>
-void each_cut_cell(const float* window, Inside is_inside, Visit visit) {
-  for (int offset = 0; offset < 512; ++offset) {
-    const float* corner = window + window_index(offset);
-    int inside = 0;
-    for (int c = 0; c < 8; ++c) inside |= int(is_inside(corner[corner_step(c)])) << c;
-    if (inside != 0 && inside != 255) visit(offset, corner, inside);
+void each_cut_cell(const float* window, const InsidePoints& points, Visit visit) {
+  for (int row = 0; row < 64; ++row) {
+    const int first = window_index(row << 3);
+    const uint8_t* at = points.at + first;
+    uint8_t four[kWindow];  // bits of the corners with the same z
+    for (int z = 0; z < kWindow; ++z)
+      four[z] = uint8_t(at[z] | at[z + kWindow] << 2 | at[z + kWindowStride[0]] << 4 |
+                        at[z + kWindowStride[0] + kWindow] << 6);
+    for (int z = 0; z < 8; ++z) {
+      const int inside = four[z] | four[z + 1] << 1;
+      if (inside != 0 && inside != 255) visit(row << 3 | z, window + first + z, inside);
+    }
   }
+}
+template <class Visit>
+void each_cut_cell(const float* window, Inside is_inside, Visit visit) {
+  each_cut_cell(window, InsidePoints(window, is_inside), visit);
 }
 
 inline double finite_value(float value) { return std::clamp<double>(value, -3e38, 3e38); }

@@ -15,12 +15,26 @@ namespace {
 
 constexpr double kGrains = 65536;  // a voxel: triangles beside creases span a few voxels, intersect.h takes 64
 
+constexpr int kMovedReach = 2;  // voxels: triangles beside a vertex end in cells around its own, or one farther
+
 /// A triangle in a cell that it may reach into.
 struct Entry {
   Voxel cell;
   uint32_t triangle;
   bool operator<(const Entry& o) const { return cell == o.cell ? triangle < o.triangle : comes_before(cell, o.cell); }
 };
+
+/// Cells that triangles reach into which changed with vertices of these cells, ascending.
+std::vector<Voxel> cells_around(const std::vector<Voxel>& moved) {
+  std::vector<Voxel> cells;
+  for (const Voxel& v : moved)
+    for (int x = -kMovedReach; x <= kMovedReach; ++x)
+      for (int y = -kMovedReach; y <= kMovedReach; ++y)
+        for (int z = -kMovedReach; z <= kMovedReach; ++z) cells.push_back({v.x + x, v.y + y, v.z + z});
+  tbb::parallel_sort(cells.begin(), cells.end(), comes_before);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
 
 /// Whether the boxes of two triangles are.
 bool are_apart(const CornersOfTriangle& s, const CornersOfTriangle& t) {
@@ -36,20 +50,24 @@ class Intersections {
  public:
   Intersections(const TriangleSoup& soup, const std::vector<uint8_t>& is_crease) : soup_(soup), is_crease_(is_crease) {}
 
-  std::vector<uint32_t> find() {
-    std::vector<Entry> entries = list([&](uint32_t t) { return has_crease(t); }, [](Voxel) { return true; });
+  std::vector<uint32_t> find(const std::vector<Voxel>* moved) {
+    const std::vector<Voxel> around = moved ? cells_around(*moved) : std::vector<Voxel>{};
+    std::vector<Entry> entries =
+        list([&](uint32_t t) { return has_crease(t); }, [&](Voxel cell) { return !moved || holds(around, cell); });
     std::vector<Voxel> cells;
     for (const Entry& e : entries)
       if (cells.empty() || cells.back() != e.cell) cells.push_back(e.cell);
     const std::vector<Entry> others =
-        list([&](uint32_t t) { return !has_crease(t); },
-             [&](Voxel cell) { return std::binary_search(cells.begin(), cells.end(), cell, comes_before); });
+        list([&](uint32_t t) { return !has_crease(t); }, [&](Voxel cell) { return holds(cells, cell); });
     entries.insert(entries.end(), others.begin(), others.end());
     tbb::parallel_sort(entries.begin(), entries.end());
     return test(entries, cells);
   }
 
  private:
+  static bool holds(const std::vector<Voxel>& cells, Voxel cell) {
+    return std::binary_search(cells.begin(), cells.end(), cell, comes_before);
+  }
   bool has_crease(uint32_t t) const {
     const auto& v = soup_.triangles[t];
     return is_crease_[v[0]] || is_crease_[v[1]] || is_crease_[v[2]];
@@ -124,8 +142,9 @@ class Intersections {
 
 }  // namespace
 
-std::vector<uint32_t> find_intersecting(const TriangleSoup& soup, const std::vector<uint8_t>& is_crease) {
-  return Intersections(soup, is_crease).find();
+std::vector<uint32_t> find_intersecting(const TriangleSoup& soup, const std::vector<uint8_t>& is_crease,
+                                        const std::vector<Voxel>* moved) {
+  return Intersections(soup, is_crease).find(moved);
 }
 
 }  // namespace isoshell

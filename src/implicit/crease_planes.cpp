@@ -1,11 +1,10 @@
 #include "implicit/crease_planes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <array>
 #include <cmath>
 
 #include "core/world_vector.h"
+#include "implicit/linear_fit.h"
 
 namespace isoshell {
 namespace {
@@ -24,44 +23,6 @@ constexpr double kSameSide = 0.95;     // cosine
 constexpr double kFarthest = 2.5;      // voxels from the crossing to where the plane touches the surface
 constexpr double kFarPerShift = 2;  // how much farther that may be where the plane is a voxel nearer to interpolation
 constexpr double kFarPerBend = 50;  // the same of a plane from a straighter cell
-
-/// The linear function nearest to a cell's values.
-struct LinearFit {
-  double mean, slope[3], rest_sq;
-};
-
-LinearFit fit_cell(const float* corner, const int stride[3]) {
-  double v[8];
-  for (int c = 0; c < 8; ++c)
-    v[c] = finite_value(corner[(c >> 2) * stride[0] + (c >> 1 & 1) * stride[1] + (c & 1) * stride[2]]);
-  // Sums and differences along each axis in turn leave the mean, the slopes and what is no linear function, each by
-  // itself.
-  for (int bit = 1; bit < 8; bit *= 2)
-    for (int c = 0; c < 8; ++c) {
-      if (c & bit) continue;
-      const double low = v[c], high = v[c | bit];
-      v[c] = (low + high) / 2;
-      v[c | bit] = (high - low) / 2;
-    }
-  return {v[0], {2 * v[4], 2 * v[2], 2 * v[1]}, v[3] * v[3] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]};
-}
-
-double steepness(const LinearFit& fit) {
-  return std::sqrt(fit.slope[0] * fit.slope[0] + fit.slope[1] * fit.slope[1] + fit.slope[2] * fit.slope[2]);
-}
-
-/// How far a cell's values are from a plane's distances, in parts of what these rise by a voxel.
-double bend_of(const LinearFit& fit, double rise) {
-  const double off = steepness(fit) - rise;
-  return std::sqrt(fit.rest_sq + off * off) / rise;
-}
-
-template <class Number>
-Number take_median(std::vector<Number>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The plane of a nearly straight cell, in the block's coordinates.
 struct CellPlane {
@@ -125,10 +86,10 @@ class CreasePlanes {
     if (plane.is_known) return plane;
     const LinearFit fit = fit_cell(&value_[at], kWideStride);
     plane.is_known = true;
-    plane.bend = bend_of(fit, rise_);
+    plane.bend = fit.bend(rise_);
     plane.is_bent = plane.bend >= kBent && std::abs(fit.mean - inside_.iso) < kNear * rise_;
     if (!(plane.bend < kNearlyStraight)) return plane;
-    const double outward = (inside_.below ? 1 : -1) / steepness(fit);
+    const double outward = (inside_.below ? 1 : -1) / fit.rise();
     plane.normal = outward * WorldPoint{fit.slope[0], fit.slope[1], fit.slope[2]};
     plane.foot = WorldPoint{x + .5, y + .5, z + .5} - (outward * (fit.mean - inside_.iso)) * plane.normal;
     return plane;
@@ -239,20 +200,6 @@ class CreasePlanes {
 };
 
 }  // namespace
-
-double usual_rise(const ScalarField& field, Inside inside, const std::vector<Voxel>& blocks) {
-  std::vector<double> of_block(blocks.size(), 0);
-  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t b) {
-    float window[kWindow * kWindow * kWindow];
-    read_cell_window(field, blocks[b], window);
-    std::vector<double> rises;
-    each_cut_cell(window, inside,
-                  [&](int, const float* corner, int) { rises.push_back(steepness(fit_cell(corner, kWindowStride))); });
-    if (!rises.empty()) of_block[b] = take_median(rises);
-  });
-  of_block.erase(std::remove(of_block.begin(), of_block.end(), 0.), of_block.end());
-  return of_block.empty() ? 0 : take_median(of_block);
-}
 
 std::vector<CreaseCrossing> find_crease_crossings(const ScalarField& field, Inside inside, double rise, Voxel block) {
   return CreasePlanes(field, inside, rise, block).find();

@@ -19,10 +19,6 @@ struct CreaseCrossing {
   double height;      ///< of the plane along the normal, from the block's origin
 };
 
-/// How much a field rises a voxel beside the surface: the median over the cut cells of each block, then over blocks.
-/// 0 without a cut cell.
-double usual_rise(const ScalarField& field, Inside inside, const std::vector<Voxel>& blocks);
-
 /// The edges of a block of cells beside bent cells and the cells around these, in order.
 std::vector<CreaseCrossing> find_crease_crossings(const ScalarField& field, Inside inside, double rise, Voxel block);
 

@@ -299,22 +299,27 @@ WorldPoint Creases::evened(CreaseVertexId id) const {
   return v.choice[0] + near_cell(v, dot(sum, v.along) / 2, outside) * v.along;
 }
 
-/// Takes vertices back until no triangle turns over: each has two steps, so that ends.
-void Creases::settle() {
+/// Takes vertices back until no triangle turns over: each has two steps, so that ends. Returns their cells.
+std::vector<Voxel> Creases::settle() {
+  std::vector<Voxel> cells;
   for (;;) {
     std::vector<std::vector<uint32_t>> turned(vertices_.size());
     each_vertex([&](CreaseVertexId id) {
       if (turns_over(id)) turned[id.block].push_back(id.number);
     });
     keep_nearer(turned);
-    bool is_settled = true;
+    const size_t settled = cells.size();
     for (size_t b = 0; b < turned.size(); ++b)
-      for (const uint32_t i : turned[b]) {
-        vertices_[b][i].place = CreaseVertex::Place(vertices_[b][i].place + 1);
-        is_settled = false;
-      }
-    if (is_settled) return;
+      for (const uint32_t i : turned[b]) cells.push_back(take_back({uint32_t(b), i}));
+    if (cells.size() == settled) return cells;
   }
+}
+
+/// Returns the vertex's cell.
+Voxel Creases::take_back(CreaseVertexId id) {
+  CreaseVertex& v = vertices_[id.block][id.number];
+  v.place = CreaseVertex::Place(v.place + 1);
+  return plus(blocks_[id.block], v.offset >> 6, v.offset >> 3 & 7, v.offset & 7);
 }
 
 /// Of two that share an edge only the one goes that is farther from where it would be otherwise: the other may do then.
@@ -341,13 +346,13 @@ bool Creases::is_farthest(CreaseVertexId id, const std::vector<std::vector<uint3
   return true;
 }
 
-void Creases::take_back(const std::vector<CreaseVertexId>& which) {
-  for (const CreaseVertexId id : which) {
-    CreaseVertex& v = vertices_[id.block][id.number];
-    v.place = CreaseVertex::Place(v.place + 1);
-  }
-  settle();
+std::vector<Voxel> Creases::take_back(const std::vector<CreaseVertexId>& which) {
+  std::vector<Voxel> cells;
+  for (const CreaseVertexId id : which) cells.push_back(take_back(id));
+  const std::vector<Voxel> then = settle();
+  cells.insert(cells.end(), then.begin(), then.end());
   forget_given_up();
+  return cells;
 }
 
 void Creases::drop_short() {

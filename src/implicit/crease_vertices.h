@@ -47,8 +47,8 @@ class Creases {
   const CreaseVertex& operator[](CreaseVertexId id) const { return vertices_[id.block][id.number]; }
   const std::vector<CreaseVertex>& vertices(size_t block) const { return vertices_[block]; }
 
-  /// Moves vertices to their next place, and others that then turn triangles over.
-  void take_back(const std::vector<CreaseVertexId>& which);
+  /// Moves vertices to their next place, and others that then turn triangles over. Returns the cells of all these.
+  std::vector<Voxel> take_back(const std::vector<CreaseVertexId>& which);
 
  private:
   struct LocalCrossing {
@@ -64,7 +64,8 @@ class Creases {
   bool turns_over(CreaseVertexId id) const;
   WorldPoint evened(CreaseVertexId id) const;
   void even_out();
-  void settle();
+  std::vector<Voxel> settle();
+  Voxel take_back(CreaseVertexId id);
   void keep_nearer(std::vector<std::vector<uint32_t>>& turned) const;
   bool is_farthest(CreaseVertexId id, const std::vector<std::vector<uint32_t>>& turned) const;
   void drop_short();

@@ -11,6 +11,7 @@
 
 #include "implicit/crease_intersections.h"
 #include "implicit/crease_vertices.h"
+#include "implicit/field_sharpness.h"
 #include "implicit/tile_borders.h"
 #include "io/mesh/face_collector.h"
 #include "isoshell/error.h"
@@ -45,26 +46,40 @@ struct CellBlock {
 
 class IsoSurface {
  public:
-  IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes, bool keep_creases)
+  IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes, VolumeCreases creases)
       : field_(field),
-        keep_creases_(keep_creases),
+        wanted_(creases),
         memory_limit_bytes_(memory_limit_bytes > 0 ? memory_limit_bytes : INT64_MAX),
         inside_{iso, field.background == iso ? field.grid_class == "level set" : field.background > iso} {}
 
   TriangleSoup extract() {
     list_cell_blocks();
-    if (keep_creases_) find_creases();
-    TriangleSoup soup = extract_once();
+    // Distances are not those of index coordinates where voxels are no cubes.
+    if (wanted_ != VolumeCreases::none && cube_edge(field_.to_world) > 0) rise_ = usual_rise(field_, inside_, origin_);
+    count();
+    if (rise_ > 0 && (wanted_ == VolumeCreases::all || is_sharp(bent_))) {
+      inside_.margin = kMargin * rise_;
+      creases_.emplace(field_, inside_, rise_, origin_);
+      count();
+    }
+    TriangleSoup soup = write();
     if (!creases_) return soup;
-    while (take_intersecting_back(soup)) soup = extract_once();
+    for (std::optional<std::vector<Voxel>> moved; take_intersecting_back(soup, moved);) {
+      count();
+      soup = write();
+    }
     tbb::parallel_for(size_t(0), soup.vertices.size(), [&](size_t v) { soup.vertices[v] = mapped(soup.vertices[v]); });
     return soup;
   }
 
  private:
-  TriangleSoup extract_once() {
+  void count() {
     cell_.assign(origin_.size(), {});
+    bent_.assign(rise_ > 0 && !creases_ ? origin_.size() : 0, {});
     each_block([&](size_t b, const float* window) { count(b, window); });
+  }
+
+  TriangleSoup write() {
     TriangleSoup soup;
     make_room(soup);
     each_block([&](size_t b, const float* window) { write_edges(b, window, soup); });
@@ -73,18 +88,18 @@ class IsoSurface {
   }
 
   /// Whether vertices of creases were taken back because their triangles intersect. Each can be so twice, then cells
-  /// are as without creases, where nothing intersects.
-  bool take_intersecting_back(const TriangleSoup& soup) {
+  /// are as without creases, where nothing intersects. Looks beside cells whose vertices moved, and at first anywhere.
+  bool take_intersecting_back(const TriangleSoup& soup, std::optional<std::vector<Voxel>>& moved) {
     std::vector<uint8_t> is_crease(soup.vertices.size(), 0);
     for (size_t b = 0; b < cell_.size(); ++b)
       for (int64_t i = 0; i < crease_vertices(b); ++i) is_crease[size_t(first_crease_vertex(b) + i)] = 1;
-    const std::vector<uint32_t> found = find_intersecting(soup, is_crease);
+    const std::vector<uint32_t> found = find_intersecting(soup, is_crease, moved ? &*moved : nullptr);
     std::vector<CreaseVertexId> ids;
     auto next = found.begin();
     for (size_t b = 0; b < cell_.size(); ++b)
       for (; next != found.end() && *next < first_crease_vertex(b) + crease_vertices(b); ++next)
         ids.push_back({uint32_t(b), uint32_t(*next - first_crease_vertex(b))});
-    if (!ids.empty()) creases_->take_back(ids);
+    if (!ids.empty()) moved = creases_->take_back(ids);
     return !ids.empty();
   }
 
@@ -130,27 +145,20 @@ class IsoSurface {
     });
   }
 
-  /// Distances are not those of index coordinates where voxels are no cubes.
-  void find_creases() {
-    if (cube_edge(field_.to_world) == 0) return;
-    const double rise = usual_rise(field_, inside_, origin_);
-    inside_.margin = kMargin * rise;
-    if (rise > 0) creases_.emplace(field_, inside_, rise, origin_);
-  }
-
   void count(size_t b, const float* window) {
     CellBlock& cell = cell_[b];
+    const InsidePoints inside(window, inside_);
     for (int offset = 0; offset < 512; ++offset) {
-      const float* at = window + window_index(offset);
-      if (std::isnan(*at)) refuse_nan(plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7));
+      const int at = window_index(offset);
+      if (std::isnan(window[at])) refuse_nan(plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7));
       for (int axis = 0; axis < 3; ++axis)
-        if (inside_(*at) != inside_(at[kWindowStride[axis]]))
-          cell.cut[axis][offset >> 6] |= uint64_t(1) << (offset & 63);
+        cell.cut[axis][offset >> 6] |= uint64_t(inside.at[at] != inside.at[at + kWindowStride[axis]]) << (offset & 63);
     }
     for (const auto& axis : cell.cut)
       for (const uint64_t word : axis) cell.cuts += uint32_t(popcount64(word));
-    each_cut_cell(window, inside_, [&](int offset, const float*, int inside) {
-      const IsoCase& loops = kIsoCases.of[inside];
+    each_cut_cell(window, inside, [&](int offset, const float* corner, int corners_inside) {
+      if (rise_ > 0 && !creases_) bent_[b].add(corner, rise_);
+      const IsoCase& loops = kIsoCases.of[corners_inside];
       for (int l = 0; l < loops.loops; ++l) {
         const bool crease = creases_ && creases_->vertex(b, offset, l), middle = loops.size[l] >= kCentreLoop;
         cell.middles += middle && !crease;
@@ -302,12 +310,14 @@ class IsoSurface {
   }
 
   const ScalarField& field_;
-  const bool keep_creases_;
+  const VolumeCreases wanted_;
   const int64_t memory_limit_bytes_;
   Inside inside_;
   const bool mirrored_ = is_mirror(field_.to_world);
   std::vector<Voxel> origin_;    // of the blocks of cells, sorted
   std::vector<CellBlock> cell_;  // per block
+  double rise_ = 0;              // of the field a voxel, where it may have creases
+  std::vector<BentCells> bent_;  // per block, until creases are found
   std::optional<Creases> creases_;
 };
 
@@ -329,8 +339,9 @@ ValueRange value_range(const ScalarField& field) {
   return range;
 }
 
-TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes, bool keep_creases) {
-  return IsoSurface(field, iso, memory_limit_bytes, keep_creases).extract();
+TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes,
+                                 VolumeCreases creases) {
+  return IsoSurface(field, iso, memory_limit_bytes, creases).extract();
 }
 
 }  // namespace isoshell

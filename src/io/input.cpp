@@ -131,7 +131,7 @@ class Reader {
   void read_volume_file(const InputRequest& request) {
     input_.facts.kind = InputKind::volume;
     VolumeInfo volume;
-    hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_, request.keep_creases}, volume));
+    hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_, request.creases}, volume));
     std::ostringstream text;
     text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
          << volume.voxel_size_world << ", " << counted(volume.blocks, "block")

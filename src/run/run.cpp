@@ -29,6 +29,11 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+VolumeCreases volume_creases(Features::Creases creases) {
+  if (creases == Features::Creases::off) return VolumeCreases::none;
+  return creases == Features::Creases::automatic ? VolumeCreases::of_sharp_bodies : VolumeCreases::all;
+}
+
 MeshFormat mesh_format(const std::string& format) {
   if (format == "ply") return MeshFormat::ply;
   if (format == "obj") return MeshFormat::obj;
@@ -166,9 +171,7 @@ class Run {
   Input read() {
     return step("read", [&] {
       InputRequest request = request_.input;
-      // Only where features are asked for by name: it takes several times as long, for smooth volumes, too.
-      request.keep_creases =
-          options_.was_given("features") && options_.values.features.creases != Features::Creases::off;
+      request.creases = volume_creases(options_.values.features.creases);
       Input input = read_input(request, context_.memory_limit_bytes,
                                [&](MessageKind kind, const std::string& text) { tell(kind, text); });
       take(input);

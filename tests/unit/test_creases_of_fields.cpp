@@ -59,7 +59,7 @@ TEST_CASE("creases of fields: a cube at any angle has its eight corners, its edg
   constexpr double kHalf = 11.3;
   for (const double angle : {0., .31, .5, .77, 1.1}) {
     const Turn turn = turned_by(angle, angle * .7);
-    const TriangleSoup soup = extract_iso_surface(turned_cube(turn, kHalf), 0, 0, true);
+    const TriangleSoup soup = extract_iso_surface(turned_cube(turn, kHalf), 0, 0, VolumeCreases::all);
     CHECK(is_closed_2_manifold_by_edges(soup));
     const auto in_cube = [&](const WorldPoint& p) { return turn(p) - WorldPoint{.2, .3, .4}; };
     for (const WorldPoint& p : soup.vertices) REQUIRE(std::abs(box_distance(in_cube(p), {kHalf, kHalf, kHalf})) < .1);
@@ -98,14 +98,14 @@ TEST_CASE("creases of fields: a hollow corner is as sharp as one that sticks out
             const WorldPoint q = turn(p);
             return std::max(box_distance(q, {14, 14, 14}), -box_distance(q - WorldPoint{14, 14, 14}, {14, 14, 14}));
           }),
-      0, 0, true);
+      0, 0, VolumeCreases::all);
   CHECK(is_closed_2_manifold_by_edges(soup));
   CHECK(volume(soup) == Approx(7. / 8 * 28 * 28 * 28).epsilon(3e-3));
 }
 
 TEST_CASE("creases of fields: smooth surfaces are as without creases, to 1/32 of a voxel", "[volume][unit]") {
   const MadeField ball = level_set(32, [](const WorldPoint& p) { return length(p - WorldPoint{.1, .2, .3}) - 20.3; });
-  const TriangleSoup kept = extract_iso_surface(ball, 0, 0, true), plain = extract_iso_surface(ball, 0);
+  const TriangleSoup kept = extract_iso_surface(ball, 0, 0, VolumeCreases::all), plain = extract_iso_surface(ball, 0);
   CHECK(kept.triangles == plain.triangles);
   for (size_t v = 0; v < plain.vertices.size(); ++v) REQUIRE(distance_sq(kept.vertices[v], plain.vertices[v]) < 1e-3);
   CHECK(curves_of(weld_for_features(kept)).curves.empty());
@@ -132,7 +132,7 @@ TEST_CASE("creases of fields: bodies of random planes stay closed 2-manifolds", 
                     }
                     return united;
                   }),
-        0, 0, true);
+        0, 0, VolumeCreases::all);
     CHECK(is_closed_2_manifold_by_edges(soup));
     CHECK(volume(soup) > 0);
   }
@@ -147,18 +147,18 @@ TEST_CASE("creases of fields: noise gives closed 2-manifolds, and values without
               double(random_bits(seed, uint64_t((v.x + 64) << 16 | (v.y + 64) << 8 | (v.z + 64))) % 401) / 100 - 1.7);
         },
         1);
-    CHECK(is_closed_2_manifold_by_edges(extract_iso_surface(noise, 0, 0, true)));
+    CHECK(is_closed_2_manifold_by_edges(extract_iso_surface(noise, 0, 0, VolumeCreases::all)));
   }
   const MadeField infinite(
       0, 8, [](Voxel v) { return v.x < 4 ? -INFINITY : INFINITY; }, INFINITY);
-  const TriangleSoup soup = extract_iso_surface(infinite, 0, 0, true);
+  const TriangleSoup soup = extract_iso_surface(infinite, 0, 0, VolumeCreases::all);
   CHECK(is_closed_2_manifold_by_edges(soup));
   for (const WorldPoint& p : soup.vertices) REQUIRE(std::isfinite(p.x + p.y + p.z));
 }
 
 TEST_CASE("creases of fields: densities, other values and mirrors have the same creases", "[volume][unit]") {
   const Turn turn = turned_by(.31, .2);
-  const TriangleSoup soup = extract_iso_surface(turned_cube(turn, 11.3), 0, 0, true);
+  const TriangleSoup soup = extract_iso_surface(turned_cube(turn, 11.3), 0, 0, VolumeCreases::all);
   MadeField density(
       -32, 32,
       [&](Voxel v) {
@@ -167,12 +167,12 @@ TEST_CASE("creases of fields: densities, other values and mirrors have the same 
         return float(.5 - std::clamp(d, -kBand, kBand) / 8);
       },
       .125);
-  const TriangleSoup same = extract_iso_surface(density, .5, 0, true);
+  const TriangleSoup same = extract_iso_surface(density, .5, 0, VolumeCreases::all);
   CHECK(same.triangles == soup.triangles);
   density.to_world.at[0][0] = -1;
-  CHECK(volume(extract_iso_surface(density, .5, 0, true)) == Approx(volume(same)));
+  CHECK(volume(extract_iso_surface(density, .5, 0, VolumeCreases::all)) == Approx(volume(same)));
   density.to_world.at[1][1] = 2;
-  const TriangleSoup stretched = extract_iso_surface(density, .5, 0, true);
+  const TriangleSoup stretched = extract_iso_surface(density, .5, 0, VolumeCreases::all);
   CHECK(stretched.triangles == extract_iso_surface(density, .5).triangles);  // its distances are no distances
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("creases of fields: any number of threads makes the same soup", "[volu
   const MadeField cube = turned_cube(turned_by(.5, .3), 20.1);
   TriangleSoup soup[2];
   for (const int i : {0, 1})
-    tbb::task_arena(i == 0 ? 1 : 7).execute([&] { soup[i] = extract_iso_surface(cube, 0, 0, true); });
+    tbb::task_arena(i == 0 ? 1 : 7).execute([&] { soup[i] = extract_iso_surface(cube, 0, 0, VolumeCreases::all); });
   CHECK(soup[0].triangles == soup[1].triangles);
   REQUIRE(soup[0].vertices.size() == soup[1].vertices.size());
   for (size_t v = 0; v < soup[0].vertices.size(); ++v)

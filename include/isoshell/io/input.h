@@ -7,6 +7,7 @@
 
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/io/volume_file.h"
 #include "isoshell/message.h"
 #include "isoshell/surface_source.h"
 
@@ -19,11 +20,11 @@ const char* kind_name(InputKind kind);
 
 /// A file and what is needed to read it.
 struct InputRequest {
-  std::string path;           ///< "-" is standard input
-  std::string format;         ///< lower case, without a dot; empty: by the path
-  std::string grid;           ///< of a volume, as in VolumeReadOptions; empty: the only one
-  std::optional<double> iso;  ///< of a volume
-  bool keep_creases = false;  ///< of a volume, as in VolumeReadOptions; a run sets it where features are asked for
+  std::string path;                             ///< "-" is standard input
+  std::string format;                           ///< lower case, without a dot; empty: by the path
+  std::string grid;                             ///< of a volume, as in VolumeReadOptions; empty: the only one
+  std::optional<double> iso;                    ///< of a volume
+  VolumeCreases creases = VolumeCreases::none;  ///< of a volume; a run sets it by its features
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or

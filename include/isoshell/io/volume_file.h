@@ -8,6 +8,13 @@
 
 namespace isoshell {
 
+/// Whose creases and corners get vertices of their own, where values are distances in voxels that are cubes.
+enum class VolumeCreases {
+  none,
+  of_sharp_bodies,  ///< whose surface is straight but for narrow bends; others are as with `none`
+  all,
+};
+
 struct VolumeReadOptions {
   /// Name of the grid, NAME[1] for the second one of that name, or NAME[2] where a grid is called NAME[1]: what a grid
   /// is called comes first. Empty takes the only level set, or the only grid that can be meshed.
@@ -15,7 +22,7 @@ struct VolumeReadOptions {
   std::optional<double> iso;       ///< value of the surface; without it 0 in a level set and in unsigned distances, and
                                    ///< an error in a fog volume
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
-  bool keep_creases = false;       ///< vertices on creases and corners of distances; nothing else changes
+  VolumeCreases creases = VolumeCreases::none;
 };
 
 /// What the values of a grid were taken for.

@@ -57,7 +57,7 @@ TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptio
   info.kind = VolumeKind::unsigned_distance;
   const SignedSides sides = find_sides(field, kind.voxel, options.memory_limit_bytes);
   if (sides.enclosing_part >= kLeastEnclosing)
-    return extract_iso_surface(*sides.field, 0, options.memory_limit_bytes, options.keep_creases);
+    return extract_iso_surface(*sides.field, 0, options.memory_limit_bytes, options.creases);
   info.kind = VolumeKind::open_unsigned_distance;
   info.iso = kCrustVoxels * kind.voxel;
   return extract_iso_surface(field, info.iso, options.memory_limit_bytes);
@@ -73,7 +73,7 @@ TriangleSoup surface_of(const ScalarField& field, const VolumeReadOptions& optio
     if (range.low >= 0 && may_be_unsigned(field.grid_class)) return surface_of_unsigned(field, options, info);
     if (field.grid_class != kUnknown || range.low >= 0 || field.background <= 0) refuse_without_iso(field, range, "");
   }
-  return extract_iso_surface(field, info.iso, options.memory_limit_bytes, options.keep_creases);
+  return extract_iso_surface(field, info.iso, options.memory_limit_bytes, options.creases);
 }
 
 double voxel_size(const AffineMap& map) {
