@@ -5,6 +5,7 @@
 
 #include "core/world_vector.h"
 #include "implicit/linear_fit.h"
+#include "implicit/sharpened_field.h"
 
 namespace isoshell {
 namespace {
@@ -21,6 +22,8 @@ constexpr double kMostBeyond = 0.05;   // of a plane from the end of the edge
 constexpr int kMostSides = 3;          // that meet near an edge
 constexpr double kSameSide = 0.95;     // cosine
 constexpr double kFarthest = 2.5;      // voxels from the crossing to where the plane touches the surface
+constexpr double kMostFilled = 0.8;    // voxels from the surface
+constexpr double kLeastFilled = 0.02;  // voxels
 constexpr double kFarPerShift = 2;  // how much farther that may be where the plane is a voxel nearer to interpolation
 constexpr double kFarPerBend = 50;  // the same of a plane from a straighter cell
 
@@ -35,6 +38,24 @@ class CreasePlanes {
  public:
   CreasePlanes(const ScalarField& field, Inside inside, double rise, Voxel block)
       : field_(field), inside_(inside), rise_(rise), block_(block) {}
+
+  /// Points inside whose distances from the sides of a hollow crease are outside.
+  std::vector<PointValue> find_filled() {
+    std::vector<PointValue> found;
+    float window[kWindow * kWindow * kWindow];
+    read_cell_window(field_, block_, window);
+    for (int offset = 0; offset < 512; ++offset) {
+      const float value = window[window_index(offset)];
+      if (!inside_(value) || std::abs(value - inside_.iso) > kMostFilled * rise_) continue;
+      if (value_.empty()) read_wide();
+      const int p[3] = {offset >> 6, offset >> 3 & 7, offset & 7};
+      if (!is_beside_bent(p)) continue;
+      const double off = hollow_distance(p);
+      if (off > kLeastFilled)
+        found.push_back({uint16_t(offset), float(inside_.iso + (inside_.below ? 1 : -1) * off * rise_)});
+    }
+    return found;
+  }
 
   std::vector<CreaseCrossing> find() {
     std::vector<CreaseCrossing> found;
@@ -106,6 +127,42 @@ class CreasePlanes {
     return false;
   }
 
+  bool is_beside_bent(const int p[3]) {
+    for (int c = 0; c < 8; ++c)
+      if (plane_of(p[0] - (c >> 2), p[1] - (c >> 1 & 1), p[2] - (c & 1)).is_bent) return true;
+    return false;
+  }
+
+  /// How far a point is outside of all sides of a hollow crease near it; not above 0 where there is none.
+  double hollow_distance(const int p[3]) {
+    const WorldPoint at{double(p[0]), double(p[1]), double(p[2])};
+    candidates_.clear();
+    int cell[3];
+    for (cell[0] = p[0] - kReach; cell[0] < p[0] + kReach; ++cell[0])
+      for (cell[1] = p[1] - kReach; cell[1] < p[1] + kReach; ++cell[1])
+        for (cell[2] = p[2] - kReach; cell[2] < p[2] + kReach; ++cell[2]) {
+          const CellPlane& plane = plane_of(cell[0], cell[1], cell[2]);
+          if (!(plane.bend < kStraight)) continue;
+          const double far = length(at - plane.foot);
+          if (far <= kFarthest) candidates_.push_back({&plane, 0, far + kFarPerBend * plane.bend});
+        }
+    Side sides[kMostSides];
+    int count = 0;
+    while (count < kMostSides && !candidates_.empty()) sides[count++] = take_side();
+    double farthest = 0;
+    for (int i = 0; i < count; ++i) {
+      double off = dot(sides[i].normal, at - sides[i].foot);
+      bool is_hollow = false;
+      for (int j = 0; j < count; ++j) {
+        if (j == i || is_convex(sides[i], sides[j])) continue;
+        is_hollow = true;
+        off = std::min(off, dot(sides[j].normal, at - sides[j].foot));
+      }
+      if (is_hollow) farthest = std::max(farthest, off);
+    }
+    return farthest;
+  }
+
   CreaseCrossing cross_at(int axis, const int p[3], double place, bool starts_inside) {
     CreaseCrossing crossing{uint16_t(axis << 9 | p[0] << 6 | p[1] << 3 | p[2]), false, place, {0, 0, 0}, 0};
     const WorldPoint start{double(p[0]), double(p[1]), double(p[2])};
@@ -114,7 +171,8 @@ class CreasePlanes {
     if (candidates_.empty()) list_candidates(axis, p, place, starts_inside, kNearlyStraight);
     Side side;
     for (int n = 0; n < kMostSides && !candidates_.empty(); ++n) {
-      const Side next = take_side(start, along);
+      Side next = take_side();
+      next.place = dot(next.normal, next.foot - start) / dot(next.normal, along);
       if (n == 0 || is_hidden_by(side, next, starts_inside)) side = next;
     }
     if (length_sq(side.normal) == 0) return crossing;
@@ -125,14 +183,14 @@ class CreasePlanes {
     return crossing;
   }
 
-  /// The plane of several cells, and where it crosses an edge.
+  /// The plane of several cells, and where it crosses an edge, if it is asked for one.
   struct Side {
     WorldPoint normal{0, 0, 0}, foot{0, 0, 0};
     double place = 0;
   };
 
   /// The plane of the best candidate and of those like it, near ones first; they are no candidates any more.
-  Side take_side(const WorldPoint& start, const WorldPoint& along) {
+  Side take_side() {
     const auto by_score = [](const Candidate& a, const Candidate& b) { return a.score < b.score; };
     const WorldPoint best = std::min_element(candidates_.begin(), candidates_.end(), by_score)->plane->normal;
     Side side;
@@ -151,11 +209,10 @@ class CreasePlanes {
     candidates_.resize(kept);
     side.normal = (1 / length(side.normal)) * side.normal;
     side.foot = (1 / weights) * side.foot;
-    side.place = dot(side.normal, side.foot - start) / dot(side.normal, along);
     return side;
   }
 
-  /// A plane that crosses an edge, and where.
+  /// The plane of a cell, and where it crosses an edge, if it is asked for one.
   struct Candidate {
     const CellPlane* plane;
     double place, score;
@@ -185,10 +242,10 @@ class CreasePlanes {
   /// Around a convex crease the surface is where the first of its sides is met from inside, around a hollow one where
   /// the last is.
   static bool is_hidden_by(const Side& side, const Side& other, bool starts_inside) {
-    const bool is_convex = dot(side.normal, other.foot - side.foot) < 0;
     const bool is_before = (other.place < side.place) == starts_inside;
-    return is_convex == is_before;
+    return is_convex(side, other) == is_before;
   }
+  static bool is_convex(const Side& side, const Side& other) { return dot(side.normal, other.foot - side.foot) < 0; }
 
   const ScalarField& field_;
   const Inside inside_;
@@ -200,6 +257,10 @@ class CreasePlanes {
 };
 
 }  // namespace
+
+std::vector<PointValue> find_filled_points(const ScalarField& field, Inside inside, double rise, Voxel block) {
+  return CreasePlanes(field, inside, rise, block).find_filled();
+}
 
 std::vector<CreaseCrossing> find_crease_crossings(const ScalarField& field, Inside inside, double rise, Voxel block) {
   return CreasePlanes(field, inside, rise, block).find();

@@ -12,6 +12,7 @@
 #include "implicit/crease_intersections.h"
 #include "implicit/crease_vertices.h"
 #include "implicit/field_sharpness.h"
+#include "implicit/sharpened_field.h"
 #include "implicit/tile_borders.h"
 #include "io/mesh/face_collector.h"
 #include "isoshell/error.h"
@@ -59,7 +60,8 @@ class IsoSurface {
     count();
     if (rise_ > 0 && (wanted_ == VolumeCreases::all || is_sharp(bent_))) {
       inside_.margin = kMargin * rise_;
-      creases_.emplace(field_, inside_, rise_, origin_);
+      sharpened_.emplace(field_, inside_, rise_, origin_);
+      creases_.emplace(*sharpened_, inside_, rise_, origin_);
       count();
     }
     TriangleSoup soup = write();
@@ -140,7 +142,7 @@ class IsoSurface {
   void each_block(Work work) {
     tbb::parallel_for(size_t(0), origin_.size(), [&](size_t b) {
       float window[kWindow * kWindow * kWindow];
-      read_cell_window(field_, origin_[b], window);
+      read_cell_window(sharpened_ ? *sharpened_ : field_, origin_[b], window);
       work(b, window);
     });
   }
@@ -318,6 +320,7 @@ class IsoSurface {
   std::vector<CellBlock> cell_;  // per block
   double rise_ = 0;              // of the field a voxel, where it may have creases
   std::vector<BentCells> bent_;  // per block, until creases are found
+  std::optional<SharpenedField> sharpened_;
   std::optional<Creases> creases_;
 };
 
