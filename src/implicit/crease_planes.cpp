@@ -17,13 +17,14 @@ constexpr double kNearlyStraight = 0.1;  // the same where there is no other
 constexpr int kReach = 3;                // voxels around a block
 constexpr int kSide = kFieldBlock + 2 * kReach;
 constexpr int kWideStride[3] = {kSide * kSide, kSide, 1};
-constexpr double kLeastFacing = 0.01;  // cosine between a plane's normal and the edge that crosses it
-constexpr double kMostBeyond = 0.05;   // of a plane from the end of the edge
-constexpr int kMostSides = 3;          // that meet near an edge
-constexpr double kSameSide = 0.95;     // cosine
-constexpr double kFarthest = 2.5;      // voxels from the crossing to where the plane touches the surface
-constexpr double kMostFilled = 0.8;    // voxels from the surface
-constexpr double kLeastFilled = 0.02;  // voxels
+constexpr double kLeastFacing = 0.01;   // cosine between a plane's normal and the edge that crosses it
+constexpr double kMostBeyond = 0.05;    // of a plane from the end of the edge
+constexpr int kMostSides = 3;           // that meet near an edge
+constexpr double kSameSide = 0.95;      // cosine
+constexpr double kFarthest = 2.5;       // voxels from the crossing to where the plane touches the surface
+constexpr double kFarthestOfPoint = 3;  // voxels from a lattice point to where a plane touches the surface
+constexpr double kMostFilled = 1.3;     // voxels from the surface
+constexpr double kLeastFilled = 0.02;   // voxels
 constexpr double kFarPerShift = 2;  // how much farther that may be where the plane is a voxel nearer to interpolation
 constexpr double kFarPerBend = 50;  // the same of a plane from a straighter cell
 
@@ -51,7 +52,7 @@ class CreasePlanes {
       const int p[3] = {offset >> 6, offset >> 3 & 7, offset & 7};
       if (!is_beside_bent(p)) continue;
       const double off = hollow_distance(p);
-      if (off > kLeastFilled)
+      if (off > -std::abs(value - inside_.iso) / rise_ + kLeastFilled)
         found.push_back({uint16_t(offset), float(inside_.iso + (inside_.below ? 1 : -1) * off * rise_)});
     }
     return found;
@@ -133,7 +134,7 @@ class CreasePlanes {
     return false;
   }
 
-  /// How far a point is outside of all sides of a hollow crease near it; not above 0 where there is none.
+  /// How far a point is outside of all sides of a hollow crease near it; far inside where there is none.
   double hollow_distance(const int p[3]) {
     const WorldPoint at{double(p[0]), double(p[1]), double(p[2])};
     candidates_.clear();
@@ -144,12 +145,12 @@ class CreasePlanes {
           const CellPlane& plane = plane_of(cell[0], cell[1], cell[2]);
           if (!(plane.bend < kStraight)) continue;
           const double far = length(at - plane.foot);
-          if (far <= kFarthest) candidates_.push_back({&plane, 0, far + kFarPerBend * plane.bend});
+          if (far <= kFarthestOfPoint) candidates_.push_back({&plane, 0, far + kFarPerBend * plane.bend});
         }
     Side sides[kMostSides];
     int count = 0;
     while (count < kMostSides && !candidates_.empty()) sides[count++] = take_side();
-    double farthest = 0;
+    double farthest = -kFarthestOfPoint;
     for (int i = 0; i < count; ++i) {
       double off = dot(sides[i].normal, at - sides[i].foot);
       bool is_hollow = false;

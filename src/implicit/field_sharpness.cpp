@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include "implicit/linear_fit.h"
+#include "voxel/random.h"
 
 namespace isoshell {
 namespace {
@@ -18,14 +19,12 @@ double take_median(std::vector<double>& values) {
   return *middle;
 }
 
-}  // namespace
-
-double usual_rise(const ScalarField& field, Inside inside, const std::vector<Voxel>& blocks) {
-  const size_t step = 1 + blocks.size() / kSamples;
-  std::vector<double> of_block((blocks.size() + step - 1) / step, 0);
+/// Over one of each `step` blocks, anyone of these: blocks that follow each other lie in layers.
+double rise_of_sample(const ScalarField& field, Inside inside, const std::vector<Voxel>& blocks, size_t step) {
+  std::vector<double> of_block(blocks.size() / step, 0);
   tbb::parallel_for(size_t(0), of_block.size(), [&](size_t i) {
     float window[kWindow * kWindow * kWindow];
-    read_cell_window(field, blocks[i * step], window);
+    read_cell_window(field, blocks[i * step + size_t(random_bits(0, i) % step)], window);
     std::vector<double> rises;
     each_cut_cell(window, inside, [&](int, const float* corner, int) {
       const double rise = fit_cell(corner, kWindowStride).rise();
@@ -35,6 +34,15 @@ double usual_rise(const ScalarField& field, Inside inside, const std::vector<Vox
   });
   of_block.erase(std::remove(of_block.begin(), of_block.end(), 0.), of_block.end());
   return of_block.empty() ? 0 : take_median(of_block);
+}
+
+}  // namespace
+
+double usual_rise(const ScalarField& field, Inside inside, const std::vector<Voxel>& blocks) {
+  for (size_t step = 1 + blocks.size() / kSamples;; step = 1) {
+    const double rise = rise_of_sample(field, inside, blocks, step);
+    if (rise > 0 || step == 1) return rise;
+  }
 }
 
 void BentCells::add(const float* corner, double usual_rise) {
