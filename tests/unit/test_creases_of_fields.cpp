@@ -6,6 +6,7 @@
 #include "core/world_vector.h"
 #include "features/find_curves.h"
 #include "features/weld_for_features.h"
+#include "implicit/crease_intersections.h"
 #include "implicit/iso_surface.h"
 #include "isoshell/stages.h"
 #include "support/catch.h"
@@ -109,6 +110,92 @@ TEST_CASE("creases of fields: smooth surfaces are as without creases, to 1/32 of
   CHECK(kept.triangles == plain.triangles);
   for (size_t v = 0; v < plain.vertices.size(); ++v) REQUIRE(distance_sq(kept.vertices[v], plain.vertices[v]) < 1e-3);
   CHECK(curves_of(weld_for_features(kept)).curves.empty());
+}
+
+TEST_CASE("creases of fields: asking for those of sharp bodies changes no byte of smooth ones", "[volume][unit]") {
+  const auto blob = [](const WorldPoint& p) {  // of three balls, with bends of a few voxels between them
+    double sum = 0;
+    for (const WorldPoint& c : {WorldPoint{-9, 1, 0}, WorldPoint{8, 3, 2}, WorldPoint{1, -8, 5}})
+      sum += 1 / (1e-3 + distance_sq(p, c));
+    return 7 - 1 / std::sqrt(sum);
+  };
+  const MadeField smooth[] = {
+      level_set(32,
+                [](const WorldPoint& p) {
+                  return length(p - WorldPoint{.1, .2, .3}) - 20.3;
+                }),
+      level_set(32, [](const WorldPoint& p) { return length(p) - 4.2; }),
+      level_set(32, [&](const WorldPoint& p) { return -blob(p); }),
+  };
+  for (const MadeField& field : smooth) {
+    const TriangleSoup asked = extract_iso_surface(field, 0, 0, VolumeCreases::of_sharp_bodies);
+    const TriangleSoup plain = extract_iso_surface(field, 0);
+    CHECK(asked.triangles == plain.triangles);
+    REQUIRE(asked.vertices.size() == plain.vertices.size());
+    for (size_t v = 0; v < plain.vertices.size(); ++v) REQUIRE(distance_sq(asked.vertices[v], plain.vertices[v]) == 0);
+  }
+}
+
+TEST_CASE("creases of fields: sharp bodies are known without being told", "[volume][unit]") {
+  for (const double angle : {0., .31, .77}) {
+    const MadeField cube = turned_cube(turned_by(angle, .7 * angle), 20.3);
+    const TriangleSoup known = extract_iso_surface(cube, 0, 0, VolumeCreases::of_sharp_bodies);
+    const TriangleSoup told = extract_iso_surface(cube, 0, 0, VolumeCreases::all);
+    CHECK(known.triangles == told.triangles);
+    CHECK(known.triangles != extract_iso_surface(cube, 0).triangles);
+  }
+}
+
+TEST_CASE("creases of fields: the rims of a cylinder at odd angles are circles", "[volume][unit]") {
+  constexpr double kRadius = 14.2, kHalf = 11.3;
+  for (const double angle : {.31, .5, 1.1}) {
+    const Turn turn = turned_by(angle, angle * .7);
+    const MadeField cylinder = level_set(32, [&](const WorldPoint& p) {
+      const WorldPoint q = turn(p);
+      const double side = std::sqrt(q.x * q.x + q.y * q.y) - kRadius, end = std::abs(q.z) - kHalf;
+      const double out = std::sqrt(std::max(side, 0.) * std::max(side, 0.) + std::max(end, 0.) * std::max(end, 0.));
+      return out + std::min(0., std::max(side, end));
+    });
+    const TriangleSoup soup = extract_iso_surface(cylinder, 0, 0, VolumeCreases::of_sharp_bodies);
+    CHECK(is_closed_2_manifold_by_edges(soup));
+    CHECK(find_intersecting(soup, std::vector<uint8_t>(soup.vertices.size(), 1)).empty());
+    const FeatureMesh mesh = weld_for_features(soup);
+    const CurveNetwork network = curves_of(mesh);
+    CHECK(network.curves.size() >= 2);
+    double along = 0;
+    for (const FeatureCurve& curve : network.curves)
+      for (size_t i = 0; i < curve.vertex.size(); ++i) {
+        const WorldPoint q = turn(mesh.vertices[curve.vertex[i]]);
+        CHECK(std::abs(std::sqrt(q.x * q.x + q.y * q.y) - kRadius) < .2);
+        CHECK(std::abs(std::abs(q.z) - kHalf) < .2);
+        if (i > 0) along += length(mesh.vertices[curve.vertex[i]] - mesh.vertices[curve.vertex[i - 1]]);
+      }
+    CHECK(along == Approx(4 * 3.14159265 * kRadius).epsilon(.05));
+  }
+}
+
+TEST_CASE("creases of fields: hollow creases that a level set's maker filled are as sharp as before",
+          "[volume][unit]") {
+  constexpr double kFilled = .7;  // voxels, at the crease, and less around it
+  for (const double angle : {0., .4, .9}) {
+    const Turn turn = turned_by(angle, angle * 1.3);
+    const MadeField filled = level_set(32, [&](const WorldPoint& p) {
+      const WorldPoint q = turn(p);
+      const double solid =
+          std::max(box_distance(q, {14, 14, 14}), -box_distance(q - WorldPoint{14, 14, 0}, {14, 14, 30}));
+      return solid - std::max(0., kFilled - .5 * std::sqrt(q.x * q.x + q.y * q.y));
+    });
+    const TriangleSoup soup = extract_iso_surface(filled, 0, 0, VolumeCreases::of_sharp_bodies);
+    CHECK(is_closed_2_manifold_by_edges(soup));
+    for (double z = -10; z <= 10; z += .5) {
+      double nearest = 1e9;
+      for (const WorldPoint& p : soup.vertices) {
+        const WorldPoint q = turn(p);
+        if (q.x * q.x + q.y * q.y < .15 * .15) nearest = std::min(nearest, std::abs(q.z - z));
+      }
+      CHECK(nearest < 1);
+    }
+  }
 }
 
 TEST_CASE("creases of fields: bodies of random planes stay closed 2-manifolds", "[volume][unit]") {
