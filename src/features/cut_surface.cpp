@@ -20,6 +20,8 @@
 namespace isoshell {
 namespace {
 
+constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
+
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
   const auto steps = [&](double world, double origin) { return (world - origin) / frame.voxel_size * kOneVoxelQ8; };
@@ -40,10 +42,14 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   fine.paths = curve_paths(fine.position, fine.triangles, network);
   find_jagged_paths(fine.position, options.edge_length_world / frame.voxel_size * kOneVoxelQ8, fine.paths);
   fine = refine_mesh(std::move(fine), context);
-  if (options.vertices > 0) vary_edge_lengths(fine, options.vertices);
+  const VertexGraph graph = find_vertex_graph(fine.triangles, fine.position.size());
+  const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * fine.edge_length[0]);
+  if (options.vertices > 0) vary_edge_lengths(fine, graph, facing, options.vertices);
   check_cancel(context, "features");
-  place_path_seeds(fine);
-  return flip_flat_edges(refine_mesh(std::move(fine), context));
+  place_path_seeds(fine, facing);
+  fine = refine_mesh(std::move(fine), context);
+  begin_loops_at_seeds(fine);
+  return flip_flat_edges(std::move(fine));
 }
 
 std::vector<uint64_t> edges_of(const std::vector<CurvePath>& paths) {

@@ -1,7 +1,7 @@
 // Edge lengths that vary over a fine mesh: shorter where it bends and beside curves that turn or run close.
 #pragma once
 
-#include "features/refine_mesh.h"
+#include "features/facing_curves.h"
 
 namespace isoshell {
 
@@ -12,6 +12,7 @@ double vertices_of_lengths(const FineMesh& mesh);
 /// Sets the lengths of a mesh that was cut at one for all, so that they ask for `vertices`: where nothing limits them
 /// they are longest and equal. They grow by at most a fifth of the way, and the shortest are a quarter of the
 /// longest. Leaves them as they are where nothing limits them. Cost: a sort of the edges, some rounds over them.
-void vary_edge_lengths(FineMesh& mesh, int64_t vertices);
+void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vector<FacingVertices>& facing,
+                       int64_t vertices);
 
 }  // namespace isoshell

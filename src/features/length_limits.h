@@ -16,8 +16,5 @@ void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::ve
                           std::vector<double>& limit);
 /// Off paths: by how far normals, averaged within about e / 2, turn. Sums of integers: no order shows.
 void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit);
-/// Beside strips between two curves, or two parts of one, by their width. Curves that meet at 40 degrees or more leave
-/// one another alone there.
-void limit_by_gaps(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit);
 
 }  // namespace isoshell

@@ -6,16 +6,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "core/world_vector.h"
+#include "features/seeds_across.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kStep = 0.125;   ///< between places to choose from, in edge lengths
+constexpr double kStep = 0.0625;  ///< between places to choose from, in edge lengths
 constexpr double kTooSoon = 0.4;  ///< of a step
 constexpr double kLongest = 1.6;  ///< segment, in edge lengths
 constexpr double kCostOfDistance = 10;
+constexpr double kCostOfFacing = 0.08;
+constexpr int kSweeps = 3;  ///< over the paths that others run along
 
 /// A place where a seed may be.
 struct Candidate {
@@ -23,6 +27,7 @@ struct Candidate {
   WorldPoint position;
   double segments;     ///< from the beginning of the path
   double edge_length;  ///< there
+  double cost = 0;     ///< of a seed there
 };
 
 /// All vertices, except those that follow too soon, and points between them. A loop ends with its first vertex.
@@ -59,7 +64,7 @@ double cost_of(const std::vector<Candidate>& c, size_t from, size_t to) {
   for (size_t i = from + 1; i < to; ++i)
     farthest_sq = std::max(farthest_sq, distance_to_chord_sq(c[i].position, c[from].position, c[to].position));
   const double edge = (c[from].edge_length + c[to].edge_length) / 2;
-  return uneven * uneven + kCostOfDistance * farthest_sq / (edge * edge);
+  return uneven * uneven + kCostOfDistance * farthest_sq / (edge * edge) + c[to].cost;
 }
 
 /// The cheapest way from the first to the last.
@@ -93,6 +98,33 @@ std::vector<size_t> even(const std::vector<Candidate>& c, size_t segments) {
   return way;
 }
 
+/// A loop's, from the one in the first segment that costs least, and so ending with that.
+std::vector<Candidate> from_cheapest(const std::vector<Candidate>& c) {
+  size_t begin = 0;
+  for (size_t i = 1; i + 1 < c.size() && c[i].segments < 1; ++i)
+    if (c[i].cost < c[begin].cost) begin = i;
+  if (begin == 0) return c;
+  std::vector<Candidate> out(c.begin() + int64_t(begin), c.end() - 1);
+  const size_t behind = out.size();
+  out.insert(out.end(), c.begin(), c.begin() + int64_t(begin) + 1);
+  const double first = c[begin].segments;
+  for (size_t i = 0; i < out.size(); ++i) out[i].segments += (i < behind ? 0 : c.back().segments) - first;
+  return out;
+}
+
+void place_seeds(const std::vector<Candidate>& candidates, CurvePath& path) {
+  const auto least = size_t(path.least_segments);
+  const auto nearest = std::min(size_t(candidates.back().segments + 0.5), candidates.size() - 1);
+  std::vector<size_t> way = path.is_jagged ? even(candidates, std::max<size_t>(1, nearest)) : cheapest(candidates);
+  if (way.size() - 1 < least) way = even(candidates, least);
+  path.seeds.clear();
+  for (const size_t i : way) path.seeds.push_back(candidates[i].point);
+  if (!path.is_loop) return;
+  path.seeds.pop_back();
+  std::sort(path.seeds.begin(), path.seeds.end(),
+            [](const PathPoint& a, const PathPoint& b) { return std::tie(a.edge, a.part) < std::tie(b.edge, b.part); });
+}
+
 }  // namespace
 
 std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) {
@@ -105,18 +137,30 @@ std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) 
   return out;
 }
 
-void place_path_seeds(FineMesh& mesh) {
+void place_path_seeds(FineMesh& mesh, const std::vector<FacingVertices>& facing) {
+  const SeedsAcross across(mesh, facing);
+  const auto is_alone = [&](size_t p) { return mesh.paths[p].is_jagged || !across.beside(p); };
   tbb::parallel_for(size_t(0), mesh.paths.size(), [&](size_t p) {
-    CurvePath& path = mesh.paths[p];
-    const std::vector<Candidate> candidates = list_candidates(mesh, path);
-    const auto least = size_t(path.least_segments);
-    const auto nearest = std::min(size_t(candidates.back().segments + 0.5), candidates.size() - 1);
-    std::vector<size_t> way = path.is_jagged ? even(candidates, std::max<size_t>(1, nearest)) : cheapest(candidates);
-    if (way.size() - 1 < least) way = even(candidates, least);
-    path.seeds.clear();
-    for (const size_t i : way) path.seeds.push_back(candidates[i].point);
-    if (path.is_loop) path.seeds.pop_back();
+    if (is_alone(p)) place_seeds(list_candidates(mesh, mesh.paths[p]), mesh.paths[p]);
   });
+  const std::vector<size_t> order = across.order();
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (const size_t p : order) {
+      if (is_alone(p)) continue;
+      std::vector<Candidate> candidates = list_candidates(mesh, mesh.paths[p]);
+      for (Candidate& c : candidates) c.cost = kCostOfFacing * across.cost(mesh, p, c.point, c.position);
+      place_seeds(mesh.paths[p].is_loop ? from_cheapest(candidates) : candidates, mesh.paths[p]);
+    }
+}
+
+void begin_loops_at_seeds(FineMesh& mesh) {
+  for (CurvePath& path : mesh.paths) {
+    if (!path.is_loop) continue;
+    const size_t first = path.seeds.front().edge;
+    std::rotate(path.vertex.begin(), path.vertex.begin() + int64_t(first), path.vertex.end());
+    for (PathPoint& seed : path.seeds) seed.edge -= first;
+    measure_path(mesh.position, path);
+  }
 }
 
 }  // namespace isoshell

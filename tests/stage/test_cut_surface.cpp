@@ -180,12 +180,12 @@ TEST_CASE("fixed seeds: follow every curve about one edge length apart, and each
           CHECK(std::abs(double(segments) - curve.length_q8 / edge_q8) < 0.1 * double(segments) + 0.6);
           for (size_t i = 1; i < at.size(); ++i) {
             CHECK(at[i] - at[i - 1] < 1.3 * edge_q8);
-            CHECK(at[i] - at[i - 1] > 0.7 * edge_q8);
+            CHECK(at[i] - at[i - 1] > 0.5 * edge_q8);  // those of a curve near by may begin in the middle between two
           }
         }
         if (segments == curve.least_segments && segments > 1)
           for (size_t i = 1; i < at.size(); ++i)
-            CHECK(std::abs((at[i] - at[i - 1]) * double(segments) / curve.length_q8 - 1) < 0.3);
+            CHECK(std::abs((at[i] - at[i - 1]) * double(segments) / curve.length_q8 - 1) < 0.5);
       }
     }
 }

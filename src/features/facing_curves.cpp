@@ -1,4 +1,6 @@
-// limit_by_gaps (see length_limits.h).
+// See facing_curves.h.
+#include "features/facing_curves.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,14 +8,12 @@
 #include <tuple>
 
 #include "core/world_vector.h"
-#include "features/length_limits.h"
 #include "isoshell/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kEdgeOfGap = 1.5;  ///< longest edge along a strip over its width
-constexpr double kNarrow = 0.35;    ///< width over the way along the curves, below which a strip is narrow
+constexpr double kNarrow = 0.35;  ///< width over the way along the curves, below which a strip is narrow
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Where a vertex is on paths.
@@ -49,12 +49,6 @@ std::vector<uint32_t> nearest_on_paths(const FineMesh& mesh, const VertexGraph& 
     }
   }
   return nearest;
-}
-
-double distance_to_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
-  const double whole = distance_sq(a, b);
-  const double part = whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
-  return std::sqrt(distance_sq(p, a + part * (b - a)));
 }
 
 /// How far points of paths are from one another along them.
@@ -117,9 +111,10 @@ class WaysAlongPaths {
 
 }  // namespace
 
-void limit_by_gaps(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit) {
-  const std::vector<uint32_t> nearest = nearest_on_paths(mesh, graph, e / 2);
+std::vector<FacingVertices> find_facing_vertices(const FineMesh& mesh, const VertexGraph& graph, double reach) {
+  const std::vector<uint32_t> nearest = nearest_on_paths(mesh, graph, reach);
   const WaysAlongPaths ways(mesh);
+  std::vector<FacingVertices> found;
   for (uint32_t u = 0; u < nearest.size(); ++u)
     for (int64_t i = graph.first[u]; i < graph.first[u + 1]; ++i) {
       const uint32_t v = graph.neighbour[size_t(i)], a = nearest[u], b = nearest[v];
@@ -128,9 +123,15 @@ void limit_by_gaps(const FineMesh& mesh, const VertexGraph& graph, double e, std
       if (length(mesh.position[b] - mesh.position[a]) >= kNarrow * way) continue;
       const double gap = std::min(ways.straight_to(a, mesh.position[b], mesh.position),
                                   ways.straight_to(b, mesh.position[a], mesh.position));
-      if (gap * kEdgeOfGap >= e) continue;
-      for (const uint32_t w : {u, v, a, b}) limit[w] = std::min(limit[w], kEdgeOfGap * gap);
+      found.push_back({{a, b}, {u, v}, gap});
     }
+  return found;
+}
+
+double distance_to_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
+  const double whole = distance_sq(a, b);
+  const double part = whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
+  return std::sqrt(distance_sq(p, a + part * (b - a)));
 }
 
 }  // namespace isoshell
