@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "features/face_normals.h"
+#include "features/facet_edges.h"
 #include "features/surface_walk.h"
 
 namespace isoshell {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kSeedDegrees = 40, kGrowthDegrees = 20;
 constexpr double kStraightOn = .5;       // cosine between an edge and the next one, to grow: 60 degrees
+constexpr int64_t kMostToGrow = 64;      // edges around a vertex: where more meet, none goes on from another
 constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
 constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
@@ -68,13 +70,16 @@ std::vector<uint32_t> grow_creases(const FeatureMesh& mesh, const MeshEdges& edg
   for (const uint32_t e : grown) is_crease[e] = 1;
   for (size_t i = 0; i < grown.size(); ++i) {
     const FeatureEdge from = edges.edges[grown[i]];
-    for (const uint32_t v : from.end)
-      for (auto at = std::lower_bound(around.begin(), around.end(), std::pair(v, 0u));
-           at != around.end() && at->first == v; ++at) {
+    for (const uint32_t v : from.end) {
+      const auto begin = std::lower_bound(around.begin(), around.end(), std::pair(v, 0u));
+      const auto end = std::upper_bound(begin, around.end(), std::pair(v, UINT32_MAX));
+      if (end - begin > kMostToGrow) continue;
+      for (auto at = begin; at != end; ++at) {
         if (is_crease[at->second] || !goes_on(mesh, from, edges.edges[at->second], v)) continue;
         is_crease[at->second] = 1;
         grown.push_back(at->second);
       }
+    }
   }
   std::sort(grown.begin(), grown.end());
   return grown;
@@ -179,6 +184,12 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
     if (chains[c].kind == CurveKind::crease && judged[c].is_good() && has_creases(judged[c].component))
       kept.insert(kept.end(), chains[c].edge.begin(), chains[c].edge.end());
   std::sort(kept.begin(), kept.end());
+  if (!kept.empty()) {
+    const std::vector<uint32_t> facets =
+        find_facet_edges(mesh, edges, normals, with_creases(fixed, kept, turns), edge_length_world);
+    kept.insert(kept.end(), facets.begin(), facets.end());
+    std::sort(kept.begin(), kept.end());
+  }
   for (uint32_t t = 0; t < all.size(); ++t) {
     report.candidate_length_world += all[t];
     report.components_with_candidates += all[t] > 0;

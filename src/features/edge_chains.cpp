@@ -37,8 +37,7 @@ class CurveGraph {
 
   std::pair<const Incidence*, const Incidence*> around(uint32_t vertex) const {
     const auto begin = std::lower_bound(at_.begin(), at_.end(), Incidence{vertex, 0});
-    auto end = begin;
-    while (end != at_.end() && end->first == vertex) ++end;
+    const auto end = std::upper_bound(begin, at_.end(), Incidence{vertex, UINT32_MAX});
     return {at_.data() + (begin - at_.begin()), at_.data() + (end - at_.begin())};
   }
 

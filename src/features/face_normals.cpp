@@ -12,15 +12,20 @@ namespace {
 constexpr int kRounds = 20;            // of the filter
 constexpr double kStill = 1e-6;        // squared difference of normals that ends it
 constexpr double kMostApartSq = .468;  // of normals of one smooth surface: 40 degrees
-constexpr double kThinHeight = 1e-5;   // of the largest coordinate: what floats round is 100 times smaller
+constexpr double kThinHeight = 1e-5;   // of the largest extent: what floats round is 100 times smaller
+constexpr double kThinRoundings = 16;  // a triangle as high turns by 5 degrees where its vertices are rounded
 constexpr int kThinRounds = 8;         // thin triangles in a row that get a normal
 
 constexpr WorldPoint kNoNormal{0, 0, 0};
 
-double largest_coordinate(const FeatureMesh& mesh) {
-  double largest = 0;
-  for (const WorldPoint& p : mesh.vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  return largest;
+double largest_extent(const FeatureMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  WorldPoint low = mesh.vertices[0], high = low;
+  for (const WorldPoint& p : mesh.vertices) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 
 WorldPoint doubled_area_of(const FeatureMesh& mesh, size_t t) {
@@ -96,7 +101,7 @@ std::vector<Links> link_triangles(const FeatureMesh& mesh, const MeshEdges& edge
 }  // namespace
 
 std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
-  const double least_height = kThinHeight * largest_coordinate(mesh);
+  const double least_height = std::max(kThinHeight * largest_extent(mesh), kThinRoundings * mesh.rounding_world);
   std::vector<WorldPoint> normals(mesh.triangles.size(), kNoNormal);
   tbb::parallel_for(size_t(0), normals.size(), [&](size_t t) {
     double longest_sq = 0;

@@ -15,6 +15,7 @@ struct FeatureMesh {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint32_t> source_face;  ///< per triangle its face in the soup
+  double rounding_world = 0;          ///< by how far coordinates may be off
 };
 
 enum class CurveKind : uint8_t {
