@@ -76,7 +76,6 @@ std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetw
   if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
     return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
   if (six_volumes(mesh) < 0) return "the faces look inwards";
-  if (p.surface.first_cap != kNone) return "holes were capped";
   if (p.grown) return "walls without thickness had to be grown";
   if (p.closing_vox > 0) return "gaps were closed";
   if (!p.sheet.lengths.at.empty()) return "edge lengths vary";
@@ -225,11 +224,24 @@ EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const 
   return found;
 }
 
+/// An estimate with the fine surface, which has about 36 vertices a seed. Throws: usage where that is above the limit.
+int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
+  constexpr int64_t kBytesPerSeed = 36 * 350;
+  const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
+  if (limit > 0 && bytes > limit)
+    throw Error(ErrorCode::usage, "features",
+                "the surface cut along them would take about " + std::to_string(bytes >> 20) +
+                    " MiB, more than the limit of " + std::to_string(limit >> 20) +
+                    "; raise --max-memory, or ask for fewer vertices");
+  return bytes;
+}
+
 /// False where there are curves that could not be kept, as the report says.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
                RemeshReport& report, Context& context) {
   CreaseReport creases;
-  const CurveNetwork network = find_curves(mesh, curves, &creases);
+  CurveNetwork network;
+  if (!give_up_if_refused(report, {}, [&] { network = find_curves(mesh, curves, &creases); })) return false;
   const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
   FeatureReport& found = report.features;
   report_found(mesh, network, is_open, found);
@@ -245,6 +257,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
     const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;
     const int64_t seeds_asked = vertices_of(options, p, is_open) - apart.more_places;
+    const int64_t bytes = bytes_when_cut(seeds_asked, report, context);
     CutOptions how{edge_length_for(mesh, network, seeds_asked), 0};
     if (curves.mode != CreaseMode::off) how.vertices = seeds_asked;
     auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
@@ -255,6 +268,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
     found.vertices = count_places(fixed.fixed);
     found.patches = patches_of(*cut);
     found.given_up.clear();
+    report.memory_estimate_bytes = bytes;
     p.cut = std::move(cut);
   });
 }
@@ -289,9 +303,12 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       curves.lines = std::move(embedded.followed[1]);
       curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
     }
+    mesh.rounding_world = p.surface.frame.voxel_size / (2 * kOneVoxelQ8);
     const size_t lost_lines = report.features.lost.size();
     if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
     keep_lost_seams(report.features.lost, lost_lines);
+    report.warnings.back() = counted(report.features.seams, "seam") + " are not kept: " + report.features.given_up +
+                             "; triangles lie across seams";
     curves.seams.clear();
     cut_along(mesh, curves, options, p, report, context);
   });

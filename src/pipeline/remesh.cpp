@@ -6,6 +6,7 @@
 
 #include "core/copy_product.h"
 #include "features/cut_surface.h"
+#include "isoshell/error.h"
 #include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
 #include "pipeline/check_options.h"
@@ -39,7 +40,7 @@ void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::
     if (sheet->source_triangle[int64_t(v)] == kNone) gaps[v] = !bridges.empty() && bridges[v];
 }
 
-/// Gives the caller's seeds back as they are, whether a stage returned or threw: stages take them by moving.
+/// Gives the caller the seeds that the mesh has, whether a stage returned or threw: stages take them by moving.
 struct GiveSeedsBack {
   SeedSet& from;
   SeedSet& to;
@@ -129,8 +130,13 @@ std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptio
         timed(report, "merge", context, [&] { return merge_walls(p, points, merge, options, context); }));
     RemeshReport tried = report;
     SeededMesh again;
-    again.seeds = relax_seeds(merged->prepared, options, false, tried, context);
-    mesh_on_sheet(merged->prepared, optimize, again, tried, context);
+    try {
+      again.seeds = relax_seeds(merged->prepared, options, false, tried, context);
+      mesh_on_sheet(merged->prepared, optimize, again, tried, context);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::usage && error.code() != ErrorCode::out_of_memory) throw;
+      continue;  // the mesh that there is stays
+    }
     if (!tried.post_done || tried.post.self_intersections >= report.post.self_intersections) {
       report.times = std::move(tried.times);
       continue;
@@ -143,6 +149,17 @@ std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptio
   return best;
 }
 
+/// Where the grid is too coarse for that, too, the error says why it is tried.
+SeedSet relax_without_creases(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  try {
+    return relax_seeds(p, options, false, report, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    throw Error(ErrorCode::usage, error.stage(),
+                std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
+  }
+}
+
 /// What is not as it should be.
 void warn_of_mesh(const Prepared& p, const SeededMesh& made, int64_t asked, RemeshReport& report) {
   if (report.dual.failed_cells > 0)
@@ -153,7 +170,8 @@ void warn_of_mesh(const Prepared& p, const SeededMesh& made, int64_t asked, Reme
     report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
   if (report.post.self_intersections == 0) return;
-  const WorldPoint at = p.surface.frame.to_world(crossing_corners(*OnHost(made.mesh), {}).front());
+  const std::vector<PointQ8> corners = crossing_corners(*OnHost(made.mesh), {});
+  const WorldPoint at = p.surface.frame.to_world(corners.empty() ? made.mesh.position[0] : corners.front());
   report.intersection_at = at;
   std::ostringstream text;
   text << report.post.self_intersections << " pairs of triangles intersect, near " << at.x << ' ' << at.y << ' ' << at.z
@@ -183,7 +201,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     }
     report.post = {};
     if (!p.surface.topology.closed) warn_of_topology(p, p.surface.topology, options, report);
-    made.seeds = relax_seeds(p, options, false, report, context);
+    made.seeds = relax_without_creases(p, options, report, context);
   }
   const int64_t asked = made.seeds.size();
   mesh_on_sheet(p, optimize, made, report, context);
