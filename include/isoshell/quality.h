@@ -5,18 +5,28 @@
 
 namespace isoshell {
 
+/// A triangle and its smallest angle.
+struct PoorAngle {
+  double degrees = 0;
+  int64_t triangle = -1;
+  WorldPoint middle{0, 0, 0};  ///< of the triangle
+};
+
 /// Zero for a mesh without triangles.
 struct MeshQuality {
   double q_min = 0;  ///< Q = 6 / sqrt(3) * inradius / longest edge; 1 for the equilateral triangle
   double q_avg = 0;
-  double theta_min_deg = 0;     ///< smallest angle of the mesh
-  int64_t theta_min_at = -1;    ///< the first triangle that has it
-  double theta_avg_deg = 0;     ///< mean over the triangles of their smallest angle
-  double theta_max_deg = 0;     ///< largest angle of the mesh
-  double below_30_deg_pct = 0;  ///< triangles whose smallest angle is below 30 degrees
-  double irregular_ratio = 0;   ///< vertices that not exactly six triangles share, of the vertices that have any
-  double edge_cv = 0;           ///< standard deviation over mean of the edge lengths, each side of an edge counted
-  double area_cv = 0;           ///< of the triangle areas
+  double theta_min_deg = 0;            ///< smallest angle of the mesh
+  int64_t theta_min_at = -1;           ///< the first triangle that has it
+  double theta_avg_deg = 0;            ///< mean over the triangles of their smallest angle
+  double theta_max_deg = 0;            ///< largest angle of the mesh
+  double below_30_deg_pct = 0;         ///< triangles whose smallest angle is below 30 degrees
+  int64_t below_30_deg = 0;            ///< how many these are
+  std::vector<PoorAngle> poor_angles;  ///< the worst of them, at most kMostPoorAngles
+  static constexpr int64_t kMostPoorAngles = 8;
+  double irregular_ratio = 0;  ///< vertices that not exactly six triangles share, of the vertices that have any
+  double edge_cv = 0;          ///< standard deviation over mean of the edge lengths, each side of an edge counted
+  double area_cv = 0;          ///< of the triangle areas
 };
 
 /// Result: sums run in one fixed shape, so threads do not matter. Cost: one pass; 8 bytes a vertex.

@@ -71,6 +71,25 @@ void measure_triangle(int64_t number, WorldPoint a, WorldPoint b, WorldPoint c, 
   part.area.add(twice_area / 2);
 }
 
+/// The triangles with the smallest angles below 30 degrees, the worst first; of equal ones the first.
+std::vector<PoorAngle> poor_angles(const TriangleMesh& mesh) {
+  std::vector<PoorAngle> found;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    Part part;
+    measure_triangle(int64_t(i), a, b, c, part);
+    if (part.below_30 > 0) found.push_back({part.theta_min, int64_t(i), 1. / 3 * (a + b + c)});
+  }
+  const size_t kept = std::min(found.size(), size_t(MeshQuality::kMostPoorAngles));
+  std::partial_sort(found.begin(), found.begin() + int64_t(kept), found.end(),
+                    [](const PoorAngle& p, const PoorAngle& q) {
+                      return p.degrees != q.degrees ? p.degrees < q.degrees : p.triangle < q.triangle;
+                    });
+  found.resize(kept);
+  return found;
+}
+
 double irregular_share(const TriangleMesh& mesh) {
   std::vector<uint32_t> triangles_at(mesh.vertices.size());
   for (const auto& t : mesh.triangles)
@@ -114,6 +133,8 @@ MeshQuality measure_quality(const TriangleMesh& mesh) {
   quality.theta_avg_deg = all.theta_sum / n;
   quality.theta_max_deg = all.theta_max;
   quality.below_30_deg_pct = 100 * double(all.below_30) / n;
+  quality.below_30_deg = all.below_30;
+  if (all.below_30 > 0) quality.poor_angles = poor_angles(mesh);
   quality.irregular_ratio = irregular_share(mesh);
   quality.edge_cv = all.edge.variation(3 * n);
   quality.area_cv = all.area.variation(n);

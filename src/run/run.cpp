@@ -269,7 +269,7 @@ class Run {
       warn(std::string("the result is not a ") + (borders > 0 ? "" : "closed ") +
            "2-manifold, which should not be: please report the input");
     record_.quality = measure_quality(mesh);
-    for (const std::string& text : warnings_of_quality(mesh, *record_.quality)) warn(text);
+    for (const std::string& text : warnings_of_quality(*record_.quality)) warn(text);
   }
 
   void measure_distances(const TriangleMesh& mesh, const TriangleMesh& input) {

@@ -154,12 +154,17 @@ Json topology_json(const RunRecord& r) {
 Json quality_json(const RunRecord& r) {
   if (!r.quality) return nullptr;
   const MeshQuality& q = *r.quality;
+  Json poor = Json::array();
+  for (const PoorAngle& p : q.poor_angles)
+    poor.push_back({{"degrees", p.degrees}, {"at", {p.middle.x, p.middle.y, p.middle.z}}});
   return {{"q_min", q.q_min},
           {"q_avg", q.q_avg},
           {"theta_min_deg", q.theta_min_deg},
           {"theta_avg_deg", q.theta_avg_deg},
           {"theta_max_deg", q.theta_max_deg},
+          {"below_30_deg", q.below_30_deg},
           {"below_30_deg_pct", q.below_30_deg_pct},
+          {"poor_angles", poor},
           {"irregular_ratio", q.irregular_ratio},
           {"edge_cv", q.edge_cv},
           {"area_cv", q.area_cv}};

@@ -5,11 +5,6 @@
 #include "isoshell/readable.h"
 
 namespace isoshell {
-namespace {
-
-constexpr double kPoorAngleDeg = 20;  // what the optimisation lifts almost every triangle above by far
-
-}  // namespace
 
 std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input) {
   std::vector<std::string> warnings;
@@ -48,16 +43,17 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   return warnings;
 }
 
-std::vector<std::string> warnings_of_quality(const TriangleMesh& mesh, const MeshQuality& quality) {
-  if (quality.theta_min_deg >= kPoorAngleDeg) return {};
-  WorldPoint middle{0, 0, 0};
-  for (const uint32_t v : mesh.triangles[size_t(quality.theta_min_at)]) {
-    const WorldPoint& p = mesh.vertices[v];
-    middle = {middle.x + p.x / 3, middle.y + p.y / 3, middle.z + p.z / 3};
-  }
+std::vector<std::string> warnings_of_quality(const MeshQuality& quality) {
+  if (quality.below_30_deg == 0) return {};
   std::ostringstream text;
-  text << "an angle of " << quality.theta_min_deg << " degrees near " << middle.x << ' ' << middle.y << ' ' << middle.z
-       << ": the surface may be narrower there than edges are long; more --vertices make better triangles";
+  text << counted(quality.below_30_deg, "triangle has an angle", "triangles have angles") << " below 30 degrees:";
+  const char* before = " ";
+  for (const PoorAngle& p : quality.poor_angles) {
+    text << before << p.degrees << " near " << p.middle.x << ' ' << p.middle.y << ' ' << p.middle.z;
+    before = ", ";
+  }
+  text << "; edges of the input may meet at less there, or run nearer to one another than edges are long: more "
+          "--vertices make better triangles";
   return {text.str()};
 }
 

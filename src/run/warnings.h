@@ -12,7 +12,7 @@ namespace isoshell {
 /// A sentence for every kind of dirt and repair that the report counts. `input` is what messages call the input.
 std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input);
 
-/// About the mesh itself, from its quality; none when it is good.
-std::vector<std::string> warnings_of_quality(const TriangleMesh& mesh, const MeshQuality& quality);
+/// About the mesh itself: one sentence that names its worst angles, none when all are 30 degrees or more.
+std::vector<std::string> warnings_of_quality(const MeshQuality& quality);
 
 }  // namespace isoshell

@@ -232,9 +232,9 @@ TEST_CASE("run: an angle that is poor is said with its place", "[cli]") {
   folder.write_off("wire.off", shapes::torus(1, .02, 200, 12));
   const auto few = folder.run("wire.off few.ply --device cpu --vertices 100");
   CHECK(few.status == 0);
-  CHECK(contains(few.err, "degrees near "));
+  CHECK(contains(few.err, "below 30 degrees: "));
   CHECK(contains(few.err, "more --vertices make better triangles"));
-  CHECK_FALSE(contains(folder.run("wire.off enough.ply --device cpu --vertices 2000").err, "degrees near"));
+  CHECK_FALSE(contains(folder.run("wire.off enough.ply --device cpu --vertices 2000").err, "below 30 degrees"));
 }
 
 TEST_CASE("run: progress is lines of JSON when asked, and none without a terminal", "[cli]") {
