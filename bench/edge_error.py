@@ -17,7 +17,7 @@ parser.add_argument("--ratio", type=float, default=8)
 parser.add_argument("--free", action="store_true")
 arguments = parser.parse_args()
 
-vertices, faces = read_mesh(arguments.mesh)
+vertices, faces = read_mesh(arguments.mesh)[:2]
 edges = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
 edges = edges[edges[:, 0] < edges[:, 1]]
 a, b = vertices[edges[:, 0]], vertices[edges[:, 1]]

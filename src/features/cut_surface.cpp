@@ -21,6 +21,7 @@ namespace isoshell {
 namespace {
 
 constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
+constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
 
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
@@ -30,6 +31,23 @@ WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
 PointQ8 rounded(const WorldPoint& p) {
   const auto nearest = [](double steps) { return int32_t(std::floor(steps + 0.5)); };
   return {nearest(p.x), nearest(p.y), nearest(p.z)};
+}
+
+/// With the lengths that are asked for, and cut again where these are so short that it shows too little of them.
+VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const CutOptions& options, Context& context) {
+  const double e = fine.edge_length[0];
+  for (int cut = 1;; ++cut) {
+    VertexGraph graph = find_vertex_graph(fine.triangles, fine.position.size());
+    if (!options.asked.vary()) return graph;
+    const size_t before = fine.position.size();
+    ask_for_lengths(fine, graph, frame, options.asked, options.vertices, e);
+    if (cut == kMostCuts) return graph;
+    FineMesh finer = fine;
+    for (double& l : finer.edge_length) l = std::min(2 * l, e);
+    finer = refine_mesh(std::move(finer), context);
+    if (finer.position.size() == before) return graph;
+    fine = std::move(finer);
+  }
 }
 
 /// Cut at the one edge length first, then once more where lengths are less, with a vertex for every seed of a path.
@@ -42,9 +60,11 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   fine.paths = curve_paths(fine.position, fine.triangles, network);
   find_jagged_paths(fine.position, options.edge_length_world / frame.voxel_size * kOneVoxelQ8, fine.paths);
   fine = refine_mesh(std::move(fine), context);
-  const VertexGraph graph = find_vertex_graph(fine.triangles, fine.position.size());
-  const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * fine.edge_length[0]);
-  if (options.vertices > 0) vary_edge_lengths(fine, graph, facing, options.vertices);
+  const VertexGraph graph = with_asked_lengths(fine, frame, options, context);
+  const double widest = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
+  const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * widest);
+  if (options.vertices > 0 || options.asked.vary())
+    vary_edge_lengths(fine, graph, facing, {options.vertices, options.asked.growth, options.asked.field != nullptr});
   check_cancel(context, "features");
   place_path_seeds(fine, facing);
   fine = refine_mesh(std::move(fine), context);
@@ -153,6 +173,9 @@ CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, con
     check_cancel(context, "features");
     CutSurface cut;
     cut.voxel_size = frame.voxel_size;
+    cut.is_asked = options.asked.vary();
+    cut.seeds = options.vertices;
+    if (cut.seeds == 0 && cut.is_asked) cut.seeds = std::llround(vertices_of_lengths(fine));
     MadeSurface made = make_surface_mesh(cut_triangles(fine, fans, frame), context);
     cut.longest_edge_q8 = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
     cut.surface = std::move(made.surface);

@@ -1,6 +1,7 @@
 // The surface of a clean input: its own triangles on the lattice, refined, and cut open along its curves.
 #pragma once
 
+#include "features/asked_lengths.h"
 #include "features/feature_mesh.h"
 #include "isoshell/backend.h"
 #include "isoshell/lattice.h"
@@ -30,18 +31,20 @@ struct CutSurface {
   SurfaceMesh surface;  ///< cut into patches, with triangles that may have no area: they were thinner than a step
   double voxel_size = 1;
   double longest_edge_q8 = 0;  ///< aimed at
+  bool is_asked = false;       ///< lengths vary as was asked for
   std::vector<CutCurve> curves;
   int64_t corner_count = 0;
   std::vector<uint32_t> place;        ///< per vertex of the surface; kNone off borders
   std::vector<int64_t> copies_first;  ///< per place, and one more: offsets into copies
   std::vector<uint32_t> copies;       ///< border vertices, ascending per place
-  int64_t seeds = 0;                  ///< that a run asks for, copies at a place counted once; who cuts it says so
-  std::vector<LostCurve> if_lost;     ///< what a report says of the network's curves then, likewise
+  int64_t seeds = 0;                  ///< that it is cut for, copies at a place counted once; 0: any number
+  std::vector<LostCurve> if_lost;     ///< what a report says of the network's curves then; who cuts it says so
 };
 
 struct CutOptions {
   double edge_length_world = 0;  ///< aimed at, everywhere the same
   int64_t vertices = 0;          ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
+  AskedLengths asked = {};       ///< in proportion to these, or with 0 vertices these
 };
 
 /// Snaps a mesh to the lattice, with edges cut into quarters of the edge length aimed at and a vertex wherever a seed

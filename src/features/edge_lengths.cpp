@@ -11,27 +11,34 @@
 #include <queue>
 
 #include "core/world_vector.h"
+#include "features/asked_lengths.h"
 #include "features/length_limits.h"
 #include "features/path_seeds.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kGrowth = 0.2;     ///< of a length along the way
-constexpr double kShortest = 0.25;  ///< over the longest
+constexpr double kShortest = 0.25;  ///< over what is asked for
 constexpr double kEdgeOfGap = 1.5;  ///< longest edge along a strip over its width
 constexpr int kRounds = 8;          ///< that find the longest length, each a search over the mesh
 constexpr double kCloseEnough = 0.005;
 constexpr double kLeastStep = 0.6;  ///< from one longest length to the next
 
-/// The limits within bounds, and less where a shorter length is near.
-std::vector<double> graded(const FineMesh& mesh, const VertexGraph& graph, const std::vector<double>& limit,
-                           double longest) {
-  std::vector<double> length(limit.size());
+/// How long edges may be: at each vertex, and over those around it.
+struct Limits {
+  std::vector<double> asked;  ///< per vertex, over the longest
+  std::vector<double> most;   ///< per vertex, whatever the longest is
+  double growth;              ///< of a length along the way
+};
+
+/// The lengths asked for within the limits, and less where a shorter length is near.
+std::vector<double> graded(const FineMesh& mesh, const VertexGraph& graph, const Limits& limits, double longest) {
+  std::vector<double> length(limits.most.size());
   using Entry = std::pair<double, uint32_t>;
   std::vector<Entry> entries;
-  for (size_t v = 0; v < limit.size(); ++v) {
-    length[v] = std::clamp(limit[v], kShortest * longest, longest);
+  for (size_t v = 0; v < length.size(); ++v) {
+    const double asked = limits.asked[v] * longest;
+    length[v] = std::clamp(limits.most[v], std::max(kShortest * asked, longest / kMostLengthRatio), asked);
     if (length[v] < longest) entries.push_back({length[v], uint32_t(v)});
   }
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue({}, std::move(entries));
@@ -41,7 +48,7 @@ std::vector<double> graded(const FineMesh& mesh, const VertexGraph& graph, const
     if (l > length[v]) continue;
     for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
       const uint32_t u = graph.neighbour[size_t(i)];
-      const double most = l + kGrowth * std::sqrt(distance_sq(mesh.position[v], mesh.position[u]));
+      const double most = l + limits.growth * std::sqrt(distance_sq(mesh.position[v], mesh.position[u]));
       if (most >= length[u]) continue;
       length[u] = most;
       queue.push({most, u});
@@ -57,6 +64,24 @@ void limit_by_gaps(const std::vector<FacingVertices>& facing, double e, std::vec
     for (const uint32_t w : {f.middle[0], f.middle[1], f.on_path[0], f.on_path[1]})
       limit[w] = std::min(limit[w], kEdgeOfGap * f.gap);
   }
+}
+
+/// By turns as edges of the length asked for see them: each vertex takes those within a length that is at most twice
+/// its own.
+std::vector<double> most_lengths(const FineMesh& mesh, const VertexGraph& graph,
+                                 const std::vector<FacingVertices>& facing) {
+  const auto [least, widest] = std::minmax_element(mesh.edge_length.begin(), mesh.edge_length.end());
+  std::vector<double> most(mesh.position.size(), 2 * *widest);
+  for (double e = *widest;; e /= 2) {
+    std::vector<double> here(mesh.position.size(), 2 * *widest);
+    limit_by_curve_turns(mesh.position, mesh.paths, e, here);
+    limit_by_surface_turns(mesh, graph, e, here);
+    for (size_t v = 0; v < here.size(); ++v)
+      if (mesh.edge_length[v] <= e) most[v] = here[v];
+    if (*least > e / 2) break;
+  }
+  limit_by_gaps(facing, *widest, most);
+  return most;
 }
 
 }  // namespace
@@ -84,18 +109,23 @@ double vertices_of_lengths(const FineMesh& mesh) {
 }
 
 void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vector<FacingVertices>& facing,
-                       int64_t vertices) {
-  const double e = mesh.edge_length[0];
-  std::vector<double> limit(mesh.position.size(), 2 * e);
-  limit_by_curve_turns(mesh.position, mesh.paths, e, limit);
-  limit_by_surface_turns(mesh, graph, e, limit);
-  limit_by_gaps(facing, e, limit);
-  if (std::all_of(limit.begin(), limit.end(), [&](double l) { return l >= e; })) return;
+                       const LengthOptions& options) {
+  const auto [least, widest] = std::minmax_element(mesh.edge_length.begin(), mesh.edge_length.end());
+  const double e = *widest;
+  const bool is_even = *least == e;
+  Limits limits{mesh.edge_length, std::vector<double>(mesh.position.size(), kMostLengthRatio * e), options.growth};
+  if (!options.as_asked) limits.most = most_lengths(mesh, graph, facing);
+  if (is_even && std::all_of(limits.most.begin(), limits.most.end(), [&](double l) { return l >= e; })) return;
+  for (double& asked : limits.asked) asked /= e;
+  if (options.vertices == 0) {
+    mesh.edge_length = graded(mesh, graph, limits, e);
+    return;
+  }
   // The root of the density of vertices, and so its inverse, is nearly linear in the longest length.
-  const double wanted = 1 / std::sqrt(double(vertices));
+  const double wanted = 1 / std::sqrt(double(options.vertices));
   double longest = e, before = 0, before_reached = 0;
   for (int round = 0; round < kRounds; ++round) {
-    mesh.edge_length = graded(mesh, graph, limit, longest);
+    mesh.edge_length = graded(mesh, graph, limits, longest);
     const double reached = 1 / std::sqrt(vertices_of_lengths(mesh));
     if (std::abs(wanted / reached - 1) < kCloseEnough) return;
     const double slope = reached != before_reached ? (longest - before) / (reached - before_reached) : 0;

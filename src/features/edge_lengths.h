@@ -9,10 +9,16 @@ namespace isoshell {
 /// than the area beside it, half of one an edge, and where three sheets meet there are as many fewer.
 double vertices_of_lengths(const FineMesh& mesh);
 
-/// Sets the lengths of a mesh that was cut at one for all, so that they ask for `vertices`: where nothing limits them
-/// they are longest and equal. They grow by at most a fifth of the way, and the shortest are a quarter of the
-/// longest. Leaves them as they are where nothing limits them. Cost: a sort of the edges, some rounds over them.
+struct LengthOptions {
+  int64_t vertices = 0;   ///< above 0: lengths are in such a proportion that they ask for so many; 0: as they are
+  double growth = 0.2;    ///< most that a length grows, over the way
+  bool as_asked = false;  ///< whatever the surface is like
+};
+
+/// Sets the lengths of a mesh, which has those asked for, equal ones or others, less where bends and close curves limit
+/// them: the shortest are a quarter of what is asked for, and a sixteenth of the longest. Leaves equal ones as they are
+/// where nothing limits them. Cost: a sort of the edges, some rounds over them.
 void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vector<FacingVertices>& facing,
-                       int64_t vertices);
+                       const LengthOptions& options);
 
 }  // namespace isoshell

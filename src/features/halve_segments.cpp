@@ -43,9 +43,17 @@ std::optional<CutSurface> halve_segments(const CutSurface& cut, const std::vecto
   bool any = false;
   for (CutCurve& curve : curves) any = halve(curve, is_near) || any;
   if (!any) return {};
-  return CutSurface{
-      host_copy(cut.surface), cut.voxel_size, cut.longest_edge_q8, std::move(curves), cut.corner_count, cut.place,
-      cut.copies_first,       cut.copies,     cut.seeds,           cut.if_lost};
+  return CutSurface{host_copy(cut.surface),
+                    cut.voxel_size,
+                    cut.longest_edge_q8,
+                    cut.is_asked,
+                    std::move(curves),
+                    cut.corner_count,
+                    cut.place,
+                    cut.copies_first,
+                    cut.copies,
+                    cut.seeds,
+                    cut.if_lost};
 }
 
 }  // namespace isoshell

@@ -14,7 +14,10 @@ constexpr double kEdgeOfRadius = 0.35;
 /// On paths: by how far they turn within e, all turns of one direction; and by their own lengths.
 void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::vector<CurvePath>& paths, double e,
                           std::vector<double>& limit);
-/// Off paths: by how far normals, averaged within about e / 2, turn. Sums of integers: no order shows.
+/// Per vertex how far normals, averaged within about e / 2, turn within e where they turn most; 0 on paths. Sums of
+/// integers: no order shows.
+std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e);
+/// Off paths: by these turns.
 void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit);
 
 }  // namespace isoshell

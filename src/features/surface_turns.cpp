@@ -1,4 +1,4 @@
-// limit_by_surface_turns (see length_limits.h).
+// surface_turns and limit_by_surface_turns (see length_limits.h).
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -47,7 +47,8 @@ int rounds_for(const FineMesh& mesh, const VertexGraph& graph, double e) {
 
 }  // namespace
 
-void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit) {
+std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e) {
+  std::vector<double> turn(mesh.position.size(), 0);
   std::vector<char> is_on_path(mesh.position.size(), 0);
   for (const CurvePath& path : mesh.paths)
     for (const uint32_t v : path.vertex) is_on_path[v] = 1;
@@ -81,9 +82,15 @@ void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, doub
       ++count;
     });
     if (count == 0) return;
-    const double turn = std::sqrt(2 * double(sum) / (kUnit * double(count)));  // within e, where it bends most
-    if (turn > kEdgeOfRadius) limit[v] = std::min(limit[v], kEdgeOfRadius * e / turn);
+    turn[v] = std::sqrt(2 * double(sum) / (kUnit * double(count)));
   });
+  return turn;
+}
+
+void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit) {
+  const std::vector<double> turn = surface_turns(mesh, graph, e);
+  for (size_t v = 0; v < turn.size(); ++v)
+    if (turn[v] > kEdgeOfRadius) limit[v] = std::min(limit[v], kEdgeOfRadius * e / turn[v]);
 }
 
 }  // namespace isoshell

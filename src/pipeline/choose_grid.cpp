@@ -79,6 +79,11 @@ double usual_edge_length(const RemeshOptions& options, double area_world) {
   return std::sqrt(area_world / double(vertex_target(options, area_world)) / kAreaPerEdgeSq);
 }
 
+double usual_edge_length(const RemeshOptions& options, const Prepared& p) {
+  if (!p.vertices) return usual_edge_length(options, p.surface.topology.area_world);
+  return std::sqrt(p.surface.topology.area_world / double(*p.vertices) / kAreaPerEdgeSq);
+}
+
 double sheet_area_world(const Sheet& sheet) {
   const Buffer<PointQ8> position = sheet.position.to_host();
   double area = 0;

@@ -14,6 +14,9 @@ int64_t vertex_target(const RemeshOptions& options, const Prepared& prepared);
 /// Edge length where nothing else says one: that of the options, or of as many vertices as they ask for.
 double usual_edge_length(const RemeshOptions& options, double area_world);
 
+/// The mean edge length of a prepared run, whose field may decide it.
+double usual_edge_length(const RemeshOptions& options, const Prepared& prepared);
+
 /// Area of a sheet in world units.
 double sheet_area_world(const Sheet& sheet);
 

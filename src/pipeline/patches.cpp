@@ -30,6 +30,7 @@
 #include "pipeline/part_fans.h"
 #include "pipeline/relax_level.h"
 #include "pipeline/resolve_intersections.h"
+#include "pipeline/sizing.h"
 #include "pipeline/timed.h"
 
 namespace isoshell {
@@ -60,10 +61,9 @@ double six_volumes(const FeatureMesh& mesh) {
 }
 
 /// The same of a surface whose borders stay: gaps that had to be closed were closed by faces.
-std::string obstacle_to_borders(const Prepared& p, const CurveNetwork& network) {
+std::string obstacle_to_borders(const CurveNetwork& network) {
   if (count_kind(network, CurveKind::non_manifold) > 0)
     return "the surface has edges of more than two faces, or faces that disagree about the outside";
-  if (!p.sheet.lengths.at.empty()) return "edge lengths vary";
   return "";
 }
 
@@ -78,7 +78,6 @@ std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetw
   if (six_volumes(mesh) < 0) return "the faces look inwards";
   if (p.grown) return "walls without thickness had to be grown";
   if (p.closing_vox > 0) return "gaps were closed";
-  if (!p.sheet.lengths.at.empty()) return "edge lengths vary";
   return "";
 }
 
@@ -249,7 +248,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
   found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
   if (found.curves == 0 && !is_open) return true;
   const std::vector<LostCurve> if_lost = describe(mesh, network);
-  if (const std::string why = is_open ? obstacle_to_borders(p, network) : obstacle(p, mesh, network); !why.empty()) {
+  if (const std::string why = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network); !why.empty()) {
     give_up(report, if_lost, why);
     return false;
   }
@@ -258,13 +257,14 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
     found.border_loops = apart.border_loops;
     const int64_t seeds_asked = vertices_of(options, p, is_open) - apart.more_places;
     const int64_t bytes = bytes_when_cut(seeds_asked, report, context);
-    CutOptions how{edge_length_for(mesh, network, seeds_asked), 0};
-    if (curves.mode != CreaseMode::off) how.vertices = seeds_asked;
+    CutOptions how{edge_length_for(mesh, network, seeds_asked), 0, asked_lengths(options, p)};
+    const bool lengths_decide = how.asked.vary() && field_decides(options);
+    if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds_asked;
     auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
-    cut->seeds = seeds_asked;
+    if (cut->seeds == 0) cut->seeds = seeds_asked;
     cut->if_lost = if_lost;
     const SeedSet fixed = seeds_on_curves(*cut, 0);
-    FreeSeeds(*cut).counts(fixed, seeds_asked);  // there is room
+    FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
     found.vertices = count_places(fixed.fixed);
     found.patches = patches_of(*cut);
     found.given_up.clear();
@@ -284,7 +284,7 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
 void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
                       Context& context) {
   if (options.method != Method::sheet) return;
-  const double edge_world = usual_edge_length(options, p.surface.topology.area_world);
+  const double edge_world = usual_edge_length(options, p);
   const Seams seams = seams_of(source.soup, options, edge_world, report, context);
   const std::shared_ptr<const Polylines>& lines = options.features.lines;
   if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines &&
@@ -368,6 +368,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
   report.sheet.bridged_vertices = 0;
   flag_caps(p, *mesh, report.gaps);
+  measure_edges(*cut, made.seeds, made.mesh, report.sizing);
   report.features.vertices = count_places(OnHost(made.seeds)->fixed);
   report.features.segments = int64_t(mesh->features.curve_edges.size());
   report.features.kept = report.post_done = true;

@@ -13,14 +13,10 @@ namespace {
 constexpr double kCellOfEdge =
     0.9306048591020996;                 // width of a cell, the root of its area, over the edges: root of sqrt(3) / 2
 constexpr double kFewestCellVox = 3.5;  // narrower cells are no disks of sheet triangles
-constexpr double kMostRatio = 16;       // of lengths: what EdgeLengthsView::mass has room for
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
 constexpr int64_t kMostSmoothing = 32;  // of normals
 constexpr int64_t kMostLengthSmoothing = 128;
 constexpr double kLeastDensity = 1.0 / 16;  // of vertices where nothing is curved, over the mean
-
-/// Whether the field says how many vertices there are.
-bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
 
 /// Rounds of smoothing that spread a normal over most of an edge: each spreads it by half a voxel squared. More blunt
 /// sharp bends, fewer take noise for curvature.
@@ -41,6 +37,11 @@ void shorten_where_curved(const RemeshOptions& options, const Sheet& sheet, doub
     const double density = 1 - options.adaptivity + options.adaptivity * double(turn[int64_t(v)]) / mean;
     length[v] = length[v] / std::sqrt(std::max(density, kLeastDensity));
   }
+}
+
+/// The shortest edges that a grid carries, where cells are so wide.
+double shortest_edge_world(double voxel_size, double cell_of_length) {
+  return kFewestCellVox * voxel_size / cell_of_length;
 }
 
 std::vector<double> wanted_lengths(const RemeshOptions& options, const Prepared& p, Context& context) {
@@ -71,10 +72,10 @@ std::string near_vertex(const Sheet& sheet, size_t v) {
 class Bounded {
  public:
   Bounded(const std::vector<double>& wanted, double voxel_size, double cell_of_length)
-      : floor_(kFewestCellVox * voxel_size / cell_of_length), raw_(int64_t(wanted.size())) {
+      : floor_(shortest_edge_world(voxel_size, cell_of_length)), raw_(int64_t(wanted.size())) {
     least_at_ = size_t(std::min_element(wanted.begin(), wanted.end()) - wanted.begin());
     largest_at_ = size_t(std::max_element(wanted.begin(), wanted.end()) - wanted.begin());
-    cap_ = kMostRatio * std::max(wanted[least_at_], floor_);
+    cap_ = kMostLengthRatio * std::max(wanted[least_at_], floor_);
     for (size_t v = 0; v < wanted.size(); ++v) {
       const double length_q8 = std::clamp(wanted[v], floor_, cap_) / voxel_size * kOneVoxelQ8;
       raw_[int64_t(v)] = uint32_t(std::clamp<int64_t>(std::llround(length_q8), 1, int64_t(1) << 28));
@@ -93,7 +94,7 @@ class Bounded {
     if (wanted[largest_at_] > cap_) {
       text.str("");
       text << "edges of " << wanted[largest_at_] * scale << " are asked for " << near_vertex(sheet, largest_at_)
-           << "; they are at most " << cap_ * scale << ", " << kMostRatio << " times the shortest";
+           << "; they are at most " << cap_ * scale << ", " << kMostLengthRatio << " times the shortest";
       report.warnings.push_back(text.str());
     }
   }
@@ -126,7 +127,40 @@ void smooth_lengths(int64_t vertices, int64_t slope_q16, Sheet& sheet, Context& 
   sheet.lengths = limit_edge_lengths(sheet, std::move(smooth.at), slope_q16, context);
 }
 
+void measure_edges(const SurfaceMesh& surface, double voxel_size, double edge_of_length, const SeedSet& seeds,
+                   const DualMesh& mesh, SizingReport& report) {
+  const Buffer<uint32_t> length = surface.lengths.at.to_host(), home = seeds.home.to_host();
+  const Buffer<PointQ8> position = mesh.position.to_host();
+  const Buffer<TriangleIndices> triangles = mesh.triangles.to_host();
+  const double world = voxel_size / kOneVoxelQ8 * edge_of_length;
+  report.varies = true;
+  report.least_world = surface.lengths.least * world;
+  report.largest_world = surface.lengths.largest * world;
+  double sum = 0;
+  const auto add = [&](uint32_t a, uint32_t b) {
+    const double dx = position[b].x - position[a].x, dy = position[b].y - position[a].y,
+                 dz = position[b].z - position[a].z;
+    const double target = (double(length[home[a]]) + double(length[home[b]])) / 2 * edge_of_length;
+    sum += std::abs(std::sqrt(dx * dx + dy * dy + dz * dz) / target - 1);
+  };
+  for (const TriangleIndices& t : triangles) add(t.a, t.b), add(t.b, t.c), add(t.c, t.a);
+  report.edge_error_mean = sum / double(3 * triangles.size());
+}
+
 }  // namespace
+
+bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
+
+AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p) {
+  AskedLengths asked;
+  asked.growth = options.gradation - 1;
+  if (p.sheet.lengths.at.empty()) return asked;
+  asked.field = options.sizing.get();
+  asked.adaptivity = options.adaptivity;
+  asked.usual_world = usual_edge_length(options, p.surface.topology.area_world);
+  asked.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
+  return asked;
+}
 
 bool wants_lengths(const RemeshOptions& options) { return options.sizing || options.adaptivity > 0; }
 
@@ -180,23 +214,13 @@ double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Contex
 void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,
                    Context& context) {
   if (sheet.lengths.at.empty()) return;
-  const Buffer<uint32_t> length = sheet.lengths.at.to_host(), home = seeds.home.to_host();
-  const Buffer<PointQ8> position = mesh.position.to_host();
-  const Buffer<TriangleIndices> triangles = mesh.triangles.to_host();
-  const double edge_of_length = cell_of_length(sheet, seeds.size(), context) / kCellOfEdge,
-               world = sheet.frame.voxel_size / kOneVoxelQ8 * edge_of_length;
-  report.varies = true;
-  report.least_world = sheet.lengths.least * world;
-  report.largest_world = sheet.lengths.largest * world;
-  double sum = 0;
-  const auto add = [&](uint32_t a, uint32_t b) {
-    const double dx = position[b].x - position[a].x, dy = position[b].y - position[a].y,
-                 dz = position[b].z - position[a].z;
-    const double target = (double(length[home[a]]) + double(length[home[b]])) / 2 * edge_of_length;
-    sum += std::abs(std::sqrt(dx * dx + dy * dy + dz * dz) / target - 1);
-  };
-  for (const TriangleIndices& t : triangles) add(t.a, t.b), add(t.b, t.c), add(t.c, t.a);
-  report.edge_error_mean = sum / double(3 * triangles.size());
+  const double edge_of_length = cell_of_length(sheet, seeds.size(), context) / kCellOfEdge;
+  measure_edges(sheet, sheet.frame.voxel_size, edge_of_length, seeds, mesh, report);
+}
+
+void measure_edges(const CutSurface& cut, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report) {
+  if (cut.is_asked && !cut.surface.lengths.at.empty())
+    measure_edges(cut.surface, cut.voxel_size, 1, seeds, mesh, report);
 }
 
 }  // namespace isoshell

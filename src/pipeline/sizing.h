@@ -2,12 +2,19 @@
 // grid carries and by how fast lengths may grow.
 #pragma once
 
+#include "features/cut_surface.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
 
 /// Whether lengths may vary.
 bool wants_lengths(const RemeshOptions& options);
+
+/// Whether the field says how many vertices there are.
+bool field_decides(const RemeshOptions& options);
+
+/// What is asked for of a surface that is cut; nothing where lengths are all equal.
+AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p);
 
 /// The length that a field has at all vertices of the soup, or 0 when it varies or says nothing somewhere.
 double even_length_world(const SizingField& field, const TriangleSoup& soup);
@@ -18,8 +25,10 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
 /// Width of the cells where they are smallest, in voxels.
 double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Context& context);
 
-/// How well the edges of the result have the lengths of the sheet at the homes of their ends.
+/// How well the edges of the result have the lengths of the surface at the homes of their ends. Those of a surface that
+/// is not asked for lengths have no report, though its creases may make them vary.
 void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,
                    Context& context);
+void measure_edges(const CutSurface& cut, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report);
 
 }  // namespace isoshell

@@ -1,0 +1,87 @@
+// See asked_lengths.h.
+#include "features/asked_lengths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/world_vector.h"
+#include "features/edge_lengths.h"
+#include "features/length_limits.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kLeastDensity = 1.0 / 16;  ///< of vertices where nothing is curved, over the mean
+constexpr int kSmoothing = 8;               ///< rounds that spread curvature, also onto paths
+constexpr double kTurnUnit = 1 << 16;
+constexpr double kAreaUnit = 1 << 6;
+
+/// Per vertex how far the surface turns within e. Paths take what is beside them. Sums of integers: no order shows.
+std::vector<int64_t> smooth_turns(const FineMesh& mesh, const VertexGraph& graph, double e) {
+  const std::vector<double> turns = surface_turns(mesh, graph, e);
+  std::vector<char> is_known(mesh.position.size(), 1);
+  for (const CurvePath& path : mesh.paths)
+    for (const uint32_t v : path.vertex) is_known[v] = 0;
+  std::vector<int64_t> turn(turns.size()), next;
+  for (size_t v = 0; v < turn.size(); ++v) turn[v] = std::llround(turns[v] * kTurnUnit);
+  for (int round = 0; round < kSmoothing; ++round) {
+    next = turn;
+    std::vector<char> is_known_next = is_known;
+    for (size_t v = 0; v < turn.size(); ++v) {
+      int64_t sum = is_known[v] ? turn[v] : 0, count = is_known[v];
+      for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
+        const uint32_t u = graph.neighbour[size_t(i)];
+        if (is_known[u]) sum += turn[u], ++count;
+      }
+      if (count > 0) next[v] = sum / count, is_known_next[v] = 1;
+    }
+    turn.swap(next);
+    is_known.swap(is_known_next);
+  }
+  return turn;
+}
+
+/// Over the area.
+double mean_turn(const FineMesh& mesh, const std::vector<int64_t>& turn) {
+  int64_t sum = 0, area = 0;
+  for (const auto& t : mesh.triangles) {
+    const int64_t here =
+        std::llround(triangle_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]) / kAreaUnit);
+    area += here;
+    sum += here * ((turn[t[0]] + turn[t[1]] + turn[t[2]]) / 3);
+  }
+  return area > 0 ? double(sum) / double(area) : 0;
+}
+
+/// A part of the vertices, `adaptivity`, goes by curvature instead of area.
+void shorten_where_curved(FineMesh& mesh, const VertexGraph& graph, double adaptivity, double e) {
+  const std::vector<int64_t> turn = smooth_turns(mesh, graph, e);
+  const double mean = mean_turn(mesh, turn);
+  if (!(mean > 0)) return;
+  for (size_t v = 0; v < turn.size(); ++v)
+    mesh.edge_length[v] /= std::sqrt(std::max(1 - adaptivity + adaptivity * double(turn[v]) / mean, kLeastDensity));
+}
+
+}  // namespace
+
+void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame, const AskedLengths& asked,
+                     int64_t vertices, double e) {
+  const double of_world = kOneVoxelQ8 / frame.voxel_size;
+  mesh.edge_length.assign(mesh.position.size(), asked.usual_world * of_world);
+  if (asked.field) {
+    std::vector<WorldPoint> points;
+    points.reserve(mesh.position.size());
+    for (const WorldPoint& p : mesh.position) points.push_back(frame.origin + (1 / of_world) * p);
+    const std::vector<double> length = asked.field->lengths_at(points);
+    for (size_t v = 0; v < length.size(); ++v)
+      if (length[v] > 0) mesh.edge_length[v] = length[v] * of_world;
+  }
+  if (asked.adaptivity > 0) shorten_where_curved(mesh, graph, asked.adaptivity, e);
+  double factor = 1;
+  if (vertices > 0) factor = std::sqrt(std::max(1.0, vertices_of_lengths(mesh)) / double(vertices));
+  for (double& l : mesh.edge_length) l = std::max(l * factor, asked.shortest_world * of_world);
+  const double most = kMostLengthRatio * *std::min_element(mesh.edge_length.begin(), mesh.edge_length.end());
+  for (double& l : mesh.edge_length) l = std::min(l, most);
+}
+
+}  // namespace isoshell
