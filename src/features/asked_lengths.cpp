@@ -1,6 +1,8 @@
 // See asked_lengths.h.
 #include "features/asked_lengths.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,31 +14,35 @@ namespace isoshell {
 namespace {
 
 constexpr double kLeastDensity = 1.0 / 16;  ///< of vertices where nothing is curved, over the mean
-constexpr int kSmoothing = 8;               ///< rounds that spread curvature, also onto paths
+constexpr int kSmoothing = 8;               ///< rounds that spread curvature
 constexpr double kTurnUnit = 1 << 16;
 constexpr double kAreaUnit = 1 << 6;
 
-/// Per vertex how far the surface turns within e. Paths take what is beside them. Sums of integers: no order shows.
+/// Per vertex how far the surface turns within e. Smooth between paths; on them as beside them, where it turns most, so
+/// that a rim is as fine as the finer of its sides. Sums of integers: no order shows.
 std::vector<int64_t> smooth_turns(const FineMesh& mesh, const VertexGraph& graph, double e) {
   const std::vector<double> turns = surface_turns(mesh, graph, e);
-  std::vector<char> is_known(mesh.position.size(), 1);
+  std::vector<char> is_on_path(mesh.position.size(), 0);
   for (const CurvePath& path : mesh.paths)
-    for (const uint32_t v : path.vertex) is_known[v] = 0;
-  std::vector<int64_t> turn(turns.size()), next;
+    for (const uint32_t v : path.vertex) is_on_path[v] = 1;
+  std::vector<int64_t> turn(turns.size());
   for (size_t v = 0; v < turn.size(); ++v) turn[v] = std::llround(turns[v] * kTurnUnit);
-  for (int round = 0; round < kSmoothing; ++round) {
-    next = turn;
-    std::vector<char> is_known_next = is_known;
-    for (size_t v = 0; v < turn.size(); ++v) {
-      int64_t sum = is_known[v] ? turn[v] : 0, count = is_known[v];
+  std::vector<int64_t> next = turn;
+  for (int round = 0; round <= kSmoothing; ++round) {
+    const bool is_last = round == kSmoothing;
+    tbb::parallel_for(size_t(0), turn.size(), [&](size_t v) {
+      if (bool(is_on_path[v]) != is_last) return;
+      int64_t sum = turn[v], count = 1, most = 0;
       for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
         const uint32_t u = graph.neighbour[size_t(i)];
-        if (is_known[u]) sum += turn[u], ++count;
+        if (is_on_path[u]) continue;
+        sum += turn[u];
+        ++count;
+        most = std::max(most, turn[u]);
       }
-      if (count > 0) next[v] = sum / count, is_known_next[v] = 1;
-    }
-    turn.swap(next);
-    is_known.swap(is_known_next);
+      next[v] = is_last ? most : sum / count;
+    });
+    turn = next;
   }
   return turn;
 }

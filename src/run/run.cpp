@@ -1,6 +1,7 @@
 // A run as a recipe of steps: reads, calls the stages, keeps what was asked for, measures, writes.
 #include "isoshell/run/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <type_traits>
 
@@ -80,6 +81,7 @@ class Run {
 
  private:
   RunResult steps(Input input) {
+    note_what_stage_files_leave_out(input);
     choose_attributes(input, options_.values.attributes, stops_early() ? "vdb" : record_.output.format,
                       record_.attributes, [&](MessageKind kind, const std::string& text) { tell(kind, text); });
     // A Voronoi stage file does not hold the seeds of patches: then nothing is cut along seams.
@@ -189,6 +191,22 @@ class Run {
       throw Error(ErrorCode::usage, "options", "INPUT is past the shell already; leave out --stop-after shell");
   }
 
+  /// Attributes are on the input as it was read, which a stage file does not hold.
+  void note_what_stage_files_leave_out(const Input& input) {
+    if (input.stage) {
+      left_out_ = input.stage->info.left_out;
+      if (!left_out_.empty())
+        warn(input.facts.name() + ": the result is without " + left_out_ +
+             ", and not cut along their seams: a stage file does not hold them; remesh the input itself to keep them");
+      return;
+    }
+    const auto& asked = options_.values.attributes;
+    for (const Attribute& a : input.soup.attributes)
+      if (!asked || std::count(asked->begin(), asked->end(), a.name) > 0)
+        left_out_ += (left_out_.empty() ? "" : ", ") + a.name;
+    if (!left_out_.empty()) left_out_ += " of " + input.facts.name();
+  }
+
   void read_sizing_field() {
     if (options_.sizing.empty()) return;
     options_.values.sizing = step("sizing", [&] { return read_sizing(options_.sizing, context_.memory_limit_bytes); });
@@ -228,6 +246,7 @@ class Run {
     options.options_json = options_json(options_.values);
     options.closing_vox = prepared.closing_vox;
     options.overwrite = request_.overwrite;
+    options.left_out = left_out_;
     if (prepared.closing_vox > 0 && !prepared.grown)
       options.bridges = bridging_voxels(prepared.sheet, find_bridges(prepared.sites, prepared.sheet));
     return options;
@@ -313,7 +332,8 @@ class Run {
   AskedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
   Context& context_;
   RunRecord record_;
-  std::string written_;  ///< files that are whole, for who interrupts
+  std::string left_out_;  ///< of the input, by stage files
+  std::string written_;   ///< files that are whole, for who interrupts
   Clock::time_point start_ = Clock::now();
 };
 

@@ -284,6 +284,22 @@ TEST_CASE("run: resumed from either stage file, the result is the same, byte by 
   }
 }
 
+TEST_CASE("run: a run that resumes says which attributes it is without, and where they are", "[cli][vdb]") {
+  Folder folder;
+  folder.write("quad.ply",
+               "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+               "property float heat\nproperty float salt\nelement face 4\nproperty list uchar int vertex_indices\n"
+               "end_header\n0 0 0 1 5\n1 0 0 2 6\n0 1 0 3 7\n0 0 1 4 8\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+  const std::string quick = " --vertices 200 --device cpu --force";
+  const std::string heat = " of quad.ply, and not cut along their seams: a stage file does not hold them";
+  REQUIRE(folder.run("quad.ply s.vdb --stop-after shell" + quick).status == 0);
+  CHECK(contains(folder.run("s.vdb out.ply" + quick).err, "s.vdb: the result is without heat, salt" + heat));
+  REQUIRE(folder.run("quad.ply out.ply --save-shell s.vdb --attributes heat" + quick).status == 0);
+  CHECK(contains(folder.run("s.vdb out.ply" + quick).err, "s.vdb: the result is without heat" + heat));
+  REQUIRE(folder.run("quad.ply out.ply --save-shell s.vdb --attributes none" + quick).status == 0);
+  CHECK_FALSE(contains(folder.run("s.vdb out.ply" + quick).err, "without"));
+}
+
 TEST_CASE("run: every file that a stage is kept in is looked at before any work", "[cli][vdb]") {
   Folder folder;
   write_ball(folder);

@@ -153,6 +153,27 @@ TEST_CASE("sizing: edges follow a field, alone and with a count, and a resumed r
   CHECK(contains(folder.run("o.voronoi.vdb w.ply --sizing other.vdb").err, "it was f.vdb; leave it out"));
 }
 
+TEST_CASE("sizing: creases stay with a field and with adaptivity, and a resumed run has the same bytes",
+          "[sizing][cli]") {
+  Folder folder;
+  folder.write_off("box.off", shapes::box({-.9, -.9, -.9}, {.9, .9, .9}));
+  write_grids((folder / "f.vdb").string(), {ball_sizing(0.12, 3)});
+  for (const std::string asked : {"--sizing f.vdb", "--sizing f.vdb --vertices 500 --uniform-area --fit surface",
+                                  "--vertices 500 --adaptivity .5"}) {
+    const std::string quick = " -q --device cpu --force ";
+    REQUIRE(folder.run("box.off o.ply --require manifold,features,genus=0 --stats s.json " + asked + quick).status ==
+            0);
+    const Json s = Json::parse(folder.content("s.json"));
+    CHECK(s["features"]["kept"] == true);
+    if (contains(asked, "--vertices")) CHECK(s["counts"]["vertices"] == 500);
+    if (contains(asked, "--sizing")) CHECK(s["sizing"]["edge_error_mean"] < 0.15);
+    CHECK(s["distance"]["hausdorff"] < 0.002);
+    REQUIRE(folder.run("box.off o.shell.vdb --stop-after shell " + asked + quick).status == 0);
+    REQUIRE(folder.run("o.shell.vdb r.ply" + quick).status == 0);
+    CHECK(folder.content("r.ply") == folder.content("o.ply"));
+  }
+}
+
 TEST_CASE("sizing: adaptivity puts the same number of vertices where the surface is curved", "[sizing][cli]") {
   Folder folder;
   folder.write_off("torus.off", shapes::torus(1, 0.25, 120, 40));

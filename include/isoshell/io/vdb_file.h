@@ -21,6 +21,7 @@ struct StageWriteOptions {
   bool overwrite = false;           ///< replace an existing file
   bool view_grids = true;           ///< also write the grids that are only there to be looked at
   std::vector<Voxel> bridges = {};  ///< see bridging_voxels: 1 in the grid "gap", too
+  std::string left_out;             ///< what of the input the file does not hold, and where that is
 };
 
 /// What a stage file says about itself.
@@ -30,6 +31,7 @@ struct StageInfo {
   std::string creator;
   std::string options_json;
   int32_t closing_vox = -1;
+  std::string left_out;                        ///< empty where nothing is known to be missing
   std::map<std::string, std::string> digests;  ///< by product: surface, sites, shell, seeds, labels
 };
 

@@ -11,6 +11,7 @@ constexpr char kKeyOptions[] = "isoshell:options";
 constexpr char kKeyFrame[] = "isoshell:frame";
 constexpr char kKeyBand[] = "isoshell:band_vox";
 constexpr char kKeyClosing[] = "isoshell:closing_vox";
+constexpr char kKeyLeftOut[] = "isoshell:left_out";
 constexpr char kKeyFirstCap[] = "isoshell:first_cap";
 constexpr char kKeyTopology[] = "isoshell:input_topology";
 constexpr char kKeyDigest[] = "isoshell:digest_";  // then the product's name

@@ -339,6 +339,7 @@ StageInfo read_info(const StageReader& file) {
   info.creator = file.text(kKeyCreator, false);
   info.options_json = file.text(kKeyOptions, false);
   if (file.has(kKeyClosing)) info.closing_vox = file.number(kKeyClosing, 0, kMaxClosingVox);
+  info.left_out = file.text(kKeyLeftOut, false);
   const std::string prefix = kKeyDigest;
   for (const auto& [key, value] : file.texts())
     if (key.compare(0, prefix.size(), prefix) == 0) info.digests[key.substr(prefix.size())] = value;

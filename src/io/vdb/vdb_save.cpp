@@ -79,6 +79,7 @@ class StageWriter {
     text(kKeyFrame, frame_text(frame));
     text(kKeyOptions, options.options_json);
     if (options.closing_vox >= 0) text(kKeyClosing, std::to_string(options.closing_vox));
+    if (!options.left_out.empty()) text(kKeyLeftOut, options.left_out);
     if (stage) {
       stage_ = stage;
       text(kKeyStage, stage_);
