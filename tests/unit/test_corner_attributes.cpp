@@ -101,6 +101,22 @@ TEST_CASE("corners: OBJ gives texture coordinates, normals and names to the face
   CHECK(labels(named(soup, "material")) == Names{"", "", "steel # x", "wood"});
 }
 
+TEST_CASE("corners: those of a polygon of very many keep their values, and the first one where a vertex repeats",
+          "[mesh_file][unit]") {
+  constexpr size_t kCorners = 30000;
+  std::string text, values, corners;
+  for (size_t i = 0; i < kCorners; ++i) {
+    const double x = double(i < kCorners / 2 ? i : kCorners - i);
+    text += "v " + std::to_string(x) + " " + std::to_string(i < kCorners / 2 ? -x * x : x * x + 1) + " 0\n";
+    values += "vt " + std::to_string(i) + " 0\n";
+    corners += " " + std::to_string(i + 1) + "/" + std::to_string(i + 1);
+  }
+  const TriangleSoup soup = read_text_as("obj", text + values + "vt -1 0\nf" + corners + " 1/-1\n");
+  REQUIRE(soup.triangles.size() == kCorners - 2);
+  const auto of_vertex = [](size_t, uint32_t v) { return Values{double(v), 0}; };
+  CHECK(wrong_corners(soup, named(soup, "uv"), of_vertex) == 0);
+}
+
 TEST_CASE("corners: OBJ's indices that name nothing are refused with line and value", "[mesh_file][unit]") {
   const auto refusal = [](const std::string& face) {
     return error_of([&] { read_text_as("obj", kSquare + "vt 0 0\nvt 1 1\nvn 0 0 1\n" + face + "\n"); });

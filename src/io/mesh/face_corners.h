@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "io/mesh/face_collector.h"
@@ -24,13 +26,42 @@ inline std::vector<size_t> triangles_first(const std::vector<FaceCollector>& par
   return first;
 }
 
-/// Calls take(i, corner) with the place in `faces` of each corner i of a triangle: the first one of its face at its
-/// vertex.
-template <class Take>
-void find_corners(const FaceCorners& faces, size_t face, const Triangle& triangle, Take take) {
-  const auto begin = faces.vertex.begin() + faces.first[face], end = faces.vertex.begin() + faces.first[face + 1];
-  for (size_t i = 0; i < 3; ++i) take(i, size_t(std::find(begin, end, triangle[i]) - faces.vertex.begin()));
-}
+/// Finds where corners of triangles stand among those of their faces: the first one of the face at the same vertex.
+/// Those of a large face are sorted, once where its triangles are asked about one after another.
+class CornerFinder {
+ public:
+  explicit CornerFinder(const FaceCorners& faces) : faces_(faces) {}
+
+  /// Calls take(i, corner) with the place in the faces' `vertex` of each corner i of a triangle.
+  template <class Take>
+  void find(size_t face, const Triangle& triangle, Take take) {
+    const int64_t first = faces_.first[face], count = faces_.count_of(face);
+    if (count <= kFewCorners) {
+      const auto begin = faces_.vertex.begin() + first;
+      for (size_t i = 0; i < 3; ++i)
+        take(i, size_t(std::find(begin, begin + count, triangle[i]) - faces_.vertex.begin()));
+      return;
+    }
+    if (face != sorted_face_) sort(face);
+    for (size_t i = 0; i < 3; ++i)
+      take(i, std::lower_bound(sorted_.begin(), sorted_.end(), std::make_pair(triangle[i], size_t(0)))->second);
+  }
+
+ private:
+  static constexpr int64_t kFewCorners = 16;
+
+  void sort(size_t face) {
+    sorted_face_ = face;
+    sorted_.clear();
+    for (auto corner = size_t(faces_.first[face]); corner < size_t(faces_.first[face + 1]); ++corner)
+      sorted_.emplace_back(faces_.vertex[corner], corner);
+    std::sort(sorted_.begin(), sorted_.end());
+  }
+
+  const FaceCorners& faces_;
+  size_t sorted_face_ = std::numeric_limits<size_t>::max();
+  std::vector<std::pair<uint32_t, size_t>> sorted_;  ///< vertices of its corners, and their places
+};
 
 /// Makes values of vertices values of corners, which share them.
 inline void spread_to_corners(const std::vector<Triangle>& triangles, Attribute& attribute) {

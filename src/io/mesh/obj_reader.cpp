@@ -234,8 +234,9 @@ void add_corner_attribute(const std::vector<ObjChunk>& chunks, const std::vector
   for_each_chunk(int64_t(chunks.size()), [&](int64_t c) {
     const ObjChunk& chunk = chunks[size_t(c)];
     const std::vector<uint32_t>& face_of = faces[size_t(c)].face_of();
+    CornerFinder corners(chunk.corners);
     for (size_t t = 0; t < face_of.size(); ++t)
-      find_corners(chunk.corners, face_of[t], soup.triangles[first[size_t(c)] + t], [&](size_t i, size_t corner) {
+      corners.find(face_of[t], soup.triangles[first[size_t(c)] + t], [&](size_t i, size_t corner) {
         const uint32_t value = (chunk.*of_corner)[corner];
         attribute.index[3 * (first[size_t(c)] + t) + i] = value == kNoValue ? none : value;
       });

@@ -88,6 +88,7 @@ void add_face_attributes(const PlyMeshLayout& layout, const PlyBody& body, std::
   for_each_chunk(int64_t(body.face_rows.size()), [&](int64_t part) {
     const PlyFaceRows& rows = body.face_rows[size_t(part)];
     const std::vector<uint32_t>& face_of = body.faces[size_t(part)].face_of();
+    CornerFinder corners(rows.corners);
     for (size_t i = 0; i < face_of.size(); ++i) {
       const size_t t = first[size_t(part)] + i;
       for (size_t c = 0; c < layout.face_columns.size(); ++c) {
@@ -96,7 +97,7 @@ void add_face_attributes(const PlyMeshLayout& layout, const PlyBody& body, std::
         a.values[t * size_t(a.components) + size_t(column.component)] = rows.columns[c][face_of[i]];
       }
       if (layout.corner_lists.empty()) continue;
-      find_corners(rows.corners, face_of[i], soup.triangles[t], [&](size_t corner, size_t in_list) {
+      corners.find(face_of[i], soup.triangles[t], [&](size_t corner, size_t in_list) {
         for (size_t l = 0; l < layout.corner_lists.size(); ++l) {
           const size_t size = size_t(layout.corner_lists[l].components);
           std::copy_n(&rows.lists[l][in_list * size], size,
