@@ -1,7 +1,6 @@
 #include "measure/crossings.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 
@@ -12,13 +11,6 @@ namespace isoshell {
 namespace {
 
 constexpr size_t kChunk = 1024;
-
-struct BoxedTriangle {
-  BoxOfPoints box;
-  uint32_t triangle;
-};
-
-int32_t along(PointQ8 p, int axis) { return axis == 0 ? p.x : (axis == 1 ? p.y : p.z); }
 
 BoxOfPoints box_of(const CornersOfTriangle& t) {
   BoxOfPoints box{t.at[0], t.at[0]};
@@ -34,15 +26,6 @@ BoxOfPoints common_of(const BoxOfPoints& a, const BoxOfPoints& b) {
           {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
 }
 
-int longest_axis(const std::vector<BoxedTriangle>& boxes) {
-  BoxOfPoints all = boxes.front().box;
-  for (const BoxedTriangle& b : boxes)
-    all = {{std::min(all.lo.x, b.box.lo.x), std::min(all.lo.y, b.box.lo.y), std::min(all.lo.z, b.box.lo.z)},
-           {std::max(all.hi.x, b.box.hi.x), std::max(all.hi.y, b.box.hi.y), std::max(all.hi.z, b.box.hi.z)}};
-  const int32_t x = all.hi.x - all.lo.x, y = all.hi.y - all.lo.y, z = all.hi.z - all.lo.z;
-  return x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
-}
-
 }  // namespace
 
 std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
@@ -53,21 +36,20 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
     const TriangleIndices i = triangles[t];
     return CornersOfTriangle{{id(i.a), id(i.b), id(i.c)}, {position[i.a], position[i.b], position[i.c]}};
   };
-  std::vector<BoxedTriangle> boxes(size_t(triangles.size));
-  for (uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = {box_of(corners(t)), t};
-  const int axis = longest_axis(boxes);
-  tbb::parallel_sort(boxes.begin(), boxes.end(), [&](const BoxedTriangle& a, const BoxedTriangle& b) {
-    const int32_t u = along(a.box.lo, axis), v = along(b.box.lo, axis);
-    return u != v ? u < v : a.triangle < b.triangle;
-  });
+  std::vector<BoxOfPoints> boxes(size_t(triangles.size));
+  for (uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = box_of(corners(t));
+  const BoxTree tree(boxes);
   std::vector<std::vector<std::array<uint32_t, 2>>> parts((boxes.size() + kChunk - 1) / kChunk);
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
-    if (stop.load(std::memory_order_relaxed)) return;
-    for (size_t i = c * kChunk; i < std::min(boxes.size(), (c + 1) * kChunk); ++i)
-      for (size_t j = i + 1; j < boxes.size() && along(boxes[j].box.lo, axis) <= along(boxes[i].box.hi, axis); ++j)
-        if (boxes_meet(boxes[i].box, boxes[j].box) &&
-            triangles_intersect(corners(boxes[i].triangle), corners(boxes[j].triangle)))
-          parts[c].push_back({boxes[i].triangle, boxes[j].triangle});
+    for (size_t t = c * kChunk; t < std::min(boxes.size(), (c + 1) * kChunk); ++t) {
+      if (stop.load(std::memory_order_relaxed)) return;
+      const CornersOfTriangle here = corners(uint32_t(t));
+      tree.for_all_meeting(boxes[t], [&](uint32_t other) {
+        if (other > t && triangles_intersect(here, corners(other))) parts[c].push_back({uint32_t(t), other});
+        return true;
+      });
+    }
+    std::sort(parts[c].begin(), parts[c].end());
   });
   std::vector<std::array<uint32_t, 2>> found;
   for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
@@ -90,13 +72,12 @@ std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const
 }
 
 int64_t count_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others, int32_t reach_q8) {
-  int64_t apart = 0;
-  for (const BoxOfPoints& b : boxes) {
+  const BoxTree tree(others);
+  return std::count_if(boxes.begin(), boxes.end(), [&](const BoxOfPoints& b) {
     const BoxOfPoints wide{{b.lo.x - reach_q8, b.lo.y - reach_q8, b.lo.z - reach_q8},
                            {b.hi.x + reach_q8, b.hi.y + reach_q8, b.hi.z + reach_q8}};
-    if (std::none_of(others.begin(), others.end(), [&](const BoxOfPoints& o) { return boxes_meet(wide, o); })) ++apart;
-  }
-  return apart;
+    return tree.for_all_meeting(wide, [](uint32_t) { return false; });
+  });
 }
 
 }  // namespace isoshell

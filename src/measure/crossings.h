@@ -7,20 +7,13 @@
 
 #include "isoshell/backend.h"
 #include "isoshell/lattice_surface.h"
+#include "measure/box_tree.h"
 
 namespace isoshell {
 
-struct BoxOfPoints {
-  PointQ8 lo, hi;
-};
-inline bool boxes_meet(const BoxOfPoints& a, const BoxOfPoints& b) {
-  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
-         b.lo.z <= a.hi.z;
-}
-
-/// The pairs of triangles that meet outside of the corners that they share, exactly tested; in their order along the
-/// longest axis. `joined`: of the first vertices the one that each is a copy of (see FixedSeeds). Some are missing once
-/// `stop` is set. Cost: a sort, and for each triangle a look at all that begin beside it along that axis.
+/// The pairs of triangles that meet outside of the corners that they share, exactly tested; ascending, the smaller one
+/// first. `joined`: of the first vertices the one that each is a copy of (see FixedSeeds). Some are missing once `stop`
+/// is set. Cost: a tree of boxes, and for each triangle a look at all whose boxes meet its own.
 std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                                     View<const uint32_t> joined, const std::atomic<bool>& stop);
 

@@ -7,6 +7,7 @@
 #include "isoshell/borders.h"
 #include "measure/crossings.h"
 #include "support/catch.h"
+#include "voxel/intersect.h"
 
 using namespace isoshell;
 
@@ -93,6 +94,53 @@ TEST_CASE("crossings: triangles that meet outside of shared corners, and where",
   CHECK(count_apart(found, elsewhere, 99) == 1);
   CHECK(count_apart(found, elsewhere, 100) == 0);
   CHECK(count_apart(found, {}, 1000) == 1);
+}
+
+TEST_CASE("crossings: those of any triangles are those that each pair of them shows", "[borders]") {
+  Context context;
+  std::vector<PointQ8> points;
+  std::vector<TriangleIndices> triangles;
+  uint32_t state = 1;
+  const auto random = [&](uint32_t below) {
+    return int32_t((state = state * 1664525u + 1013904223u) >> 8) % int32_t(below);
+  };
+  const auto add = [&](int32_t range, int32_t size, int32_t height) {
+    const PointQ8 at{random(uint32_t(range)), random(uint32_t(range)), random(uint32_t(height))};
+    for (uint32_t i = 0; i < 3; ++i)
+      points.push_back({at.x + random(uint32_t(size)), at.y + random(uint32_t(size)), at.z + random(uint32_t(size))});
+    const auto n = uint32_t(points.size());
+    triangles.push_back({n - 3, n - 2, n - 1});
+  };
+  for (int i = 0; i < 300; ++i) add(4000, 900, 4000);  // anywhere
+  for (int i = 0; i < 300; ++i) add(4000, 600, 1);     // near a plane
+  for (int i = 0; i < 300; ++i) add(40, 20, 40);       // small ones in a corner
+  for (int i = 0; i < 5; ++i) add(10, 4000, 10);       // large ones
+  triangles.push_back(triangles.back());               // the same corners: no crossing
+  const auto corners = [&](size_t t) {
+    const TriangleIndices& i = triangles[t];
+    return CornersOfTriangle{{i.a, i.b, i.c}, {points[i.a], points[i.b], points[i.c]}};
+  };
+  std::vector<std::array<uint32_t, 2>> expected;
+  for (uint32_t t = 0; t < triangles.size(); ++t)
+    for (uint32_t u = t + 1; u < triangles.size(); ++u)
+      if (triangles_intersect(corners(t), corners(u))) expected.push_back({t, u});
+  REQUIRE(expected.size() > 500);
+  const std::atomic<bool> stop{false};
+  const auto position = points_of(points);
+  const auto list = triangles_of(triangles);
+  CHECK(crossing_pairs(position.view(), list.view(), {}, stop) == expected);
+  const auto boxes = find_crossings(position.view(), list.view(), context);
+  const std::vector<BoxOfPoints> some(boxes.begin(), boxes.begin() + 20);
+  const auto are_apart = [](const BoxOfPoints& a, const BoxOfPoints& b) {
+    const auto gap = [](int32_t lo, int32_t hi) { return lo - hi > 100; };
+    return gap(a.lo.x, b.hi.x) || gap(b.lo.x, a.hi.x) || gap(a.lo.y, b.hi.y) || gap(b.lo.y, a.hi.y) ||
+           gap(a.lo.z, b.hi.z) || gap(b.lo.z, a.hi.z);
+  };
+  const auto apart = std::count_if(boxes.begin(), boxes.end(), [&](const BoxOfPoints& b) {
+    return std::all_of(some.begin(), some.end(), [&](const BoxOfPoints& o) { return are_apart(b, o); });
+  });
+  CHECK(apart > 0);
+  CHECK(count_apart(boxes, some, 100) == apart);
 }
 
 TEST_CASE("fans: squares that touch in a corner get one each, and a place more is counted", "[borders]") {
