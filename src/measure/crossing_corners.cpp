@@ -8,6 +8,12 @@
 
 namespace isoshell {
 
+void sort_places(std::vector<PointQ8>& places) {
+  const auto key = [](PointQ8 p) { return std::make_tuple(p.x, p.y, p.z); };
+  std::sort(places.begin(), places.end(), [&](PointQ8 p, PointQ8 q) { return key(p) < key(q); });
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+}
+
 std::vector<PointQ8> crossing_corners(const DualMesh& mesh, View<const uint32_t> joined) {
   std::vector<PointQ8> corners;
   const std::atomic<bool> stop{false};
@@ -15,9 +21,7 @@ std::vector<PointQ8> crossing_corners(const DualMesh& mesh, View<const uint32_t>
     for (const uint32_t t : pair)
       for (const uint32_t v : {mesh.triangles[t].a, mesh.triangles[t].b, mesh.triangles[t].c})
         corners.push_back(mesh.position[v]);
-  const auto key = [](PointQ8 p) { return std::make_tuple(p.x, p.y, p.z); };
-  std::sort(corners.begin(), corners.end(), [&](PointQ8 p, PointQ8 q) { return key(p) < key(q); });
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  sort_places(corners);
   return corners;
 }
 

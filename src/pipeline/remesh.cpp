@@ -126,6 +126,7 @@ std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptio
   for (int merge = 0; merge < kMostMerges && report.post.self_intersections > 0; ++merge) {
     const std::vector<PointQ8> more = crossing_corners(*OnHost(made.mesh), {});
     points.insert(points.end(), more.begin(), more.end());
+    sort_places(points);  // a mesh that stays has the same ones again
     auto merged = std::make_unique<MergedWalls>(
         timed(report, "merge", context, [&] { return merge_walls(p, points, merge, options, context); }));
     RemeshReport tried = report;
