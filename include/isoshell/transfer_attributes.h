@@ -21,7 +21,8 @@ namespace isoshell {
 ///
 /// Integers are rounded to the nearest and limited to the range of their type, numbers of type f32 rounded to single
 /// precision; what is not a number at a corner is not one in the whole triangle. Host only. Result: does not depend on
-/// threads or backend. Throws: usage when counts do not fit or there is no triangle; interrupted.
+/// threads or backend. Throws: usage when counts or indices do not fit, a position is not finite or there is
+/// no triangle; interrupted.
 std::vector<Attribute> transfer_attributes(const TriangleSoup& source, const std::vector<Attribute>& attributes,
                                            const TriangleMesh& mesh, Context& context);
 

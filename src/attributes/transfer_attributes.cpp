@@ -12,6 +12,7 @@
 #include "attributes/transfer_faces.h"
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 
@@ -21,11 +22,22 @@ namespace {
 constexpr const char* kStage = "attributes";
 constexpr int64_t kGrain = 256;
 
-void check(const TriangleSoup& source, const std::vector<Attribute>& attributes) {
+void require_finite(const std::vector<WorldPoint>& vertices, size_t v, const char* whose) {
+  if (!is_finite(vertices[v]))
+    throw Error(ErrorCode::usage, kStage,
+                "vertex " + std::to_string(v) + " of " + whose + " is not finite; leave out the faces that have it");
+}
+
+void check(const TriangleSoup& source, const std::vector<Attribute>& attributes, const TriangleMesh& mesh) {
   if (source.triangles.empty()) throw Error(ErrorCode::usage, kStage, "the source has no triangle to take values from");
   for (const Attribute& a : attributes)
     if (const std::string misfit = misfit_of(a, source.vertices.size(), source.triangles.size()); !misfit.empty())
       throw Error(ErrorCode::usage, kStage, misfit);
+  require_indices(source.triangles, source.vertices.size(), kStage);
+  require_indices(mesh.triangles, mesh.vertices.size(), kStage);
+  for (const auto& t : source.triangles)  // others are looked at by nobody
+    for (const uint32_t v : t) require_finite(source.vertices, v, "the source");
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) require_finite(mesh.vertices, v, "the mesh");
 }
 
 /// What of its triangles a vertex must know.
@@ -169,7 +181,7 @@ class Transfer {
 std::vector<Attribute> transfer_attributes(const TriangleSoup& source, const std::vector<Attribute>& attributes,
                                            const TriangleMesh& mesh, Context& context) {
   if (attributes.empty()) return {};
-  check(source, attributes);
+  check(source, attributes, mesh);
   std::vector<Attribute> result =
       run_with_threads(context, [&] { return Transfer(source, mesh, context).of(attributes); });
   check_cancel(context, kStage);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "measure/triangle_grid.h"
@@ -23,11 +24,7 @@ constexpr double kBeyondNearest = 1e-4;              ///< of the diagonal: how f
 
 void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
-  for (const auto& t : mesh.triangles)
-    if (const uint32_t largest = std::max({t[0], t[1], t[2]}); largest >= mesh.vertices.size())
-      throw Error(
-          ErrorCode::usage, "distance",
-          "a triangle names vertex " + std::to_string(largest) + "; there are " + std::to_string(mesh.vertices.size()));
+  require_indices(mesh.triangles, mesh.vertices.size(), "distance");
 }
 
 /// One point in each of kDistanceSamples strata of equal area, along the triangles.

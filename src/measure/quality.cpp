@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/triangle_list.h"
 #include "core/world_vector.h"
-#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
@@ -107,12 +107,7 @@ double irregular_share(const TriangleMesh& mesh) {
 MeshQuality measure_quality(const TriangleMesh& mesh) {
   const int64_t count = int64_t(mesh.triangles.size());
   if (count == 0) return {};
-  for (const auto& t : mesh.triangles)
-    if (std::max({t[0], t[1], t[2]}) >= mesh.vertices.size())
-      throw Error(ErrorCode::usage, "quality",
-                  "a triangle names vertex " + std::to_string(std::max({t[0], t[1], t[2]})) + "; there are " +
-                      std::to_string(mesh.vertices.size()));
-
+  require_indices(mesh.triangles, mesh.vertices.size(), "quality");
   std::vector<Part> parts(size_t((count + kChunk - 1) / kChunk));
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
     const int64_t end = std::min(count, int64_t(c + 1) * kChunk);

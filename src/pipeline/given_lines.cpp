@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/triangle_list.h"
 #include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
@@ -24,8 +25,7 @@ void check(const Polylines& lines) {
       if (p >= lines.points.size())
         throw Error(ErrorCode::usage, "features",
                     name + " names point " + std::to_string(p) + "; there are " + std::to_string(lines.points.size()));
-      const WorldPoint& at = lines.points[p];
-      if (!std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z))
+      if (!is_finite(lines.points[p]))
         throw Error(ErrorCode::usage, "features", name + " has a point that is not finite");
     }
 }

@@ -230,6 +230,15 @@ TEST_CASE("attributes: what does not fit is refused", "[attributes]") {
   CHECK(says(error_of([&] { transfer_attributes(box, {three}, mesh, context); }), "has 3 values; 8 vertices need 1"));
   CHECK(says(error_of([&] { transfer_attributes({}, {eight}, mesh, context); }), "no triangle"));
   TriangleSoup wrong = box;
+  TriangleMesh wrong_mesh = mesh;
+  wrong.vertices[3].x = wrong_mesh.vertices[5].z = std::nan("");
+  CHECK(says(error_of([&] { transfer_attributes(wrong, {eight}, mesh, context); }), "vertex 3 of the source is not"));
+  CHECK(says(error_of([&] { transfer_attributes(box, {eight}, wrong_mesh, context); }), "vertex 5 of the mesh is not"));
+  wrong = box;
+  wrong.triangles[2][1] = wrong_mesh.triangles[0][0] = 8;
+  CHECK(says(error_of([&] { transfer_attributes(wrong, {eight}, mesh, context); }), "names vertex 8; there are 8"));
+  CHECK(says(error_of([&] { transfer_attributes(box, {eight}, wrong_mesh, context); }), "names vertex 8; there are 8"));
+  wrong = box;
   wrong.attributes = {three};
   CHECK(error_of([&] { input_of(wrong, "part"); }).code() == ErrorCode::unreadable_input);
   context.cancel = true;

@@ -49,8 +49,6 @@ std::string nothing_left(const TriangleSoup& soup) {
 
 }  // namespace
 
-bool is_finite(const WorldPoint& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 VertexTable::VertexTable(const MeshSource& source, int64_t count) {
   if (count > kMaxSoupVertices)
     source.refuse("holds " + std::to_string(count) + " vertices; at most " + std::to_string(kMaxSoupVertices) +

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/triangle_list.h"
 #include "io/mesh/mesh_source.h"
 #include "io/mesh/polygon_split.h"
 #include "isoshell/surface_source.h"
@@ -12,8 +13,6 @@ namespace isoshell {
 using Triangle = std::array<uint32_t, 3>;
 
 constexpr int64_t kMaxSoupVertices = 0xfffffffe;
-
-bool is_finite(const WorldPoint& p);
 
 /// Positions read, and how many of them are NaN or infinite.
 struct VertexTable {
