@@ -125,7 +125,7 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
 }  // namespace
 
 FineMesh refine_mesh(FineMesh mesh, Context& context) {
-  const SplitEdges edges(mesh);
+  const SplitEdges edges(mesh, context.memory_limit_bytes);
   const size_t tasks = (mesh.triangles.size() + kTogether - 1) / kTogether;
   std::vector<Filling> fillings(tasks, Filling(mesh));
   tbb::parallel_for(size_t(0), tasks, [&](size_t task) {

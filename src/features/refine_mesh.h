@@ -18,7 +18,7 @@ struct FineMesh {
 /// of a path at its seeds first. Then fills each triangle between the parts of its edges. Result: edges are at most 3/8
 /// of the length; seeds of paths are at vertices. What becomes of a triangle depends on its corners only. Cost: a sort
 /// of the edges, then O(fine triangles); of a long thin triangle these are as many as its edges have parts. Throws:
-/// usage when that is far more than the area needs.
+/// usage when that is far more than the area needs, or than the memory limit allows.
 FineMesh refine_mesh(FineMesh mesh, Context& context);
 
 }  // namespace isoshell

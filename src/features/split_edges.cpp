@@ -81,16 +81,18 @@ std::map<uint64_t, InnerPoints> cut_paths(FineMesh& mesh) {
   return cut;
 }
 
-/// Far more than well-shaped triangles of the same area take, and no more than can be numbered.
-double most_points(const FineMesh& mesh) {
-  constexpr double kTimesTheNeed = 32, kAlways = 1 << 20, kCountable = kNone / 8;
+/// Far more than well-shaped triangles of the same area take, and no more than can be numbered or held.
+double most_points(const FineMesh& mesh, int64_t memory_bytes) {
+  constexpr double kTimesTheNeed = 16, kAlways = 1 << 18, kCountable = kNone / 8;
+  constexpr int64_t kBytesPerPoint = 420;  // measured, of the whole run
   double need = double(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     const double longest =
         longest_fine_edge((mesh.edge_length[t[0]] + mesh.edge_length[t[1]] + mesh.edge_length[t[2]]) / 3);
     need += triangle_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]) / (longest * longest);
   }
-  return std::min(kTimesTheNeed * need + kAlways, kCountable);
+  const double held = memory_bytes > 0 ? double(memory_bytes / kBytesPerPoint) : kCountable;
+  return std::min({kTimesTheNeed * need + kAlways, kCountable, held});
 }
 
 }  // namespace
@@ -111,12 +113,12 @@ double longest_fine_edge(double edge_length) {
   return std::min(edge_length / kPartsOfEdge, kLongestQ8);
 }
 
-SplitEdges::SplitEdges(FineMesh& mesh) {
+SplitEdges::SplitEdges(FineMesh& mesh, int64_t memory_bytes) {
   list_edges(mesh);
   const size_t vertices = mesh.position.size();
   const std::map<uint64_t, InnerPoints> on_path = cut_paths(mesh);
   double total = 0;
-  const double most = most_points(mesh);
+  const double most = most_points(mesh, memory_bytes);
   for (Edge& e : edges_) {
     const auto found = on_path.find(e.key);
     const auto u = uint32_t(e.key >> 32), v = uint32_t(e.key);
@@ -127,9 +129,9 @@ SplitEdges::SplitEdges(FineMesh& mesh) {
       throw Error(ErrorCode::usage, "features",
                   "edges of at most " + std::to_string(longest / kOneVoxelQ8) + " voxels take more than " +
                       std::to_string(int64_t(most)) +
-                      " points on the input's edges, far more than its area needs: it " +
-                      "has long thin triangles; mesh the input without features, give it better triangles first, or " +
-                      "ask for longer edges");
+                      " points on the input's edges, more than its area or the memory limit allows: it has long thin " +
+                      "triangles; mesh the input without features, give it better triangles first, or ask for longer " +
+                      "edges");
     e.count = uint32_t(found != on_path.end() ? int64_t(found->second.position.size()) : parts_of(a, b, longest) - 1);
   }
   uint32_t next = uint32_t(vertices);

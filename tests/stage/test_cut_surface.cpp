@@ -407,4 +407,6 @@ TEST_CASE("cut surface: what it can not cut, or seed, is an error that says why"
   for (uint32_t i = 0; i < 2 * kCount; i += 2)
     needles.triangles.insert(needles.triangles.end(), {{i, i + 2, i + 3}, {i, i + 3, i + 1}});
   CHECK(cut(needles, network_of(needles, {}), 0.01).find("long thin triangles") != std::string::npos);
+  context.memory_limit_bytes = 100 << 10;
+  CHECK(cut(cube.mesh, cube.network, 0.01).find("memory limit") != std::string::npos);
 }
