@@ -307,8 +307,9 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
     const size_t lost_lines = report.features.lost.size();
     if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
     keep_lost_seams(report.features.lost, lost_lines);
-    report.warnings.back() = counted(report.features.seams, "seam") + " are not kept: " + report.features.given_up +
-                             "; triangles lie across seams";
+    const int64_t seams_apart = report.features.seams;  // from creases and borders
+    report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
+                             " are not kept: " + report.features.given_up + "; triangles lie across seams";
     curves.seams.clear();
     cut_along(mesh, curves, options, p, report, context);
   });
