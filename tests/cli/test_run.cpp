@@ -108,6 +108,26 @@ TEST_CASE("run: a gate that fails exits with 6 and still writes the mesh", "[cli
   CHECK(folder.run("ball.off near.ply --require max-deviation=0.1" + kQuick).status == 0);
 }
 
+TEST_CASE("run: a result that intersects itself exits with 6 and is written, unless that is allowed", "[cli]") {
+  Folder folder;  // a hollow ball: four vertices for each side cannot follow its wall, however thick that is made
+  folder.write_off("hollow.off", shapes::together(shapes::sphere({0, 0, 0}, 1, 32),
+                                                  shapes::inside_out(shapes::sphere({0, 0, 0}, .97, 32))));
+  const std::string few = " --vertices 8 --resolution 140 --device cpu ";
+  const auto r = folder.run("hollow.off out.ply --stats out.json" + few);
+  CHECK(r.status == 6);
+  CHECK(contains(r.err, "pairs of triangles intersect, near "));
+  CHECK(contains(r.err, "gate failed: the result intersects itself in "));
+  CHECK(contains(r.err, "--allow-intersections takes it as it is"));
+  const Json j = Json::parse(folder.content("out.json"));
+  CHECK(j["topology"]["self_intersections"] > 0);
+  CHECK(j["topology"]["intersection_at"].size() == 3);
+  CHECK(read_mesh((folder / "out.ply").string()).vertices.size() == 8);
+  const auto allowed = folder.run("hollow.off allowed.ply --allow-intersections" + few);
+  CHECK(allowed.status == 0);
+  CHECK(contains(allowed.err, "pairs of triangles intersect, near "));
+  CHECK(folder.content("allowed.ply") == folder.content("out.ply"));
+}
+
 TEST_CASE("run: standard input and output carry meshes, and the same bytes as files", "[cli]") {
   Folder folder;
   write_ball(folder);
