@@ -159,7 +159,7 @@ TEST_CASE("sizing: creases stay with a field and with adaptivity, and a resumed 
   folder.write_off("box.off", shapes::box({-.9, -.9, -.9}, {.9, .9, .9}));
   write_grids((folder / "f.vdb").string(), {ball_sizing(0.12, 3)});
   for (const std::string asked : {"--sizing f.vdb", "--sizing f.vdb --vertices 500 --uniform-area --fit surface",
-                                  "--vertices 500 --adaptivity .5"}) {
+                                  "--vertices 500 --adaptivity 1 --uniform-area"}) {
     const std::string quick = " -q --device cpu --force ";
     REQUIRE(folder.run("box.off o.ply --require manifold,features,genus=0 --stats s.json " + asked + quick).status ==
             0);

@@ -81,11 +81,37 @@ TriangleSoup square(uint32_t n) {
   return soup;
 }
 
+/// A slab a quarter as thick as wide, whose texture coordinates jump in the plane x = 0.
+TriangleSoup slab_with_seam() {
+  TriangleSoup soup = square(24);
+  const TriangleSoup back = soup;
+  for (const WorldPoint& p : back.vertices) soup.vertices.push_back({p.x, .5, p.z});
+  const auto n = uint32_t(back.vertices.size());
+  for (const auto& t : back.triangles) shapes::add_triangle(soup, n + t[0], n + t[2], n + t[1]);
+  const auto wall = [&](uint32_t a, uint32_t b) {  // from the front's border to that of the back
+    shapes::add_triangle(soup, a, n + b, b);
+    shapes::add_triangle(soup, a, n + a, n + b);
+  };
+  for (uint32_t i = 0; i < 24; ++i) {
+    wall(i, i + 1), wall(24 * 25 + i + 1, 24 * 25 + i);
+    wall((i + 1) * 25, i * 25), wall(i * 25 + 24, (i + 1) * 25 + 24);
+  }
+  Attribute uv{"uv", NumberType::f64, 2, {}, AttributeDomain::corner};
+  for (const auto& t : soup.triangles) {
+    const bool is_right =
+        soup.vertices[t[0]].x + soup.vertices[t[1]].x + soup.vertices[t[2]].x > 0;  // the seam is the plane x = 0
+    for (const uint32_t v : t)
+      uv.values.insert(uv.values.end(), {soup.vertices[v].x + 10 * is_right, soup.vertices[v].z + soup.vertices[v].y});
+  }
+  soup.attributes.push_back(std::move(uv));
+  return soup;
+}
+
 /// Edges against the field at their middles.
 struct EdgeErrors {
-  double factor = 0;          ///< mean of length / field
-  double mean = 0;            ///< of |length / (factor x field) - 1|
-  double bottom = 0, top = 0; ///< mean of length / (factor x field) in the lowest and the highest quarter
+  double factor = 0;           ///< mean of length / field
+  double mean = 0;             ///< of |length / (factor x field) - 1|
+  double bottom = 0, top = 0;  ///< mean of length / (factor x field) in the lowest and the highest quarter
 };
 EdgeErrors edge_errors(const TriangleMesh& mesh) {
   std::vector<std::array<double, 2>> edges;  // length / field, height
@@ -113,6 +139,17 @@ void check_follows(const TriangleMesh& mesh) {
   CHECK(errors.mean < .1);
   CHECK(std::abs(errors.bottom - 1) < .08);
   CHECK(std::abs(errors.top - 1) < .08);
+}
+
+/// How far triangles reach to the other side of the plane x = 0.
+double farthest_across_seam(const TriangleMesh& mesh) {
+  double over = 0;
+  for (const auto& t : mesh.triangles) {
+    double left = 0, right = 0;
+    for (const uint32_t v : t) left = std::min(left, mesh.vertices[v].x), right = std::max(right, mesh.vertices[v].x);
+    over = std::max(over, std::min(-left, right));
+  }
+  return over;
 }
 
 /// What the faces enclose, from the origin.
@@ -173,40 +210,14 @@ TEST_CASE("sized parts: borders that are kept have the lengths of a field", "[si
 }
 
 TEST_CASE("sized parts: a surface that is cut along seams alone has the lengths of a field", "[sizing][seams]") {
-  TriangleSoup soup = square(24);
-  const TriangleSoup back = soup;
-  for (const WorldPoint& p : back.vertices) soup.vertices.push_back({p.x, .5, p.z});
-  const auto n = uint32_t(back.vertices.size());
-  for (const auto& t : back.triangles) shapes::add_triangle(soup, n + t[0], n + t[2], n + t[1]);
-  const auto wall = [&](uint32_t a, uint32_t b) {  // from the front's border to that of the back
-    shapes::add_triangle(soup, a, n + b, b);
-    shapes::add_triangle(soup, a, n + a, n + b);
-  };
-  for (uint32_t i = 0; i < 24; ++i) {
-    wall(i, i + 1), wall(24 * 25 + i + 1, 24 * 25 + i);
-    wall((i + 1) * 25, i * 25), wall(i * 25 + 24, (i + 1) * 25 + 24);
-  }
-  Attribute uv{"uv", NumberType::f64, 2, {}, AttributeDomain::corner};
-  for (const auto& t : soup.triangles) {
-    const bool is_right =
-        soup.vertices[t[0]].x + soup.vertices[t[1]].x + soup.vertices[t[2]].x > 0;  // the seam is the plane x = 0
-    for (const uint32_t v : t)
-      uv.values.insert(uv.values.end(), {soup.vertices[v].x + 10 * is_right, soup.vertices[v].z + soup.vertices[v].y});
-  }
-  soup.attributes.push_back(std::move(uv));
+  const TriangleSoup soup = slab_with_seam();
   RemeshOptions options = with_field(1200);
   options.features.creases = Features::Creases::off;
   const RemeshResult result = meshed(soup, options);
   CHECK(result.mesh.vertices.size() == 1200);
   CHECK(result.report.features.seams > 0);
   CHECK(result.report.features.kept);
-  double over = 0;
-  for (const auto& t : result.mesh.triangles) {
-    double left = 0, right = 0;
-    for (const uint32_t v : t) left = std::min(left, result.mesh.vertices[v].x), right = std::max(right, result.mesh.vertices[v].x);
-    over = std::max(over, std::min(-left, right));
-  }
-  CHECK(over < .005);
+  CHECK(farthest_across_seam(result.mesh) < .005);
   CHECK(result.report.sizing.edge_error_mean < .12);
 }
 
@@ -248,6 +259,36 @@ TEST_CASE("sized parts: both fits and even areas keep creases and the count", "[
         const RemeshResult result = meshed(cube(), options);
         CHECK(result.mesh.vertices.size() == 700);
         CHECK(result.report.features.kept);
+        CHECK(result.report.post.self_intersections == 0);
         CHECK(std::abs(volume(result.mesh) - 8) < .001);
+      }
+}
+
+TEST_CASE("sized parts: both fits, even areas and adaptivity keep borders and seams", "[sizing][borders][seams]") {
+  for (const Fit fit : {Fit::balanced, Fit::surface})
+    for (const bool uniform_area : {false, true})
+      for (const int adaptivity : {0, 1}) {
+        RemeshOptions options;
+        options.vertices = 600;
+        options.fit = fit;
+        options.uniform_area = uniform_area;
+        options.adaptivity = adaptivity;
+        options.features.creases = Features::Creases::off;
+        const RemeshResult slab = meshed(slab_with_seam(), options);
+        CHECK(slab.mesh.vertices.size() == 600);
+        CHECK(slab.report.features.kept);
+        CHECK(slab.report.post.self_intersections == 0);
+        CHECK(farthest_across_seam(slab.mesh) < .005);
+        options.boundary = Boundary::keep;
+        options.closing_vox = 0;
+        const RemeshResult open = meshed(square(24), options);
+        CHECK(open.mesh.vertices.size() == 600);
+        CHECK(open.report.features.kept);
+        CHECK(open.report.post.self_intersections == 0);
+        CHECK(check_mesh(open.mesh).boundary_loops == 1);
+        double area = 0;
+        for (const auto& t : open.mesh.triangles)
+          area += triangle_area(open.mesh.vertices[t[0]], open.mesh.vertices[t[1]], open.mesh.vertices[t[2]]);
+        CHECK(std::abs(area - 4) < .002);  // a rim that is rounded off takes part of it
       }
 }
