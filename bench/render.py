@@ -22,7 +22,9 @@ def read_mesh(path):
             if words[:1] == ["element"]:
                 rows.append((words[1], int(words[2]), []))
             elif words[:2] == ["property", "list"]:
-                rows[-1][2].extend([("n", "u1"), ("corner", "<i4", 3)])
+                length = {"texcoord": 6, "normals": 9}.get(words[4], 3)  # of a triangle
+                name = "corner" if length == 3 else words[4]
+                rows[-1][2].extend([("count of " + name, "u1"), (name, types[words[3]], length)])
             elif words[:1] == ["property"]:
                 rows[-1][2].append((words[2], types[words[1]]))
         at = 0
