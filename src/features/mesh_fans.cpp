@@ -2,7 +2,6 @@
 #include "features/mesh_fans.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <string>
@@ -13,25 +12,7 @@
 namespace isoshell {
 namespace {
 
-struct HalfEdge {
-  uint64_t edge;
-  uint32_t number;
-};
-
 uint32_t start_of(const MeshTriangles& triangles, uint32_t h) { return triangles[h / 3][h % 3]; }
-uint32_t next_in_triangle(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-
-std::vector<HalfEdge> sorted_half_edges(const MeshTriangles& triangles) {
-  std::vector<HalfEdge> out(3 * triangles.size());
-  tbb::parallel_for(size_t(0), out.size(), [&](size_t i) {
-    const auto h = uint32_t(i);
-    out[i] = {edge_key(start_of(triangles, h), start_of(triangles, next_in_triangle(h))), h};
-  });
-  tbb::parallel_sort(out.begin(), out.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.number < b.number;
-  });
-  return out;
-}
 
 [[noreturn]] void refuse_edge(uint64_t edge, const std::string& what) {
   throw Error(ErrorCode::usage, "features",
@@ -58,7 +39,7 @@ uint32_t number_sets(std::vector<uint32_t>& parent) {
 }  // namespace
 
 MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint64_t>& cut_edges) {
-  const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
+  const std::vector<ListedHalfEdge> edges = sorted_half_edges(triangles);
   std::vector<char> has_cut(size_t(vertices), 0);
   for (const uint64_t edge : cut_edges) has_cut[edge >> 32] = has_cut[uint32_t(edge)] = 1;
   const auto is_cut = [&](uint64_t edge) {

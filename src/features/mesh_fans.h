@@ -5,12 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/half_edge_list.h"
+
 namespace isoshell {
 
 using MeshTriangles = std::vector<std::array<uint32_t, 3>>;
-
-/// The two ends of an edge, in no direction.
-inline uint64_t edge_key(uint32_t u, uint32_t v) { return u < v ? uint64_t(u) << 32 | v : uint64_t(v) << 32 | u; }
 
 /// Corner 3 t + i is corner i of triangle t. Half-edge 3 t + i runs from there to the next corner.
 struct MeshFans {

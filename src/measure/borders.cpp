@@ -1,14 +1,14 @@
 #include "isoshell/borders.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <tuple>
 #include <vector>
 
+#include "core/half_edge_list.h"
+#include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "isoshell/buffer.h"
@@ -17,29 +17,6 @@
 
 namespace isoshell {
 namespace {
-
-/// Half-edge 3 t + i runs from corner i of triangle t to the next one.
-struct HalfEdge {
-  uint32_t smaller_end, larger_end, number;
-};
-uint32_t next_in_triangle(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-
-std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
-  std::vector<HalfEdge> halves;
-  halves.reserve(3 * mesh.triangles.size());
-  for (uint32_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
-    const uint32_t u = mesh.triangles[h / 3][h % 3], v = mesh.triangles[h / 3][(h + 1) % 3];
-    if (u >= mesh.vertices.size())
-      throw Error(
-          ErrorCode::usage, "borders",
-          "a triangle names vertex " + std::to_string(u) + "; there are " + std::to_string(mesh.vertices.size()));
-    halves.push_back({std::min(u, v), std::max(u, v), h});
-  }
-  tbb::parallel_sort(halves.begin(), halves.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.smaller_end, a.larger_end, a.number) < std::tie(b.smaller_end, b.larger_end, b.number);
-  });
-  return halves;
-}
 
 struct Borders {
   std::vector<std::array<uint32_t, 3>> segments;  ///< triangles without area, which a grid of triangles takes
@@ -51,7 +28,8 @@ struct Borders {
 /// Corners are joined over edges of two triangles, to fans, and along border edges: each set is a loop then.
 Borders borders_of(const TriangleMesh& mesh) {
   Borders borders;
-  const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+  require_indices(mesh.triangles, mesh.vertices.size(), "borders");
+  const std::vector<ListedHalfEdge> halves = sorted_half_edges(mesh.triangles);
   Buffer<uint32_t> parent(int64_t(halves.size()));
   for (int64_t c = 0; c < parent.size(); ++c) parent[c] = uint32_t(c);
   const auto corner_at = [&](uint32_t h, uint32_t v) {
@@ -59,8 +37,8 @@ Borders borders_of(const TriangleMesh& mesh) {
   };
   std::vector<uint32_t> border_corners;
   for (size_t i = 0, end; i < halves.size(); i = end) {
-    const uint32_t u = halves[i].smaller_end, v = halves[i].larger_end;
-    for (end = i + 1; end < halves.size() && halves[end].smaller_end == u && halves[end].larger_end == v; ++end)
+    const uint32_t u = halves[i].smaller_end(), v = halves[i].larger_end();
+    for (end = i + 1; end < halves.size() && halves[end].edge == halves[i].edge; ++end)
       for (const uint32_t at : {u, v})
         join(parent.view(), corner_at(halves[i].number, at), corner_at(halves[end].number, at));
     if (end - i > 1) continue;
