@@ -9,7 +9,7 @@ namespace isoshell {
 namespace {
 
 /// Twice the tangent of half the turn from one direction to the other, along the axis.
-WorldPoint turn_between(const WorldPoint& before, const WorldPoint& after) {
+WorldPoint turn_tangent(const WorldPoint& before, const WorldPoint& after) {
   constexpr double kLeastCosine = 1e-3;  // above: -1
   const double scale = std::sqrt(length_sq(before) * length_sq(after));
   if (!(scale > 0)) return {};
@@ -31,7 +31,7 @@ TurnSums sum_turns(const std::vector<WorldPoint>& position, const CurvePath& pat
     WorldPoint turn{};
     if (path.is_loop || (k > 0 && k + 1 < n)) {
       const WorldPoint& here = position[path.vertex[k]];
-      turn = turn_between(here - position[path.vertex[(k + n - 1) % n]], position[path.vertex[(k + 1) % n]] - here);
+      turn = turn_tangent(here - position[path.vertex[(k + n - 1) % n]], position[path.vertex[(k + 1) % n]] - here);
     }
     sums.at.push_back(path.at[k] + double(i / n) * path.length);
     sums.sum.push_back(sums.sum.back() + turn);

@@ -11,7 +11,7 @@ constexpr double kLeastTurn = 0.35;  ///< an edge length: a circle of three edge
 constexpr double kMostLeft = 0.5;    ///< of all turns, once those of a window are summed
 
 /// Along the axis, as long as the distance between the two directions.
-WorldPoint turn_between(const WorldPoint& before, const WorldPoint& after) {
+WorldPoint turn_chord(const WorldPoint& before, const WorldPoint& after) {
   const WorldPoint axis = cross(before, after);
   const double a = length(before), b = length(after), size = length(axis);
   if (!(a > 0 && b > 0 && size > 0)) return {0, 0, 0};
@@ -30,7 +30,7 @@ bool is_jagged(const std::vector<WorldPoint>& position, double edge_length, cons
     }
     const WorldPoint& here = position[path.vertex[i]];
     const WorldPoint turn =
-        turn_between(here - position[path.vertex[(i + n - 1) % n]], position[path.vertex[(i + 1) % n]] - here);
+        turn_chord(here - position[path.vertex[(i + n - 1) % n]], position[path.vertex[(i + 1) % n]] - here);
     all += length(turn);
     sum = sum + turn;
   }
