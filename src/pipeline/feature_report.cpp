@@ -21,22 +21,6 @@ double length_of(const FeatureMesh& mesh, const FeatureCurve& curve) {
   return path.length;
 }
 
-/// The patch of every triangle of the joined mesh: patches share vertices there, but no triangle has two.
-std::vector<uint32_t> patches_of(const CutSurface& cut, const DualMesh& open, const SeedSet& seeds,
-                                 const Buffer<uint32_t>& vertex_of) {
-  if (cut.surface.patch.empty()) return std::vector<uint32_t>(size_t(open.triangles.size()), 0);
-  std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
-  for (const TriangleIndices& t : open.triangles) {
-    std::array<uint32_t, 3> joined{vertex_of[t.a], vertex_of[t.b], vertex_of[t.c]};
-    std::rotate(joined.begin(), std::min_element(joined.begin(), joined.end()), joined.end());
-    triangles.push_back({joined, cut.surface.patch[seeds.home[t.a]]});
-  }
-  std::sort(triangles.begin(), triangles.end());
-  std::vector<uint32_t> patch;
-  for (const auto& t : triangles) patch.push_back(t.second);
-  return patch;
-}
-
 }  // namespace
 
 const char* name_of(CurveKind kind) {
@@ -120,26 +104,6 @@ void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const s
   }
   features.given_up = why;
   features.patches = features.vertices = features.segments = features.border_loops = 0;
-}
-
-MeshFeatures features_of(const CutSurface& cut, const SeededMesh& made, const JoinedMesh& joined) {
-  const OnHost<DualMesh> open(made.mesh);
-  const OnHost<SeedSet> seeds(made.seeds);
-  MeshFeatures found;
-  found.patch = patches_of(cut, *open, *seeds, joined.vertex_of);
-  std::vector<uint32_t> vertex_at(cut.copies_first.size() - 1, kNone);  // per place
-  for (int64_t s = 0; s < seeds->fixed.count; ++s) vertex_at[cut.place[seeds->home[s]]] = joined.vertex_of[s];
-  for (const CutCurve& curve : cut.curves)
-    for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < curve.seeds.size(); ++i) {
-      const uint32_t u = vertex_at[curve.place[curve.seeds[i]]],
-                     v = vertex_at[curve.place[curve.seeds[(i + 1) % curve.seeds.size()]]];
-      found.curve_edges.push_back({{std::min(u, v), std::max(u, v)}, curve.curve});
-    }
-  std::sort(found.curve_edges.begin(), found.curve_edges.end(),
-            [](const MeshCurveEdge& a, const MeshCurveEdge& b) { return a.vertex < b.vertex; });
-  for (int64_t p = 0; p < cut.corner_count; ++p) found.corners.push_back(vertex_at[size_t(p)]);
-  std::sort(found.corners.begin(), found.corners.end());
-  return found;
 }
 
 }  // namespace isoshell

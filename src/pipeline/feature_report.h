@@ -26,7 +26,4 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
 /// Says that none of the curves is kept, and warns.
 void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why);
 
-/// The patches and curves of a mesh whose fixed seeds are on the curves of the cut surface.
-MeshFeatures features_of(const CutSurface& cut, const SeededMesh& made, const JoinedMesh& joined);
-
 }  // namespace isoshell

@@ -15,6 +15,7 @@
 #include "features/halve_segments.h"
 #include "features/separate_fans.h"
 #include "features/weld_for_features.h"
+#include "features/widen_angles.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
@@ -184,6 +185,16 @@ std::string mesh_patches(const Prepared& p, const CutSurface& cut, SeededMesh& m
   return std::to_string(report.post.self_intersections) + " pairs of triangles would intersect";
 }
 
+/// The patches put together, with better angles beside curves; it intersects itself no more than before.
+JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made,
+                               const RemeshReport& report, Context& context) {
+  const bool may_cross = report.post.self_intersections > 0;  // where the input does
+  const auto is_clean = [&](const DualMesh& mesh) {
+    return may_cross ? count_new_crossings(p, mesh, context) == 0 : crossing_corners(mesh, {}).empty();
+  };
+  return join_and_widen(cut, made, is_clean, context);
+}
+
 /// With more seeds on the curves near triangles that intersect; null where there is no curve.
 std::shared_ptr<const CutSurface> with_shorter_segments(const CutSurface& cut, const SeededMesh& made) {
   const OnHost<SeedSet> seeds(made.seeds);
@@ -343,6 +354,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
                                                 RemeshReport& report, Context& context) {
   std::shared_ptr<const CutSurface> cut = p.cut;
   std::optional<TriangleMesh> mesh;
+  JoinedPatches joined;
   const std::vector<LostCurve>& if_lost = p.cut->if_lost;
   give_up_if_refused(report, if_lost, [&] {
     std::string why = mesh_patches(p, *cut, made, options.optimize, report, context);
@@ -354,9 +366,9 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
       why = mesh_patches(p, *cut, made, options.optimize, report, context);
     }
     if (!why.empty()) return give_up(report, if_lost, why);
-    const JoinedMesh joined = join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed);
+    joined = timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, report, context); });
     mesh = to_world(joined.mesh, p.surface.frame);
-    mesh->features = features_of(*cut, made, joined);
+    mesh->features = std::move(joined.features);
     part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
     if (check_mesh(*mesh).is_manifold_with(report.features.border_loops)) return;
     mesh.reset();
@@ -369,8 +381,8 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
   report.sheet.bridged_vertices = 0;
   flag_caps(p, *mesh, report.gaps);
-  measure_edges(*cut, made.seeds, made.mesh, report.sizing);
-  report.features.vertices = count_places(OnHost(made.seeds)->fixed);
+  measure_edges(*cut, joined, report.sizing);
+  report.features.vertices = joined.on_curves;
   report.features.segments = int64_t(mesh->features.curve_edges.size());
   report.features.kept = report.post_done = true;
   return mesh;

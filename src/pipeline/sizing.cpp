@@ -127,9 +127,9 @@ void smooth_lengths(int64_t vertices, int64_t slope_q16, Sheet& sheet, Context& 
   sheet.lengths = limit_edge_lengths(sheet, std::move(smooth.at), slope_q16, context);
 }
 
-void measure_edges(const SurfaceMesh& surface, double voxel_size, double edge_of_length, const SeedSet& seeds,
-                   const DualMesh& mesh, SizingReport& report) {
-  const Buffer<uint32_t> length = surface.lengths.at.to_host(), home = seeds.home.to_host();
+void measure_edges(const SurfaceMesh& surface, double voxel_size, double edge_of_length,
+                   const Buffer<uint32_t>& home_of_vertex, const DualMesh& mesh, SizingReport& report) {
+  const Buffer<uint32_t> length = surface.lengths.at.to_host(), home = home_of_vertex.to_host();
   const Buffer<PointQ8> position = mesh.position.to_host();
   const Buffer<TriangleIndices> triangles = mesh.triangles.to_host();
   const double world = voxel_size / kOneVoxelQ8 * edge_of_length;
@@ -215,12 +215,12 @@ void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mes
                    Context& context) {
   if (sheet.lengths.at.empty()) return;
   const double edge_of_length = cell_of_length(sheet, seeds.size(), context) / kCellOfEdge;
-  measure_edges(sheet, sheet.frame.voxel_size, edge_of_length, seeds, mesh, report);
+  measure_edges(sheet, sheet.frame.voxel_size, edge_of_length, seeds.home, mesh, report);
 }
 
-void measure_edges(const CutSurface& cut, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report) {
+void measure_edges(const CutSurface& cut, const JoinedPatches& made, SizingReport& report) {
   if (cut.is_asked && !cut.surface.lengths.at.empty())
-    measure_edges(cut.surface, cut.voxel_size, 1, seeds, mesh, report);
+    measure_edges(cut.surface, cut.voxel_size, 1, made.home, made.mesh, report);
 }
 
 }  // namespace isoshell

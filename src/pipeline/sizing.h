@@ -2,7 +2,7 @@
 // grid carries and by how fast lengths may grow.
 #pragma once
 
-#include "features/cut_surface.h"
+#include "features/patch_mesh.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
@@ -29,6 +29,6 @@ double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Contex
 /// is not asked for lengths have no report, though its creases may make them vary.
 void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,
                    Context& context);
-void measure_edges(const CutSurface& cut, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report);
+void measure_edges(const CutSurface& cut, const JoinedPatches& made, SizingReport& report);
 
 }  // namespace isoshell

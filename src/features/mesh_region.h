@@ -1,0 +1,88 @@
+// A few triangles of a result with curves, to be changed and measured on their own.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/world_vector.h"
+#include "features/cut_surface.h"
+
+namespace isoshell {
+
+/// A vertex of the result, where it sits on the cut surface.
+struct RegionVertex {
+  enum class Kind : uint8_t { corner, on_curve, free };
+  Kind kind = Kind::free;
+  bool is_inner = true;      ///< all its triangles are in the region: what is not stays as it is
+  WorldPoint position;       ///< whole steps of 1/256 voxel
+  uint32_t home = 0;         ///< vertex of the surface; off the free ones a copy of their place
+  uint32_t curve = 0;        ///< that a vertex is on, of CutSurface::curves
+  size_t at = 0;             ///< its place on it
+  uint32_t number = kNoOne;  ///< in the result; none of what was put in
+  static constexpr uint32_t kNoOne = ~uint32_t(0);
+};
+
+struct RegionTriangle {
+  std::array<uint32_t, 3> corner;
+  std::array<uint32_t, 3> curve;  ///< that the edge from corner i to the next is on; kNone off curves
+  uint32_t patch = 0;
+};
+
+/// Changes keep the topology, the patches and the curves; no edge comes to be there twice. A change that cannot be made
+/// leaves the region as it was. Costs: a look at all triangles each.
+class MeshRegion {
+ public:
+  MeshRegion(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles);
+
+  /// 0 where no angle is below 36 degrees and the triangles follow surface and curves; rises steeply below.
+  double cost() const;
+  /// Triangles with an angle below 30 degrees.
+  int64_t poor() const;
+  /// Of the smallest angle, or of 30 degrees where that is less.
+  double worst_sine() const;
+  /// Puts a vertex, the last one then, into an edge, where that is nearest to a point.
+  bool split(uint32_t u, uint32_t v, const WorldPoint& near);
+  /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.
+  bool collapse(uint32_t gone, uint32_t into);
+  /// Flips edges and moves vertices of triangles that cost something, while that costs less.
+  void relax();
+
+  const std::vector<RegionVertex>& vertices() const { return vertices_; }
+  const std::vector<RegionTriangle>& triangles() const { return triangles_; }
+
+ private:
+  /// The edge from corner `edge` of a triangle to the next.
+  struct Side {
+    size_t triangle, edge;
+  };
+  double sine_of(const RegionTriangle& t) const;
+  double cost_of(const RegionTriangle& t) const;
+  double cosine_to_surface(const RegionTriangle& t) const;
+  void find_costs();
+  std::vector<size_t> triangles_of(uint32_t v) const;
+  double cost_of_chord(uint32_t u, uint32_t v, uint32_t curve) const;
+  double cosine_at(const RegionVertex& v, uint32_t patch, const WorldPoint& n) const;
+  uint32_t patch_of(uint32_t vertex) const;
+  uint32_t copy_in(uint32_t home, uint32_t patch) const;
+  std::array<size_t, 2> span(uint32_t u, uint32_t v, uint32_t curve) const;
+  size_t place_on(const RegionVertex& v, uint32_t curve, size_t other) const;
+  double edge_length_at(uint32_t home) const;
+  std::vector<Side> sides_of(uint32_t u, uint32_t v) const;
+  std::vector<uint32_t> neighbours_of(uint32_t v) const;
+  RegionVertex vertex_between(uint32_t u, uint32_t v, uint32_t curve, uint32_t patch, const WorldPoint& near) const;
+  std::vector<RegionVertex> places_for(uint32_t v) const;
+  bool flip(size_t triangle, size_t edge);
+  bool move(uint32_t v);
+
+  const CutSurface* cut_;
+  std::vector<RegionVertex> vertices_;
+  std::vector<RegionTriangle> triangles_;
+  std::vector<double> costs_;  ///< per triangle
+  double follows_;             ///< cosine between normals of triangles and surface, below which it costs
+};
+
+constexpr double kPoorSine = 0.5;  ///< of 30 degrees
+/// The sine of the smallest angle of a triangle.
+double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c);
+
+}  // namespace isoshell

@@ -1,0 +1,78 @@
+// The joined mesh of patches, to be changed region by region.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "features/mesh_region.h"
+#include "isoshell/triangle_mesh.h"
+
+namespace isoshell {
+
+/// The mesh of patches put together, and what its vertices and edges lie on.
+struct JoinedPatches {
+  DualMesh mesh;
+  Buffer<uint32_t> home;  ///< per vertex one of the surface, one of the copies where it has several
+  MeshFeatures features;
+  int64_t on_curves = 0;  ///< vertices on curves and corners
+};
+
+class PatchMesh {
+ public:
+  PatchMesh(const CutSurface& cut, const SeededMesh& made);
+
+  /// Triangles with an angle below 30 degrees, the worst first.
+  std::vector<uint32_t> poor_triangles() const;
+  /// Which edges are split and collapsed: those at the corners of a triangle, or all that are two rings around it.
+  enum class Reach { corners, rings };
+  /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
+  /// Result: whether anything was changed. The same for every number of threads.
+  bool improve(std::vector<uint32_t> triangles, Reach reach);
+  /// Collapses or splits edges until there are as many vertices as at first. False where that spoils triangles.
+  bool meet_count();
+
+  JoinedPatches joined() const;
+
+ private:
+  /// Triangles around some vertices, the first ones of the region.
+  struct Cutout {
+    std::vector<uint32_t> triangles;  ///< of the mesh
+    MeshRegion region;
+  };
+  struct Change {
+    enum { relax, split, collapse } what;
+    uint32_t u, v;
+  };
+
+  void list_vertices(const SeedSet& seeds, const JoinedMesh& joined);
+  void list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined);
+  uint32_t curve_between(uint32_t u, uint32_t v) const;
+  uint32_t whole_curve(uint32_t from, uint32_t to) const;
+
+  bool is_gone(const RegionTriangle& t) const { return t.corner[0] == t.corner[1]; }
+  double sine_of(uint32_t triangle) const;
+  bool is_edge(uint32_t u, uint32_t v) const;
+  int64_t surplus() const { return count_ - first_count_; }
+  std::vector<std::pair<double, uint64_t>> edges_by_length() const;
+
+  std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
+  Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;
+  std::vector<uint32_t> take_apart(std::vector<uint32_t>& triangles) const;
+  void put_back(const Cutout& cutout, const MeshRegion& region);
+
+  static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
+  static bool apply(MeshRegion& region, const Change& change);
+  static double cost_after(const MeshRegion& start, const Change& change);
+  static MeshRegion changed(MeshRegion region, const Change& change);
+  static bool best_change(const MeshRegion& start, Reach reach, Change& best);
+
+  const CutSurface* cut_;
+  std::vector<RegionVertex> vertices_;
+  std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
+  std::vector<char> is_hopeless_[2];                 ///< by reach, per triangle: nothing changed since it was tried
+  std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
+  std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
+  int64_t count_ = 0, first_count_ = 0;
+};
+
+}  // namespace isoshell
