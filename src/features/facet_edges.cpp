@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kLeastDegrees = 4, kFlatDegrees = 0.5;
 constexpr double kNarrowCosine = 0.866;
-constexpr int64_t kMostAround = 64;  ///< edges around a vertex: more leave less than 30 degrees between them
-constexpr double kLeastWidth = 1.1;  ///< of h
+constexpr int64_t kMostAround = 64;   ///< edges around a vertex: more leave less than 30 degrees between them
+constexpr double kLeastWidth = 0.85;  ///< of h
 
 /// Per edge whether facets end there: it turns, or a curve is there.
 std::vector<uint8_t> find_ends(const MeshEdges& edges, const std::vector<WorldPoint>& normals,

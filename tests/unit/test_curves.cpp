@@ -248,7 +248,7 @@ TEST_CASE("curves: a cylinder has two rims, and sides where they turn by more th
       INFO(layers << " layers, edge length " << h);
       for (const uint32_t segments : {12, 16, 24, 32, 64}) {
         INFO(segments << " segments");
-        const bool is_wide = 2 * std::sin(kTau / 2 / segments) >= 1.1 * h;
+        const bool is_wide = 2 * std::sin(kTau / 2 / segments) >= 0.85 * h;
         const auto expected = is_wide ? only_creases(3 * segments, 0, 2 * segments) : only_creases(2, 2, 0);
         CHECK(counts_of(cylinder(segments, layers, 3), h) == expected);
         CHECK(counts_of(turned(cylinder(segments, layers, 3)), h) == expected);
