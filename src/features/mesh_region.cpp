@@ -159,8 +159,8 @@ size_t MeshRegion::place_on(const RegionVertex& v, uint32_t curve, size_t other)
   return c.place.front() == cut_->place[v.home] ? 0 : last;
 }
 
-/// The places between two vertices that follow each other on a curve, the shorter way around a loop; beyond its last one
-/// it goes on with the first.
+/// The places between two vertices that follow each other on a curve, the shorter way around a loop; beyond its last
+/// one it goes on with the first.
 std::array<size_t, 2> MeshRegion::span(uint32_t u, uint32_t v, uint32_t curve) const {
   const RegionVertex &a = vertices_[u], &b = vertices_[v];
   const CutCurve& c = cut_->curves[curve];
