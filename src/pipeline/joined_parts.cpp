@@ -7,6 +7,7 @@
 #include "features/weld_for_features.h"
 #include "isoshell/readable.h"
 #include "pipeline/timed.h"
+#include "repair/join_solids.h"
 
 namespace isoshell {
 namespace {
@@ -26,8 +27,9 @@ void warn(const WithoutWalls& found, RemeshReport& report) {
 std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, RemeshReport& report,
                                       Context& context) {
   const InputTopology& given = measured.topology;
-  if (measured.dirt.nonmanifold_edges == 0 || given.boundary_loops > 0) return {};
-  return timed(report, "mend", context, [&]() -> std::optional<JoinedParts> {
+  if (given.boundary_loops > 0) return {};
+  if (measured.dirt.nonmanifold_edges == 0) return join_crossing_parts(soup, given, report, context);
+  std::optional<JoinedParts> without_walls = timed(report, "mend", context, [&]() -> std::optional<JoinedParts> {
     std::optional<WithoutWalls> found = drop_inner_walls(weld_for_features(soup));
     if (!found || found->interfaces.empty()) return {};
     JoinedParts joined;
@@ -38,6 +40,22 @@ std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopolo
     if (!joined.topology.closed || !joined.topology.oriented) return {};
     warn(*found, report);
     joined.interfaces = std::move(found->interfaces);
+    return joined;
+  });
+  return without_walls ? std::move(without_walls) : join_crossing_parts(soup, given, report, context);
+}
+
+std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given,
+                                               RemeshReport& report, Context& context) {
+  if (given.boundary_loops > 0 || (given.components < 2 && given.genus >= 0)) return {};
+  return timed(report, "unite", context, [&]() -> std::optional<JoinedParts> {
+    std::optional<repair::JoinedSolids> solids = repair::join_solids(soup, context);
+    if (!solids) return {};
+    JoinedParts joined;
+    joined.soup = std::move(solids->soup);
+    joined.cut_faces = solids->cut_faces;
+    joined.topology = measure_topology(joined.soup, context).topology;
+    if (!joined.topology.closed || !joined.topology.oriented) return {};
     return joined;
   });
 }

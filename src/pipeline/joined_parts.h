@@ -1,4 +1,4 @@
-// Parts that share walls.
+// Parts that share walls, or pass through each other.
 #pragma once
 
 #include <array>
@@ -9,15 +9,20 @@
 
 namespace isoshell {
 
-/// The surface of parts that share walls, without the walls.
+/// The surface of parts that share walls, without the walls; or of closed parts that pass through or touch each other.
 struct JoinedParts {
   TriangleSoup soup;
   InputTopology topology;
   std::vector<std::array<WorldPoint, 2>> interfaces;  ///< edges where walls met the surface
+  int64_t cut_faces = 0;
 };
 
-/// None where there are no such walls, or where the surface is not closed without them. Warns of what is left out.
+/// None where there are no such parts, or where the surface is not closed. Warns of walls that are left out.
 std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, RemeshReport& report,
                                       Context& context);
+
+/// Only of parts that pass through or touch each other (see join_solids.h).
+std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given,
+                                               RemeshReport& report, Context& context);
 
 }  // namespace isoshell

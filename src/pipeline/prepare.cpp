@@ -359,15 +359,22 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   InputTopology input = given;
   const auto measure = [&] { return measure_topology(*current, context).topology; };
   PatchSource source{&soup, {}};
+  int64_t cut_faces = 0;
   if (std::optional<JoinedParts> joined = join_parts(soup, measured, report, context)) {
     changed = std::move(joined->soup);
     source.interfaces = std::move(joined->interfaces);
+    cut_faces = joined->cut_faces;
     current = &changed;
     input = joined->topology;
   } else if (!given.closed || !given.oriented) {
     changed = timed(report, "mend", context, [&] { return repaired(soup, given, options, report.mend); });
     current = &changed;
     input = timed(report, "topology", context, measure);
+    if (std::optional<JoinedParts> mended = join_crossing_parts(*current, input, report, context)) {
+      changed = std::move(mended->soup);
+      cut_faces = mended->cut_faces;
+      input = mended->topology;
+    }
   }
   if (input.closed && input.oriented && input.components > 1) {
     const UnionOptions union_options{options.outer_only, voxel_edge(*current, input, options) / 2};
@@ -380,6 +387,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
       if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
     }
   }
+  report.unite.cut_faces += cut_faces;
   Prepared prepared = prepare_on_best_grid(*current, input, source, options, report, context);
   report.input = given;
   return prepared;

@@ -1,0 +1,23 @@
+// Triangles between points and lines of a plane.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace isoshell {
+
+/// Coordinates from 0 to kLargestInPlane.
+struct PlanePoint {
+  int64_t x, y;
+};
+constexpr int64_t kLargestInPlane = int64_t(1) << 28;
+
+/// Fills what is inside of the closed lines among `lines` with triangles that turn to the left. Every line between two
+/// points is an edge of them; other edges are Delaunay. Decided exactly. None where two points are one, lines cross, or
+/// a point lies on a line. Cost: n sqrt n in the number of points.
+std::optional<std::vector<std::array<uint32_t, 3>>> triangulate_plane(
+    const std::vector<PlanePoint>& points, const std::vector<std::array<uint32_t, 2>>& lines);
+
+}  // namespace isoshell
