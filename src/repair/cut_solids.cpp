@@ -151,6 +151,7 @@ class Cutter {
       both.point.push_back({std::floor(on.x + .5), std::floor(on.y + .5), std::floor(on.z + .5)});
       both.origin.push_back(kNoFace);
     }
+    weld_points();
     by_edge_.resize(passes_.size());
     for (uint32_t i = 0; i < by_edge_.size(); ++i) by_edge_[i] = i;
     std::sort(by_edge_.begin(), by_edge_.end(), [&](uint32_t a, uint32_t b) {
@@ -158,9 +159,24 @@ class Cutter {
       return std::tie(p.edge, p.along, p.face) < std::tie(q.edge, q.along, q.face);
     });
   }
+  /// Edges that meet in a sharp corner may pass through a face at one place, to rounding.
+  void weld_points() {
+    const auto position = [&](uint32_t i) {
+      const WorldPoint& p = at(first_new_ + i);
+      return std::tuple(p.x, p.y, p.z);
+    };
+    std::vector<uint32_t> order(passes_.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+      return std::tuple(position(a), a) < std::tuple(position(b), b);
+    });
+    welded_.resize(order.size());
+    for (size_t i = 0; i < order.size(); ++i)
+      welded_[order[i]] = i > 0 && position(order[i]) == position(order[i - 1]) ? welded_[order[i - 1]] : first_new_ + order[i];
+  }
   uint32_t point_of(const Pass& p) const {
     const auto is_before = [](const Pass& a, const Pass& b) { return a.key() < b.key(); };
-    return first_new_ + uint32_t(std::lower_bound(passes_.begin(), passes_.end(), p, is_before) - passes_.begin());
+    return welded_[size_t(std::lower_bound(passes_.begin(), passes_.end(), p, is_before) - passes_.begin())];
   }
 
   /// New points on an edge, from one end to the other.
@@ -169,7 +185,8 @@ class Cutter {
     auto i = std::lower_bound(by_edge_.begin(), by_edge_.end(), edge,
                               [&](uint32_t p, const EdgeEnds& e) { return passes_[p].edge < e; });
     std::vector<uint32_t> found;
-    for (; i != by_edge_.end() && passes_[*i].edge == edge; ++i) found.push_back(first_new_ + *i);
+    for (; i != by_edge_.end() && passes_[*i].edge == edge; ++i) found.push_back(welded_[*i]);
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     if (from > to) std::reverse(found.begin(), found.end());
     return found;
   }
@@ -178,11 +195,13 @@ class Cutter {
     std::vector<std::pair<uint32_t, EdgeEnds>> lines;  // by face
     for (const Meeting& m : meetings_) {
       const uint32_t a = point_of(m.end[0]), b = point_of(m.end[1]);
+      if (a == b) continue;
       const EdgeEnds line{std::min(a, b), std::max(a, b)};
       for (const uint32_t f : m.face) lines.push_back({f, line});
       cut_.crossing.push_back(line);
     }
     std::sort(lines.begin(), lines.end());
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
     std::sort(cut_.crossing.begin(), cut_.crossing.end());
     cut_.crossing.erase(std::unique(cut_.crossing.begin(), cut_.crossing.end()), cut_.crossing.end());
     std::vector<std::array<uint32_t, 3>> faces;
@@ -202,10 +221,11 @@ class Cutter {
     return true;
   }
 
-  /// Every edge that is cut belongs to a face with a line, so faces without one stay whole.
   bool cut_face(uint32_t f, std::vector<EdgeEnds>& lines, std::vector<std::array<uint32_t, 3>>& faces) {
     const auto& corner = cut_.both.face[f];
-    if (lines.empty()) {
+    const bool is_whole = lines.empty() && points_on(corner[0], corner[1]).empty() &&
+                          points_on(corner[1], corner[2]).empty() && points_on(corner[2], corner[0]).empty();
+    if (is_whole) {
       faces.push_back(corner);
       return true;
     }
@@ -252,7 +272,7 @@ class Cutter {
   CutSolids cut_;
   std::vector<Meeting> meetings_;
   std::vector<Pass> passes_;  ///< by edge, then by face
-  std::vector<uint32_t> by_edge_;
+  std::vector<uint32_t> by_edge_, welded_;  ///< passes by edge, then along it; per pass its point
   uint32_t first_new_ = 0;
 };
 

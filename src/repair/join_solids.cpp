@@ -19,7 +19,7 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr int kMostTries = 4;
+constexpr int kMostTries = 8;
 constexpr double kMarginSteps = 1 << 12;
 constexpr uint64_t kSwellSteps = 192, kSwellMoreSteps = 256;  // at least, and less than that more
 constexpr int kJitterSteps = 3;
