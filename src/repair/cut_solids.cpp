@@ -133,7 +133,8 @@ class Cutter {
         is_generic = false;
         return;
       }
-      const double from = double(face[i] == u ? height[i] : height[j]), to = double(face[i] == u ? height[j] : height[i]);
+      const double from = double(face[i] == u ? height[i] : height[j]),
+                   to = double(face[i] == u ? height[j] : height[i]);
       passes.push_back({{u, v}, through, from / (from - to)});
     }
   }
@@ -142,8 +143,9 @@ class Cutter {
   void place_points() {
     for (const Meeting& m : meetings_) passes_.insert(passes_.end(), m.end.begin(), m.end.end());
     std::sort(passes_.begin(), passes_.end(), [](const Pass& a, const Pass& b) { return a.key() < b.key(); });
-    passes_.erase(std::unique(passes_.begin(), passes_.end(), [](const Pass& a, const Pass& b) { return a.key() == b.key(); }),
-                  passes_.end());
+    passes_.erase(
+        std::unique(passes_.begin(), passes_.end(), [](const Pass& a, const Pass& b) { return a.key() == b.key(); }),
+        passes_.end());
     Solid& both = cut_.both;
     first_new_ = uint32_t(both.point.size());
     for (const Pass& p : passes_) {
@@ -167,12 +169,12 @@ class Cutter {
     };
     std::vector<uint32_t> order(passes_.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-      return std::tuple(position(a), a) < std::tuple(position(b), b);
-    });
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return std::tuple(position(a), a) < std::tuple(position(b), b); });
     welded_.resize(order.size());
     for (size_t i = 0; i < order.size(); ++i)
-      welded_[order[i]] = i > 0 && position(order[i]) == position(order[i - 1]) ? welded_[order[i - 1]] : first_new_ + order[i];
+      welded_[order[i]] =
+          i > 0 && position(order[i]) == position(order[i - 1]) ? welded_[order[i - 1]] : first_new_ + order[i];
   }
   uint32_t point_of(const Pass& p) const {
     const auto is_before = [](const Pass& a, const Pass& b) { return a.key() < b.key(); };
@@ -271,7 +273,7 @@ class Cutter {
 
   CutSolids cut_;
   std::vector<Meeting> meetings_;
-  std::vector<Pass> passes_;  ///< by edge, then by face
+  std::vector<Pass> passes_;                ///< by edge, then by face
   std::vector<uint32_t> by_edge_, welded_;  ///< passes by edge, then along it; per pass its point
   uint32_t first_new_ = 0;
 };

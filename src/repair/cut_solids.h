@@ -23,7 +23,7 @@ struct Solid {
 struct CutSolids {
   Solid both;
   int64_t faces_of_first = 0;
-  int64_t cut_faces = 0;                         ///< of the two
+  int64_t cut_faces = 0;                          ///< of the two
   std::vector<std::array<uint32_t, 2>> crossing;  ///< edges where they cross, smaller end first, ascending
 };
 

@@ -37,9 +37,7 @@ class SliverMesh {
   bool is_gone(uint32_t f) const { return face_[f][0] == kGone; }
 
  private:
-  double edge_length(uint32_t f, size_t i) const {
-    return length(point_[face_[f][i]] - point_[face_[f][(i + 1) % 3]]);
-  }
+  double edge_length(uint32_t f, size_t i) const { return length(point_[face_[f][i]] - point_[face_[f][(i + 1) % 3]]); }
   size_t extreme_edge(uint32_t f, bool is_shortest) const {
     size_t best = 0;
     for (size_t i = 1; i < 3; ++i)

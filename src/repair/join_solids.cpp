@@ -105,9 +105,8 @@ bool is_closed(const std::vector<Corners>& faces) {
     for (size_t i = 0; i < 3; ++i) edges.push_back(uint64_t(f[i]) << 32 | f[(i + 1) % 3]);
   std::sort(edges.begin(), edges.end());
   if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
-  return std::all_of(edges.begin(), edges.end(), [&](uint64_t e) {
-    return std::binary_search(edges.begin(), edges.end(), e << 32 | e >> 32);
-  });
+  return std::all_of(edges.begin(), edges.end(),
+                     [&](uint64_t e) { return std::binary_search(edges.begin(), edges.end(), e << 32 | e >> 32); });
 }
 
 double six_volume(const std::vector<WorldPoint>& point, const std::vector<Corners>& faces) {
@@ -134,7 +133,8 @@ void swell(Solid& solid, const std::vector<WorldPoint>& position, const Steps& s
   std::vector<std::array<double, 6>> nn(solid.origin.size());
   std::vector<WorldPoint> n(solid.origin.size(), WorldPoint{0, 0, 0});
   for (const Corners& f : solid.face) {
-    const WorldPoint &a = position[solid.origin[f[0]]], &b = position[solid.origin[f[1]]], &c = position[solid.origin[f[2]]];
+    const WorldPoint &a = position[solid.origin[f[0]]], &b = position[solid.origin[f[1]]],
+                     &c = position[solid.origin[f[2]]];
     const WorldPoint doubled = doubled_area(a, b, c);
     const double area = length(doubled);
     if (!(area > 0)) continue;
@@ -148,9 +148,12 @@ void swell(Solid& solid, const std::vector<WorldPoint>& position, const Steps& s
   solid.point.resize(solid.origin.size());
   for (size_t v = 0; v < solid.point.size(); ++v) {
     const uint64_t bits = random_bits(seed, v);
-    const auto jitter = [&](int shift) { return double(int((bits >> shift) & 0xffff) % (2 * kJitterSteps + 1) - kJitterSteps); };
+    const auto jitter = [&](int shift) {
+      return double(int((bits >> shift) & 0xffff) % (2 * kJitterSteps + 1) - kJitterSteps);
+    };
     const WorldPoint p = steps.from(position[solid.origin[v]]) + double(by) * outward(nn[v], n[v]);
-    solid.point[v] = {std::floor(p.x + .5) + jitter(0), std::floor(p.y + .5) + jitter(16), std::floor(p.z + .5) + jitter(32)};
+    solid.point[v] = {std::floor(p.x + .5) + jitter(0), std::floor(p.y + .5) + jitter(16),
+                      std::floor(p.z + .5) + jitter(32)};
   }
 }
 

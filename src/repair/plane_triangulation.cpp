@@ -32,7 +32,8 @@ class PlaneTriangulation {
   explicit PlaneTriangulation(const std::vector<PlanePoint>& points)
       : point_(points), count_(uint32_t(points.size())), triangle_of_(points.size() + 4, 0) {
     constexpr int64_t kLow = -1, kHigh = kLargestInPlane + 1;
-    for (const PlanePoint& p : {PlanePoint{kLow, kLow}, PlanePoint{kHigh, kLow}, PlanePoint{kHigh, kHigh}, PlanePoint{kLow, kHigh}})
+    for (const PlanePoint& p :
+         {PlanePoint{kLow, kLow}, PlanePoint{kHigh, kLow}, PlanePoint{kHigh, kHigh}, PlanePoint{kLow, kHigh}})
       point_.push_back(p);
     triangle_.push_back({{count_, count_ + 1, count_ + 2}, {kNoTriangle, kNoTriangle, 1}});
     triangle_.push_back({{count_, count_ + 2, count_ + 3}, {0, kNoTriangle, kNoTriangle}});
@@ -87,7 +88,9 @@ class PlaneTriangulation {
       for (uint32_t t = 0; t < triangle_.size(); ++t)
         for (int i = 0; i < 3; ++i) {
           const Edge e{t, i};
-          if (triangle_[t].across[size_t(i)] == kNoTriangle || triangle_[t].is_line[size_t(i)] || !wants_flip(e) || !is_convex(e)) continue;
+          if (triangle_[t].across[size_t(i)] == kNoTriangle || triangle_[t].is_line[size_t(i)] || !wants_flip(e) ||
+              !is_convex(e))
+            continue;
           flip(e);
           is_changed = true;
         }
@@ -174,10 +177,9 @@ class PlaneTriangulation {
     const Quad q = quad(e);
     if (side(q.a, q.b, q.c) == 0) return true;
     const PlanePoint &a = point_[q.a], &b = point_[q.b], &c = point_[q.c], &d = point_[q.d];
-    const auto lifted = [&](const PlanePoint& p) {
-      return (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y);
-    };
-    return Int128(lifted(a)) * turn(d, b, c) + Int128(lifted(b)) * turn(d, c, a) + Int128(lifted(c)) * turn(d, a, b) > 0;
+    const auto lifted = [&](const PlanePoint& p) { return (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y); };
+    return Int128(lifted(a)) * turn(d, b, c) + Int128(lifted(b)) * turn(d, c, a) + Int128(lifted(c)) * turn(d, a, b) >
+           0;
   }
 
   /// Result: the ends of the new edge. The apex of both triangles is then their last corner.
@@ -186,8 +188,10 @@ class PlaneTriangulation {
     const Edge o = across(e);
     const PlaneTriangle t = triangle_[e.triangle], u = triangle_[o.triangle];
     const size_t bc = size_t(next(e.at)), ca = size_t(before(e.at)), ad = size_t(next(o.at)), db = size_t(before(o.at));
-    triangle_[e.triangle] = {{q.a, q.d, q.c}, {u.across[ad], o.triangle, t.across[ca]}, {u.is_line[ad], false, t.is_line[ca]}};
-    triangle_[o.triangle] = {{q.d, q.b, q.c}, {u.across[db], t.across[bc], e.triangle}, {u.is_line[db], t.is_line[bc], false}};
+    triangle_[e.triangle] = {
+        {q.a, q.d, q.c}, {u.across[ad], o.triangle, t.across[ca]}, {u.is_line[ad], false, t.is_line[ca]}};
+    triangle_[o.triangle] = {
+        {q.d, q.b, q.c}, {u.across[db], t.across[bc], e.triangle}, {u.is_line[db], t.is_line[bc], false}};
     turn_back(u.across[ad], o.triangle, e.triangle);
     turn_back(t.across[bc], e.triangle, o.triangle);
     note(e.triangle);
