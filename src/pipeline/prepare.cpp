@@ -388,6 +388,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
     }
   }
   report.unite.cut_faces += cut_faces;
+  if (cut_faces > 0 && report.unite.joined_components == 0) report.unite.joined_components = input.components;
   Prepared prepared = prepare_on_best_grid(*current, input, source, options, report, context);
   report.input = given;
   return prepared;
