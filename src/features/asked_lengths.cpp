@@ -33,13 +33,12 @@ std::vector<int64_t> smooth_turns(const FineMesh& mesh, const VertexGraph& graph
     tbb::parallel_for(size_t(0), turn.size(), [&](size_t v) {
       if (bool(is_on_path[v]) != is_last) return;
       int64_t sum = turn[v], count = 1, most = 0;
-      for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
-        const uint32_t u = graph.neighbour[size_t(i)];
-        if (is_on_path[u]) continue;
+      graph.for_each(int64_t(v), [&](uint32_t u, double) {
+        if (is_on_path[u]) return;
         sum += turn[u];
         ++count;
         most = std::max(most, turn[u]);
-      }
+      });
       next[v] = is_last ? most : sum / count;
     });
     turn = next;

@@ -37,7 +37,7 @@ PointQ8 rounded(const WorldPoint& p) {
 VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const CutOptions& options, Context& context) {
   const double e = fine.edge_length[0];
   for (int cut = 1;; ++cut) {
-    VertexGraph graph = find_vertex_graph(fine.triangles, fine.position.size());
+    VertexGraph graph = find_vertex_graph(fine);
     if (!options.asked.vary()) return graph;
     const size_t before = fine.position.size();
     ask_for_lengths(fine, graph, frame, options.asked, options.vertices, e);

@@ -2,13 +2,13 @@
 #include "features/edge_lengths.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <queue>
 
 #include "core/world_vector.h"
 #include "features/asked_lengths.h"
@@ -32,29 +32,13 @@ struct Limits {
 };
 
 /// The lengths asked for within the limits, and less where a shorter length is near.
-std::vector<double> graded(const FineMesh& mesh, const VertexGraph& graph, const Limits& limits, double longest) {
-  std::vector<double> length(limits.most.size());
-  using Entry = std::pair<double, uint32_t>;
-  std::vector<Entry> entries;
-  for (size_t v = 0; v < length.size(); ++v) {
+std::vector<double> graded(const VertexGraph& graph, const Limits& limits, double longest) {
+  std::vector<double> own(limits.most.size());
+  tbb::parallel_for(size_t(0), own.size(), [&](size_t v) {
     const double asked = limits.asked[v] * longest;
-    length[v] = std::clamp(limits.most[v], std::max(kShortest * asked, longest / kMostLengthRatio), asked);
-    if (length[v] < longest) entries.push_back({length[v], uint32_t(v)});
-  }
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue({}, std::move(entries));
-  while (!queue.empty()) {
-    const auto [l, v] = queue.top();
-    queue.pop();
-    if (l > length[v]) continue;
-    for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
-      const uint32_t u = graph.neighbour[size_t(i)];
-      const double most = l + limits.growth * std::sqrt(distance_sq(mesh.position[v], mesh.position[u]));
-      if (most >= length[u]) continue;
-      length[u] = most;
-      queue.push({most, u});
-    }
-  }
-  return length;
+    own[v] = std::clamp(limits.most[v], std::max(kShortest * asked, longest / kMostLengthRatio), asked);
+  });
+  return settled(graph, own, [&](double length, double way) { return length + limits.growth * way; });
 }
 
 /// Beside strips between two curves, or two parts of one, by their width.
@@ -118,14 +102,14 @@ void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vect
   if (is_even && std::all_of(limits.most.begin(), limits.most.end(), [&](double l) { return l >= e; })) return;
   for (double& asked : limits.asked) asked /= e;
   if (options.vertices == 0) {
-    mesh.edge_length = graded(mesh, graph, limits, e);
+    mesh.edge_length = graded(graph, limits, e);
     return;
   }
   // The root of the density of vertices, and so its inverse, is nearly linear in the longest length.
   const double wanted = 1 / std::sqrt(double(options.vertices));
   double longest = e, before = 0, before_reached = 0;
   for (int round = 0; round < kRounds; ++round) {
-    mesh.edge_length = graded(mesh, graph, limits, longest);
+    mesh.edge_length = graded(graph, limits, longest);
     const double reached = 1 / std::sqrt(vertices_of_lengths(mesh));
     if (std::abs(wanted / reached - 1) < kCloseEnough) return;
     const double slope = reached != before_reached ? (longest - before) / (reached - before_reached) : 0;

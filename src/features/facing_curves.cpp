@@ -1,11 +1,12 @@
 // See facing_curves.h.
 #include "features/facing_curves.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
-#include <tuple>
+#include <utility>
 
 #include "core/world_vector.h"
 #include "isoshell/voxel_set.h"
@@ -26,28 +27,15 @@ struct OnPath {
 /// Per vertex the vertex of a path that is nearest along edges, within reach; kNone beyond it. Of two that are as near
 /// the smaller one.
 std::vector<uint32_t> nearest_on_paths(const FineMesh& mesh, const VertexGraph& graph, double reach) {
-  std::vector<double> distance(mesh.position.size(), kFar);
-  std::vector<uint32_t> nearest(mesh.position.size(), kNone);
-  using Entry = std::tuple<double, uint32_t, uint32_t>;  // distance, nearest, vertex
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  const auto offer = [&](double way, uint32_t from, uint32_t v) {
-    if (std::tie(way, from) >= std::tie(distance[v], nearest[v])) return;
-    distance[v] = way;
-    nearest[v] = from;
-    queue.push({way, from, v});
-  };
+  using Nearest = std::pair<double, uint32_t>;  // distance, vertex
+  std::vector<Nearest> own(mesh.position.size(), Nearest{kFar, kNone});
   for (const CurvePath& path : mesh.paths)
-    for (const uint32_t v : path.vertex) offer(0, v, v);
-  while (!queue.empty()) {
-    const auto [way, from, v] = queue.top();
-    queue.pop();
-    if (std::tie(way, from) > std::tie(distance[v], nearest[v])) continue;
-    for (int64_t i = graph.first[v]; i < graph.first[v + 1]; ++i) {
-      const uint32_t u = graph.neighbour[size_t(i)];
-      const double there = way + std::sqrt(distance_sq(mesh.position[v], mesh.position[u]));
-      if (there <= reach) offer(there, from, u);
-    }
-  }
+    for (const uint32_t v : path.vertex) own[v] = {0, v};
+  const std::vector<Nearest> found = settled(graph, own, [&](const Nearest& from, double way) {
+    return from.first + way <= reach ? Nearest{from.first + way, from.second} : Nearest{kFar, kNone};
+  });
+  std::vector<uint32_t> nearest(found.size());
+  tbb::parallel_for(size_t(0), found.size(), [&](size_t v) { nearest[v] = found[v].second; });
   return nearest;
 }
 
@@ -114,18 +102,26 @@ class WaysAlongPaths {
 std::vector<FacingVertices> find_facing_vertices(const FineMesh& mesh, const VertexGraph& graph, double reach) {
   const std::vector<uint32_t> nearest = nearest_on_paths(mesh, graph, reach);
   const WaysAlongPaths ways(mesh);
-  std::vector<FacingVertices> found;
-  for (uint32_t u = 0; u < nearest.size(); ++u)
-    for (int64_t i = graph.first[u]; i < graph.first[u + 1]; ++i) {
-      const uint32_t v = graph.neighbour[size_t(i)], a = nearest[u], b = nearest[v];
-      if (v < u || a == kNone || b == kNone || a == b) continue;
+  const auto append_at = [&](uint32_t u, std::vector<FacingVertices>& found) {
+    graph.for_each(u, [&](uint32_t v, double) {
+      const uint32_t a = nearest[u], b = nearest[v];
+      if (v < u || a == kNone || b == kNone || a == b) return;
       const double way = ways.between(a, b);
-      if (length(mesh.position[b] - mesh.position[a]) >= kNarrow * way) continue;
+      if (length(mesh.position[b] - mesh.position[a]) >= kNarrow * way) return;
       const double gap = std::min(ways.straight_to(a, mesh.position[b], mesh.position),
                                   ways.straight_to(b, mesh.position[a], mesh.position));
       found.push_back({{a, b}, {u, v}, gap});
-    }
-  return found;
+    });
+  };
+  constexpr size_t kTogether = 1024;  // vertices that are looked at by one task
+  std::vector<std::vector<FacingVertices>> found((nearest.size() + kTogether - 1) / kTogether);
+  tbb::parallel_for(size_t(0), found.size(), [&](size_t task) {
+    for (size_t u = task * kTogether; u < std::min(nearest.size(), (task + 1) * kTogether); ++u)
+      append_at(uint32_t(u), found[task]);
+  });
+  std::vector<FacingVertices> all;
+  for (const auto& of_task : found) all.insert(all.end(), of_task.begin(), of_task.end());
+  return all;
 }
 
 double distance_to_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {

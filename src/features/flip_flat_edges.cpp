@@ -2,14 +2,12 @@
 #include "features/flip_flat_edges.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/world_vector.h"
-#include "features/mesh_fans.h"
+#include "features/edge_sides.h"
 #include "features/split_edges.h"
 #include "isoshell/voxel_set.h"
 
@@ -32,9 +30,12 @@ class FlatEdges {
   }
 
   void flip_all() {
+    std::vector<uint8_t> is_waiting(twin_.size(), 0);
+    tbb::parallel_for(uint32_t(0), uint32_t(twin_.size()),
+                      [&](uint32_t h) { is_waiting[h] = twin_[h] != kNone && h == canonical(h) && should_flip(h); });
     std::vector<uint32_t> waiting;
-    for (uint32_t h = 0; h < twin_.size(); ++h)
-      if (twin_[h] != kNone && h == canonical(h) && should_flip(h)) waiting.push_back(h);
+    for (uint32_t h = 0; h < is_waiting.size(); ++h)
+      if (is_waiting[h]) waiting.push_back(h);
     std::sort(waiting.begin(), waiting.end(), [&](uint32_t g, uint32_t h) {
       if (from(g) != from(h)) return is_before(at(from(g)), at(from(h)));
       return is_before(at(to(g)), at(to(h)));
@@ -61,19 +62,20 @@ class FlatEdges {
 
   /// Where the two triangles of an edge pass it in opposite directions, and no path does.
   void find_twins() {
-    std::vector<std::pair<uint64_t, uint32_t>> edges(twin_.size());
-    tbb::parallel_for(size_t(0), edges.size(), [&](size_t h) {
-      edges[h] = {edge_key(from(uint32_t(h)), to(uint32_t(h))), uint32_t(h)};
+    std::vector<uint8_t> is_on_path(mesh_.position.size(), 0);
+    for (const CurvePath& path : mesh_.paths)
+      for (const uint32_t v : path.vertex) is_on_path[v] = 1;
+    const EdgeSides sides = find_edge_sides(mesh_.triangles, mesh_.position.size());
+    tbb::parallel_for(uint32_t(0), uint32_t(mesh_.position.size()), [&](uint32_t u) {
+      for_each_edge_from(sides, u, [&](uint32_t v, View<const EdgeSide> on_edge) {
+        const uint32_t g = on_edge[0].half_edge, h = on_edge[on_edge.size - 1].half_edge;
+        if (on_edge.size != 2 || from(g) != to(h)) return;
+        if (is_on_path[u] && is_on_path[v] && std::binary_search(on_path_.begin(), on_path_.end(), edge_key(u, v)))
+          return;
+        twin_[g] = h;
+        twin_[h] = g;
+      });
     });
-    tbb::parallel_sort(edges.begin(), edges.end());
-    for (size_t first = 0, last = 0; first < edges.size(); first = last) {
-      while (last < edges.size() && edges[last].first == edges[first].first) ++last;
-      const uint32_t g = edges[first].second, h = edges[last - 1].second;
-      if (last - first != 2 || from(g) != to(h)) continue;
-      if (std::binary_search(on_path_.begin(), on_path_.end(), edges[first].first)) continue;
-      twin_[g] = h;
-      twin_[h] = g;
-    }
   }
 
   /// Whether the angles at c and d are more than 180 degrees together, and the edge between them would do as well and

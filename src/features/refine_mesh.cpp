@@ -99,27 +99,34 @@ class Filling {
   uint32_t first_new_;
 };
 
-constexpr size_t kTogether = 64;  ///< triangles that are filled by one task
+constexpr size_t kTogether = 256;  ///< triangles that are filled by one task
 
 /// Appends what the tasks made, in their order.
 void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
   const auto outside = uint32_t(mesh.position.size());
-  size_t vertices = outside, triangles = 0;
-  for (const Filling& f : fillings) vertices += f.inside.size(), triangles += f.triangles.size();
-  if (triangles > kNone / 3)
-    throw Error(ErrorCode::usage, "features",
-                "the surface takes " + std::to_string(triangles) + " triangles; at most " + std::to_string(kNone / 3) +
-                    " can be numbered: ask for longer edges");
-  mesh.position.reserve(vertices);
-  mesh.triangles.clear();
-  mesh.triangles.reserve(triangles);
+  std::vector<size_t> first_vertex{outside}, first_triangle{0};
   for (const Filling& f : fillings) {
-    const uint32_t shift = uint32_t(mesh.position.size()) - outside;
-    const auto moved = [&](uint32_t v) { return v < outside ? v : v + shift; };
-    for (const auto& t : f.triangles) mesh.triangles.push_back({moved(t[0]), moved(t[1]), moved(t[2])});
-    mesh.position.insert(mesh.position.end(), f.inside.begin(), f.inside.end());
-    mesh.edge_length.insert(mesh.edge_length.end(), f.inside_length.begin(), f.inside_length.end());
+    first_vertex.push_back(first_vertex.back() + f.inside.size());
+    first_triangle.push_back(first_triangle.back() + f.triangles.size());
   }
+  if (first_triangle.back() > kNone / 3)
+    throw Error(ErrorCode::usage, "features",
+                "the surface takes " + std::to_string(first_triangle.back()) + " triangles; at most " +
+                    std::to_string(kNone / 3) + " can be numbered: ask for longer edges");
+  mesh.position.resize(first_vertex.back());
+  mesh.edge_length.resize(first_vertex.back());
+  mesh.triangles.resize(first_triangle.back());
+  tbb::parallel_for(size_t(0), fillings.size(), [&](size_t i) {
+    const Filling& f = fillings[i];
+    const auto shift = uint32_t(first_vertex[i]) - outside;
+    const auto moved = [&](uint32_t v) { return v < outside ? v : v + shift; };
+    std::transform(f.triangles.begin(), f.triangles.end(), mesh.triangles.begin() + int64_t(first_triangle[i]),
+                   [&](const auto& t) {
+                     return std::array{moved(t[0]), moved(t[1]), moved(t[2])};
+                   });
+    std::copy(f.inside.begin(), f.inside.end(), mesh.position.begin() + int64_t(first_vertex[i]));
+    std::copy(f.inside_length.begin(), f.inside_length.end(), mesh.edge_length.begin() + int64_t(first_vertex[i]));
+  });
 }
 
 }  // namespace
@@ -129,11 +136,12 @@ FineMesh refine_mesh(FineMesh mesh, Context& context) {
   const size_t tasks = (mesh.triangles.size() + kTogether - 1) / kTogether;
   std::vector<Filling> fillings(tasks, Filling(mesh));
   tbb::parallel_for(size_t(0), tasks, [&](size_t task) {
+    Chain chain[3];
     for (size_t t = task * kTogether; t < std::min(mesh.triangles.size(), (task + 1) * kTogether); ++t) {
       if (context.cancel.load(std::memory_order_relaxed)) return;
       const auto& c = mesh.triangles[t];
-      Chain chain[3];
       for (size_t i = 0; i < 3; ++i) {
+        chain[i].clear();
         edges.append_chain(c[i], c[(i + 1) % 3], chain[i]);
         chain[i].push_back(c[(i + 1) % 3]);
       }

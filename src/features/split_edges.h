@@ -1,6 +1,7 @@
 // The edges of a mesh, cut into parts.
 #pragma once
 
+#include "core/buckets.h"
 #include "features/refine_mesh.h"
 
 namespace isoshell {
@@ -27,15 +28,26 @@ class SplitEdges {
   void append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const;
 
  private:
-  struct Edge {
-    uint64_t key;
-    uint32_t first, count;  ///< of its inner points
+  /// Inner points of an edge of a path, with the edge length at each.
+  struct InnerPoints {
+    std::vector<WorldPoint> position;
+    std::vector<double> edge_length;
   };
-  const Edge* find(uint64_t key) const;
-  void list_edges(const FineMesh& mesh);
+  struct Parts {
+    uint32_t first, count;  ///< of its inner points
+    uint32_t on_path;       ///< place among those of paths; kNone off them
+  };
+
+  int64_t find(uint32_t u, uint32_t v) const;
+  static InnerPoints cut_path_edge(const FineMesh& mesh, const CurvePath& path, size_t i, size_t& seed,
+                                   std::vector<size_t>& seed_at);
+  std::vector<InnerPoints> cut_paths(FineMesh& mesh);
+  void count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths, int64_t memory_bytes);
+  void place_points(FineMesh& mesh, const std::vector<InnerPoints>& on_paths) const;
   void split_paths(FineMesh& mesh) const;
 
-  std::vector<Edge> edges_;  ///< ascending
+  Buckets<uint32_t> larger_end_;  ///< of the edges, by their smaller ends
+  std::vector<Parts> parts_;      ///< per edge
 };
 
 }  // namespace isoshell

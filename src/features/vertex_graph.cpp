@@ -1,32 +1,23 @@
 // find_vertex_graph (see vertex_graph.h).
 #include "features/vertex_graph.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
-#include <algorithm>
+#include "core/world_vector.h"
 
 namespace isoshell {
 
-VertexGraph find_vertex_graph(const MeshTriangles& triangles, size_t vertices) {
-  std::vector<uint64_t> pairs(6 * triangles.size());
-  tbb::parallel_for(size_t(0), triangles.size(), [&](size_t t) {
-    for (size_t i = 0; i < 3; ++i) {
-      const uint64_t u = triangles[t][i], v = triangles[t][(i + 1) % 3];
-      pairs[6 * t + 2 * i] = u << 32 | v;
-      pairs[6 * t + 2 * i + 1] = v << 32 | u;
-    }
-  });
-  tbb::parallel_sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+VertexGraph find_vertex_graph(const FineMesh& mesh) {
+  const auto vertices = int64_t(mesh.position.size());
   VertexGraph graph;
-  graph.first.assign(vertices + 1, 0);
-  graph.neighbour.reserve(pairs.size());
-  for (const uint64_t pair : pairs) {
-    ++graph.first[(pair >> 32) + 1];
-    graph.neighbour.push_back(uint32_t(pair));
-  }
-  for (size_t v = 0; v < vertices; ++v) graph.first[v + 1] += graph.first[v];
+  graph.neighbours =
+      without_repeats(sort_into_buckets<uint32_t>(vertices, int64_t(mesh.triangles.size()), [&](int64_t t, auto put) {
+        const auto& [a, b, c] = mesh.triangles[size_t(t)];
+        for (const auto& [u, v] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) put(u, v), put(v, u);
+      }));
+  graph.way.resize(size_t(graph.neighbours.items.size()));
+  tbb::parallel_for(int64_t(0), vertices, [&](int64_t v) {
+    for (int64_t i = graph.neighbours.first[v]; i < graph.neighbours.first[v + 1]; ++i)
+      graph.way[size_t(i)] = length(mesh.position[graph.neighbours.items[i]] - mesh.position[size_t(v)]);
+  });
   return graph;
 }
 

@@ -48,7 +48,7 @@ double distance_to_nearest(const std::vector<double>& seeds, double at) {
 }
 
 FineMesh with_seeds(FineMesh mesh) {
-  const VertexGraph graph = find_vertex_graph(mesh.triangles, mesh.position.size());
+  const VertexGraph graph = find_vertex_graph(mesh);
   place_path_seeds(mesh, find_facing_vertices(mesh, graph, kEdge));
   return mesh;
 }
@@ -82,7 +82,7 @@ TEST_CASE("path seeds: across three edge lengths, seeds stand one edge length ap
 
 TEST_CASE("facing curves: the sides of a strip face each other, and the halves of one side do not", "[curves][unit]") {
   const FineMesh mesh = strip(40, 3);
-  const VertexGraph graph = find_vertex_graph(mesh.triangles, mesh.position.size());
+  const VertexGraph graph = find_vertex_graph(mesh);
   const std::vector<FacingVertices> facing = find_facing_vertices(mesh, graph, kEdge);
   REQUIRE(!facing.empty());
   for (const FacingVertices& f : facing) {

@@ -1,0 +1,76 @@
+// Items by bucket and ascending in each: what one sort of all gives, faster where buckets are small.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "isoshell/buffer.h"
+#include "voxel/atomic.h"
+
+namespace isoshell {
+
+template <class T>
+struct Buckets {
+  Buffer<int64_t> first;  ///< count + 1 offsets into items
+  Buffer<T> items;
+
+  int64_t count() const { return first.size() - 1; }
+  View<const T> in(int64_t bucket) const { return items.view().part(first[bucket], first[bucket + 1] - first[bucket]); }
+};
+
+/// Turns counts per bucket, and one more, into offsets.
+inline void offsets_from_counts(View<int64_t> counts) {
+  int64_t total = 0;
+  for (int64_t& c : counts) {
+    const int64_t here = c;
+    c = total;
+    total += here;
+  }
+}
+
+/// `list(i, put)` calls put(bucket, item) for the items of source i, the same ones whenever it is called. Equal items
+/// are not told apart. Cost: O(items), and a sort of each bucket.
+template <class T, class List>
+Buckets<T> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
+  Buckets<T> out;
+  out.first = Buffer<int64_t>(buckets + 1);
+  std::fill(out.first.begin(), out.first.end(), int64_t(0));
+  const auto for_each_source = [&](auto put) {
+    tbb::parallel_for(int64_t(0), sources, [&](int64_t i) { list(i, put); });
+  };
+  for_each_source([&](int64_t bucket, const T&) { atomic_add(out.first[bucket], int64_t(1)); });
+  int64_t total = 0;
+  for (int64_t& f : out.first) f = total += f;  // where buckets end, until they are filled from there on
+  out.items = Buffer<T>(total);
+  for_each_source([&](int64_t bucket, const T& item) {
+    out.items[__atomic_sub_fetch(&out.first[bucket], 1, __ATOMIC_RELAXED)] = item;
+  });
+  tbb::parallel_for(int64_t(0), buckets, [&](int64_t b) {
+    std::sort(out.items.begin() + out.first[b], out.items.begin() + out.first[b + 1]);
+  });
+  return out;
+}
+
+/// Leaves every item once in its bucket.
+template <class T>
+Buckets<T> without_repeats(const Buckets<T>& all) {
+  Buckets<T> out;
+  out.first = Buffer<int64_t>(all.first.size());
+  out.first[all.count()] = 0;
+  tbb::parallel_for(int64_t(0), all.count(), [&](int64_t b) {
+    const View<const T> in = all.in(b);
+    int64_t count = 0;
+    for (int64_t i = 0; i < in.size; ++i) count += i == 0 || in[i - 1] < in[i] ? 1 : 0;
+    out.first[b] = count;
+  });
+  offsets_from_counts(out.first.view());
+  out.items = Buffer<T>(out.first[all.count()]);
+  tbb::parallel_for(int64_t(0), all.count(), [&](int64_t b) {
+    const View<const T> in = all.in(b);
+    std::unique_copy(in.begin(), in.end(), out.items.begin() + out.first[b]);
+  });
+  return out;
+}
+
+}  // namespace isoshell
