@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/buckets.h"
 #include "isoshell/error.h"
 #include "stages/halfedge/surface_borders_body.h"
 #include "voxel/exact_int.h"
@@ -81,19 +82,14 @@ void order_triangles(Exec& exec, const SurfaceTriangles& from, const std::vector
   exec.sort(surface.triangles.view(), ByCorners{});
 }
 
-template <class Exec>
-void list_triangles_around(Exec& exec, SurfaceMesh& surface) {
-  const int64_t vertices = surface.vertex_count();
-  surface.vertex_first = Buffer<int64_t>(vertices + 1);
-  exec.fill(surface.vertex_first.view(), int64_t(0));
-  for (const TriangleIndices& t : surface.triangles)
-    for (const uint32_t v : {t.a, t.b, t.c}) ++surface.vertex_first[v];
-  exec.exclusive_scan(surface.vertex_first.view());
-  std::vector<int64_t> next(surface.vertex_first.begin(), surface.vertex_first.end());
-  surface.vertex_triangles = Buffer<uint32_t>(3 * surface.triangles.size());
-  for (int64_t t = 0; t < surface.triangles.size(); ++t)
-    for (const uint32_t v : {surface.triangles[t].a, surface.triangles[t].b, surface.triangles[t].c})
-      surface.vertex_triangles[next[v]++] = uint32_t(t);
+inline void list_triangles_around(SurfaceMesh& surface) {
+  Buckets<uint32_t> around =
+      sort_into_buckets<uint32_t>(surface.vertex_count(), surface.triangles.size(), [&](int64_t t, auto put) {
+        const TriangleIndices i = surface.triangles[t];
+        for (const uint32_t v : {i.a, i.b, i.c}) put(v, uint32_t(t));
+      });
+  surface.vertex_first = std::move(around.first);
+  surface.vertex_triangles = std::move(around.items);
 }
 
 /// Along the sum of the area vectors around a vertex; where they cancel, of the first triangle that has area.
@@ -117,13 +113,15 @@ inline bool is_one_fan(const SurfaceMesh& surface, int64_t v) {
   struct Sector {
     uint32_t next, last;
   };
-  std::vector<Sector> sectors;
+  thread_local std::vector<Sector> sectors;  // these are small, and many
+  thread_local std::vector<uint32_t> last;
+  sectors.clear();
+  last.clear();
   for (int64_t i = surface.vertex_first[v]; i < surface.vertex_first[v + 1]; ++i) {
     const TriangleIndices t = surface.triangles[surface.vertex_triangles[i]];
     sectors.push_back(t.a == v ? Sector{t.b, t.c} : (t.b == v ? Sector{t.c, t.a} : Sector{t.a, t.b}));
   }
   std::sort(sectors.begin(), sectors.end(), [](Sector s, Sector t) { return s.next < t.next; });
-  std::vector<uint32_t> last;
   for (const Sector& s : sectors) last.push_back(s.last);
   std::sort(last.begin(), last.end());
   for (size_t i = 1; i < sectors.size(); ++i)
@@ -144,12 +142,13 @@ inline bool is_one_fan(const SurfaceMesh& surface, int64_t v) {
 
 template <class Exec>
 void require_fans(Exec& exec, const SurfaceMesh& surface, const std::vector<uint32_t>& number) {
-  const Buffer<uint32_t> wrong =
-      exec.select(surface.vertex_count(), [&](int64_t v) { return !is_one_fan(surface, v); });
-  if (wrong.empty()) return;
-  const auto given = std::find(number.begin(), number.end(), wrong[0]) - number.begin();
+  const auto is_wrong = [&](int64_t v) { return is_one_fan(surface, v) ? 0 : 1; };
+  const int64_t wrong = exec.sum(surface.vertex_count(), is_wrong);
+  if (wrong == 0) return;
+  const uint32_t first = exec.select(surface.vertex_count(), is_wrong)[0];
+  const auto given = std::find(number.begin(), number.end(), first) - number.begin();
   throw Error(ErrorCode::usage, "surface",
-              "around " + std::to_string(wrong.size()) + " vertices, as vertex " + std::to_string(given) +
+              "around " + std::to_string(wrong) + " vertices, as vertex " + std::to_string(given) +
                   ", the triangles are no oriented manifold: an edge has three of them, or two that pass it the same " +
                   "way, or they are several fans; repair the faces first, or give every fan a vertex of its own");
 }
@@ -163,15 +162,15 @@ void require_reach(Exec& exec, const SurfaceMesh& surface) {
       for (const uint32_t u : {i.a, i.b, i.c}) {
         const PointQ8 c = leaf_centre(leaf_of_voxel(voxel_of(surface.position[v]))), p = surface.position[u];
         const Vec64 d = difference(p, c);
-        if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) >= VertexBlocks::kReachQ8) return true;
+        if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) >= VertexBlocks::kReachQ8) return 1;
       }
-    return false;
+    return 0;
   };
-  const Buffer<uint32_t> far = exec.select(surface.triangles.size(), is_far);
-  if (far.empty()) return;
-  const PointQ8 p = surface.position[surface.triangles[far[0]].a];
+  const int64_t far = exec.sum(surface.triangles.size(), is_far);
+  if (far == 0) return;
+  const PointQ8 p = surface.position[surface.triangles[exec.select(surface.triangles.size(), is_far)[0]].a];
   throw Error(ErrorCode::usage, "surface",
-              std::to_string(far.size()) + " triangles, as one at voxel (" + std::to_string(p.x / kOneVoxelQ8) + ", " +
+              std::to_string(far) + " triangles, as one at voxel (" + std::to_string(p.x / kOneVoxelQ8) + ", " +
                   std::to_string(p.y / kOneVoxelQ8) + ", " + std::to_string(p.z / kOneVoxelQ8) + "), reach " +
                   std::to_string(VertexBlocks::kReachQ8 / kOneVoxelQ8) +
                   " voxels or more from the middle of a corner's leaf; split their edges, or use larger voxels");
@@ -209,7 +208,7 @@ MadeSurface make_surface_mesh_body(Exec& exec, const SurfaceTriangles& from) {
   made.number = order_vertices(exec, from, surface);
   order_triangles(exec, from, made.number, surface);
   require_reach(exec, surface);
-  list_triangles_around(exec, surface);
+  list_triangles_around(surface);
   require_fans(exec, surface, made.number);
   find_normals(exec, surface);
   cut_into_blocks(surface);
