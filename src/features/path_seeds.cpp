@@ -58,26 +58,41 @@ double distance_to_chord_sq(const WorldPoint& p, const WorldPoint& a, const Worl
   return distance_sq(p, a + part * (b - a));
 }
 
-double cost_of(const std::vector<Candidate>& c, size_t from, size_t to) {
+/// Of a segment and the seed that it ends with, as far as its length decides it, and how far from it the path is.
+double cost_of_length(const std::vector<Candidate>& c, size_t from, size_t to) {
   const double uneven = c[to].segments - c[from].segments - 1;
+  return uneven * uneven;
+}
+double cost_of_distance(const std::vector<Candidate>& c, size_t from, size_t to) {
   double farthest_sq = 0;
   for (size_t i = from + 1; i < to; ++i)
     farthest_sq = std::max(farthest_sq, distance_to_chord_sq(c[i].position, c[from].position, c[to].position));
   const double edge = (c[from].edge_length + c[to].edge_length) / 2;
-  return uneven * uneven + kCostOfDistance * farthest_sq / (edge * edge) + c[to].cost;
+  return kCostOfDistance * farthest_sq / (edge * edge);
 }
 
-/// The cheapest way from the first to the last.
+/// The cheapest way from the first to the last; of two that cost the same the one whose last segment is shorter.
 std::vector<size_t> cheapest(const std::vector<Candidate>& c) {
   std::vector<double> cost(c.size(), std::numeric_limits<double>::infinity());
   std::vector<size_t> before(c.size(), 0);
   cost[0] = 0;
-  for (size_t to = 1; to < c.size(); ++to)
+  for (size_t to = 1, usual = 0; to < c.size(); ++to) {
+    const auto is_better = [&](double sum, size_t from) {
+      return sum < cost[to] || (sum == cost[to] && from > before[to]);
+    };
+    const auto offer = [&](size_t from) {
+      const double of_length = cost_of_length(c, from, to);
+      if (!is_better(cost[from] + (of_length + c[to].cost), from)) return;  // distance does not make it less
+      const double sum = cost[from] + (of_length + cost_of_distance(c, from, to) + c[to].cost);
+      if (is_better(sum, from)) cost[to] = sum, before[to] = from;
+    };
+    while (usual + 1 < to && c[to].segments - c[usual].segments > 1) ++usual;
+    offer(usual);  // few others can be better then
     for (size_t from = to; from-- > 0;) {
       if (from + 1 < to && c[to].segments - c[from].segments > kLongest) break;
-      const double sum = cost[from] + cost_of(c, from, to);
-      if (sum < cost[to]) cost[to] = sum, before[to] = from;
+      offer(from);
     }
+  }
   std::vector<size_t> way{c.size() - 1};
   while (way.back() != 0) way.push_back(before[way.back()]);
   std::reverse(way.begin(), way.end());
