@@ -1,8 +1,10 @@
 #include "features/mesh_edges.h"
 
+#include <tbb/parallel_for.h>
+
 #include <string>
 
-#include "core/half_edge_list.h"
+#include "features/edge_sides.h"
 #include "isoshell/buffer.h"
 #include "isoshell/error.h"
 #include "voxel/union_find.h"
@@ -15,33 +17,43 @@ MeshEdges find_mesh_edges(const FeatureMesh& mesh) {
     throw Error(ErrorCode::usage, "features",
                 "the input has " + std::to_string(mesh.triangles.size()) + " triangles; features can be found on " +
                     std::to_string(kMostTriangles) + " at most, simplify it");
-  const std::vector<ListedHalfEdge> halves = sorted_half_edges(mesh.triangles);
-  const auto rises = [&](const ListedHalfEdge& h) {
-    return mesh.triangles[h.number / 3][h.number % 3] == h.smaller_end();
-  };
+  const EdgeSides sides = find_edge_sides(mesh.triangles, mesh.vertices.size());
+  Buffer<int64_t> first(sides.first.size());
+  first[sides.count()] = 0;
+  tbb::parallel_for(int64_t(0), sides.count(), [&](int64_t v) {
+    int64_t count = 0;
+    for_each_edge_from(sides, v, [&](uint32_t, View<const EdgeSide>) { ++count; });
+    first[v] = count;
+  });
+  offsets_from_counts(first.view());
   MeshEdges found;
+  found.edges.resize(size_t(first[sides.count()]));
   found.of_triangle.resize(mesh.triangles.size());
-  for (size_t begin = 0, end = 0; begin < halves.size(); begin = end) {
-    const ListedHalfEdge& first = halves[begin];
-    for (; end < halves.size() && halves[end].edge == first.edge; ++end)
-      found.of_triangle[halves[end].number / 3][halves[end].number % 3] = found.count();
-    const ListedHalfEdge& second = halves[begin + (end - begin > 1)];
-    const EdgeUse use = end - begin == 1                                    ? EdgeUse::border
-                        : end - begin == 2 && rises(first) != rises(second) ? EdgeUse::inner
-                                                                            : EdgeUse::non_manifold;
-    found.edges.push_back({{first.smaller_end(), first.larger_end()}, {first.number / 3, second.number / 3}, use});
-  }
+  tbb::parallel_for(int64_t(0), sides.count(), [&](int64_t v) {
+    auto e = uint32_t(first[v]);
+    for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {
+      for (const EdgeSide& s : on_edge) found.of_triangle[s.half_edge / 3][s.half_edge % 3] = e;
+      const uint32_t g = on_edge[0].half_edge, h = on_edge[on_edge.size > 1 ? 1 : 0].half_edge;
+      const bool are_opposite = mesh.triangles[g / 3][g % 3] != mesh.triangles[h / 3][h % 3];
+      const EdgeUse use = on_edge.size == 1                   ? EdgeUse::border
+                          : on_edge.size == 2 && are_opposite ? EdgeUse::inner
+                                                              : EdgeUse::non_manifold;
+      found.edges[e++] = {{uint32_t(v), end}, {g / 3, h / 3}, use};
+    });
+  });
   return found;
 }
 
 std::vector<uint32_t> components_of(const FeatureMesh& mesh, const MeshEdges& edges) {
   std::vector<uint32_t> parent(mesh.triangles.size());
-  for (uint32_t t = 0; t < parent.size(); ++t) parent[t] = t;
   const View<uint32_t> sets{parent.data(), int64_t(parent.size())};
+  const auto for_all = [&](auto use) { tbb::parallel_for(uint32_t(0), uint32_t(parent.size()), use); };
+  for_all(StartAlone{sets});
   // A triangle is joined with the first one of each of its edges, which may have many.
-  for (uint32_t t = 0; t < parent.size(); ++t)
+  for_all([&](uint32_t t) {
     for (const uint32_t e : edges.of_triangle[t]) join(sets, edges.edges[e].face[0], t);
-  for (uint32_t t = 0; t < parent.size(); ++t) parent[t] = find_root(sets, t);
+  });
+  for_all(PointAtRoot{sets});
   return parent;
 }
 

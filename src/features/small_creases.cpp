@@ -29,18 +29,18 @@ std::vector<CurveEdge> edges_of(const std::vector<EdgeChain>& chains, const std:
 std::vector<CurveEdge> drop_short(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<CurveEdge> all,
                                   double edge_length_world) {
   const double longest = kShortestLoose * edge_length_world;
+  std::vector<EdgeChain> chains = find_chains(edges, all);
   // The shortest go first: a spur must not take what it stands on with it.
-  for (double limit = longest / 8; limit <= longest; limit *= 2)
-    for (size_t before = all.size() + 1; all.size() < before;) {
-      before = all.size();
-      const std::vector<EdgeChain> chains = find_chains(edges, all);
-      all = edges_of(chains, all, [&](size_t c) {
-        const EdgeChain& chain = chains[c];
-        const bool is_loose =
-            chain.degree[0] == 1 || chain.degree[1] == 1 || chain.vertex.front() == chain.vertex.back();
-        return chain.kind != CurveKind::crease || !is_loose || length_of(mesh, chain) >= limit;
-      });
+  for (double limit = longest / 8; limit <= longest; limit *= 2) {
+    const auto is_short = [&](const EdgeChain& chain) {
+      const bool is_loose = chain.degree[0] == 1 || chain.degree[1] == 1 || chain.vertex.front() == chain.vertex.back();
+      return chain.kind == CurveKind::crease && is_loose && length_of(mesh, chain) < limit;
+    };
+    while (std::any_of(chains.begin(), chains.end(), is_short)) {
+      all = edges_of(chains, all, [&](size_t c) { return !is_short(chains[c]); });
+      chains = find_chains(edges, all);
     }
+  }
   return all;
 }
 
@@ -95,6 +95,7 @@ std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edg
     std::vector<uint8_t> is_dropped(chains.size(), 0);
     for (const size_t c : weakest)
       if (c != kNoChain) is_dropped[c] = 1;
+    if (std::find(is_dropped.begin(), is_dropped.end(), 1) == is_dropped.end()) break;
     all = edges_of(chains, all, [&](size_t c) { return !is_dropped[c]; });
   }
   return all;
