@@ -58,14 +58,14 @@ double distance_to_chord_sq(const WorldPoint& p, const WorldPoint& a, const Worl
   return distance_sq(p, a + part * (b - a));
 }
 
-/// Of a segment and the seed that it ends with, as far as its length decides it, and how far from it the path is.
+/// Of a segment, by its length, and by how far from it some places of the path between its ends are.
 double cost_of_length(const std::vector<Candidate>& c, size_t from, size_t to) {
   const double uneven = c[to].segments - c[from].segments - 1;
   return uneven * uneven;
 }
-double cost_of_distance(const std::vector<Candidate>& c, size_t from, size_t to) {
+double cost_of_distance(const std::vector<Candidate>& c, size_t from, size_t to, size_t first, size_t last) {
   double farthest_sq = 0;
-  for (size_t i = from + 1; i < to; ++i)
+  for (size_t i = first; i < last; ++i)
     farthest_sq = std::max(farthest_sq, distance_to_chord_sq(c[i].position, c[from].position, c[to].position));
   const double edge = (c[from].edge_length + c[to].edge_length) / 2;
   return kCostOfDistance * farthest_sq / (edge * edge);
@@ -82,8 +82,11 @@ std::vector<size_t> cheapest(const std::vector<Candidate>& c) {
     };
     const auto offer = [&](size_t from) {
       const double of_length = cost_of_length(c, from, to);
-      if (!is_better(cost[from] + (of_length + c[to].cost), from)) return;  // distance does not make it less
-      const double sum = cost[from] + (of_length + cost_of_distance(c, from, to) + c[to].cost);
+      const auto sum_with = [&](double of_distance) { return cost[from] + (of_length + of_distance + c[to].cost); };
+      if (!is_better(sum_with(0), from)) return;  // distance does not make it less
+      const size_t middle = (from + to + 1) / 2;
+      if (middle < to && !is_better(sum_with(cost_of_distance(c, from, to, middle, middle + 1)), from)) return;
+      const double sum = sum_with(cost_of_distance(c, from, to, from + 1, to));
       if (is_better(sum, from)) cost[to] = sum, before[to] = from;
     };
     while (usual + 1 < to && c[to].segments - c[usual].segments > 1) ++usual;
