@@ -2,6 +2,7 @@
 #include "features/flip_flat_edges.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "features/edge_sides.h"
 #include "features/split_edges.h"
 #include "isoshell/voxel_set.h"
+#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -36,10 +38,36 @@ class FlatEdges {
     std::vector<uint32_t> waiting;
     for (uint32_t h = 0; h < is_waiting.size(); ++h)
       if (is_waiting[h]) waiting.push_back(h);
-    std::sort(waiting.begin(), waiting.end(), [&](uint32_t g, uint32_t h) {
-      if (from(g) != from(h)) return is_before(at(from(g)), at(from(h)));
-      return is_before(at(to(g)), at(to(h)));
+    const std::vector<uint32_t> part = parts();
+    tbb::parallel_sort(waiting.begin(), waiting.end(), [&](uint32_t g, uint32_t h) {
+      if (part[g / 3] != part[h / 3]) return part[g / 3] < part[h / 3];
+      if (is_before(at(from(g)), at(from(h)))) return true;
+      if (is_before(at(from(h)), at(from(g)))) return false;
+      if (is_before(at(to(g)), at(to(h)))) return true;
+      return !is_before(at(to(h)), at(to(g))) && g < h;
     });
+    std::vector<std::vector<uint32_t>> of_part;
+    for (size_t i = 0; i < waiting.size(); ++i) {
+      if (i == 0 || part[waiting[i] / 3] != part[waiting[i - 1] / 3]) of_part.emplace_back();
+      of_part.back().push_back(waiting[i]);
+    }
+    tbb::parallel_for(size_t(0), of_part.size(), [&](size_t p) { flip_waiting(std::move(of_part[p])); });
+  }
+
+ private:
+  /// Per triangle what it hangs together with over edges that may flip: of no flip more is seen or changed.
+  std::vector<uint32_t> parts() const {
+    std::vector<uint32_t> part(mesh_.triangles.size());
+    const View<uint32_t> sets{part.data(), int64_t(part.size())};
+    tbb::parallel_for(int64_t(0), sets.size, StartAlone{sets});
+    tbb::parallel_for(uint32_t(0), uint32_t(twin_.size()), [&](uint32_t h) {
+      if (twin_[h] != kNone) join(sets, h / 3, twin_[h] / 3);
+    });
+    tbb::parallel_for(int64_t(0), sets.size, PointAtRoot{sets});
+    return part;
+  }
+
+  void flip_waiting(std::vector<uint32_t> waiting) {
     for (size_t left = kMostFlipsPerEdge * twin_.size(); !waiting.empty() && left > 0; --left) {
       uint32_t h = waiting.back();
       waiting.pop_back();
@@ -52,7 +80,6 @@ class FlatEdges {
     }
   }
 
- private:
   static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
   uint32_t from(uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
   uint32_t to(uint32_t h) const { return from(next(h)); }
