@@ -89,11 +89,12 @@ SurfaceTriangles cut_triangles(const FineMesh& mesh, const MeshFans& fans, const
   out.triangles.resize(mesh.triangles.size());
   tbb::parallel_for(size_t(0), fans.vertex.size(),
                     [&](size_t f) { out.position[f] = rounded(mesh.position[fans.vertex[f]]); });
-  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (size_t i = 0; i < 3; ++i) out.patch[fans.of_corner[3 * t + i]] = fans.patch[t];
+  tbb::parallel_for(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const uint32_t* fan = &fans.of_corner[3 * t];
     out.triangles[t] = {fan[0], fan[1], fan[2]};
-    for (int i = 0; i < 3; ++i) out.patch[fan[i]] = fans.patch[t];
-  }
+  });
   return out;
 }
 

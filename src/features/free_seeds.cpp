@@ -1,6 +1,8 @@
 // See free_seeds.h.
 #include "features/free_seeds.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -64,12 +66,17 @@ FreeSeeds::FreeSeeds(const CutSurface& cut) : cut_(cut) {
     patch.inside += is_inside(v) ? 1 : 0;
     patch.euler += is_inside(v) ? 2 : 1;
   }
-  for (int64_t t = 0; t < surface.triangles.size(); ++t) {
-    const TriangleIndices i = surface.triangles[t];
+  std::vector<int64_t> share(size_t(surface.triangles.size()));
+  tbb::parallel_for(size_t(0), share.size(), [&](size_t t) { share[t] = seed_share(surface.triangles[int64_t(t)]); });
+  for (size_t t = 0; t < share.size(); ++t) {
+    const TriangleIndices i = surface.triangles[int64_t(t)];
     Patch& patch = patches_[patch_of(i.a)];
-    patch.share += seed_share(i);
+    patch.share += share[t];
     patch.euler -= 1;
-    if (is_inside(i.a) || is_inside(i.b) || is_inside(i.c)) patch.triangles.push_back(uint32_t(t));
+    if (!is_inside(i.a) && !is_inside(i.b) && !is_inside(i.c)) continue;
+    patch.triangles.push_back(uint32_t(t));
+    patch.before.push_back(patch.share_inside);
+    patch.share_inside += share[t];
   }
   for (Patch& patch : patches_) patch.euler /= 2;
 }
@@ -164,20 +171,14 @@ FreeSeeds::FreeSeed FreeSeeds::seed_in(uint32_t triangle, uint64_t r) const {
 /// One seed in each of as many strata of equal shares as seeds are asked for, along the triangles.
 void FreeSeeds::spread(const Patch& patch, int64_t count, uint64_t seed, std::vector<FreeSeed>& out) const {
   if (count == 0) return;
-  std::vector<int64_t> before;
-  int64_t total = 0;
-  for (const uint32_t t : patch.triangles) {
-    before.push_back(total);
-    total += seed_share(cut_.surface.triangles[t]);
-  }
-  const int64_t width = total / count, rest = total % count;
+  const int64_t width = patch.share_inside / count, rest = patch.share_inside % count;
   for (int64_t i = 0; i < count; ++i) {
     const uint64_t r = random_bits(seed, uint64_t(patch.triangles[0]) << 32 | uint64_t(i));
     const auto fraction_24 = int64_t(r >> 40);
     const int64_t target =
         width * i + rest * i / count + (width >> 24) * fraction_24 + ((width & 0xffffff) * fraction_24 >> 24);
-    const auto after = std::upper_bound(before.begin(), before.end(), target);
-    out.push_back(seed_in(patch.triangles[size_t(after - before.begin() - 1)], r));
+    const auto after = std::upper_bound(patch.before.begin(), patch.before.end(), target);
+    out.push_back(seed_in(patch.triangles[size_t(after - patch.before.begin() - 1)], r));
   }
 }
 

@@ -35,6 +35,8 @@ class FreeSeeds {
     int64_t share = 0;                ///< of the seeds: its doubled area, less where edges are longer
     int64_t euler = 0, inside = 0;    ///< Euler characteristic; vertices off the border
     std::vector<uint32_t> triangles;  ///< those with a vertex inside
+    std::vector<int64_t> before;      ///< per one of these the shares of those before it
+    int64_t share_inside = 0;         ///< of all of these
   };
   struct FreeSeed {
     PointQ8 position;

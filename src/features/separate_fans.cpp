@@ -1,33 +1,29 @@
 // separate_fans and count_separated_places (see separate_fans.h).
 #include "features/separate_fans.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "features/edge_sides.h"
 
 namespace isoshell {
 namespace {
 
 /// Keys of the edges of one triangle, ascending.
-std::vector<uint64_t> border_edges_of(const MeshTriangles& triangles) {
-  std::vector<uint64_t> edges;
-  edges.reserve(3 * triangles.size());
-  for (const auto& t : triangles)
-    for (size_t i = 0; i < 3; ++i) edges.push_back(edge_key(t[i], t[(i + 1) % 3]));
-  tbb::parallel_sort(edges.begin(), edges.end());
+std::vector<uint64_t> border_edges_of(const MeshTriangles& triangles, size_t vertices) {
+  const EdgeSides sides = find_edge_sides(triangles, vertices);
   std::vector<uint64_t> borders;
-  for (size_t i = 0, end; i < edges.size(); i = end) {
-    for (end = i; end < edges.size() && edges[end] == edges[i];) ++end;
-    if (end - i == 1) borders.push_back(edges[i]);
-  }
+  for (uint32_t v = 0; v < vertices; ++v)
+    for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {
+      if (on_edge.size == 1) borders.push_back(edge_key(v, end));
+    });
   return borders;
 }
 
 }  // namespace
 
 std::vector<uint32_t> separate_fans(std::vector<WorldPoint>& position, MeshTriangles& triangles) {
-  const MeshFans fans = find_fans(triangles, int64_t(position.size()), border_edges_of(triangles));
+  const MeshFans fans = find_fans(triangles, int64_t(position.size()), border_edges_of(triangles, position.size()));
   std::vector<uint32_t> separated, vertex_of_fan(fans.vertex.size());
   std::vector<char> is_taken(position.size(), 0);
   for (size_t f = 0; f < fans.vertex.size(); ++f) {

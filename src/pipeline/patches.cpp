@@ -127,7 +127,9 @@ SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
   apart.vertices = mesh.vertices;
   apart.triangles = mesh.triangles;
   const bool is_other = !separate_fans(apart.vertices, apart.triangles).empty();
-  return {is_other ? count_separated_places(mesh, network, apart.triangles) : 0, check_mesh(apart).boundary_loops};
+  const bool has_borders = count_kind(network, CurveKind::border) + count_kind(network, CurveKind::non_manifold) > 0;
+  return {is_other ? count_separated_places(mesh, network, apart.triangles) : 0,
+          has_borders ? check_mesh(apart).boundary_loops : 0};
 }
 
 int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_open) {
