@@ -62,25 +62,23 @@ void PatchMesh::list_vertices(const SeedSet& seeds, const JoinedMesh& joined) {
 }
 
 void PatchMesh::list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined) {
-  std::vector<std::pair<uint64_t, uint64_t>> sides;  // of the open mesh: edge, half-edge
-  for (int64_t t = 0; t < open.triangles.size(); ++t) {
-    const TriangleIndices i = open.triangles[t];
+  MeshTriangles corners;  // of the open mesh
+  for (const TriangleIndices& i : open.triangles) {
     RegionTriangle made;
     made.corner = {joined.vertex_of[i.a], joined.vertex_of[i.b], joined.vertex_of[i.c]};
     made.curve = {kNone, kNone, kNone};
     made.patch = cut_->surface.patch.empty() ? 0 : cut_->surface.patch[seeds.home[i.a]];
-    const uint32_t corner[4] = {i.a, i.b, i.c, i.a};
-    for (size_t k = 0; k < 3; ++k) sides.push_back({edge_key(corner[k], corner[k + 1]), 3 * uint64_t(t) + k});
-    for (const uint32_t v : made.corner) around_[v].push_back(uint32_t(t));
+    for (const uint32_t v : made.corner) around_[v].push_back(uint32_t(triangles_.size()));
     triangles_.push_back(made);
+    corners.push_back({i.a, i.b, i.c});
   }
-  std::sort(sides.begin(), sides.end());
+  const std::vector<ListedHalfEdge> sides = sorted_half_edges(corners);
   for (size_t i = 0; i < sides.size(); ++i) {
-    const bool has_twin = (i > 0 && sides[i - 1].first == sides[i].first) ||
-                          (i + 1 < sides.size() && sides[i + 1].first == sides[i].first);
+    const bool has_twin =
+        (i > 0 && sides[i - 1].edge == sides[i].edge) || (i + 1 < sides.size() && sides[i + 1].edge == sides[i].edge);
     if (has_twin) continue;
-    RegionTriangle& t = triangles_[sides[i].second / 3];
-    const size_t k = sides[i].second % 3;
+    RegionTriangle& t = triangles_[sides[i].number / 3];
+    const size_t k = sides[i].number % 3;
     t.curve[k] = curve_between(t.corner[k], t.corner[(k + 1) % 3]);
   }
 }
@@ -198,13 +196,13 @@ MeshRegion PatchMesh::changed(MeshRegion region, const Change& change) {
   return region;
 }
 
-bool PatchMesh::best_change(const MeshRegion& start, Reach reach, Change& best) {
+std::optional<PatchMesh::Change> PatchMesh::best_change(const MeshRegion& start, Reach reach) {
   const std::vector<Change> changes = changes_of(start, reach);
   std::vector<double> cost(changes.size());
   tbb::parallel_for(size_t(0), changes.size(), [&](size_t i) { cost[i] = cost_after(start, changes[i]); });
   const auto least = size_t(std::min_element(cost.begin(), cost.end()) - cost.begin());
-  best = changes[least];
-  return cost[least] < kLess * start.cost();
+  if (cost[least] >= kLess * start.cost()) return {};
+  return changes[least];
 }
 
 /// Takes out those, in their order, around which no triangle is that is around one before.
@@ -234,16 +232,14 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles, Reach reach) {
       const std::vector<uint32_t> corners(triangles_[t].corner.begin(), triangles_[t].corner.end());
       cutouts.push_back(cut_out(corners, triangles_around(corners)));
     }
-    std::vector<Change> best(apart.size());
-    std::vector<char> is_better(apart.size());
-    tbb::parallel_for(size_t(0), apart.size(),
-                      [&](size_t i) { is_better[i] = best_change(cutouts[i].region, reach, best[i]); });
+    std::vector<std::optional<Change>> best(apart.size());
+    tbb::parallel_for(size_t(0), apart.size(), [&](size_t i) { best[i] = best_change(cutouts[i].region, reach); });
     for (size_t i = 0; i < apart.size(); ++i) {
-      if (is_better[i])
-        put_back(cutouts[i], changed(cutouts[i].region, best[i]));
+      if (best[i])
+        put_back(cutouts[i], changed(cutouts[i].region, *best[i]));
       else
         is_hopeless[apart[i]] = 1;
-      has_changed = has_changed || is_better[i];
+      has_changed = has_changed || best[i];
     }
   }
   return has_changed;

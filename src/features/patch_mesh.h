@@ -1,6 +1,7 @@
 // The joined mesh of patches, to be changed region by region.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,7 +65,7 @@ class PatchMesh {
   static bool apply(MeshRegion& region, const Change& change);
   static double cost_after(const MeshRegion& start, const Change& change);
   static MeshRegion changed(MeshRegion region, const Change& change);
-  static bool best_change(const MeshRegion& start, Reach reach, Change& best);
+  static std::optional<Change> best_change(const MeshRegion& start, Reach reach);
 
   const CutSurface* cut_;
   std::vector<RegionVertex> vertices_;

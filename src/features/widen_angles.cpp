@@ -23,6 +23,7 @@ JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made,
                              const std::function<bool(const DualMesh&)>& is_clean, Context& context) {
   return run_with_threads(context, [&] {
     const PatchMesh before(cut, made);
+    if (before.poor_triangles().empty()) return before.joined();
     PatchMesh mesh = before;
     const bool has_changed =
         improve(mesh, PatchMesh::Reach::corners, context) | improve(mesh, PatchMesh::Reach::rings, context);

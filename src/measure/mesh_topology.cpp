@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/half_edge_list.h"
 #include "isoshell/error.h"
 #include "voxel/union_find.h"
 
@@ -18,8 +19,6 @@ struct HalfEdge {
   uint32_t number;
   bool rises;  ///< runs from the smaller to the larger end
 };
-
-uint32_t next_in_triangle(uint32_t half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; }
 
 class Sets {
  public:

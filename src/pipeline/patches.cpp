@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 #include "attributes/seams.h"
 #include "core/copy_product.h"
@@ -14,6 +13,7 @@
 #include "features/free_seeds.h"
 #include "features/halve_segments.h"
 #include "features/separate_fans.h"
+#include "features/split_edges.h"
 #include "features/weld_for_features.h"
 #include "features/widen_angles.h"
 #include "isoshell/distance.h"
@@ -220,9 +220,6 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
 /// The mesh's vertices where the ends of edges were snapped to; of edges that are no longer there none.
 EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const FeatureMesh& mesh,
                      const LatticeFrame& frame) {
-  const auto is_before = [](const WorldPoint& a, const WorldPoint& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  };
   EdgeList found;
   for (const auto& edge : edges) {
     std::array<uint32_t, 2> vertex{kNone, kNone};

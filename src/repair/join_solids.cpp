@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/half_edge_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "isoshell/buffer.h"
@@ -248,23 +249,14 @@ class Joiner {
   }
 
   static std::vector<uint32_t> parts_of(const CutSolids& cut) {
-    struct Side {
-      std::array<uint32_t, 2> edge;
-      uint32_t face;
-    };
-    std::vector<Side> sides;
-    for (uint32_t f = 0; f < cut.both.face.size(); ++f)
-      for (size_t i = 0; i < 3; ++i) {
-        const uint32_t u = cut.both.face[f][i], v = cut.both.face[f][(i + 1) % 3];
-        sides.push_back({{std::min(u, v), std::max(u, v)}, f});
-      }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+    const std::vector<ListedHalfEdge> sides = sorted_half_edges(cut.both.face);
     Buffer<uint32_t> parent(int64_t(cut.both.face.size()));
     for (int64_t f = 0; f < parent.size(); ++f) parent[f] = uint32_t(f);
-    for (size_t i = 1; i < sides.size(); ++i)
-      if (sides[i].edge == sides[i - 1].edge &&
-          !std::binary_search(cut.crossing.begin(), cut.crossing.end(), sides[i].edge))
-        join(parent.view(), sides[i - 1].face, sides[i].face);
+    for (size_t i = 1; i < sides.size(); ++i) {
+      const std::array<uint32_t, 2> edge{sides[i].smaller_end(), sides[i].larger_end()};
+      if (sides[i].edge == sides[i - 1].edge && !std::binary_search(cut.crossing.begin(), cut.crossing.end(), edge))
+        join(parent.view(), sides[i - 1].number / 3, sides[i].number / 3);
+    }
     std::vector<uint32_t> part(cut.both.face.size());
     for (uint32_t f = 0; f < part.size(); ++f) part[f] = find_root(parent.view(), f);
     return part;
