@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "core/world_vector.h"
+#include "implicit/plane_fit.h"
 
 namespace isoshell {
 namespace {
@@ -26,62 +27,6 @@ constexpr double kFlat = 0.02;  // part of the scatter of neighbours that is off
 constexpr double kLeastFlatCosine = 0.9;   // mean over flat planes
 constexpr double kMostDisagreeing = 0.05;  // of all pairs of neighbours; beyond it normals are not trusted
 
-WorldPoint normalised(const WorldPoint& a) {
-  const double size = length(a);
-  return size > 0 && std::isfinite(size) ? (1 / size) * a : WorldPoint{0, 0, 0};
-}
-
-/// Direction in which the matrix (xx, xy, xz, yy, yz, zz) is smallest, by Jacobi rotations.
-WorldPoint smallest_direction(const double m[6]) {
-  double a[3][3] = {{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}};
-  double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  constexpr int kPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  for (int sweep = 0; sweep < 12; ++sweep)
-    for (const auto& [p, q] : kPairs) {
-      if (a[p][q] == 0) continue;
-      const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-      const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-      const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-      for (int k = 0; k < 3; ++k) {
-        const double kp = a[k][p], kq = a[k][q];
-        a[k][p] = c * kp - s * kq;
-        a[k][q] = s * kp + c * kq;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const double pk = a[p][k], qk = a[q][k];
-        a[p][k] = c * pk - s * qk;
-        a[q][k] = s * pk + c * qk;
-        const double vp = v[k][p], vq = v[k][q];
-        v[k][p] = c * vp - s * vq;
-        v[k][q] = s * vp + c * vq;
-      }
-    }
-  int least = 0;
-  for (int i = 1; i < 3; ++i)
-    if (a[i][i] < a[least][least]) least = i;
-  return normalised({v[0][least], v[1][least], v[2][least]});
-}
-
-/// A plane through points: its normal, and the part of their scatter that is off the plane.
-struct Plane {
-  WorldPoint normal;
-  double off;
-};
-Plane plane_through(const std::vector<WorldPoint>& position, const std::vector<PointTree::Near>& near) {
-  WorldPoint mean{0, 0, 0};
-  for (const auto& [d, i] : near) mean = {mean.x + position[i].x, mean.y + position[i].y, mean.z + position[i].z};
-  mean = (1 / double(near.size())) * mean;
-  double m[6] = {};
-  for (const auto& [d, i] : near) {
-    const double x = position[i].x - mean.x, y = position[i].y - mean.y, z = position[i].z - mean.z;
-    m[0] += x * x, m[1] += x * y, m[2] += x * z, m[3] += y * y, m[4] += y * z, m[5] += z * z;
-  }
-  const WorldPoint n = smallest_direction(m);
-  const double off = dot(n, {m[0] * n.x + m[1] * n.y + m[2] * n.z, m[1] * n.x + m[3] * n.y + m[4] * n.z,
-                             m[2] * n.x + m[4] * n.y + m[5] * n.z});
-  return {n, off / (m[0] + m[3] + m[5])};
-}
-
 /// Whether given normals stand on the planes of their neighbours, as far as those tell: on all planes better than any
 /// directions would, on flat ones well. Thin walls and wires have no flat ones, whatever their normals.
 bool fit_planes(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal, const PointTree& tree) {
@@ -90,7 +35,7 @@ bool fit_planes(const std::vector<WorldPoint>& position, const std::vector<World
   tbb::parallel_for(size_t(0), cosine.size(), [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i * stride], std::min(kFitNeighbours + 1, position.size()), near);
-    const Plane plane = plane_through(position, near);
+    const PlaneFit plane = fit_plane(position, near);
     cosine[i] = std::abs(dot(normalised(normal[i * stride]), plane.normal));
     off[i] = plane.off;
   });
@@ -249,7 +194,7 @@ OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<World
   tbb::parallel_for(size_t(0), count, [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i], std::min(kFitNeighbours + 1, count), near);
-    points.normal[i] = given ? normalised(points.normal[i]) : plane_through(position, near).normal;
+    points.normal[i] = given ? normalised(points.normal[i]) : fit_plane(position, near).normal;
     const double reach_sq = near[std::min(kSpacingNeighbour, count - 1)].first;
     spacing[i] = std::sqrt(reach_sq) * kSpacingFactor;
     points.area[i] = reach_sq * kAreaFactor;

@@ -215,6 +215,14 @@ void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup) {
   soup.vertices.resize(kept);
 }
 
+std::vector<uint8_t> find_supported(const PointsOfSurface& of, const TriangleSoup& soup) {
+  const std::vector<WorldPoint> normal = vertex_normals(soup);
+  std::vector<uint8_t> supported(soup.vertices.size());
+  tbb::parallel_for(size_t(0), supported.size(),
+                    [&](size_t v) { supported[v] = Pull(of, soup.vertices[v], normal[v]).is_supported(); });
+  return supported;
+}
+
 std::vector<uint8_t> pull_to_points(const PointsOfSurface& of, TriangleSoup& soup) {
   const std::vector<WorldPoint> normal = vertex_normals(soup);
   std::vector<WorldPoint> moved(soup.vertices.size());

@@ -21,8 +21,11 @@ struct PointsOfSurface {
 /// normals that were turned here all look away from what they enclose, and where they do not they are wrong.
 void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup);
 
-/// Moves vertices onto the points around them, less where that would fold the surface. Returns 1 for vertices that have
-/// points near them, 0 for those that bridge.
+/// 1 for vertices that have points near them, 0 for those that bridge.
+std::vector<uint8_t> find_supported(const PointsOfSurface& of, const TriangleSoup& soup);
+
+/// Moves vertices onto the points around them, less where that would fold the surface. Returns what find_supported
+/// says of them before.
 std::vector<uint8_t> pull_to_points(const PointsOfSurface& of, TriangleSoup& soup);
 
 }  // namespace isoshell

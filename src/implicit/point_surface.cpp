@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "implicit/flat_normals.h"
 #include "implicit/indicator_grid.h"
 #include "implicit/iso_surface.h"
+#include "implicit/point_distances.h"
 #include "implicit/point_support.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
@@ -16,7 +18,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kMaxGrid = int64_t(1) << 27;
-constexpr int64_t kBytesPerVoxel = 9;   // value and source, and an eighth of them on the next grid
+constexpr int64_t kBytesPerVoxel = 9;   // value and source, and an eighth of them on the next grid; or distances
 constexpr double kVoxelSpacings = 1.5;  // noise of a scan is about its spacing: finer voxels make handles of it
 constexpr double kLineSpacings = 0.01;  // points that keep so near to a line have no side
 constexpr size_t kOutlierNeighbours = 8, kFewestForOutliers = 200;
@@ -128,9 +130,28 @@ bool on_a_line(const std::vector<WorldPoint>& position, double reach) {
   });
 }
 
+/// On the sides of a sharp body, with vertices on its creases.
+TriangleSoup extract_sharp(OrientedPoints& points, std::vector<WorldPoint> normal, const Indicator& indicator,
+                           int64_t memory_limit_bytes) {
+  points.normal = std::move(normal);
+  PointDistances field(points, indicator);
+  field.file = "the points";
+  field.name = "distance";
+  return extract_iso_surface(field, 0, memory_limit_bytes, VolumeCreases::all);
+}
+
+TriangleSoup extract_smooth(const GridShape& shape, std::vector<float> value, double level,
+                            int64_t memory_limit_bytes) {
+  IndicatorField field(shape, std::move(value), level);
+  field.file = "the points";
+  field.name = "indicator";
+  return extract_iso_surface(field, level, memory_limit_bytes);
+}
+
 }  // namespace
 
-TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info) {
+TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info,
+                               VolumeCreases creases) {
   std::vector<WorldPoint> position = cloud.position, normal = cloud.normal;
   keep_different(position, normal);
   info.points = int64_t(position.size());
@@ -141,7 +162,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   check_extent(position);
   info.outliers = drop_outliers(position, normal);
   const PointTree tree(position);
-  const OrientedPoints points = orient_points(position, std::move(normal), tree);
+  OrientedPoints points = orient_points(position, std::move(normal), tree);
   if (on_a_line(points.position, kLineSpacings * points.spacing))
     throw Error(ErrorCode::nothing_to_mesh, "points", "all points lie on a line; a surface needs some beside it");
   info.spacing_world = points.spacing;
@@ -155,16 +176,17 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   info.voxel_size_world = shape.voxel_size;
   std::vector<float> value = solve_indicator(points, shape);
   const double level = level_at_points(points, shape, value);
-  IndicatorField field(shape, std::move(value), level);
-  field.file = "the points";
-  field.name = "indicator";
-  TriangleSoup soup = extract_iso_surface(field, level, memory_limit_bytes);
+  std::vector<WorldPoint> flat;
+  if (creases != VolumeCreases::none) flat = find_flat_normals(points, tree);
+  info.sharp = !flat.empty();
+  TriangleSoup soup = info.sharp ? extract_sharp(points, std::move(flat), {shape, value, level}, memory_limit_bytes)
+                                 : extract_smooth(shape, std::move(value), level, memory_limit_bytes);
   const PointsOfSurface around{points, tree, shape.voxel_size};
   drop_unsupported(around, soup);
   if (soup.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "points",
                 "the points enclose nothing: they lie on a line, or too far apart to be one surface");
-  const std::vector<uint8_t> supported = pull_to_points(around, soup);
+  const std::vector<uint8_t> supported = info.sharp ? find_supported(around, soup) : pull_to_points(around, soup);
   const int64_t held = std::accumulate(supported.begin(), supported.end(), int64_t(0));
   info.open_part = 1 - double(held) / double(soup.vertices.size());
   soup.faces_in_file = 0;

@@ -74,9 +74,9 @@ class Reader {
     } else if (format == "off") {
       hold(read_mesh(path, MeshFormat::off));
     } else if (format == "ply") {
-      read_ply();
+      read_ply(request.creases);
     } else if (format == "xyz" || format == "pcd") {
-      hold(read_points(path, format == "xyz" ? PointFormat::xyz : PointFormat::pcd));
+      hold(read_points(path, format == "xyz" ? PointFormat::xyz : PointFormat::pcd), request.creases);
     } else if (format == "vdb" && path != "-" && is_stage_file(path)) {
       read_stage_file();
     } else if (format == "vdb" || format == "nvdb") {
@@ -99,16 +99,16 @@ class Reader {
     input_.soup = std::move(soup);
   }
 
-  void hold(const PointCloud& cloud) {
+  void hold(const PointCloud& cloud, VolumeCreases creases) {
     input_.facts.kind = InputKind::points;
     PointSurfaceInfo points;
-    hold(surface_of_points(cloud, memory_limit_bytes_, points));
+    hold(surface_of_points(cloud, memory_limit_bytes_, points, creases));
     input_.facts.vertices = points.points;
     std::ostringstream text;
     text << counted(points.points, "point") << ", spacing " << points.spacing_world << ", surface from voxels of "
          << points.voxel_size_world << ", normals "
          << (points.normals_given && !points.normals_ignored ? "given" : "estimated")
-         << (points.normals_turned ? " and turned" : "");
+         << (points.normals_turned ? " and turned" : "") << (points.sharp ? ", sides with creases" : "");
     note(text.str());
     if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
     if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
@@ -120,12 +120,12 @@ class Reader {
   Input taken() { return std::move(input_); }
 
  private:
-  void read_ply() {
+  void read_ply(VolumeCreases creases) {
     PlyContent content = read_ply_content(input_.facts.path);
     if (!content.is_points) return hold(std::move(content.mesh));
     if (content.unusable_faces > 0)
       warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
-    hold(content.points);
+    hold(content.points, creases);
   }
 
   void read_volume_file(const InputRequest& request) {
@@ -208,9 +208,10 @@ Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
   return reader.taken();
 }
 
-Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell) {
+Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell,
+               VolumeCreases creases) {
   Reader reader(name, memory_limit_bytes, tell);
-  reader.hold(cloud);
+  reader.hold(cloud, creases);
   return reader.taken();
 }
 

@@ -24,7 +24,7 @@ struct InputRequest {
   std::string format;                           ///< lower case, without a dot; empty: by the path
   std::string grid;                             ///< of a volume, as in VolumeReadOptions; empty: the only one
   std::optional<double> iso;                    ///< of a volume
-  VolumeCreases creases = VolumeCreases::none;  ///< of a volume; a run sets it by its features
+  VolumeCreases creases = VolumeCreases::none;  ///< of a volume or points; a run sets it by its features
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or
@@ -59,6 +59,7 @@ Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const 
 /// that says no number of faces has its triangles. Throws: nothing_to_mesh; unreadable_input for a triangle whose
 /// vertex is not there or not finite; and as surface_of_points does.
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell = {});
-Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {});
+Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {},
+               VolumeCreases creases = VolumeCreases::of_sharp_bodies);
 
 }  // namespace isoshell

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/io/volume_file.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {
@@ -40,6 +41,7 @@ struct PointSurfaceInfo {
   double voxel_size_world = 0;  ///< of the grid that the surface comes from; details below it are lost
   bool normals_given = false, normals_turned = false;
   bool normals_ignored = false;  ///< they do not stand on the planes of their neighbours; others were estimated
+  bool sharp = false;            ///< points lie on sharp sides, whose creases the surface has
   double open_part = 0;          ///< of the surface's vertices, those that bridge where there are no points
 };
 
@@ -49,8 +51,11 @@ struct PointSurfaceInfo {
 /// Normals that are missing, or that stand on the planes of their neighbours no more than any would, or badly where
 /// those are flat, are estimated from neighbours, those that disagree are turned along a spanning tree, and all of them
 /// so that they point away from the middle. Up to a tenth of the points is left out where they lie several times as far
-/// from their neighbours as others do. The same for any number of threads. Cost: 9 bytes a voxel of the points' box.
-/// Throws: nothing_to_mesh for fewer than four different points, out_of_memory over `memory_limit_bytes`, if above 0.
-TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info);
+/// from their neighbours as others do. Where creases are wanted and the points are those of a sharp body, no more than
+/// a tenth of their spacing off its sides, the surface is where the distance from these sides is 0, with vertices on
+/// their creases. The same for any number of threads. Cost: 13 bytes a voxel of the points' box. Throws:
+/// nothing_to_mesh for fewer than four different points, out_of_memory over `memory_limit_bytes`, if above 0.
+TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info,
+                               VolumeCreases creases = VolumeCreases::none);
 
 }  // namespace isoshell

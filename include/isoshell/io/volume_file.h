@@ -8,7 +8,8 @@
 
 namespace isoshell {
 
-/// Whose creases and corners get vertices of their own, where values are distances in voxels that are cubes.
+/// Whose creases and corners get vertices of their own: of volumes whose values are distances in voxels that are cubes,
+/// and of points.
 enum class VolumeCreases {
   none,
   of_sharp_bodies,  ///< whose surface is straight but for narrow bends; others are as with `none`
