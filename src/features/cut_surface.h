@@ -1,6 +1,8 @@
 // The surface of a clean input: its own triangles on the lattice, refined, and cut open along its curves.
 #pragma once
 
+#include <memory>
+
 #include "features/asked_lengths.h"
 #include "features/feature_mesh.h"
 #include "isoshell/backend.h"
@@ -24,6 +26,8 @@ struct CutCurve {
   std::vector<size_t> seeds;   ///< ascending: which of the places are seeds; both ends of an open curve are
 };
 
+struct CutSource;
+
 /// A surface cut open along curves. A place is a point of a curve, of which every fan of triangles around it has a
 /// copy: a border vertex of its own. First come the corners, then what is inside of the curves, by curve, then along
 /// it.
@@ -34,11 +38,11 @@ struct CutSurface {
   bool is_asked = false;       ///< lengths vary as was asked for
   std::vector<CutCurve> curves;
   int64_t corner_count = 0;
-  std::vector<uint32_t> place;        ///< per vertex of the surface; kNone off borders
-  std::vector<int64_t> copies_first;  ///< per place, and one more: offsets into copies
-  std::vector<uint32_t> copies;       ///< border vertices, ascending per place
-  int64_t seeds = 0;                  ///< that it is cut for, copies at a place counted once; 0: any number
-  std::vector<LostCurve> if_lost;     ///< what a report says of the network's curves then; who cuts it says so
+  std::vector<uint32_t> place;              ///< per vertex of the surface; kNone off borders
+  std::vector<int64_t> copies_first;        ///< per place, and one more: offsets into copies
+  std::vector<uint32_t> copies;             ///< border vertices, ascending per place
+  int64_t seeds = 0;                        ///< that it is cut for, copies at a place counted once; 0: any number
+  std::shared_ptr<const CutSource> source;  ///< of who cuts it, to do it again
 };
 
 struct CutOptions {

@@ -66,7 +66,7 @@ std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges
   if (!options.lines.empty()) found = with_edges(found, inner_edges(edges, options.lines), CurveKind::line);
   if (!options.seams.empty()) found = with_edges(found, inner_edges(edges, options.seams), CurveKind::seam);
   if (options.mode != CreaseMode::off)
-    found = drop_small_creases(mesh, edges, std::move(found), options.edge_length_world);
+    found = drop_small_creases(mesh, edges, std::move(found), options.edge_length_world, options.drops_small_patches);
   for (CurveEdge& c : found)
     if ((c.kind == CurveKind::seam || c.kind == CurveKind::line) && c.turn > 0) c.kind = CurveKind::crease;
   return found;

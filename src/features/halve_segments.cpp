@@ -53,7 +53,7 @@ std::optional<CutSurface> halve_segments(const CutSurface& cut, const std::vecto
                     cut.copies_first,
                     cut.copies,
                     cut.seeds,
-                    cut.if_lost};
+                    cut.source};
 }
 
 }  // namespace isoshell

@@ -12,6 +12,7 @@ namespace {
 constexpr double kShortestLoose = 2;  // of h
 constexpr double kSmallPatch = 6;     // of h: its border
 constexpr double kSharedTurn = .5;    // 1 - cos 60 degrees: half of a crease of 120 degrees
+constexpr double kAnyTurn = 3;        // above all
 
 /// The edges of the chains that stay, ascending.
 template <class Stays>
@@ -74,7 +75,7 @@ class Patches {
 
 /// Every small patch gives up the weakest crease between it and another.
 std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<CurveEdge> all,
-                                   double edge_length_world) {
+                                   double edge_length_world, double most_turn) {
   constexpr size_t kNoChain = SIZE_MAX;
   for (size_t before = all.size() + 1; all.size() < before;) {
     before = all.size();
@@ -82,7 +83,7 @@ std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edg
     const Patches patches(mesh, edges, all);
     std::vector<size_t> weakest(mesh.triangles.size(), kNoChain);
     for (size_t c = 0; c < chains.size(); ++c) {
-      if (chains[c].kind != CurveKind::crease || chains[c].turn >= kSharedTurn || chains[c].is_ring) continue;
+      if (chains[c].kind != CurveKind::crease || chains[c].turn >= most_turn || chains[c].is_ring) continue;
       const auto& face = edges.edges[chains[c].edge[0]].face;
       if (patches.of(face[0]) == patches.of(face[1])) continue;
       for (const uint32_t f : face) {
@@ -104,11 +105,13 @@ std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edg
 }  // namespace
 
 std::vector<CurveEdge> drop_small_creases(const FeatureMesh& mesh, const MeshEdges& edges,
-                                          std::vector<CurveEdge> curve_edges, double edge_length_world) {
+                                          std::vector<CurveEdge> curve_edges, double edge_length_world,
+                                          bool however_sharp) {
   for (size_t before = curve_edges.size() + 1; curve_edges.size() < before;) {
     before = curve_edges.size();
     curve_edges = drop_short(mesh, edges, std::move(curve_edges), edge_length_world);
-    curve_edges = drop_shared(mesh, edges, std::move(curve_edges), edge_length_world);
+    curve_edges =
+        drop_shared(mesh, edges, std::move(curve_edges), edge_length_world, however_sharp ? kAnyTurn : kSharedTurn);
   }
   return curve_edges;
 }

@@ -82,6 +82,16 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
   return curves;
 }
 
+void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report) {
+  if (curves.empty()) return;
+  const WorldPoint& at = curves.front().at;
+  std::ostringstream text;
+  text << counted(int64_t(curves.size()), "crease is", "creases are") << " not kept, the first near " << at.x << ' '
+       << at.y << ' ' << at.z << ": patches there are too small for the edges; ask for more --vertices";
+  report.warnings.push_back(text.str());
+  report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
+}
+
 void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why) {
   FeatureReport& features = report.features;
   const int64_t creases = features.curves - features.seams - features.lines;

@@ -23,6 +23,9 @@ void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, Reme
 /// Every curve as the report names it, should it be lost.
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);
 
+/// Says that some of the curves are not kept while others are, and warns.
+void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report);
+
 /// Says that none of the curves is kept, and warns.
 void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why);
 

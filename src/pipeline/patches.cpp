@@ -25,6 +25,7 @@
 #include "measure/crossings.h"
 #include "measure/triangle_grid.h"
 #include "pipeline/choose_grid.h"
+#include "pipeline/cut_curves.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/given_lines.h"
@@ -47,41 +48,6 @@ CurveOptions curve_options(const RemeshOptions& options, double edge_length_worl
 
 constexpr int kRoundsOfShorterSegments = 1;  ///< each costs a whole relaxation
 
-/// Of a surface that the options leave open.
-bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
-  return options.boundary == Boundary::keep && !p.surface.topology.closed;
-}
-
-/// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
-double six_volumes(const FeatureMesh& mesh) {
-  double sum = 0;
-  const WorldPoint& o = mesh.vertices[0];
-  for (const auto& t : mesh.triangles)
-    sum += dot(mesh.vertices[t[0]] - o, cross(mesh.vertices[t[1]] - o, mesh.vertices[t[2]] - o));
-  return sum;
-}
-
-/// The same of a surface whose borders stay: gaps that had to be closed were closed by faces.
-std::string obstacle_to_borders(const CurveNetwork& network) {
-  if (count_kind(network, CurveKind::non_manifold) > 0)
-    return "the surface has edges of more than two faces, or faces that disagree about the outside";
-  return "";
-}
-
-/// What keeps the surface from being its own input's triangles; empty where nothing does. Faces that a union cut count
-/// as closed whatever their edges are.
-std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetwork& network) {
-  const InputTopology& input = p.surface.topology;
-  const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam) +
-                         count_kind(network, CurveKind::line);
-  if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
-    return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
-  if (six_volumes(mesh) < 0) return "the faces look inwards";
-  if (p.grown) return "walls without thickness had to be grown";
-  if (p.closing_vox > 0) return "gaps were closed";
-  return "";
-}
-
 /// The snapped surface: what a stage file holds, so that a run that resumes finds the same features.
 TriangleSoup soup_of(const LatticeSurface& surface) {
   TriangleMesh mesh = to_world(surface);
@@ -91,49 +57,11 @@ TriangleSoup soup_of(const LatticeSurface& surface) {
   return soup;
 }
 
-int64_t patches_of(const CutSurface& cut) {
-  uint32_t last = 0;
-  for (const uint32_t patch : cut.surface.patch) last = std::max(last, patch);
-  return int64_t(last) + 1;
-}
-
-/// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
-template <class Work>
-bool give_up_if_refused(RemeshReport& report, const std::vector<LostCurve>& curves, Work work) {
-  try {
-    work();
-    return true;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    give_up(report, curves, error.what());
-    return false;
-  }
-}
-
 SeededMesh fetched(const SeededMesh& made) {
   SeededMesh out;
   out.mesh = to_host(made.mesh);
   out.seeds = to_host(made.seeds);
   return out;
-}
-
-/// The mesh once every fan of triangles has a vertex of its own, as in the result.
-struct SeparatedMesh {
-  int64_t more_places = 0;  ///< vertices of the result that are at places of others
-  int64_t border_loops = 0;
-};
-SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
-  TriangleMesh apart;
-  apart.vertices = mesh.vertices;
-  apart.triangles = mesh.triangles;
-  const bool is_other = !separate_fans(apart.vertices, apart.triangles).empty();
-  const bool has_borders = count_kind(network, CurveKind::border) + count_kind(network, CurveKind::non_manifold) > 0;
-  return {is_other ? count_separated_places(mesh, network, apart.triangles) : 0,
-          has_borders ? check_mesh(apart).boundary_loops : 0};
-}
-
-int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_open) {
-  return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
 }
 
 /// As many boxes of intersections of the result as are farther than an edge from those of the input.
@@ -205,6 +133,43 @@ std::shared_ptr<const CutSurface> with_shorter_segments(const CutSurface& cut, c
   return shorter ? std::make_shared<CutSurface>(std::move(*shorter)) : nullptr;
 }
 
+/// The mesh of relaxed seeds; where triangles intersect, curves get more seeds there, and all seeds relax again.
+/// Result: why it cannot be the run's; empty where it can. `cut` becomes the surface that it is on.
+std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
+                           const PatchOptions& options, RemeshReport& report, Context& context) {
+  return reason_against([&] {
+    std::string why = mesh_patches(p, *cut, made, options.optimize, report, context);
+    const auto intersects = [&] { return !why.empty() && report.post.self_intersections > 0; };
+    for (int rounds = kRoundsOfShorterSegments; intersects() && rounds > 0; --rounds) {
+      const std::shared_ptr<const CutSurface> shorter = with_shorter_segments(*cut, made);
+      if (!shorter) break;
+      cut = shorter;
+      made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
+      why = mesh_patches(p, *cut, made, options.optimize, report, context);
+    }
+    return why;
+  });
+}
+
+/// The same without the curves around patches that are too small. Result: `why` where there are none.
+std::string mesh_with_fewer_curves(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
+                                   PatchOptions options, const std::string& why, RemeshReport& report,
+                                   Context& context) {
+  const FeatureReport all = report.features;
+  std::string against = reason_against([&] {
+    const std::shared_ptr<const CutSurface> fewer = timed(
+        report, "features", context, [&] { return cut_along_fewer(*p.cut->source, p.surface.frame, report, context); });
+    if (!fewer) return why;
+    cut = fewer;
+    options.seeds.count = cut->seeds;
+    made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
+    return std::string();
+  });
+  if (against.empty()) against = mesh_in_rounds(p, cut, made, options, report, context);
+  if (!against.empty()) report.features = all;
+  return against;
+}
+
 /// Says which attributes have none that could be kept.
 Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double edge_length_world, RemeshReport& report,
                Context& context) {
@@ -231,56 +196,6 @@ EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const 
     if (vertex[0] != kNone && vertex[1] != kNone && vertex[0] != vertex[1]) found.push_back(vertex);
   }
   return found;
-}
-
-/// An estimate with the fine surface, which has about 36 vertices a seed. Throws: usage where that is above the limit.
-int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
-  constexpr int64_t kBytesPerSeed = 36 * 350;
-  const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
-  if (limit > 0 && bytes > limit)
-    throw Error(ErrorCode::usage, "features",
-                "the surface cut along them would take about " + std::to_string(bytes >> 20) +
-                    " MiB, more than the limit of " + std::to_string(limit >> 20) +
-                    "; raise --max-memory, or ask for fewer vertices");
-  return bytes;
-}
-
-/// False where there are curves that could not be kept, as the report says.
-bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
-               RemeshReport& report, Context& context) {
-  CreaseReport creases;
-  CurveNetwork network;
-  if (!give_up_if_refused(report, {}, [&] { network = find_curves(mesh, curves, &creases); })) return false;
-  const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
-  FeatureReport& found = report.features;
-  report_found(mesh, network, is_open, found);
-  warn_of_branches(mesh, network, report);
-  found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
-  if (found.curves == 0 && !is_open) return true;
-  const std::vector<LostCurve> if_lost = describe(mesh, network);
-  if (const std::string why = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network); !why.empty()) {
-    give_up(report, if_lost, why);
-    return false;
-  }
-  return give_up_if_refused(report, if_lost, [&] {
-    const SeparatedMesh apart = separated(mesh, network);
-    found.border_loops = apart.border_loops;
-    const int64_t seeds_asked = vertices_of(options, p, is_open) - apart.more_places;
-    const int64_t bytes = bytes_when_cut(seeds_asked, report, context);
-    CutOptions how{edge_length_for(mesh, network, seeds_asked), 0, asked_lengths(options, p)};
-    const bool lengths_decide = how.asked.vary() && field_decides(options);
-    if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds_asked;
-    auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
-    if (cut->seeds == 0) cut->seeds = seeds_asked;
-    cut->if_lost = if_lost;
-    const SeedSet fixed = seeds_on_curves(*cut, 0);
-    FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
-    found.vertices = count_places(fixed.fixed);
-    found.patches = patches_of(*cut);
-    found.given_up.clear();
-    report.memory_estimate_bytes = bytes;
-    p.cut = std::move(cut);
-  });
 }
 
 /// Forgets which curves were lost beside seams, from the first on: they have another try.
@@ -315,13 +230,14 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
     }
     mesh.rounding_world = p.surface.frame.voxel_size / (2 * kOneVoxelQ8);
     const size_t lost_lines = report.features.lost.size();
-    if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
+    const auto welded = std::make_shared<const FeatureMesh>(std::move(mesh));
+    if (cut_along(welded, curves, options, p, report, context) || curves.seams.empty()) return;
     keep_lost_seams(report.features.lost, lost_lines);
     const int64_t seams_apart = report.features.seams;  // from creases and borders
     report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
                              " are not kept: " + report.features.given_up + "; triangles lie across seams";
     curves.seams.clear();
-    cut_along(mesh, curves, options, p, report, context);
+    cut_along(welded, curves, options, p, report, context);
   });
 }
 
@@ -352,28 +268,23 @@ RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
                                                 RemeshReport& report, Context& context) {
   std::shared_ptr<const CutSurface> cut = p.cut;
+  std::string why = mesh_in_rounds(p, cut, made, options, report, context);
+  if (!why.empty()) why = mesh_with_fewer_curves(p, cut, made, options, why, report, context);
   std::optional<TriangleMesh> mesh;
   JoinedPatches joined;
-  const std::vector<LostCurve>& if_lost = p.cut->if_lost;
-  give_up_if_refused(report, if_lost, [&] {
-    std::string why = mesh_patches(p, *cut, made, options.optimize, report, context);
-    const auto intersects = [&] { return !why.empty() && report.post.self_intersections > 0; };
-    for (int rounds = kRoundsOfShorterSegments; intersects() && rounds > 0; --rounds) {
-      cut = with_shorter_segments(*cut, made);
-      if (!cut) break;
-      made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
-      why = mesh_patches(p, *cut, made, options.optimize, report, context);
-    }
-    if (!why.empty()) return give_up(report, if_lost, why);
-    joined = timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, report, context); });
-    mesh = to_world(joined.mesh, p.surface.frame);
-    mesh->features = std::move(joined.features);
-    part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
-    if (check_mesh(*mesh).is_manifold_with(report.features.border_loops)) return;
-    mesh.reset();
-    give_up(report, if_lost, "parts that touch would make no manifold");
-  });
-  if (!mesh || !report.features.given_up.empty()) return {};
+  if (why.empty())
+    why = reason_against([&]() -> std::string {
+      joined = timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, report, context); });
+      mesh = to_world(joined.mesh, p.surface.frame);
+      mesh->features = std::move(joined.features);
+      part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
+      const bool is_manifold = check_mesh(*mesh).is_manifold_with(report.features.border_loops);
+      return is_manifold ? "" : "parts that touch would make no manifold";
+    });
+  if (!why.empty()) {
+    give_up(report, p.cut->source->if_lost, why);
+    return {};
+  }
   if (const int64_t crossings = report.post.self_intersections; crossings > 0)
     report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
                               " where the input's own triangles do");
@@ -384,6 +295,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   report.features.vertices = joined.on_curves;
   report.features.segments = int64_t(mesh->features.curve_edges.size());
   report.features.kept = report.post_done = true;
+  report_left_out(cut->source->left_out, report);
   return mesh;
 }
 

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <set>
 
+#include "core/world_vector.h"
 #include "features/face_normals.h"
 #include "features/find_curves.h"
 #include "features/weld_for_features.h"
@@ -366,6 +367,32 @@ TEST_CASE("curves: the threshold decides which bend is a crease", "[curves][unit
   CHECK(counts_of(find_curves(mesh, {CreaseMode::threshold, 24, .1})) == Counts{1, 6, 0, 0, 6});
   CHECK(counts_of(find_curves(mesh, {CreaseMode::threshold, 26, .1})) == Counts{0, 4, 0, 0, 4});
   CHECK(counts_of(find_curves(weld_for_features(cube(3)), {CreaseMode::off, 0, .1})) == Counts{});
+}
+
+TEST_CASE("curves: patches too small for the edges lose sharp creases, too, where that is asked for, others none",
+          "[curves][unit]") {
+  std::set<std::array<int, 3>> plate_with_bump{{1, 1, 1}};
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 4; ++y) plate_with_bump.insert({x, y, 0});
+  const FeatureMesh mesh = weld_for_features(cells(plate_with_bump, 2));
+  CurveOptions options{CreaseMode::threshold, 40, .7};  // a face of the bump has 4 of border, a side of the plate 10
+  const auto length_on = [&](const CurveNetwork& network, bool is_plate) {
+    double sum = 0;
+    for (const FeatureCurve& curve : network.curves)
+      for (size_t i = 1; i < curve.vertex.size(); ++i) {
+        const WorldPoint &a = mesh.vertices[curve.vertex[i - 1]], &b = mesh.vertices[curve.vertex[i]];
+        const auto is_outside = [](const WorldPoint& p) { return p.x == 0 || p.x == 4 || p.y == 0 || p.y == 4; };
+        if ((is_outside(a) && is_outside(b)) == is_plate) sum += std::sqrt(distance_sq(a, b));
+      }
+    return sum;
+  };
+  const CurveNetwork all = find_curves(mesh, options);
+  CHECK(length_on(all, true) == Approx(36));
+  CHECK(length_on(all, false) == Approx(12));
+  options.drops_small_patches = true;
+  const CurveNetwork fewer = find_curves(mesh, options);
+  CHECK(length_on(fewer, true) == Approx(36));
+  CHECK(length_on(fewer, false) < 10);
 }
 
 TEST_CASE("curves: they do not depend on the order of vertices and triangles", "[curves][unit]") {

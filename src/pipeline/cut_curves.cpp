@@ -1,0 +1,194 @@
+// See cut_curves.h.
+#include "pipeline/cut_curves.h"
+
+#include <algorithm>
+
+#include "core/half_edge_list.h"
+#include "core/world_vector.h"
+#include "features/curve_seeds.h"
+#include "features/free_seeds.h"
+#include "features/separate_fans.h"
+#include "isoshell/mesh_topology.h"
+#include "isoshell/to_host.h"
+#include "pipeline/choose_grid.h"
+#include "pipeline/feature_report.h"
+#include "pipeline/sizing.h"
+
+namespace isoshell {
+namespace {
+
+/// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
+double six_volumes(const FeatureMesh& mesh) {
+  double sum = 0;
+  const WorldPoint& o = mesh.vertices[0];
+  for (const auto& t : mesh.triangles)
+    sum += dot(mesh.vertices[t[0]] - o, cross(mesh.vertices[t[1]] - o, mesh.vertices[t[2]] - o));
+  return sum;
+}
+
+/// The same of a surface whose borders stay: gaps that had to be closed were closed by faces.
+std::string obstacle_to_borders(const CurveNetwork& network) {
+  if (count_kind(network, CurveKind::non_manifold) > 0)
+    return "the surface has edges of more than two faces, or faces that disagree about the outside";
+  return "";
+}
+
+/// What keeps the surface from being its own input's triangles; empty where nothing does. Faces that a union cut count
+/// as closed whatever their edges are.
+std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetwork& network) {
+  const InputTopology& input = p.surface.topology;
+  const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam) +
+                         count_kind(network, CurveKind::line);
+  if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
+    return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
+  if (six_volumes(mesh) < 0) return "the faces look inwards";
+  if (p.grown) return "walls without thickness had to be grown";
+  if (p.closing_vox > 0) return "gaps were closed";
+  return "";
+}
+
+int64_t patches_of(const CutSurface& cut) {
+  uint32_t last = 0;
+  for (const uint32_t patch : cut.surface.patch) last = std::max(last, patch);
+  return int64_t(last) + 1;
+}
+
+/// The mesh once every fan of triangles has a vertex of its own, as in the result.
+struct SeparatedMesh {
+  int64_t more_places = 0;  ///< vertices of the result that are at places of others
+  int64_t border_loops = 0;
+};
+SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
+  TriangleMesh apart;
+  apart.vertices = mesh.vertices;
+  apart.triangles = mesh.triangles;
+  const bool is_other = !separate_fans(apart.vertices, apart.triangles).empty();
+  const bool has_borders = count_kind(network, CurveKind::border) + count_kind(network, CurveKind::non_manifold) > 0;
+  return {is_other ? count_separated_places(mesh, network, apart.triangles) : 0,
+          has_borders ? check_mesh(apart).boundary_loops : 0};
+}
+
+int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_open) {
+  return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
+}
+
+/// An estimate with the fine surface, which has about 36 vertices a seed. Throws: usage where that is above the limit.
+int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
+  constexpr int64_t kBytesPerSeed = 36 * 350;
+  const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
+  if (limit > 0 && bytes > limit)
+    throw Error(ErrorCode::usage, "features",
+                "the surface cut along them would take about " + std::to_string(bytes >> 20) +
+                    " MiB, more than the limit of " + std::to_string(limit >> 20) +
+                    "; raise --max-memory, or ask for fewer vertices");
+  return bytes;
+}
+
+std::vector<uint64_t> edges_of(const FeatureCurve& curve) {
+  std::vector<uint64_t> edges;
+  const size_t count = curve.vertex.size();
+  for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < count; ++i)
+    edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % count]));
+  return edges;
+}
+
+std::vector<uint64_t> edges_of(const CurveNetwork& network) {
+  std::vector<uint64_t> all;
+  for (const FeatureCurve& curve : network.curves) {
+    const std::vector<uint64_t> edges = edges_of(curve);
+    all.insert(all.end(), edges.begin(), edges.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// The curves of a network of which less than half is among some edges.
+std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& network,
+                                   const std::vector<uint64_t>& kept) {
+  std::vector<LostCurve> out;
+  const std::vector<LostCurve> all = describe(mesh, network);
+  for (size_t c = 0; c < all.size(); ++c) {
+    const std::vector<uint64_t> edges = edges_of(network.curves[c]);
+    const auto held = std::count_if(edges.begin(), edges.end(),
+                                    [&](uint64_t e) { return std::binary_search(kept.begin(), kept.end(), e); });
+    if (2 * size_t(held) >= edges.size()) continue;
+    out.push_back(all[c]);
+    out.back().reason = "it runs around a patch that is too small for the edges";
+  }
+  return out;
+}
+
+std::shared_ptr<const CutSurface> make_cut(CutSource source, const CurveNetwork& network, const LatticeFrame& frame,
+                                           FeatureReport& found, Context& context) {
+  auto cut = std::make_shared<CutSurface>(cut_surface(*source.mesh, network, frame, source.how, context));
+  if (cut->seeds == 0) cut->seeds = source.seeds;
+  const SeedSet fixed = seeds_on_curves(*cut, 0);
+  FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
+  found.vertices = count_places(fixed.fixed);
+  found.patches = patches_of(*cut);
+  found.given_up.clear();
+  cut->source = std::make_shared<const CutSource>(std::move(source));
+  return cut;
+}
+
+}  // namespace
+
+/// Of a surface that the options leave open.
+bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
+  return options.boundary == Boundary::keep && !p.surface.topology.closed;
+}
+
+bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curves, const RemeshOptions& options,
+               Prepared& p, RemeshReport& report, Context& context) {
+  CreaseReport creases;
+  CurveNetwork network;
+  FeatureReport& found = report.features;
+  std::vector<LostCurve> if_lost;
+  const std::string why = reason_against([&]() -> std::string {
+    network = find_curves(*mesh, curves, &creases);
+    const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
+    report_found(*mesh, network, is_open, found);
+    warn_of_branches(*mesh, network, report);
+    found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
+    if (found.curves == 0 && !is_open) return "";
+    if_lost = describe(*mesh, network);
+    if (const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, *mesh, network);
+        !against.empty())
+      return against;
+    const SeparatedMesh apart = separated(*mesh, network);
+    found.border_loops = apart.border_loops;
+    CutSource source{mesh, curves,           {}, vertices_of(options, p, is_open) - apart.more_places, if_lost,
+                     {},   edges_of(network)};
+    report.memory_estimate_bytes = bytes_when_cut(source.seeds, report, context);
+    CutOptions how{edge_length_for(*mesh, network, source.seeds), 0, asked_lengths(options, p)};
+    const bool lengths_decide = how.asked.vary() && field_decides(options);
+    if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = source.seeds;
+    source.how = how;
+    const std::string refused = reason_against([&] {
+      p.cut = make_cut(source, network, p.surface.frame, found, context);
+      return std::string();
+    });
+    if (!refused.empty()) p.cut = cut_along_fewer(source, p.surface.frame, report, context);
+    return p.cut ? "" : refused;
+  });
+  if (!why.empty()) give_up(report, if_lost, why);
+  return why.empty();
+}
+
+std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const LatticeFrame& frame,
+                                                  RemeshReport& report, Context& context) {
+  if (source.curves.drops_small_patches) return nullptr;
+  CutSource fewer = source;
+  fewer.curves.drops_small_patches = true;
+  const CurveNetwork network = find_curves(*source.mesh, fewer.curves);
+  fewer.curve_edges = edges_of(network);
+  if (fewer.curve_edges == source.curve_edges) return nullptr;
+  const CurveNetwork all = find_curves(*source.mesh, source.curves);
+  fewer.left_out = left_out_of(*source.mesh, all, fewer.curve_edges);
+  const int64_t border_loops = report.features.border_loops;
+  report_found(*source.mesh, network, border_loops > 0, report.features);
+  report.features.border_loops = border_loops;
+  return make_cut(std::move(fewer), network, frame, report.features, context);
+}
+
+}  // namespace isoshell
