@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "isoshell/backend.h"
 #include "isoshell/surface_source.h"
@@ -23,6 +25,13 @@ struct UnionReport {
   int64_t joined_components = 0;     ///< components of the union, where faces were cut
 
   bool changed_anything() const { return turned_components + swallowed_components + dropped_inner + cut_faces > 0; }
+};
+
+/// What came of joining closed components that pass through or touch each other as one mesh, which keeps creases.
+struct JoinReport {
+  std::string given_up;          ///< why they were not joined, though they meet; empty otherwise
+  std::optional<WorldPoint> at;  ///< where they meet then, if it is known
+  int64_t left_components = 0;   ///< open or looking inward, and apart from those that were joined
 };
 
 /// Result: the faces of a closed and oriented soup that bound the union of its components, by winding numbers: outside

@@ -117,6 +117,7 @@ struct RemeshReport {
   DirtCounts dirt;
   RepairReport mend;
   UnionReport unite;
+  JoinReport join;
   LatticeFrame frame;
   int32_t band_vox = 0, closing_vox = 0, grown_vox = 0;
   int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built

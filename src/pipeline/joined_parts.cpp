@@ -28,7 +28,7 @@ std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopolo
                                       Context& context) {
   const InputTopology& given = measured.topology;
   if (given.boundary_loops > 0) return {};
-  if (measured.dirt.nonmanifold_edges == 0) return join_crossing_parts(soup, given, report, context);
+  if (measured.dirt.nonmanifold_edges == 0) return join_crossing_parts(soup, given, false, report, context);
   std::optional<JoinedParts> without_walls = timed(report, "mend", context, [&]() -> std::optional<JoinedParts> {
     std::optional<WithoutWalls> found = drop_inner_walls(weld_for_features(soup));
     if (!found || found->interfaces.empty()) return {};
@@ -42,21 +42,25 @@ std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopolo
     joined.interfaces = std::move(found->interfaces);
     return joined;
   });
-  return without_walls ? std::move(without_walls) : join_crossing_parts(soup, given, report, context);
+  return without_walls ? std::move(without_walls) : join_crossing_parts(soup, given, false, report, context);
 }
 
-std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given,
+std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given, bool may_be_open,
                                                RemeshReport& report, Context& context) {
-  if (given.boundary_loops > 0 || (given.components < 2 && given.genus >= 0)) return {};
+  if ((given.boundary_loops > 0 && !may_be_open) || (given.components < 2 && given.genus >= 0)) return {};
   return timed(report, "unite", context, [&]() -> std::optional<JoinedParts> {
-    std::optional<repair::JoinedSolids> solids = repair::join_solids(soup, context);
+    std::optional<repair::JoinedSolids> solids = repair::join_solids(soup, report.join, context);
     if (!solids) return {};
     JoinedParts joined;
     joined.soup = std::move(solids->soup);
     joined.cut_faces = solids->cut_faces;
     joined.topology = measure_topology(joined.soup, context).topology;
-    if (!joined.topology.closed || !joined.topology.oriented) return {};
-    return joined;
+    const InputTopology& found = joined.topology;
+    const bool is_whole =
+        given.boundary_loops > 0 ? found.boundary_loops == given.boundary_loops : found.closed && found.oriented;
+    if (is_whole) return joined;
+    report.join = {"their union is not closed", {}, 0};
+    return {};
   });
 }
 

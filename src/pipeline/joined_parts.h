@@ -21,8 +21,9 @@ struct JoinedParts {
 std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, RemeshReport& report,
                                       Context& context);
 
-/// Only of parts that pass through or touch each other (see join_solids.h).
-std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given,
+/// Only of parts that pass through or touch each other (see join_solids.h); with `may_be_open` also beside others that
+/// are open. Says what is left, or why none are joined.
+std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given, bool may_be_open,
                                                RemeshReport& report, Context& context);
 
 }  // namespace isoshell

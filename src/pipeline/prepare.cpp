@@ -370,7 +370,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
     changed = timed(report, "mend", context, [&] { return repaired(soup, given, options, report.mend); });
     current = &changed;
     input = timed(report, "topology", context, measure);
-    if (std::optional<JoinedParts> mended = join_crossing_parts(*current, input, report, context)) {
+    if (std::optional<JoinedParts> mended =
+            join_crossing_parts(*current, input, options.boundary == Boundary::keep, report, context)) {
       changed = std::move(mended->soup);
       cut_faces = mended->cut_faces;
       input = mended->topology;
@@ -385,6 +386,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
       current = &changed;
       input = timed(report, "topology", context, measure);
       if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
+      if (report.unite.cut_faces > 0 && cut_faces == 0 && report.join.given_up.empty())
+        report.join.given_up = source.interfaces.empty() ? "fewer than two of them look outward" : "others share walls";
     }
   }
   report.unite.cut_faces += cut_faces;

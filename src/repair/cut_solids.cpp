@@ -49,7 +49,7 @@ struct Meetings {
 
 class Cutter {
  public:
-  Cutter(const Solid& a, const Solid& b) {
+  Cutter(const Solid& a, const Solid& b, WorldPoint& failed_at) : failed_at_(failed_at) {
     cut_.both = a;
     Solid& both = cut_.both;
     const uint32_t shift = uint32_t(a.point.size());
@@ -90,11 +90,17 @@ class Cutter {
       near.erase(std::unique(near.begin(), near.end()), near.end());
       for (const uint32_t g : near) meet(f, g, found[f]);
     });
-    for (const Meetings& m : found) {
-      if (!m.is_generic) return false;
+    for (uint32_t f = 0; f < shift; ++f) {
+      const Meetings& m = found[f];
+      if (!m.is_generic) return fail(f);
       meetings_.insert(meetings_.end(), m.found.begin(), m.found.end());
     }
     return true;
+  }
+
+  bool fail(uint32_t f) {
+    failed_at_ = at(cut_.both.face[f][0]);
+    return false;
   }
 
   void box(uint32_t f, WorldPoint& lo, WorldPoint& hi) const {
@@ -248,7 +254,7 @@ class Cutter {
     for (EdgeEnds& l : lines)
       for (uint32_t& v : l) v = uint32_t(std::lower_bound(points.begin(), points.end(), v) - points.begin());
     const auto triangles = triangulate_plane(seen_from_outside(corner, points), lines);
-    if (!triangles) return false;
+    if (!triangles) return fail(f);
     for (const auto& t : *triangles) faces.push_back({points[t[0]], points[t[1]], points[t[2]]});
     return true;
   }
@@ -272,6 +278,7 @@ class Cutter {
   }
 
   CutSolids cut_;
+  WorldPoint& failed_at_;
   std::vector<Meeting> meetings_;
   std::vector<Pass> passes_;                ///< by edge, then by face
   std::vector<uint32_t> by_edge_, welded_;  ///< passes by edge, then along it; per pass its point
@@ -280,8 +287,8 @@ class Cutter {
 
 }  // namespace
 
-std::optional<CutSolids> cut_solids(const Solid& a, const Solid& b, const Context& context) {
-  return Cutter(a, b).cut(b, context);
+std::optional<CutSolids> cut_solids(const Solid& a, const Solid& b, WorldPoint& failed_at, const Context& context) {
+  return Cutter(a, b, failed_at).cut(b, context);
 }
 
 }  // namespace isoshell::repair

@@ -27,8 +27,8 @@ struct CutSolids {
   std::vector<std::array<uint32_t, 2>> crossing;  ///< edges where they cross, smaller end first, ascending
 };
 
-/// None where a point of one lies in a face of the other or two edges meet, or where rounding makes lines cross. Then
-/// no lines are where no faces cross. Cost: pairs of faces whose boxes meet.
-std::optional<CutSolids> cut_solids(const Solid& a, const Solid& b, const Context& context);
+/// None where a point of one lies in a face of the other or two edges meet, or where rounding makes lines cross; then
+/// `failed_at` is a corner of a face there. No lines are where no faces cross. Cost: pairs of faces whose boxes meet.
+std::optional<CutSolids> cut_solids(const Solid& a, const Solid& b, WorldPoint& failed_at, const Context& context);
 
 }  // namespace isoshell::repair

@@ -2,7 +2,6 @@
 #include "repair/join_solids.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/half_edge_list.h"
@@ -11,8 +10,8 @@
 #include "isoshell/buffer.h"
 #include "repair/cut_solids.h"
 #include "repair/drop_slivers.h"
-#include "repair/plane_triangulation.h"
 #include "repair/repair_mesh.h"
+#include "repair/swell_solids.h"
 #include "repair/winding.h"
 #include "voxel/random.h"
 #include "voxel/union_find.h"
@@ -20,10 +19,7 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr int kMostTries = 8;
-constexpr double kMarginSteps = 1 << 12;
-constexpr uint64_t kSwellSteps = 192, kSwellMoreSteps = 256;  // at least, and less than that more
-constexpr int kJitterSteps = 3;
+constexpr uint32_t kMostTries = 8;
 constexpr double kRoundedSteps = 6;  // triangles lower than that come from rounding where edges were cut
 constexpr double kSliverSteps = 2048;
 
@@ -43,32 +39,6 @@ Box box_of(const Solid& s) {
     }
   return box;
 }
-
-/// From the corners of faces to whole steps from 0 on.
-struct Steps {
-  WorldPoint least;
-  double a_step;
-
-  explicit Steps(const RepairMesh& mesh) {
-    least = mesh.position[mesh.face[0][0]];
-    WorldPoint most = least;
-    for (const Corners& f : mesh.face)
-      for (const uint32_t v : f) {
-        const WorldPoint& p = mesh.position[v];
-        least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
-        most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
-      }
-    const WorldPoint size = most - least;
-    a_step = std::max({size.x, size.y, size.z}) / (double(kLargestInPlane) - 2 * kMarginSteps);
-  }
-  WorldPoint from(const WorldPoint& p) const {
-    const WorldPoint s = (1 / a_step) * (p - least);
-    return {s.x + kMarginSteps, s.y + kMarginSteps, s.z + kMarginSteps};
-  }
-  WorldPoint to_world(const WorldPoint& s) const {
-    return least + a_step * WorldPoint{s.x - kMarginSteps, s.y - kMarginSteps, s.z - kMarginSteps};
-  }
-};
 
 /// Components of faces that share edges with one other face, each on points of its own.
 std::vector<Solid> components_of(const RepairMesh& mesh) {
@@ -99,15 +69,19 @@ std::vector<Solid> components_of(const RepairMesh& mesh) {
   return solids;
 }
 
-/// Whether each edge has two faces, which pass it in opposite directions.
-bool is_closed(const std::vector<Corners>& faces) {
+/// An end of an edge that has not two faces which pass it in opposite directions.
+std::optional<uint32_t> find_open_end(const std::vector<Corners>& faces) {
   std::vector<uint64_t> edges;
   for (const Corners& f : faces)
     for (size_t i = 0; i < 3; ++i) edges.push_back(uint64_t(f[i]) << 32 | f[(i + 1) % 3]);
   std::sort(edges.begin(), edges.end());
-  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
-  return std::all_of(edges.begin(), edges.end(),
-                     [&](uint64_t e) { return std::binary_search(edges.begin(), edges.end(), e << 32 | e >> 32); });
+  auto open = std::adjacent_find(edges.begin(), edges.end());
+  if (open == edges.end())
+    open = std::find_if_not(edges.begin(), edges.end(), [&](uint64_t e) {
+      return std::binary_search(edges.begin(), edges.end(), e << 32 | e >> 32);
+    });
+  if (open == edges.end()) return {};
+  return uint32_t(*open);
 }
 
 double six_volume(const std::vector<WorldPoint>& point, const std::vector<Corners>& faces) {
@@ -117,45 +91,10 @@ double six_volume(const std::vector<WorldPoint>& point, const std::vector<Corner
   return sum;
 }
 
-/// By what a point is moved so that planes with these normals, of length 1, all move outward by 1, as far as they can.
-/// The sums are of n n and of n.
-WorldPoint outward(const std::array<double, 6>& nn, const WorldPoint& n) {
-  constexpr double kKeep = 1e-3;  // of those along which no plane looks
-  const double xx = nn[0] + kKeep, yy = nn[1] + kKeep, zz = nn[2] + kKeep, xy = nn[3], yz = nn[4], zx = nn[5];
-  const WorldPoint a{xx, xy, zx}, b{xy, yy, yz}, c{zx, yz, zz};
-  const double volume = dot(a, cross(b, c));
-  WorldPoint d = (1 / volume) * WorldPoint{dot(n, cross(b, c)), dot(a, cross(n, c)), dot(a, cross(b, n))};
-  const double farthest = 4, far = length(d);
-  return far > farthest ? (farthest / far) * d : d;
-}
-
-/// Points in steps, swollen, and each a little off, in another way in each try.
-void swell(Solid& solid, const std::vector<WorldPoint>& position, const Steps& steps, uint64_t by, uint64_t seed) {
-  std::vector<std::array<double, 6>> nn(solid.origin.size());
-  std::vector<WorldPoint> n(solid.origin.size(), WorldPoint{0, 0, 0});
-  for (const Corners& f : solid.face) {
-    const WorldPoint &a = position[solid.origin[f[0]]], &b = position[solid.origin[f[1]]],
-                     &c = position[solid.origin[f[2]]];
-    const WorldPoint doubled = doubled_area(a, b, c);
-    const double area = length(doubled);
-    if (!(area > 0)) continue;
-    const WorldPoint u = (1 / area) * doubled;
-    for (const uint32_t v : f) {
-      nn[v] = {nn[v][0] + u.x * u.x, nn[v][1] + u.y * u.y, nn[v][2] + u.z * u.z,
-               nn[v][3] + u.x * u.y, nn[v][4] + u.y * u.z, nn[v][5] + u.z * u.x};
-      n[v] = n[v] + u;
-    }
-  }
-  solid.point.resize(solid.origin.size());
-  for (size_t v = 0; v < solid.point.size(); ++v) {
-    const uint64_t bits = random_bits(seed, v);
-    const auto jitter = [&](int shift) {
-      return double(int((bits >> shift) & 0xffff) % (2 * kJitterSteps + 1) - kJitterSteps);
-    };
-    const WorldPoint p = steps.from(position[solid.origin[v]]) + double(by) * outward(nn[v], n[v]);
-    solid.point[v] = {std::floor(p.x + .5) + jitter(0), std::floor(p.y + .5) + jitter(16),
-                      std::floor(p.z + .5) + jitter(32)};
-  }
+bool bounds_solid(const Solid& s, const std::vector<WorldPoint>& position) {
+  std::vector<WorldPoint> point;
+  for (const uint32_t v : s.origin) point.push_back(position[v]);
+  return !find_open_end(s.face) && six_volume(point, s.face) > 0;
 }
 
 int winding_at(const RayColumns& of, const WorldPoint& p) {
@@ -170,6 +109,8 @@ class Joiner {
   explicit Joiner(const Context& context) : context_(context) {}
 
   bool is_failed = false;
+  std::string reason;  ///< why, and where
+  WorldPoint failed_at{0, 0, 0};
   int64_t joins = 0, cut_faces = 0;
 
   std::vector<Solid> join_all(std::vector<Solid>& solids, size_t begin, size_t end) {
@@ -206,15 +147,24 @@ class Joiner {
   /// None where they lie apart, or one in the other.
   std::optional<Solid> join_two(const Solid& a, const Solid& b) {
     check_cancel(context_, "unite");
-    std::optional<CutSolids> cut = cut_solids(a, b, context_);
-    if (!cut) is_failed = true;
-    if (!cut || cut->crossing.empty()) return {};
+    std::optional<CutSolids> cut = cut_solids(a, b, failed_at, context_);
+    if (!cut) return fail("lines where they cross are too close to be told apart");
+    if (cut->crossing.empty()) return {};
     Solid joined = outer_faces(std::move(*cut), a, b);
-    is_failed |= joined.face.empty() || !is_closed(joined.face);
+    const std::optional<uint32_t> open = joined.face.empty() ? 0 : find_open_end(joined.face);
+    if (open) {
+      failed_at = joined.point[*open];
+      return fail("what bounds both is not closed, as where a component crosses itself");
+    }
     ++joins;
-    if (is_failed) return {};
     drop_slivers(joined.point, joined.face, joined.source, kRoundedSteps);
     return joined;
+  }
+
+  std::optional<Solid> fail(const char* why) {
+    is_failed = true;
+    reason = why;
+    return {};
   }
 
   /// Parts between lines where surfaces cross lie in or out as a whole; their largest faces tell.
@@ -265,60 +215,117 @@ class Joiner {
   const Context& context_;
 };
 
-/// Caps come last, as they did.
-TriangleSoup soup_of(const std::vector<Solid>& solids, const RepairMesh& mesh, const Steps& steps,
-                     const TriangleSoup& from) {
+/// Those that stay follow as they were; caps come last, as they did.
+TriangleSoup soup_of(const std::vector<Solid>& solids, const std::vector<Solid>& left, const RepairMesh& mesh,
+                     const Steps& steps, const TriangleSoup& from) {
   TriangleSoup soup;
   soup.faces_in_file = from.faces_in_file;
   soup.dirt = from.dirt;
   std::vector<Corners> caps;
-  for (const Solid& solid : solids) {
+  const auto add = [&](const Solid& solid, bool is_joined) {
     std::vector<WorldPoint> point;
-    for (size_t v = 0; v < solid.point.size(); ++v)
+    for (size_t v = 0; v < solid.origin.size(); ++v)
       point.push_back(solid.origin[v] == kNoFace ? steps.to_world(solid.point[v]) : mesh.position[solid.origin[v]]);
     std::vector<Corners> face = solid.face;
     std::vector<uint32_t> source = solid.source;
-    drop_slivers(point, face, source, kSliverSteps * steps.a_step);
+    if (is_joined) drop_slivers(point, face, source, kSliverSteps * steps.a_step);
     const uint32_t shift = uint32_t(soup.vertices.size());
     soup.vertices.insert(soup.vertices.end(), point.begin(), point.end());
     for (size_t f = 0; f < face.size(); ++f)
       (source[f] < from.first_cap ? soup.triangles : caps)
           .push_back({face[f][0] + shift, face[f][1] + shift, face[f][2] + shift});
-  }
+  };
+  for (const Solid& solid : solids) add(solid, true);
+  for (const Solid& solid : left) add(solid, false);
   if (!caps.empty()) soup.first_cap = uint32_t(soup.triangles.size());
   soup.triangles.insert(soup.triangles.end(), caps.begin(), caps.end());
   return soup;
 }
 
-std::optional<JoinedSolids> try_to_join(const TriangleSoup& soup, const Context& context) {
-  const RepairMesh mesh(soup);
-  if (mesh.face.empty()) return {};
-  const std::vector<Solid> components = components_of(mesh);
-  if (components.size() < 2) return {};
-  for (const Solid& s : components) {
-    std::vector<WorldPoint> point;
-    for (const uint32_t v : s.origin) point.push_back(mesh.position[v]);
-    if (!is_closed(s.face) || six_volume(point, s.face) <= 0) return {};
+Solid as_one(const std::vector<Solid>& solids) {
+  Solid all;
+  for (const Solid& s : solids) {
+    const uint32_t shift = uint32_t(all.point.size());
+    all.point.insert(all.point.end(), s.point.begin(), s.point.end());
+    all.origin.insert(all.origin.end(), s.origin.begin(), s.origin.end());
+    all.source.insert(all.source.end(), s.source.begin(), s.source.end());
+    for (const Corners& f : s.face) all.face.push_back({f[0] + shift, f[1] + shift, f[2] + shift});
   }
-  const Steps steps(mesh);
-  for (int tries = 0; tries < kMostTries; ++tries) {
-    std::vector<Solid> solids = components;
-    for (uint32_t i = 0; i < solids.size(); ++i) {
-      const uint64_t seed = uint64_t(tries) << 32 | i;
-      swell(solids[i], mesh.position, steps, kSwellSteps + random_bits(seed, kNoFace) % kSwellMoreSteps, seed);
-    }
-    Joiner joiner(context);
-    const std::vector<Solid> joined = joiner.join_all(solids, 0, solids.size());
-    if (!joiner.is_failed && joiner.joins == 0) return {};
-    if (!joiner.is_failed) return JoinedSolids{soup_of(joined, mesh, steps, soup), joiner.cut_faces};
-  }
+  return all;
+}
+
+/// Why solids cannot be joined without the others, and where; in steps. What lies in one of them, as hollows do, does
+/// so in their union, too.
+std::optional<std::pair<const char*, WorldPoint>> find_obstacle(const std::vector<Solid>& solids,
+                                                                const std::vector<Solid>& others,
+                                                                const Context& context) {
+  const Solid all = as_one(solids);
+  WorldPoint at{0, 0, 0};
+  const std::optional<CutSolids> cut = cut_solids(all, as_one(others), at, context);
+  if (cut && !cut->crossing.empty()) at = cut->both.point[cut->crossing.front()[0]];
+  if (!cut || !cut->crossing.empty()) return std::pair("a component that is open or looks inward meets them", at);
+  const RayColumns of_all(all.point, all.face);
+  for (const Solid& s : others)
+    if (winding_at(of_all, s.point[0]) > 1)
+      return std::pair("a component that is open or looks inward lies in several of them", s.point[0]);
   return {};
 }
 
+class Attempt {
+ public:
+  Attempt(const TriangleSoup& soup, JoinReport& report, const Context& context)
+      : soup_(soup), report_(report), context_(context), mesh_(soup) {
+    if (mesh_.face.empty()) return;
+    for (Solid& s : components_of(mesh_)) (bounds_solid(s, mesh_.position) ? solids_ : others_).push_back(std::move(s));
+  }
+
+  std::optional<JoinedSolids> run() {
+    if (solids_.size() < 2) return {};
+    const Steps steps(mesh_);
+    const auto give_up = [&](const std::string& why, const WorldPoint& at) {
+      report_.given_up = why;
+      report_.at = steps.to_world(at);
+    };
+    for (uint32_t tries = 0; tries < kMostTries; ++tries) {
+      std::vector<Solid> solids = swollen(solids_, steps, tries, 0);
+      Joiner joiner(context_);
+      const std::vector<Solid> joined = joiner.join_all(solids, 0, solids.size());
+      if (joiner.is_failed) {
+        give_up(joiner.reason, joiner.failed_at);
+        continue;
+      }
+      report_ = {};
+      if (joiner.joins == 0) return {};
+      if (!others_.empty()) {
+        const auto obstacle = find_obstacle(swollen(solids_, steps, tries, 0),
+                                            swollen(others_, steps, tries, uint32_t(solids_.size())), context_);
+        if (obstacle) give_up(obstacle->first, obstacle->second);
+        if (obstacle) return {};
+      }
+      report_.left_components = int64_t(others_.size());
+      return JoinedSolids{soup_of(joined, others_, mesh_, steps, soup_), joiner.cut_faces};
+    }
+    return {};
+  }
+
+ private:
+  std::vector<Solid> swollen(std::vector<Solid> solids, const Steps& steps, uint32_t tries, uint32_t first) const {
+    for (uint32_t i = 0; i < solids.size(); ++i)
+      swell(solids[i], mesh_.position, steps, uint64_t(tries) << 32 | (first + i));
+    return solids;
+  }
+
+  const TriangleSoup& soup_;
+  JoinReport& report_;
+  const Context& context_;
+  const RepairMesh mesh_;
+  std::vector<Solid> solids_, others_;  ///< what bounds solid, and what does not
+};
+
 }  // namespace
 
-std::optional<JoinedSolids> join_solids(const TriangleSoup& soup, const Context& context) {
-  return run_with_threads(context, [&] { return try_to_join(soup, context); });
+std::optional<JoinedSolids> join_solids(const TriangleSoup& soup, JoinReport& report, const Context& context) {
+  return run_with_threads(context, [&] { return Attempt(soup, report, context).run(); });
 }
 
 }  // namespace isoshell::repair

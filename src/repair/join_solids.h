@@ -3,8 +3,7 @@
 
 #include <optional>
 
-#include "isoshell/backend.h"
-#include "isoshell/surface_source.h"
+#include "isoshell/boolean_union.h"
 
 namespace isoshell::repair {
 
@@ -13,13 +12,14 @@ struct JoinedSolids {
   int64_t cut_faces = 0;
 };
 
-/// The faces that bound the union of a soup's components, cut where these pass through each other, closed and without
-/// an edge of more than two faces. Sides are decided exactly, on a grid of 2^28 steps along the longest side, and with
-/// each component swollen by up to two millionths of that: so solids that touch are joined, and of two walls in one
-/// plane one is the outer one. Points of the soup stay where they are. Slivers thinner than eight millionths, as they
-/// stay where walls are nearly in one plane, are removed. None where no components meet, one is not closed or looks
-/// inward, or rounding leaves lines that cross. Result: independent of threads. Cost: for n components about log n
-/// times their faces.
-std::optional<JoinedSolids> join_solids(const TriangleSoup& soup, const Context& context);
+/// The faces that bound the union of a soup's closed components that look outward, cut where these pass through each
+/// other, closed and without an edge of more than two faces. Sides are decided exactly, on a grid of 2^28 steps along
+/// the longest side, and with each component swollen by up to two millionths of that: so solids that touch are joined,
+/// and of two walls in one plane one is the outer one. Points of the soup stay where they are. Slivers thinner than
+/// eight millionths, as they stay where walls are nearly in one plane, are removed. Components that are open or look
+/// inward stay as they are. None where no others meet; nor where rounding leaves lines that cross, a component crosses
+/// itself, or those that would stay meet the others or lie in more than one: the report says so. Result: independent of
+/// threads. Cost: for n components about log n times their faces.
+std::optional<JoinedSolids> join_solids(const TriangleSoup& soup, JoinReport& report, const Context& context);
 
 }  // namespace isoshell::repair

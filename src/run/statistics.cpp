@@ -45,12 +45,15 @@ Json repair_json(const RepairReport& m) {
           {"open_loops", m.open_loops}};
 }
 
-Json union_json(const UnionReport& u) {
+Json union_json(const UnionReport& u, const JoinReport& j) {
   return {{"turned_components", u.turned_components},
           {"swallowed_components", u.swallowed_components},
           {"inner_surfaces", u.inner_surfaces},
           {"dropped_inner_components", u.dropped_inner},
-          {"cut_faces", u.cut_faces}};
+          {"cut_faces", u.cut_faces},
+          {"left_components", j.left_components},
+          {"not_joined", known(j.given_up)},
+          {"not_joined_at", point(j.at)}};
 }
 
 /// Schema 1 says under "grid" what came of the options that choose it.
@@ -68,7 +71,7 @@ Json input_json(const RunRecord& r) {
           {"faces", known(r.input.faces)},
           {"dropped", dirt_json(r.report.dirt)},
           {"mended", repair_json(r.report.mend)},
-          {"united", union_json(r.report.unite)},
+          {"united", union_json(r.report.unite, r.report.join)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},
           {"genus", known(t.genus)},

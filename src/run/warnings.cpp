@@ -38,6 +38,15 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
   note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
   note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
+  const JoinReport& j = report.join;
+  note(j.left_components, "open or inward looking components left as they are, others were united beside them");
+  if (!j.given_up.empty()) {
+    std::ostringstream text;
+    text << input << ": closed components that pass through or touch each other are not joined as one mesh";
+    if (j.at) text << ", near " << j.at->x << ' ' << j.at->y << ' ' << j.at->z;
+    text << ": " << j.given_up << "; creases where they meet are rounded off";
+    warnings.push_back(text.str());
+  }
   if (report.features.border_loops == 0)
     note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
   return warnings;

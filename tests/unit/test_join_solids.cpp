@@ -14,7 +14,8 @@ namespace {
 
 void check_union(const TriangleSoup& parts, double volume, int64_t genus) {
   Context context;
-  const auto joined = repair::join_solids(parts, context);
+  JoinReport report;
+  const auto joined = repair::join_solids(parts, report, context);
   REQUIRE(joined);
   const InputTopology found = measure_topology(joined->soup, context).topology;
   CHECK(found.closed);
@@ -47,7 +48,9 @@ TEST_CASE("joined solids: four bars around a window bound a solid of genus 1", "
 
 TEST_CASE("joined solids: what lies apart is left alone", "[join_solids]") {
   const Context context;
-  CHECK_FALSE(repair::join_solids(together(box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1})), context));
+  JoinReport report;
+  CHECK_FALSE(repair::join_solids(together(box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1})), report, context));
+  CHECK(report.given_up.empty());
 }
 
 TEST_CASE("plane triangulation: a square with a line across is two triangles, and lines that cross are refused",
