@@ -73,6 +73,8 @@ class Reader {
       hold(read_mesh(path, MeshFormat::stl));
     } else if (format == "off") {
       hold(read_mesh(path, MeshFormat::off));
+    } else if (format == "glb" || format == "gltf") {
+      hold(read_mesh(path, MeshFormat::gltf));
     } else if (format == "ply") {
       read_ply(request.creases);
     } else if (format == "xyz" || format == "pcd") {
@@ -83,7 +85,7 @@ class Reader {
       read_volume_file(request);
     } else {
       refuse(path + ": the format '" + format +
-             "' is not one of obj, ply, stl, off, xyz, pcd, vdb, nvdb; say which by --input-format");
+             "' is not one of obj, ply, stl, off, glb, gltf, xyz, pcd, vdb, nvdb; say which by --input-format");
     }
     if (request.iso && input_.facts.kind != InputKind::volume) refuse_use("--iso is for volumes; leave it out");
   }

@@ -26,11 +26,23 @@ bool obj_holds(const Attribute& a) {
   return !a.labels.empty() && (a.name == kMaterialName || a.name == kGroupName || a.name == kObjectName);
 }
 
+bool gltf_holds(const Attribute& a) {
+  if (a.domain == AttributeDomain::face) return a.name == kMaterialName && !a.labels.empty();
+  if (a.domain == AttributeDomain::vertex) return a.components == 1 || (a.name == kColorName && a.components >= 3);
+  return (a.name.rfind(kUvName, 0) == 0 && a.components == 2) || (a.name == kNormalName && a.components == 3);
+}
+
 /// Empty when files of the format hold the attribute.
 std::string reason_of_format(const std::string& format, const Attribute& attribute) {
   if (format == "obj" && !obj_holds(attribute))
     return attribute.domain == AttributeDomain::face ? "OBJ files hold no numbers of faces"
                                                      : "OBJ files hold no numbers but colours";
+  if ((format == "glb" || format == "gltf") && !gltf_holds(attribute))
+    return attribute.domain == AttributeDomain::face ? "glTF files hold no numbers of faces but materials"
+                                                     : "glTF files hold no such numbers";
+  if (format == "ply" && attribute.domain == AttributeDomain::corner && attribute.name != kUvName &&
+      attribute.name != kNormalName)
+    return "PLY files hold one set of texture coordinates";
   if (format == "stl") return "STL files are written without attributes";
   if (format == "off") return "OFF files are written without attributes";
   if (format == "vdb") return "stage files hold no attributes";
@@ -43,7 +55,7 @@ AttributeFiles files_of(const std::vector<Attribute>& kept, AttributeFiles all, 
     return std::any_of(kept.begin(), kept.end(), [&](const Attribute& a) { return a.name == name; });
   };
   if (!keeps(kMaterialName)) all.materials.clear();
-  if (!keeps(kUvName) || format == "obj") all.textures.clear();
+  if (!keeps(kUvName) || format != "ply") all.textures.clear();
   return all;
 }
 

@@ -50,7 +50,8 @@ OutputRequest named_output(const std::string& path, const std::string& format, S
   if (output.format.empty()) output.format = format_of_path(path);
   if (path.empty()) return output;
   if (stop_after == StopAfter::mesh) {
-    parse_choice<int>("the format of OUTPUT", output.format, {{"ply", 0}, {"obj", 0}, {"stl", 0}, {"off", 0}});
+    parse_choice<int>("the format of OUTPUT", output.format,
+                      {{"ply", 0}, {"obj", 0}, {"stl", 0}, {"off", 0}, {"glb", 0}, {"gltf", 0}});
   } else {
     if (output.format != "vdb") refuse_use("with --stop-after, OUTPUT is a .vdb file; it is '" + path + "'");
     if (path == "-") refuse_vdb_to_pipe();

@@ -39,6 +39,8 @@ MeshFormat mesh_format(const std::string& format) {
   if (format == "ply") return MeshFormat::ply;
   if (format == "obj") return MeshFormat::obj;
   if (format == "stl") return MeshFormat::stl;
+  if (format == "glb") return MeshFormat::glb;
+  if (format == "gltf") return MeshFormat::gltf;
   return MeshFormat::off;
 }
 

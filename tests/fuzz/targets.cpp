@@ -77,7 +77,8 @@ void run_stage(View<const char> bytes) {
 }  // namespace
 
 const std::vector<Target>& targets() {
-  static const std::vector<Target> all = {{"obj", run_mesh<read_obj>},
+  static const std::vector<Target> all = {{"gltf", run_mesh<read_gltf>},
+                                          {"obj", run_mesh<read_obj>},
                                           {"off", run_mesh<read_off>},
                                           {"ply", run_mesh<read_ply>},
                                           {"stl", run_mesh<read_stl>},

@@ -108,9 +108,9 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* files = "Files";
   option(files, "--iso", raw.iso, "V", "isovalue of a volume; required for a fog volume",
          "0 in a level set and in unsigned distances");
-  option(files, "--input-format", raw.input_format, "F", "format of INPUT: obj, ply, stl, off, xyz, pcd, vdb or nvdb",
+  option(files, "--input-format", raw.input_format, "F", "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb",
          "by its name");
-  option(files, "--output-format", raw.output_format, "F", "format of OUTPUT: ply, obj, stl, off or vdb",
+  option(files, "--output-format", raw.output_format, "F", "format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb",
          "by its name");
   option(files, "--save-shell", run.save_shell, "F.vdb", "also write the shell, to resume from");
   option(files, "--save-voronoi", run.save_voronoi, "F.vdb", "also write the Voronoi volume, to resume from");

@@ -23,8 +23,10 @@ MeshFormat format_of(const std::string& path, MeshFormat format, const char* sta
   if (ending == "obj") return MeshFormat::obj;
   if (ending == "stl") return MeshFormat::stl;
   if (ending == "off") return MeshFormat::off;
+  if (ending == "glb") return MeshFormat::glb;
+  if (ending == "gltf") return MeshFormat::gltf;
   throw Error(ErrorCode::usage, stage,
-              path + ": the name does not tell the format; it must end in .ply, .obj, .stl or .off, or name a format");
+              path + ": the name does not tell the format; it must end in .ply, .obj, .stl, .off, .glb or .gltf, or name a format");
 }
 
 }  // namespace
@@ -41,6 +43,9 @@ TriangleSoup read_mesh(const std::string& path, MeshFormat format) {
         return read_obj(source);
       case MeshFormat::stl:
         return read_stl(source);
+      case MeshFormat::glb:
+      case MeshFormat::gltf:
+        return read_gltf(source);
       default:
         return read_off(source);
     }
@@ -67,6 +72,12 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWri
       break;
     case MeshFormat::stl:
       write_stl(file, mesh);
+      break;
+    case MeshFormat::glb:
+      write_glb(file, mesh);
+      break;
+    case MeshFormat::gltf:
+      write_gltf(file, mesh);
       break;
     default:
       write_off(file, mesh);

@@ -7,6 +7,8 @@
 
 namespace isoshell {
 
+/// .glb as well as .gltf; buffers in files of their own are found from the source's name.
+TriangleSoup read_gltf(const MeshSource& source);
 TriangleSoup read_obj(const MeshSource& source);
 TriangleSoup read_off(const MeshSource& source);
 TriangleSoup read_ply(const MeshSource& source);

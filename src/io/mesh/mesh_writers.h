@@ -8,6 +8,8 @@ namespace isoshell {
 
 void write_ply(OutputFile& file, const TriangleMesh& mesh, bool with_curve_edges);
 void write_obj(OutputFile& file, const TriangleMesh& mesh);
+void write_glb(OutputFile& file, const TriangleMesh& mesh);
+void write_gltf(OutputFile& file, const TriangleMesh& mesh);
 void write_stl(OutputFile& file, const TriangleMesh& mesh);
 void write_off(OutputFile& file, const TriangleMesh& mesh);
 

@@ -1,0 +1,87 @@
+// The elements of accessors as numbers.
+#include <tbb/parallel_for.h>
+
+#include <cstring>
+
+#include "core/number_type.h"
+#include "io/mesh/gltf_document.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kGrain = 1 << 14;
+
+// Little-endian, on any machine.
+template <class T>
+T load(const char* p) {
+  using Small = std::conditional_t<sizeof(T) == 1, uint8_t, uint16_t>;
+  using Bits = std::conditional_t<sizeof(T) == 4, uint32_t, Small>;
+  Bits bits = 0;
+  for (size_t i = 0; i < sizeof(T); ++i) bits = Bits(bits | Bits(static_cast<unsigned char>(p[i])) << 8 * i);
+  T value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// Calls take(element, component, value) for all; the type of values is the accessor's.
+template <class Take>
+void each_value(const GltfElements& e, Take take) {
+  if (!e.data) return;
+  with_type(e.type, [&](auto number) {
+    using T = decltype(number);
+    if constexpr (sizeof(T) <= 4)
+      tbb::parallel_for(tbb::blocked_range<int64_t>(0, e.count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
+        for (int64_t i = r.begin(); i < r.end(); ++i)
+          for (int32_t c = 0; c < e.components; ++c)
+            take(i, c, load<T>(e.data + i * e.stride + c * int64_t(sizeof(T))));
+      });
+  });
+}
+
+/// Which elements a sparse accessor replaces, all in range.
+std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccessor& a) {
+  std::vector<uint32_t> replaced(size_t(a.replaced.count));
+  each_value(a.replaced, [&](int64_t i, int32_t, auto value) { replaced[size_t(i)] = uint32_t(value); });
+  for (const uint32_t i : replaced)
+    if (i >= a.count)
+      document.refuse(a.replaced.place, " names element " + std::to_string(i) + "; the accessor has " +
+                                            std::to_string(a.count));
+  return replaced;
+}
+
+template <class Out, class Convert>
+std::vector<Out> read(const GltfDocument& document, const GltfAccessor& a, Convert convert) {
+  const auto components = size_t(a.components);
+  std::vector<Out> values(size_t(a.count) * components, Out(0));
+  each_value(a, [&](int64_t i, int32_t c, auto value) { values[size_t(i) * components + size_t(c)] = convert(value); });
+  const std::vector<uint32_t> replaced = replaced_of(document, a);
+  // One after another: a file may name an element twice.
+  for (size_t i = 0; i < replaced.size(); ++i) {
+    GltfElements one = a.replacements;
+    one.data += int64_t(i) * one.stride;
+    one.count = 1;
+    each_value(one, [&](int64_t, int32_t c, auto value) {
+      values[replaced[i] * components + size_t(c)] = convert(value);
+    });
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> values_of(const GltfDocument& document, const GltfAccessor& a, bool scaled) {
+  return read<double>(document, a, [scaled = scaled && a.normalized](auto value) {
+    using T = decltype(value);
+    if (std::is_integral_v<T> && scaled) return std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0);
+    return double(value);
+  });
+}
+
+std::vector<uint32_t> indices_of(const GltfDocument& document, const GltfAccessor& a) {
+  const bool is_index = a.type == NumberType::u8 || a.type == NumberType::u16 || a.type == NumberType::u32;
+  if (a.components != 1 || !is_index)
+    document.refuse(a.place, " holds no indices; they are SCALAR, of componentType 5121, 5123 or 5125");
+  return read<uint32_t>(document, a, [](auto value) { return uint32_t(value); });
+}
+
+}  // namespace isoshell

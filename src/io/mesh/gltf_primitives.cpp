@@ -1,0 +1,123 @@
+#include "io/mesh/gltf_primitives.h"
+
+#include <map>
+
+namespace isoshell {
+namespace {
+
+using Json = GltfDocument::Json;
+
+enum Mode : int64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
+
+void add_instance(const GltfDocument& document, const GltfInstance& instance, GltfContent& content) {
+  const std::string mesh_place = "meshes[" + std::to_string(instance.mesh) + "]";
+  const Json& mesh = document.element("meshes", instance.mesh, mesh_place);
+  std::map<std::string, size_t> known;
+  const Json& primitives = document.list(mesh, "primitives", mesh_place);
+  for (size_t i = 0; i < primitives.size(); ++i) {
+    const std::string place = mesh_place + ".primitives[" + std::to_string(i) + "]";
+    const Json& primitive = primitives[i];
+    if (!primitive.is_object()) document.refuse(place, " is no object");
+    const int64_t mode = document.integer(primitive, "mode", place).value_or(kTriangles);
+    if (mode > kFan) document.refuse(place + ".mode", " is " + std::to_string(mode) + "; it must be from 0 to 6");
+    const auto attributes = primitive.find("attributes");
+    if (attributes == primitive.end() || !attributes->is_object()) document.refuse(place, " has no attributes");
+    const auto position = document.integer(*attributes, "POSITION", place + ".attributes");
+    if (mode < kTriangles || !position) {
+      ++content.other_primitives;
+      continue;
+    }
+    const std::string key = attributes->dump(-1, ' ', true, Json::error_handler_t::replace);
+    const auto [at, is_new] = known.emplace(key, content.vertices.size());
+    if (is_new) {
+      const GltfAccessor a = document.accessor(*position, place + ".attributes.POSITION");
+      if (a.components != 3)
+        document.refuse(a.place, " has " + std::to_string(a.components) + " components; positions have 3");
+      const int64_t first = content.first_vertex.back();
+      if (a.count > kMaxSoupVertices - first)
+        document.source().refuse("holds more than " + std::to_string(kMaxSoupVertices) +
+                                 " vertices, the most that can be read; split the file");
+      content.vertices.push_back({&*attributes, place + ".attributes", &instance.to_world, first, a.count});
+      content.first_vertex.back() += a.count;
+    }
+    content.primitives.push_back({at->second, mode, document.integer(primitive, "indices", place),
+                                  document.integer(primitive, "material", place), place});
+  }
+}
+
+/// Corner k of triangle t of a primitive.
+int64_t place_of(int64_t mode, int64_t t, int k) {
+  if (mode == kTriangles) return 3 * t + k;
+  if (mode == kFan) return k == 0 ? 0 : t + k;
+  return t + (t % 2 == 0 || k == 0 ? k : 3 - k);  // every second triangle of a strip is turned
+}
+
+void add_triangles(const GltfDocument& document, const GltfContent& content, const GltfPrimitive& primitive,
+                   std::vector<Triangle>& out) {
+  const GltfVertices& vertices = content.vertices[primitive.vertices];
+  std::vector<uint32_t> index;
+  int64_t corners = vertices.count;
+  if (primitive.indices) {
+    const GltfAccessor a = document.accessor(*primitive.indices, primitive.place + ".indices");
+    index = indices_of(document, a);
+    corners = a.count;
+    for (size_t i = 0; i < index.size(); ++i)
+      if (index[i] >= vertices.count)
+        document.refuse(a.place, ", element " + std::to_string(i) + ", is " + std::to_string(index[i]) +
+                                     "; the primitive has " + std::to_string(vertices.count) + " vertices");
+  }
+  if (primitive.mode == kTriangles && corners % 3 != 0)
+    document.refuse(primitive.place, " has " + std::to_string(corners) + " corners; triangles need a multiple of 3");
+  const int64_t count = primitive.mode == kTriangles ? corners / 3 : std::max<int64_t>(corners - 2, 0);
+  const bool mirrors = vertices.to_world->mirrors();
+  out.reserve(out.size() + size_t(count));
+  for (int64_t t = 0; t < count; ++t) {
+    Triangle triangle;
+    for (int k = 0; k < 3; ++k) {
+      const int64_t at = place_of(primitive.mode, t, k);
+      triangle[size_t(k)] = uint32_t(vertices.first + (primitive.indices ? index[size_t(at)] : at));
+    }
+    const auto [a, b, c] = triangle;
+    if (primitive.mode == kStrip && (a == b || b == c || c == a)) continue;  // a strip's way to turn a corner
+    if (mirrors) std::swap(triangle[1], triangle[2]);
+    out.push_back(triangle);
+  }
+}
+
+}  // namespace
+
+std::optional<GltfAccessor> GltfVertices::find(const GltfDocument& document, const std::string& semantic) const {
+  const auto index = document.integer(*attributes, semantic.c_str(), place);
+  if (!index) return {};
+  GltfAccessor a = document.accessor(*index, place + "." + semantic);
+  if (a.count != count)
+    document.refuse(a.place, " has " + std::to_string(a.count) + " elements; " + place + ".POSITION has " +
+                                 std::to_string(count));
+  return a;
+}
+
+GltfContent content_of(const GltfDocument& document) {
+  GltfContent content;
+  content.instances = instances_of(document);
+  content.first_vertex = {0};
+  for (const GltfInstance& instance : content.instances) {
+    content.first_vertex.push_back(content.first_vertex.back());
+    add_instance(document, instance, content);
+  }
+  return content;
+}
+
+GltfTriangles triangles_of(const GltfDocument& document, const GltfContent& content) {
+  GltfTriangles triangles;
+  bool has_material = false;
+  for (const GltfPrimitive& primitive : content.primitives) has_material |= primitive.material.has_value();
+  for (const GltfPrimitive& primitive : content.primitives) {
+    add_triangles(document, content, primitive, triangles.corners);
+    if (primitive.material) document.element("materials", *primitive.material, primitive.place + ".material");
+    if (has_material)
+      triangles.material.resize(triangles.corners.size(), primitive.material ? double(*primitive.material) : -1);
+  }
+  return triangles;
+}
+
+}  // namespace isoshell
