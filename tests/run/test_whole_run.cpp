@@ -222,7 +222,7 @@ TEST_CASE("whole run: an output that was filled in by hand is refused before any
   CpuContext context;
   RunRequest request = small_run();
   request.input = named_input(folder / "none.ply");
-  request.output.path = folder / "x.gltf";
+  request.output.path = folder / "x.dae";
   CHECK(contains(refusal(request, ErrorCode::usage), "ply, obj, stl, off"));
   request.output.path = "-";
   CHECK(contains(refusal(request, ErrorCode::usage), "--output-format"));

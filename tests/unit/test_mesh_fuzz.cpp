@@ -18,7 +18,7 @@ std::vector<Sample> samples() {
   const TemporaryFolder folder;
   const TriangleSoup box = shapes::box({0, 0, 0}, {1, 2.5, 1e-3});
   const TriangleMesh mesh = {box.vertices, box.triangles};
-  for (const char* name : {"a.obj", "a.off", "a.stl", "a.ply"}) write_mesh(folder / name, mesh);
+  for (const char* name : {"a.obj", "a.off", "a.stl", "a.ply", "a.glb"}) write_mesh(folder / name, mesh);
   const std::string text_ply =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty int z\nproperty uchar c\n"
       "element grid 2\nproperty list uchar int i\nelement face 2\nproperty list uchar int vertex_indices\n"
@@ -37,6 +37,7 @@ std::vector<Sample> samples() {
       "v 0 0 0\nv 4 0 0 # c\nv 4 4 0\nv 2 1 \\\n0\nv 0 4 nan\nv 0 3 1e0\nf 1/1 2//3 3/4/5 4 6\nf -1 -2 -3\nf 1 2 3 4\n";
   return {{"obj", read_obj, get_file(folder / "a.obj")},
           {"off", read_off, get_file(folder / "a.off")},
+          {"glb", read_gltf, get_file(folder / "a.glb")},
           {"stl", read_stl, get_file(folder / "a.stl")},
           {"ply", read_ply, get_file(folder / "a.ply")},
           {"text ply", read_ply, text_ply},

@@ -149,7 +149,7 @@ TEST_CASE("mesh files: what cannot be written is refused and leaves nothing behi
   CHECK(error_of([&] {
           write_mesh(folder / "b.ply", mesh, {MeshFormat::from_name, true});
         }).code() == ErrorCode::unwritable_output);
-  CHECK(error_of([&] { write_mesh(folder / "a.gltf", mesh); }).code() == ErrorCode::usage);
+  CHECK(error_of([&] { write_mesh(folder / "a.dae", mesh); }).code() == ErrorCode::usage);
   CHECK(error_of([&] { write_mesh("-", mesh); }).code() == ErrorCode::usage);
   CHECK(folder.file_count() == 1);
   if (std::filesystem::exists("/dev/full")) {

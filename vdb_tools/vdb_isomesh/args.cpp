@@ -108,8 +108,8 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   const char* files = "Files";
   option(files, "--iso", raw.iso, "V", "isovalue of a volume; required for a fog volume",
          "0 in a level set and in unsigned distances");
-  option(files, "--input-format", raw.input_format, "F", "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb",
-         "by its name");
+  option(files, "--input-format", raw.input_format, "F",
+         "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb", "by its name");
   option(files, "--output-format", raw.output_format, "F", "format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb",
          "by its name");
   option(files, "--save-shell", run.save_shell, "F.vdb", "also write the shell, to resume from");

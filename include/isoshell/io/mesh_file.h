@@ -14,9 +14,9 @@ enum class MeshFormat { from_name, ply, obj, stl, off, glb, gltf };
 /// strips unrolled. Attributes are the numbers of PLY's vertices and faces and its lists of texture coordinates; of OBJ
 /// colours behind positions (white where only others have one), texture coordinates, normals, materials, groups and
 /// objects; of glTF colours, texture coordinates, normals, materials and scalars whose names begin with _. Other lists
-/// are not taken. The meshes of a glTF file stand where its nodes put them, and its up axis stays. Dirty geometry is dropped and counted in the result, a file
-/// that lies throws. Throws: unreadable_input (names file and line, element or byte, the value and the remedy),
-/// nothing_to_mesh when the file is sound but holds no usable triangle.
+/// are not taken. The meshes of a glTF file stand where its nodes put them, and its up axis stays. Dirty geometry is
+/// dropped and counted in the result, a file that lies throws. Throws: unreadable_input (names file and line, element
+/// or byte, the value and the remedy), nothing_to_mesh when the file is sound but holds no usable triangle.
 TriangleSoup read_mesh(const std::string& path, MeshFormat format = MeshFormat::from_name);
 
 struct MeshWriteOptions {
@@ -27,8 +27,9 @@ struct MeshWriteOptions {
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted
 /// by material, object and group, binary STL, OFF, glTF in one file with single precision about a node's translation,
-/// vertices split where corners differ. Written under a temporary name in the same folder and renamed. `path` "-" writes standard output. Throws: unwritable_output; usage for attributes that do not fit the mesh or have names
-/// that PLY cannot hold.
+/// vertices split where corners differ. Written under a temporary name in the same folder and renamed. `path` "-"
+/// writes standard output. Throws: unwritable_output; usage for attributes that do not fit the mesh or have names that
+/// PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
 
 }  // namespace isoshell

@@ -1,6 +1,7 @@
 // The elements of accessors as numbers.
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/number_type.h"
@@ -44,8 +45,8 @@ std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccess
   each_value(a.replaced, [&](int64_t i, int32_t, auto value) { replaced[size_t(i)] = uint32_t(value); });
   for (const uint32_t i : replaced)
     if (i >= a.count)
-      document.refuse(a.replaced.place, " names element " + std::to_string(i) + "; the accessor has " +
-                                            std::to_string(a.count));
+      document.refuse(a.replaced.place,
+                      " names element " + std::to_string(i) + "; the accessor has " + std::to_string(a.count));
   return replaced;
 }
 
@@ -60,9 +61,8 @@ std::vector<Out> read(const GltfDocument& document, const GltfAccessor& a, Conve
     GltfElements one = a.replacements;
     one.data += int64_t(i) * one.stride;
     one.count = 1;
-    each_value(one, [&](int64_t, int32_t c, auto value) {
-      values[replaced[i] * components + size_t(c)] = convert(value);
-    });
+    each_value(one,
+               [&](int64_t, int32_t c, auto value) { values[replaced[i] * components + size_t(c)] = convert(value); });
   }
   return values;
 }

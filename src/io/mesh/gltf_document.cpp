@@ -131,7 +131,8 @@ const Json& GltfDocument::list(const Json& object, const char* key, const std::s
   static const Json none = Json::array();
   const auto at = object.find(key);
   if (at == object.end()) return none;
-  if (!at->is_array()) refuse(place.empty() ? key : place + "." + key, " is " + short_dump(*at) + "; it must be a list");
+  if (!at->is_array())
+    refuse(place.empty() ? key : place + "." + key, " is " + short_dump(*at) + "; it must be a list");
   return *at;
 }
 
@@ -141,8 +142,8 @@ const Json& GltfDocument::element(const char* array, int64_t index, const std::s
     refuse(from, " is " + std::to_string(index) + "; the file has " + std::to_string(all.size()) + " " + array);
   const Json& found = all[size_t(index)];
   if (!found.is_object())
-    refuse(std::string(array) + "[" + std::to_string(index) + "]", " is " + short_dump(found) +
-                                                                       "; it must be an object");
+    refuse(std::string(array) + "[" + std::to_string(index) + "]",
+           " is " + short_dump(found) + "; it must be an object");
   return found;
 }
 
@@ -169,8 +170,8 @@ bool GltfDocument::numbers(const Json& object, const char* key, const std::strin
     is_sound = (*at)[i].is_number();
     if (is_sound) values[i] = (*at)[i].get<double>();
   }
-  if (!is_sound) refuse(place + "." + key, " is " + short_dump(*at) + "; it must be " + std::to_string(count) +
-                                               " numbers");
+  if (!is_sound)
+    refuse(place + "." + key, " is " + short_dump(*at) + "; it must be " + std::to_string(count) + " numbers");
   return true;
 }
 
@@ -221,7 +222,8 @@ View<const char> GltfDocument::bytes_of_view(int64_t index, const std::string& f
   const int64_t number = needed_integer(view, "buffer", place);
   element("buffers", number, place + ".buffer");
   const View<const char> buffer = buffers_[size_t(number)];
-  const int64_t offset = integer(view, "byteOffset", place).value_or(0), bytes = needed_integer(view, "byteLength", place);
+  const int64_t offset = integer(view, "byteOffset", place).value_or(0),
+                bytes = needed_integer(view, "byteLength", place);
   if (offset + bytes > buffer.size)
     refuse(place, " ends at byte " + std::to_string(offset + bytes) + "; buffers[" + std::to_string(number) + "] has " +
                       std::to_string(buffer.size) + " bytes");
@@ -237,9 +239,8 @@ void GltfDocument::place_elements(const Json& object, int64_t view, bool packed,
   const int64_t offset = integer(object, "byteOffset", e.place).value_or(0);
   if (e.stride == 0 || packed) e.stride = size;
   if (e.stride < size)
-    refuse("bufferViews[" + std::to_string(view) + "].byteStride", " is " + std::to_string(e.stride) + "; elements of " +
-                                                                       e.place + " have " + std::to_string(size) +
-                                                                       " bytes");
+    refuse("bufferViews[" + std::to_string(view) + "].byteStride",
+           " is " + std::to_string(e.stride) + "; elements of " + e.place + " have " + std::to_string(size) + " bytes");
   const int64_t room = bytes.size - offset;
   if (e.count > 0 && (room < size || e.count - 1 > (room - size) / e.stride))
     refuse(e.place, " has " + std::to_string(e.count) + " elements of " + std::to_string(size) + " bytes, " +
@@ -286,8 +287,8 @@ void GltfDocument::read_sparse(const Json& sparse, GltfAccessor& a) const {
     if (&e == &a.replaced) {
       const std::optional<NumberType> type = type_of(needed_integer(*at, "componentType", e.place));
       if (!type || (*type != NumberType::u8 && *type != NumberType::u16 && *type != NumberType::u32))
-        refuse(e.place + ".componentType", " is " + short_dump((*at)["componentType"]) +
-                                               "; it must be 5121, 5123 or 5125");
+        refuse(e.place + ".componentType",
+               " is " + short_dump((*at)["componentType"]) + "; it must be 5121, 5123 or 5125");
       e.type = *type;
     }
     place_elements(*at, needed_integer(*at, "bufferView", e.place), true, e);

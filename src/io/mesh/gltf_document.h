@@ -36,9 +36,7 @@ class GltfDocument {
   /// How many bytes of the file stand behind the length that its header has.
   int64_t surplus_bytes() const { return surplus_bytes_; }
 
-  [[noreturn]] void refuse(const std::string& place, const std::string& what) const {
-    source_.refuse(place + what);
-  }
+  [[noreturn]] void refuse(const std::string& place, const std::string& what) const { source_.refuse(place + what); }
 
   /// A list of the whole document, or of an object of it; an empty one where it is missing.
   const Json& list(const Json& object, const char* key, const std::string& place = "") const;

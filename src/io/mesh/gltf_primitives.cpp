@@ -1,11 +1,16 @@
 #include "io/mesh/gltf_primitives.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <map>
 
 namespace isoshell {
 namespace {
 
 using Json = GltfDocument::Json;
+
+constexpr int64_t kGrain = 1 << 14;
 
 enum Mode : int64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 
@@ -52,6 +57,9 @@ int64_t place_of(int64_t mode, int64_t t, int k) {
   return t + (t % 2 == 0 || k == 0 ? k : 3 - k);  // every second triangle of a strip is turned
 }
 
+/// Triangles with equal corners are a strip's way to turn a corner, not dirt.
+bool turns_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
 void add_triangles(const GltfDocument& document, const GltfContent& content, const GltfPrimitive& primitive,
                    std::vector<Triangle>& out) {
   const GltfVertices& vertices = content.vertices[primitive.vertices];
@@ -70,18 +78,20 @@ void add_triangles(const GltfDocument& document, const GltfContent& content, con
     document.refuse(primitive.place, " has " + std::to_string(corners) + " corners; triangles need a multiple of 3");
   const int64_t count = primitive.mode == kTriangles ? corners / 3 : std::max<int64_t>(corners - 2, 0);
   const bool mirrors = vertices.to_world->mirrors();
-  out.reserve(out.size() + size_t(count));
-  for (int64_t t = 0; t < count; ++t) {
-    Triangle triangle;
-    for (int k = 0; k < 3; ++k) {
-      const int64_t at = place_of(primitive.mode, t, k);
-      triangle[size_t(k)] = uint32_t(vertices.first + (primitive.indices ? index[size_t(at)] : at));
+  const size_t first = out.size();
+  out.resize(first + size_t(count));
+  tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
+    for (int64_t t = r.begin(); t < r.end(); ++t) {
+      Triangle& triangle = out[first + size_t(t)];
+      for (int k = 0; k < 3; ++k) {
+        const int64_t at = place_of(primitive.mode, t, k);
+        triangle[size_t(k)] = uint32_t(vertices.first + (primitive.indices ? index[size_t(at)] : at));
+      }
+      if (mirrors) std::swap(triangle[1], triangle[2]);
     }
-    const auto [a, b, c] = triangle;
-    if (primitive.mode == kStrip && (a == b || b == c || c == a)) continue;  // a strip's way to turn a corner
-    if (mirrors) std::swap(triangle[1], triangle[2]);
-    out.push_back(triangle);
-  }
+  });
+  if (primitive.mode == kStrip)
+    out.erase(std::remove_if(out.begin() + int64_t(first), out.end(), turns_a_corner), out.end());
 }
 
 }  // namespace
@@ -91,8 +101,8 @@ std::optional<GltfAccessor> GltfVertices::find(const GltfDocument& document, con
   if (!index) return {};
   GltfAccessor a = document.accessor(*index, place + "." + semantic);
   if (a.count != count)
-    document.refuse(a.place, " has " + std::to_string(a.count) + " elements; " + place + ".POSITION has " +
-                                 std::to_string(count));
+    document.refuse(
+        a.place, " has " + std::to_string(a.count) + " elements; " + place + ".POSITION has " + std::to_string(count));
   return a;
 }
 

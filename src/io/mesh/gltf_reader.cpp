@@ -53,8 +53,7 @@ Welded weld(const MeshSource& source, const GltfContent& content, std::vector<Wo
       all.vertices = std::move(welded.vertices);
       return all;
     }
-    for (int64_t v = 0; v < here; ++v)
-      all.vertex_of.push_back(base + welded.index[size_t(v / 3)][size_t(v % 3)]);
+    for (int64_t v = 0; v < here; ++v) all.vertex_of.push_back(base + welded.index[size_t(v / 3)][size_t(v % 3)]);
     all.vertices.points.insert(all.vertices.points.end(), welded.vertices.points.begin(), welded.vertices.points.end());
   }
   all.vertices.count_nonfinite();
@@ -115,10 +114,10 @@ class AttributeReader {
         return "it has " + std::to_string(a->components) + " components, and is kept with " +
                std::to_string(meaning.most);
       const bool is_first = attribute.components == 0;
-      is_integer &= (meaning.name == kColorName
-                         ? a->normalized && (a->type == NumberType::u8 || a->type == NumberType::u16)
-                         : !a->normalized && a->type != NumberType::f32) &&
-                    (is_first || a->type == attribute.type);
+      is_integer &=
+          (meaning.name == kColorName ? a->normalized && (a->type == NumberType::u8 || a->type == NumberType::u16)
+                                      : !a->normalized && a->type != NumberType::f32) &&
+          (is_first || a->type == attribute.type);
       if (is_first) attribute.type = a->type;
       attribute.components = std::max(attribute.components, a->components);
     }
@@ -146,19 +145,19 @@ class AttributeReader {
       const std::vector<double> values = values_of(document_, *accessors[i], scaled);
       const auto have = size_t(accessors[i]->components);
       double* const out = attribute.values.data() + size_t(content_.vertices[i].first) * components;
-      for_each_index(accessors[i]->count, [&](int64_t v) {
-        std::copy_n(&values[size_t(v) * have], have, out + size_t(v) * components);
-      });
+      for_each_index(accessors[i]->count,
+                     [&](int64_t v) { std::copy_n(&values[size_t(v) * have], have, out + size_t(v) * components); });
     }
   }
 
   void turn_normals(std::vector<double>& values) const {
     for (const GltfVertices& vertices : content_.vertices)
-      if (!vertices.to_world->is_identity) for_each_index(vertices.count, [&](int64_t v) {
-        double* const n = &values[3 * size_t(vertices.first + v)];
-        const WorldPoint turned = vertices.to_world->normal({n[0], n[1], n[2]});
-        n[0] = turned.x, n[1] = turned.y, n[2] = turned.z;
-      });
+      if (!vertices.to_world->is_identity)
+        for_each_index(vertices.count, [&](int64_t v) {
+          double* const n = &values[3 * size_t(vertices.first + v)];
+          const WorldPoint turned = vertices.to_world->normal({n[0], n[1], n[2]});
+          n[0] = turned.x, n[1] = turned.y, n[2] = turned.z;
+        });
   }
 
   /// A vertex has the value of the first of those that became it.
@@ -211,15 +210,19 @@ TriangleSoup read_gltf(const MeshSource& source) {
     source.nothing_to_mesh("holds " + std::to_string(content.other_primitives) +
                            " primitives, none of them triangles with positions; write its surface as triangles");
   Welded welded = weld(source, content, positions_of(document, content));
-  std::vector<FaceCollector> faces(1, FaceCollector(welded.vertices, FaceCollector::Keep::faces_too));
-  std::vector<Triangle> of_vertices = triangles.corners;
+  const bool has_more = !triangles.material.empty() ||
+                        std::any_of(content.vertices.begin(), content.vertices.end(),
+                                    [](const GltfVertices& vertices) { return vertices.attributes->size() > 1; });
+  const auto keep = has_more ? FaceCollector::Keep::faces_too : FaceCollector::Keep::triangles;
+  std::vector<FaceCollector> faces(1, FaceCollector(welded.vertices, keep));
+  std::vector<Triangle> of_vertices = has_more ? triangles.corners : std::move(triangles.corners);
   if (!welded.vertex_of.empty())
     for_each_index(int64_t(of_vertices.size()), [&](int64_t t) {
       for (uint32_t& corner : of_vertices[size_t(t)]) corner = welded.vertex_of[corner];
     });
   faces[0].adopt(std::move(of_vertices));
   TriangleSoup soup = join_soup(source, std::move(welded.vertices), faces);
-  AttributeReader(document, content, triangles.corners, faces[0].face_of(), welded, soup).read();
+  if (has_more) AttributeReader(document, content, triangles.corners, faces[0].face_of(), welded, soup).read();
   add_materials(document, triangles.material, faces[0].face_of(), soup);
   soup.dirt.surplus_bytes = document.surplus_bytes();
   return soup;

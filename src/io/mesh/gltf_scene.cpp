@@ -7,7 +7,9 @@ namespace {
 
 using Json = GltfDocument::Json;
 
-std::string numbered(const char* array, int64_t index) { return std::string(array) + "[" + std::to_string(index) + "]"; }
+std::string numbered(const char* array, int64_t index) {
+  return std::string(array) + "[" + std::to_string(index) + "]";
+}
 
 GltfTransform operator*(const GltfTransform& a, const GltfTransform& b) {
   if (a.is_identity) return b;
@@ -16,7 +18,8 @@ GltfTransform operator*(const GltfTransform& a, const GltfTransform& b) {
   product.is_identity = false;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 4; ++j)
-      product.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + (j == 3 ? a.m[i][3] : 0);
+      product.m[i][j] =
+          a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + (j == 3 ? a.m[i][3] : 0);
   return product;
 }
 

@@ -47,8 +47,7 @@ class GltfWriter {
     split_ = split_vertices(mesh, of_corners_);
     if (needs_double(mesh)) origin_ = middle();
     put_positions();
-    if (!mesh.gap.empty())
-      put_numbers("_GAP", [&](size_t v) { return double(mesh.gap[split_.vertex[v]]); });
+    if (!mesh.gap.empty()) put_numbers("_GAP", [&](size_t v) { return double(mesh.gap[split_.vertex[v]]); });
     for (const Attribute* a : of_corners_) put_corners(*a);
     for (const Attribute& a : mesh.attributes)
       if (a.domain == AttributeDomain::vertex) put_vertices(a);
@@ -153,8 +152,7 @@ class GltfWriter {
   void put_vertices(const Attribute& a) {
     if (a.name == kColorName && a.components >= 3) return put_colors(a);
     if (a.components == 1)
-      put_numbers(a.name[0] == '_' ? a.name : "_" + a.name,
-                  [&](size_t v) { return a.values[split_.vertex[v]]; });
+      put_numbers(a.name[0] == '_' ? a.name : "_" + a.name, [&](size_t v) { return a.values[split_.vertex[v]]; });
   }
 
   /// Always with alpha: so the colours of bytes, too, are aligned.
@@ -169,11 +167,12 @@ class GltfWriter {
         if (type == kU16) put(bytes_, nearest_of<uint16_t>(value));
         if (type == kF32) put(bytes_, finite(float(value / largest)));
       }
-    attributes_["COLOR_0"] = close(start, kVertexData, type == kU8 ? 4 : type == kU16 ? 8 : 16,
-                                   {{"componentType", type},
-                                    {"normalized", type != kF32},
-                                    {"count", split_.vertex.size()},
-                                    {"type", "VEC4"}});
+    attributes_["COLOR_0"] = close(
+        start, kVertexData,
+        type == kU8    ? 4
+        : type == kU16 ? 8
+                       : 16,
+        {{"componentType", type}, {"normalized", type != kF32}, {"count", split_.vertex.size()}, {"type", "VEC4"}});
   }
 
   /// A primitive for each material that has faces, those without one first; faces keep their order.
@@ -187,8 +186,8 @@ class GltfWriter {
       for (const uint32_t t : faces[m])
         for (const uint32_t v : split_.triangles[t]) put(bytes_, v);
       Json primitive = {{"attributes", attributes_}};
-      primitive["indices"] = close(start, kIndexData, 0,
-                                   {{"componentType", kU32}, {"count", 3 * faces[m].size()}, {"type", "SCALAR"}});
+      primitive["indices"] =
+          close(start, kIndexData, 0, {{"componentType", kU32}, {"count", 3 * faces[m].size()}, {"type", "SCALAR"}});
       if (m > 0) primitive["material"] = m - 1;
       primitives_.push_back(primitive);
     }
@@ -226,7 +225,8 @@ void write_glb(OutputFile& file, const TriangleMesh& mesh) {
     throw Error(ErrorCode::unwritable_output, "write",
                 "the mesh needs " + std::to_string(total) + " bytes; a .glb file has at most 4294967295, write PLY");
   std::vector<char> head;
-  for (const uint32_t number : {0x46546c67u, 2u, uint32_t(total), uint32_t(json.size()), 0x4e4f534au}) put(head, number);
+  for (const uint32_t number : {0x46546c67u, 2u, uint32_t(total), uint32_t(json.size()), 0x4e4f534au})
+    put(head, number);
   std::vector<char> chunk;
   for (const uint32_t number : {uint32_t(writer.bytes().size()), 0x004e4942u}) put(chunk, number);
   file.write(head.data(), int64_t(head.size()));

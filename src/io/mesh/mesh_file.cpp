@@ -26,7 +26,9 @@ MeshFormat format_of(const std::string& path, MeshFormat format, const char* sta
   if (ending == "glb") return MeshFormat::glb;
   if (ending == "gltf") return MeshFormat::gltf;
   throw Error(ErrorCode::usage, stage,
-              path + ": the name does not tell the format; it must end in .ply, .obj, .stl, .off, .glb or .gltf, or name a format");
+              path +
+                  ": the name does not tell the format; it must end in .ply, .obj, .stl, .off, .glb or .gltf, or name "
+                  "a format");
 }
 
 }  // namespace
