@@ -50,11 +50,11 @@ std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccess
   return replaced;
 }
 
+/// `out` has zeros.
 template <class Out, class Convert>
-std::vector<Out> read(const GltfDocument& document, const GltfAccessor& a, Convert convert) {
+void read(const GltfDocument& document, const GltfAccessor& a, Convert convert, Out* out) {
   const auto components = size_t(a.components);
-  std::vector<Out> values(size_t(a.count) * components, Out(0));
-  each_value(a, [&](int64_t i, int32_t c, auto value) { values[size_t(i) * components + size_t(c)] = convert(value); });
+  each_value(a, [&](int64_t i, int32_t c, auto value) { out[size_t(i) * components + size_t(c)] = convert(value); });
   const std::vector<uint32_t> replaced = replaced_of(document, a);
   // One after another: a file may name an element twice.
   for (size_t i = 0; i < replaced.size(); ++i) {
@@ -62,26 +62,33 @@ std::vector<Out> read(const GltfDocument& document, const GltfAccessor& a, Conve
     one.data += int64_t(i) * one.stride;
     one.count = 1;
     each_value(one,
-               [&](int64_t, int32_t c, auto value) { values[replaced[i] * components + size_t(c)] = convert(value); });
+               [&](int64_t, int32_t c, auto value) { out[replaced[i] * components + size_t(c)] = convert(value); });
   }
-  return values;
 }
 
 }  // namespace
 
-std::vector<double> values_of(const GltfDocument& document, const GltfAccessor& a, bool scaled) {
-  return read<double>(document, a, [scaled = scaled && a.normalized](auto value) {
+void read_values(const GltfDocument& document, const GltfAccessor& a, bool scaled, double* out) {
+  const auto convert = [scaled = scaled && a.normalized](auto value) {
     using T = decltype(value);
     if (std::is_integral_v<T> && scaled) return std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0);
     return double(value);
-  });
+  };
+  read(document, a, convert, out);
 }
 
-std::vector<uint32_t> indices_of(const GltfDocument& document, const GltfAccessor& a) {
+std::vector<double> values_of(const GltfDocument& document, const GltfAccessor& a, bool scaled) {
+  std::vector<double> values(size_t(a.count) * size_t(a.components), 0);
+  read_values(document, a, scaled, values.data());
+  return values;
+}
+
+void read_indices(const GltfDocument& document, const GltfAccessor& a, uint32_t* out) {
   const bool is_index = a.type == NumberType::u8 || a.type == NumberType::u16 || a.type == NumberType::u32;
   if (a.components != 1 || !is_index)
     document.refuse(a.place, " holds no indices; they are SCALAR, of componentType 5121, 5123 or 5125");
-  return read<uint32_t>(document, a, [](auto value) { return uint32_t(value); });
+  read(
+      document, a, [](auto value) { return uint32_t(value); }, out);
 }
 
 }  // namespace isoshell

@@ -71,7 +71,9 @@ class GltfDocument {
 
 /// The values of an element each, converted to double; normalised integers as they stand unless `scaled`.
 std::vector<double> values_of(const GltfDocument& document, const GltfAccessor& accessor, bool scaled);
-/// As values_of, but of one component and whole numbers.
-std::vector<uint32_t> indices_of(const GltfDocument& document, const GltfAccessor& accessor);
+/// As values_of, into zeros.
+void read_values(const GltfDocument& document, const GltfAccessor& accessor, bool scaled, double* out);
+/// Whole numbers, into zeros.
+void read_indices(const GltfDocument& document, const GltfAccessor& accessor, uint32_t* out);
 
 }  // namespace isoshell

@@ -60,32 +60,37 @@ int64_t place_of(int64_t mode, int64_t t, int k) {
 /// Triangles with equal corners are a strip's way to turn a corner, not dirt.
 bool turns_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
+/// The numbers of the primitive's own vertices, where it has some; `out` has room for them, and zeros.
+void read_checked_indices(const GltfDocument& document, const GltfAccessor& a, int64_t vertices, uint32_t* out) {
+  read_indices(document, a, out);
+  const uint32_t* const wrong = std::find_if(out, out + a.count, [&](uint32_t i) { return i >= vertices; });
+  if (wrong != out + a.count)
+    document.refuse(a.place, ", element " + std::to_string(wrong - out) + ", is " + std::to_string(*wrong) +
+                                 "; the primitive has " + std::to_string(vertices) + " vertices");
+}
+
 void add_triangles(const GltfDocument& document, const GltfContent& content, const GltfPrimitive& primitive,
                    std::vector<Triangle>& out) {
   const GltfVertices& vertices = content.vertices[primitive.vertices];
-  std::vector<uint32_t> index;
-  int64_t corners = vertices.count;
-  if (primitive.indices) {
-    const GltfAccessor a = document.accessor(*primitive.indices, primitive.place + ".indices");
-    index = indices_of(document, a);
-    corners = a.count;
-    for (size_t i = 0; i < index.size(); ++i)
-      if (index[i] >= vertices.count)
-        document.refuse(a.place, ", element " + std::to_string(i) + ", is " + std::to_string(index[i]) +
-                                     "; the primitive has " + std::to_string(vertices.count) + " vertices");
-  }
-  if (primitive.mode == kTriangles && corners % 3 != 0)
+  std::optional<GltfAccessor> indices;
+  if (primitive.indices) indices = document.accessor(*primitive.indices, primitive.place + ".indices");
+  const int64_t corners = indices ? indices->count : vertices.count;
+  const bool is_list = primitive.mode == kTriangles;
+  if (is_list && corners % 3 != 0)
     document.refuse(primitive.place, " has " + std::to_string(corners) + " corners; triangles need a multiple of 3");
-  const int64_t count = primitive.mode == kTriangles ? corners / 3 : std::max<int64_t>(corners - 2, 0);
-  const bool mirrors = vertices.to_world->mirrors();
+  const int64_t count = is_list ? corners / 3 : std::max<int64_t>(corners - 2, 0);
   const size_t first = out.size();
   out.resize(first + size_t(count));
+  std::vector<uint32_t> of_strip(indices && !is_list ? size_t(corners) : 0);
+  uint32_t* const index = is_list ? reinterpret_cast<uint32_t*>(out.data() + first) : of_strip.data();
+  if (indices) read_checked_indices(document, *indices, vertices.count, index);
+  const bool mirrors = vertices.to_world->mirrors();
   tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
     for (int64_t t = r.begin(); t < r.end(); ++t) {
       Triangle& triangle = out[first + size_t(t)];
       for (int k = 0; k < 3; ++k) {
         const int64_t at = place_of(primitive.mode, t, k);
-        triangle[size_t(k)] = uint32_t(vertices.first + (primitive.indices ? index[size_t(at)] : at));
+        triangle[size_t(k)] = uint32_t(vertices.first + (indices ? index[at] : at));
       }
       if (mirrors) std::swap(triangle[1], triangle[2]);
     }

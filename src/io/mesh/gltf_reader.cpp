@@ -26,11 +26,10 @@ void for_each_index(int64_t count, Work work) {
 std::vector<WorldPoint> positions_of(const GltfDocument& document, const GltfContent& content) {
   std::vector<WorldPoint> points(size_t(content.first_vertex.back()));
   for (const GltfVertices& vertices : content.vertices) {
-    const std::vector<double> values = values_of(document, *vertices.find(document, "POSITION"), true);
-    for_each_index(vertices.count, [&](int64_t i) {
-      const double* const p = &values[3 * size_t(i)];
-      points[size_t(vertices.first + i)] = vertices.to_world->point({p[0], p[1], p[2]});
-    });
+    WorldPoint* const here = points.data() + vertices.first;
+    read_values(document, *vertices.find(document, "POSITION"), true, reinterpret_cast<double*>(here));
+    if (!vertices.to_world->is_identity)
+      for_each_index(vertices.count, [&](int64_t i) { here[i] = vertices.to_world->point(here[i]); });
   }
   return points;
 }
