@@ -34,10 +34,13 @@ struct Attribute {
   std::vector<std::string> labels = {};  ///< what a value is the number of, -1 being none; empty: values are numbers
 };
 
-/// Names of the files that attributes speak of, as they stand in the file that was read.
+/// What attributes speak of, as it stands in the file that was read: names of files, and materials.
 struct AttributeFiles {
   std::vector<std::string> materials;  ///< libraries of OBJ's materials
   std::vector<std::string> textures;   ///< images, in the order of their numbers
+  /// glTF's materials, as many as the attribute has labels, with their textures, samplers and images: lists of a JSON
+  /// object as glTF has them, with images in "data:" URIs or in files; empty for none.
+  std::string gltf_materials;
 };
 
 /// What a file has and the result has not.

@@ -21,10 +21,13 @@ struct DirtCounts {
   int64_t unreferenced_vertices = 0;
   int64_t nonmanifold_edges = 0;   ///< shared by more than two faces
   int64_t inconsistent_edges = 0;  ///< shared by two faces that disagree about the orientation
+  // What a glTF file holds that is not read.
+  int64_t other_primitives = 0;  ///< of points and lines, or without positions
+  int64_t posed_meshes = 0;      ///< meshes with skins or morph targets, which stand as they are stored
   // What a PLY file holds beyond what its header declares; all of it is passed over.
   int64_t long_rows = 0;      ///< text rows with values behind their last property, of elements that were read
   int64_t surplus_rows = 0;   ///< text rows behind the last one
-  int64_t surplus_bytes = 0;  ///< bytes behind the last row of a binary file
+  int64_t surplus_bytes = 0;  ///< bytes behind the last row of a binary file, or behind a .glb file
 };
 
 /// Triangles in world units. Indices are in range; positions are finite for every referenced vertex.

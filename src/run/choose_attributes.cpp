@@ -54,7 +54,9 @@ AttributeFiles files_of(const std::vector<Attribute>& kept, AttributeFiles all, 
   const auto keeps = [&](const char* name) {
     return std::any_of(kept.begin(), kept.end(), [&](const Attribute& a) { return a.name == name; });
   };
+  const bool is_gltf = format == "glb" || format == "gltf";
   if (!keeps(kMaterialName)) all.materials.clear();
+  if (!keeps(kMaterialName) || !is_gltf) all.gltf_materials.clear();
   if (!keeps(kUvName) || format != "ply") all.textures.clear();
   return all;
 }

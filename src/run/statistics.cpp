@@ -24,6 +24,8 @@ Json dirt_json(const DirtCounts& d) {
           {"unreferenced_vertices", d.unreferenced_vertices},
           {"nonmanifold_edges", d.nonmanifold_edges},
           {"inconsistent_edges", d.inconsistent_edges},
+          {"other_primitives", d.other_primitives},
+          {"posed_meshes", d.posed_meshes},
           {"long_rows", d.long_rows},
           {"surplus_rows", d.surplus_rows},
           {"surplus_bytes", d.surplus_bytes}};

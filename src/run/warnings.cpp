@@ -14,7 +14,9 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   const DirtCounts& d = report.dirt;
   note(d.long_rows, "rows with values behind their last declared property, which were left out");
   note(d.surplus_rows, "rows left out behind the last that the header promises");
-  note(d.surplus_bytes, "bytes left out behind the last row that the header promises");
+  note(d.surplus_bytes, "bytes left out behind the last one that the header promises");
+  note(d.other_primitives, "primitives left out, they are no triangles with positions");
+  note(d.posed_meshes, "meshes with skins or morph targets, which are left out; they stand as they are stored");
   note(d.nonfinite_vertices, "vertices that are not finite");
   note(d.dropped_faces_nonfinite, "faces dropped, they use vertices that are not finite");
   note(d.short_faces, "faces of fewer than three corners dropped");

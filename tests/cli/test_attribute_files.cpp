@@ -70,3 +70,64 @@ TEST_CASE("attribute files: texture coordinates, materials and their library go 
   CHECK(wrong.status == 2);
   CHECK(contains(wrong.err, "'vt', which box.obj does not have; it has: uv, material"));
 }
+
+TEST_CASE(
+    "attribute files: colours, texture coordinates and materials go from glTF to glTF and PLY, and from OBJ to glTF",
+    "[cli]") {
+  Folder folder;
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 48);
+  TriangleMesh mesh{ball.vertices, ball.triangles};
+  Attribute color{kColorName, NumberType::u8, 3, {}};
+  for (size_t v = 0; v < ball.vertices.size(); ++v) color.values.insert(color.values.end(), {10, 20, 30});
+  Attribute uv{kUvName, NumberType::f32, 2, {}, AttributeDomain::corner};
+  Attribute material{kMaterialName, NumberType::i32, 1, {}, AttributeDomain::face, {}, {"clay", "gold"}};
+  for (const auto& t : ball.triangles) {
+    const bool is_top = ball.vertices[t[0]].z + ball.vertices[t[1]].z + ball.vertices[t[2]].z > 0;
+    for (const uint32_t v : t)
+      uv.values.insert(uv.values.end(), {ball.vertices[v].x, ball.vertices[v].y + 20 * is_top});
+    material.values.push_back(is_top);
+  }
+  mesh.attributes = {color, uv, material};
+  mesh.files.gltf_materials = R"({"materials":[{"name":"clay"},{"name":"gold","pbrMetallicRoughness":)"
+                              R"({"metallicFactor":0.25}}]})";
+  write_mesh(folder / "ball.glb", mesh);
+  mesh.attributes.erase(mesh.attributes.begin());
+  write_mesh(folder / "ball.obj", mesh);
+  const auto attributes_of = [&](const std::string& input, const std::string& output) {
+    const auto r = folder.run(input + " " + output + " --require closed,manifold" + kQuick);
+    INFO(r.err);
+    REQUIRE(r.status == 0);
+    return read_mesh(folder / output);
+  };
+  for (const std::string output : {"a.glb", "a.gltf"}) {
+    const TriangleSoup soup = attributes_of("ball.glb", output);
+    REQUIRE(soup.attributes.size() == 3);
+    CHECK(soup.attributes[0].type == NumberType::u8);
+    CHECK(std::vector<double>(soup.attributes[0].values.begin(), soup.attributes[0].values.begin() + 3) ==
+          std::vector<double>{10, 20, 30});
+    CHECK(soup.attributes[1].name == kUvName);
+    CHECK(soup.attributes[2].labels == std::vector<std::string>{"clay", "gold"});
+    CHECK(contains(soup.files.gltf_materials, R"("metallicFactor":0.25)"));
+    CHECK(soup.vertices.size() == 300);
+  }
+  CHECK(attributes_of("ball.glb", "a.ply").attributes.size() == 3);
+  const TriangleSoup of_obj = attributes_of("ball.obj", "b.glb");
+  REQUIRE(of_obj.attributes.size() == 2);
+  CHECK(of_obj.attributes[1].labels == std::vector<std::string>{"clay", "gold"});
+}
+
+TEST_CASE("attribute files: a glTF file is meshed as a PLY file of its positions, where its nodes put it", "[cli]") {
+  Folder folder;
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 48);
+  TriangleMesh mesh{ball.vertices, ball.triangles};
+  for (WorldPoint& p : mesh.vertices) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
+  write_mesh(folder / "ball.ply", mesh);
+  write_mesh(folder / "ball.glb", mesh);
+  REQUIRE(folder.run("ball.ply of_ply.off" + kQuick).status == 0);
+  REQUIRE(folder.run("ball.glb of_glb.off" + kQuick).status == 0);
+  CHECK(folder.content("of_ply.off") == folder.content("of_glb.off"));
+  REQUIRE(folder.run("- of_pipe.off --input-format glb <ball.glb" + kQuick).status == 0);
+  CHECK(folder.content("of_ply.off") == folder.content("of_pipe.off"));
+  REQUIRE(folder.run("ball.glb - --output-format glb >of_pipe.glb" + kQuick).status == 0);
+  CHECK(read_mesh(folder / "of_pipe.glb").triangles == read_mesh(folder / "of_ply.off").triangles);
+}

@@ -98,6 +98,59 @@ TEST_CASE("glTF: nodes put their meshes where their ancestors' transforms say, a
   CHECK(soup.triangles == Triangles{{0, 1, 2}, {1, 3, 2}, {4, 6, 5}, {5, 6, 7}});
 }
 
+TEST_CASE("glTF: the scene of the file is read, else its first, else all nodes, else all meshes", "[mesh_file][unit]") {
+  const std::string mesh = R"({"primitives":[{"attributes":{"POSITION":0},"mode":5}]})";
+  const auto vertices_of = [&](const std::string& members) {
+    return read_text_as("glb",
+                        glb(document(48, square_views(R"("meshes":[)" + mesh + "," + mesh + "]" + members)), kSquare))
+        .vertices;
+  };
+  const std::string nodes = R"(,"nodes":[{"mesh":0,"translation":[1,0,0]},{"mesh":1,"translation":[2,0,0]}])";
+  CHECK(vertices_of("").size() == 8);
+  CHECK(vertices_of(nodes).size() == 8);
+  const std::string scenes = nodes + R"(,"scenes":[{"nodes":[1]},{"nodes":[0]}])";
+  CHECK(vertices_of(scenes).at(0).x == 2);
+  CHECK(vertices_of(scenes + R"(,"scene":1)").at(0).x == 1);
+  CHECK(vertices_of(scenes).size() == 4);
+}
+
+TEST_CASE("glTF: quantised positions are whole numbers, or parts of the largest where they are normalised",
+          "[mesh_file][unit]") {
+  const std::string binary = bytes_of<int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0, 3, 4, 5, 0});
+  const auto read = [&](const std::string& more) {
+    return read_text_as(
+        "glb",
+        glb(document(32, R"("extensionsRequired":["KHR_mesh_quantization","KHR_texture_transform"],"bufferViews":[)"
+                         R"({"buffer":0,"byteLength":32,"byteStride":8}],"accessors":[{"bufferView":0,)"
+                         R"("componentType":5122,"count":4,"type":"VEC3")" +
+                             more +
+                             R"(}],"nodes":[{"mesh":0,"scale":[2,1,1]}],"meshes":[{"primitives":[{"attributes":)"
+                             R"({"POSITION":0},"mode":5}]}])"),
+            binary));
+  };
+  CHECK(same_bits(read("").vertices[3], {6, 4, 5}));
+  CHECK(same_bits(read(R"(,"normalized":true)").vertices[1], {2, 0, 0}));
+  CHECK(same_bits(read(R"(,"normalized":true)").vertices[2], {0, -1, 0}));
+}
+
+TEST_CASE("glTF: what is not read is counted or dropped, and the rest is read", "[mesh_file][unit]") {
+  const TriangleSoup soup = read_text_as(
+      "glb", glb(document(48, R"("bufferViews":[{"buffer":0,"byteLength":48}],"accessors":[)"
+                              R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+                              R"({"bufferView":0,"componentType":5121,"count":4,"type":"MAT2"}],"meshes":[)"
+                              R"({"primitives":[{"attributes":{"POSITION":0,"_PAIRS":1,"JOINTS_0":0},"mode":5}]},)"
+                              R"({"primitives":[{"attributes":{"POSITION":0},"mode":5,"targets":[{"POSITION":0}]},)"
+                              R"({"attributes":{"POSITION":0},"mode":0},{"attributes":{}}]}],)"
+                              R"("nodes":[{"mesh":0,"skin":0},{"mesh":1},{"mesh":0}])"),
+                 kSquare));
+  CHECK(soup.triangles.size() == 6);
+  CHECK(soup.dirt.posed_meshes == 2);
+  CHECK(soup.dirt.other_primitives == 2);
+  REQUIRE(soup.dropped_attributes.size() == 2);
+  CHECK(soup.dropped_attributes[0].name == "JOINTS_0");
+  CHECK(soup.dropped_attributes[1].name == "_PAIRS");
+}
+
 TEST_CASE("glTF: interleaved views, sparse replacements and normalised integers have their values",
           "[mesh_file][unit]") {
   std::string binary;
@@ -133,6 +186,7 @@ TEST_CASE("glTF: buffers come from data in the file and from files beside it, an
           "[mesh_file][unit]") {
   const TemporaryFolder folder;
   put_file(folder / "a b.bin", kSquare);
+  put_file(folder / "a:b.bin", kSquare);
   const auto read = [&](const std::string& uri) {
     put_file(folder / "a.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":48,"uri":")" + uri + "\"}]," +
                                     square_views(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
@@ -140,10 +194,11 @@ TEST_CASE("glTF: buffers come from data in the file and from files beside it, an
     return read_mesh(folder / "a.gltf");
   };
   CHECK(read("a%20b.bin").vertices.size() == 4);
+  CHECK(read("a%3Ab.bin").vertices.size() == 4);
   CHECK(read("data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAACAPwAAgD8AAAAA")
             .vertices.size() == 4);
   for (const char* uri : {"missing.bin", "../a.bin", "/etc/passwd", "http://a/b.bin", "file:///etc/passwd", "%2e%2e/a",
-                          "a%2", "data:,abc", "data:;base64,AAAA", "data:;base64,A*AA", ""}) {
+                          "a/../../a", "a%2", "data:,abc", "data:;base64,AAAA", "data:;base64,A*AA", ""}) {
     INFO(uri);
     const Error error = error_of([&] { read(uri); });
     CHECK(error.code() == ErrorCode::unreadable_input);
@@ -180,12 +235,17 @@ TEST_CASE("glTF: what a file promises and does not hold is refused with its plac
   contains(accessor(R"("componentType":5126,"type":"VEC3","count":1000000)"), "accessors[0].count");
   contains(accessor(R"("bufferView":7,"componentType":5126,"type":"VEC3","count":4)"), "bufferView");
   contains(accessor(R"("bufferView":0,"componentType":5130,"type":"VEC3","count":4)"), "componentType");
-  contains(accessor(R"("bufferView":0,"componentType":5126,"type":"MAT4","count":4)"), "type");
+  contains(accessor(R"("bufferView":0,"componentType":5126,"type":"MAT5","count":4)"), "type");
   contains(refusal(R"("extensionsRequired":["KHR_draco_mesh_compression"])"), "KHR_draco_mesh_compression");
+  contains(refusal(R"("extras":)" + std::string(100000, '[') + std::string(100000, ']')), "nested");
+  contains(refusal(R"("asset":{"version":"2.1","minVersion":"2.1"})"), "minVersion");
   contains(refusal(R"("nodes":[{"children":[0]}],"scenes":[{"nodes":[0]}])"), "nodes[0]");
   contains(refusal(R"("nodes":[{"mesh":3}])"), "nodes[0].mesh");
   const Error index = error_of([] { indexed_square<uint16_t>(5123, {0, 1, 4}); });
   CHECK(says(index, "accessors[1], element 2, is 4"));
+  std::string short_promise = glb(document(48, square_views(R"("meshes":[])")), kSquare);
+  short_promise.replace(8, 4, u32(12));
+  CHECK(says(error_of([&] { read_text_as("glb", short_promise); }), "promises 12 bytes"));
   for (const size_t bytes : {size_t(3), size_t(12), size_t(30), size_t(100)}) {
     const std::string whole = glb(document(48, square_views(R"("meshes":[])")), kSquare);
     CHECK(error_of([&] { read_text_as("glb", whole.substr(0, bytes)); }).code() == ErrorCode::unreadable_input);
@@ -226,5 +286,38 @@ TEST_CASE("glTF: written meshes come back, also far from the origin and split at
     const TriangleSoup far = read_mesh(folder / name);
     REQUIRE(far.vertices.size() == mesh.vertices.size());
     for (size_t v = 0; v < mesh.vertices.size(); ++v) REQUIRE(std::abs(far.vertices[v].x - mesh.vertices[v].x) < 1e-6);
+  }
+}
+
+TEST_CASE("glTF: materials pass from file to file with their textures, images and extensions", "[mesh_file][unit]") {
+  const TemporaryFolder folder;
+  const std::string binary = kSquare + "image";
+  put_file(folder / "a.glb",
+           glb(document(binary.size(),
+                        R"("extensionsUsed":["KHR_texture_transform","KHR_xmp"],"extensionsRequired":["KHR_xmp",)"
+                        R"("KHR_texture_transform"],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,)"
+                        R"("byteOffset":48,"byteLength":5}],"accessors":[{"bufferView":0,"componentType":5126,)"
+                        R"("count":4,"type":"VEC3"}],"images":[{"bufferView":1,"mimeType":"image/png"},)"
+                        R"({"uri":"../b.png"}],"samplers":[{"wrapS":33071}],"textures":[{"source":0,"sampler":0}],)"
+                        R"("materials":[{"name":"a"},{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],)"
+                        R"("baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[2,2]}}}}}],)"
+                        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":5,"material":1}]}])"),
+               binary));
+  for (const std::string name : {"b.glb", "b.gltf"}) {
+    const TriangleSoup first = read_mesh(folder / "a.glb");
+    TriangleMesh mesh{first.vertices, first.triangles};
+    mesh.attributes = first.attributes;
+    mesh.files = first.files;
+    write_mesh(folder / name, mesh);
+    const TriangleSoup second = read_mesh(folder / name);
+    CHECK(second.files.gltf_materials == first.files.gltf_materials);
+    for (const char* part : {R"("uri":"data:image/png;base64,aW1hZ2U=")", R"("uri":"../b.png")", R"("wrapS":33071)",
+                             R"("extensionsRequired":["KHR_texture_transform"])", R"("baseColorFactor":[1,0,0,1])"}) {
+      INFO(part << " in " << first.files.gltf_materials);
+      CHECK(first.files.gltf_materials.find(part) != std::string::npos);
+    }
+    CHECK(get_file(folder / name).find("KHR_xmp") == std::string::npos);
+    mesh.attributes[0].labels.push_back("one more");
+    CHECK(error_of([&] { write_mesh(folder / "c.glb", mesh); }).code() == ErrorCode::usage);
   }
 }

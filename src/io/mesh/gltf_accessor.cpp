@@ -56,32 +56,29 @@ void read(const GltfDocument& document, const GltfAccessor& a, Convert convert, 
   const auto components = size_t(a.components);
   each_value(a, [&](int64_t i, int32_t c, auto value) { out[size_t(i) * components + size_t(c)] = convert(value); });
   const std::vector<uint32_t> replaced = replaced_of(document, a);
+  std::vector<Out> values(replaced.size() * components);
+  each_value(a.replacements,
+             [&](int64_t i, int32_t c, auto value) { values[size_t(i) * components + size_t(c)] = convert(value); });
   // One after another: a file may name an element twice.
-  for (size_t i = 0; i < replaced.size(); ++i) {
-    GltfElements one = a.replacements;
-    one.data += int64_t(i) * one.stride;
-    one.count = 1;
-    each_value(one,
-               [&](int64_t, int32_t c, auto value) { out[replaced[i] * components + size_t(c)] = convert(value); });
-  }
+  for (size_t i = 0; i < replaced.size(); ++i)
+    std::copy_n(&values[i * components], components, out + replaced[i] * components);
 }
 
 }  // namespace
 
-void read_values(const GltfDocument& document, const GltfAccessor& a, bool scaled, double* out) {
+template <class Real>
+void read_values(const GltfDocument& document, const GltfAccessor& a, bool scaled, Real* out) {
   const auto convert = [scaled = scaled && a.normalized](auto value) {
     using T = decltype(value);
-    if (std::is_integral_v<T> && scaled) return std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0);
-    return double(value);
+    if (std::is_integral_v<T> && scaled)
+      return Real(std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0));
+    return Real(value);
   };
   read(document, a, convert, out);
 }
 
-std::vector<double> values_of(const GltfDocument& document, const GltfAccessor& a, bool scaled) {
-  std::vector<double> values(size_t(a.count) * size_t(a.components), 0);
-  read_values(document, a, scaled, values.data());
-  return values;
-}
+template void read_values(const GltfDocument&, const GltfAccessor&, bool, float*);
+template void read_values(const GltfDocument&, const GltfAccessor&, bool, double*);
 
 void read_indices(const GltfDocument& document, const GltfAccessor& a, uint32_t* out) {
   const bool is_index = a.type == NumberType::u8 || a.type == NumberType::u16 || a.type == NumberType::u32;

@@ -13,8 +13,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = GltfDocument::Json;
 
-constexpr int64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+constexpr int64_t kHeaderBytes = 12, kChunkHeaderBytes = 8, kLeastBytes = kHeaderBytes + kChunkHeaderBytes;
 constexpr uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
+constexpr int64_t kLargestStride = 252;
+constexpr int kMostNesting = 256;                      // deeper values could exhaust the stack where they are copied
+constexpr size_t kMostMessage = 200;                   // of a message that may cite the file
 constexpr int64_t kLargestInteger = int64_t(1) << 53;  // that JSON readers agree on; sums of a few do not overflow
 
 // Little-endian, on any machine.
@@ -31,7 +34,9 @@ std::string short_dump(const Json& value) {
 
 int32_t components_of(const std::string& type) {
   if (type == "SCALAR") return 1;
-  if (type.size() == 4 && type.compare(0, 3, "VEC") == 0 && type[3] >= '2' && type[3] <= '4') return type[3] - '0';
+  const int32_t n = type.size() == 4 && type[3] >= '2' && type[3] <= '4' ? type[3] - '0' : 0;
+  if (type.compare(0, 3, "VEC") == 0) return n;
+  if (type.compare(0, 3, "MAT") == 0) return n * n;  // the padding of columns does not matter: no matrix is read
   return 0;
 }
 
@@ -60,7 +65,8 @@ int64_t bytes_of(NumberType type) {
 
 /// Extensions that change neither shapes nor how they are stored.
 bool concerns_looks(const std::string& extension) {
-  for (const char* start : {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_", "KHR_xmp"})
+  for (const char* start :
+       {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_", "EXT_lights_", "KHR_xmp"})
     if (extension.rfind(start, 0) == 0) return true;
   return false;
 }
@@ -78,11 +84,16 @@ GltfDocument::GltfDocument(const MeshSource& source) : source_(source) {
 void GltfDocument::read_container() {
   View<const char> text{source_.begin(), source_.size()};
   if (text.size >= 4 && std::memcmp(text.data, "glTF", 4) == 0) {
-    if (text.size < kHeaderBytes + kChunkHeaderBytes)
-      source_.refuse("is " + std::to_string(text.size) + " bytes long; a .glb file has at least 20, restore the file");
+    const auto least = [&](int64_t bytes, const char* what) {
+      if (bytes < kLeastBytes)
+        source_.refuse(what + std::to_string(bytes) + " bytes; a .glb file has at least " +
+                       std::to_string(kLeastBytes) + ", restore it");
+    };
+    least(text.size, "has ");
     const uint32_t version = load_u32(text.data + 4);
     if (version != 2) source_.refuse_byte(4, "glTF version " + std::to_string(version) + "; only 2 can be read");
     const int64_t end = load_u32(text.data + 8);
+    least(end, "promises ");
     if (end > text.size)
       source_.refuse_byte(8, "the header promises " + std::to_string(end) + " bytes; the file has " +
                                  std::to_string(text.size) + "; it is truncated, restore it");
@@ -104,9 +115,13 @@ void GltfDocument::read_container() {
     }
   }
   try {
-    json_ = Json::parse(text.data, text.data + text.size);
+    json_ = Json::parse(text.data, text.data + text.size, [&](int depth, Json::parse_event_t, const Json&) {
+      if (depth > kMostNesting)
+        source_.refuse("its JSON is nested more than " + std::to_string(kMostNesting) + " deep, the most that is read");
+      return true;
+    });
   } catch (const Json::exception& error) {
-    source_.refuse(std::string("its JSON cannot be read: ") + error.what());
+    source_.refuse("its JSON cannot be read: " + std::string(error.what()).substr(0, kMostMessage));
   }
 }
 
@@ -116,6 +131,8 @@ void GltfDocument::check_version() {
   const Json version = is_there ? (*asset)["version"] : Json();
   if (!version.is_string() || version.get_ref<const std::string&>().rfind("2.", 0) != 0)
     source_.refuse("asset.version is " + short_dump(version) + "; only glTF 2 can be read");
+  if (asset->contains("minVersion") && (*asset)["minVersion"] != "2.0")
+    source_.refuse("asset.minVersion is " + short_dump((*asset)["minVersion"]) + "; only glTF 2.0 can be read");
 }
 
 void GltfDocument::check_extensions() const {
@@ -216,7 +233,7 @@ View<const char> GltfDocument::bytes_of_uri(const std::string& uri, const std::s
   return {files_.back()->begin(), files_.back()->size()};
 }
 
-View<const char> GltfDocument::bytes_of_view(int64_t index, const std::string& from, int64_t& stride) const {
+View<const char> GltfDocument::bytes_of_view(int64_t index, const std::string& from) const {
   const Json& view = element("bufferViews", index, from);
   const std::string place = "bufferViews[" + std::to_string(index) + "]";
   const int64_t number = needed_integer(view, "buffer", place);
@@ -227,25 +244,25 @@ View<const char> GltfDocument::bytes_of_view(int64_t index, const std::string& f
   if (offset + bytes > buffer.size)
     refuse(place, " ends at byte " + std::to_string(offset + bytes) + "; buffers[" + std::to_string(number) + "] has " +
                       std::to_string(buffer.size) + " bytes");
-  stride = integer(view, "byteStride", place).value_or(0);
-  if (stride > 252 || (view.contains("byteStride") && stride < 1))
-    refuse(place + ".byteStride", " is " + std::to_string(stride) + "; it must be from 4 to 252");
   return {buffer.data + offset, bytes};
 }
 
 void GltfDocument::place_elements(const Json& object, int64_t view, bool packed, GltfElements& e) const {
-  const View<const char> bytes = bytes_of_view(view, e.place + ".bufferView", e.stride);
+  const View<const char> bytes = bytes_of_view(view, e.place + ".bufferView");
+  const std::string place = "bufferViews[" + std::to_string(view) + "]";
   const int64_t size = bytes_of(e.type) * e.components;
   const int64_t offset = integer(object, "byteOffset", e.place).value_or(0);
-  if (e.stride == 0 || packed) e.stride = size;
-  if (e.stride < size)
-    refuse("bufferViews[" + std::to_string(view) + "].byteStride",
-           " is " + std::to_string(e.stride) + "; elements of " + e.place + " have " + std::to_string(size) + " bytes");
+  const auto stride = integer(json_["bufferViews"][size_t(view)], "byteStride", place);
+  e.stride = packed ? size : stride.value_or(size);
+  if (e.stride < size || e.stride > std::max(kLargestStride, size))
+    refuse(place + ".byteStride", " is " + std::to_string(e.stride) + "; it must be from " + std::to_string(size) +
+                                      ", the bytes of an element of " + e.place + ", to " +
+                                      std::to_string(kLargestStride));
   const int64_t room = bytes.size - offset;
   if (e.count > 0 && (room < size || e.count - 1 > (room - size) / e.stride))
     refuse(e.place, " has " + std::to_string(e.count) + " elements of " + std::to_string(size) + " bytes, " +
-                        std::to_string(e.stride) + " apart, from byte " + std::to_string(offset) + " on; bufferViews[" +
-                        std::to_string(view) + "] has " + std::to_string(bytes.size) + " bytes");
+                        std::to_string(e.stride) + " apart, from byte " + std::to_string(offset) + " on; " + place +
+                        " has " + std::to_string(bytes.size) + " bytes");
   if (e.count > 0) e.data = bytes.data + offset;
 }
 
@@ -262,14 +279,15 @@ GltfAccessor GltfDocument::accessor(int64_t index, const std::string& from) cons
   const Json shape = object.value("type", Json());
   a.components = shape.is_string() ? components_of(shape.get_ref<const std::string&>()) : 0;
   if (a.components == 0)
-    refuse(a.place + ".type", " is " + short_dump(shape) + "; it must be SCALAR, VEC2, VEC3 or VEC4 here");
+    refuse(a.place + ".type", " is " + short_dump(shape) + "; it must be SCALAR, VEC2 to VEC4 or MAT2 to MAT4");
   const Json normalized = object.value("normalized", Json(false));
   a.normalized = normalized.is_boolean() && normalized.get<bool>() && a.type != NumberType::f32;
   if (const std::optional<int64_t> view = integer(object, "bufferView", a.place))
     place_elements(object, *view, false, a);
   else if (a.count > bytes_)
     refuse(a.place + ".count", " is " + std::to_string(a.count) + " without a buffer view; at most " +
-                                   std::to_string(bytes_) + ", the bytes of all buffers, is read");
+                                   std::to_string(bytes_) +
+                                   ", the bytes of all buffers, is read, and nothing that an extension packs");
   const auto sparse = object.find("sparse");
   if (sparse != object.end()) read_sparse(*sparse, a);
   return a;

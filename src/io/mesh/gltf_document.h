@@ -48,6 +48,7 @@ class GltfDocument {
   bool numbers(const Json& object, const char* key, const std::string& place, double* values, size_t count) const;
 
   GltfAccessor accessor(int64_t index, const std::string& from) const;
+  View<const char> bytes_of_view(int64_t index, const std::string& from) const;
 
  private:
   void read_container();
@@ -55,7 +56,6 @@ class GltfDocument {
   void check_extensions() const;
   void read_buffers();
   View<const char> bytes_of_uri(const std::string& uri, const std::string& place);
-  View<const char> bytes_of_view(int64_t index, const std::string& from, int64_t& stride) const;
   /// Those of `object` in a buffer view; `e` has all but data and stride. Those of sparse accessors are packed.
   void place_elements(const Json& object, int64_t view, bool packed, GltfElements& e) const;
   void read_sparse(const Json& sparse, GltfAccessor& accessor) const;
@@ -69,10 +69,9 @@ class GltfDocument {
   int64_t surplus_bytes_ = 0, bytes_ = 0;  ///< bytes_: of all buffers
 };
 
-/// The values of an element each, converted to double; normalised integers as they stand unless `scaled`.
-std::vector<double> values_of(const GltfDocument& document, const GltfAccessor& accessor, bool scaled);
-/// As values_of, into zeros.
-void read_values(const GltfDocument& document, const GltfAccessor& accessor, bool scaled, double* out);
+/// The values of all elements, into zeros; normalised integers as they stand unless `scaled`. Real: float, double.
+template <class Real>
+void read_values(const GltfDocument& document, const GltfAccessor& accessor, bool scaled, Real* out);
 /// Whole numbers, into zeros.
 void read_indices(const GltfDocument& document, const GltfAccessor& accessor, uint32_t* out);
 

@@ -1,8 +1,10 @@
 #include "io/mesh/gltf_primitives.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 namespace isoshell {
@@ -19,14 +21,16 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
   const Json& mesh = document.element("meshes", instance.mesh, mesh_place);
   std::map<std::string, size_t> known;
   const Json& primitives = document.list(mesh, "primitives", mesh_place);
+  bool is_posed = instance.has_skin;
   for (size_t i = 0; i < primitives.size(); ++i) {
     const std::string place = mesh_place + ".primitives[" + std::to_string(i) + "]";
     const Json& primitive = primitives[i];
-    if (!primitive.is_object()) document.refuse(place, " is no object");
+    if (!primitive.is_object()) document.refuse(place, " is no object; restore the file");
     const int64_t mode = document.integer(primitive, "mode", place).value_or(kTriangles);
     if (mode > kFan) document.refuse(place + ".mode", " is " + std::to_string(mode) + "; it must be from 0 to 6");
     const auto attributes = primitive.find("attributes");
-    if (attributes == primitive.end() || !attributes->is_object()) document.refuse(place, " has no attributes");
+    if (attributes == primitive.end() || !attributes->is_object())
+      document.refuse(place, " has no attributes; restore the file");
     const auto position = document.integer(*attributes, "POSITION", place + ".attributes");
     if (mode < kTriangles || !position) {
       ++content.other_primitives;
@@ -36,8 +40,9 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
     const auto [at, is_new] = known.emplace(key, content.vertices.size());
     if (is_new) {
       const GltfAccessor a = document.accessor(*position, place + ".attributes.POSITION");
-      if (a.components != 3)
-        document.refuse(a.place, " has " + std::to_string(a.components) + " components; positions have 3");
+      if (a.components != 3 || a.type == NumberType::u32)
+        document.refuse(a.place,
+                        " holds no positions; they are VEC3, of componentType 5126 or quantised to 5120 to 5123");
       const int64_t first = content.first_vertex.back();
       if (a.count > kMaxSoupVertices - first)
         document.source().refuse("holds more than " + std::to_string(kMaxSoupVertices) +
@@ -45,9 +50,11 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
       content.vertices.push_back({&*attributes, place + ".attributes", &instance.to_world, first, a.count});
       content.first_vertex.back() += a.count;
     }
+    is_posed |= primitive.contains("targets");
     content.primitives.push_back({at->second, mode, document.integer(primitive, "indices", place),
                                   document.integer(primitive, "material", place), place});
   }
+  content.posed_meshes += is_posed;
 }
 
 /// Corner k of triangle t of a primitive.
@@ -63,10 +70,17 @@ bool turns_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || 
 /// The numbers of the primitive's own vertices, where it has some; `out` has room for them, and zeros.
 void read_checked_indices(const GltfDocument& document, const GltfAccessor& a, int64_t vertices, uint32_t* out) {
   read_indices(document, a, out);
-  const uint32_t* const wrong = std::find_if(out, out + a.count, [&](uint32_t i) { return i >= vertices; });
-  if (wrong != out + a.count)
-    document.refuse(a.place, ", element " + std::to_string(wrong - out) + ", is " + std::to_string(*wrong) +
-                                 "; the primitive has " + std::to_string(vertices) + " vertices");
+  const auto is_wrong = [&](uint32_t i) { return i >= vertices; };
+  const bool has_wrong = tbb::parallel_reduce(
+      tbb::blocked_range<int64_t>(0, a.count, kGrain), false,
+      [&](const tbb::blocked_range<int64_t>& r, bool found) {
+        return found || std::any_of(out + r.begin(), out + r.end(), is_wrong);
+      },
+      std::logical_or<bool>());
+  if (!has_wrong) return;
+  const uint32_t* const wrong = std::find_if(out, out + a.count, is_wrong);
+  document.refuse(a.place, ", element " + std::to_string(wrong - out) + ", is " + std::to_string(*wrong) +
+                               "; the primitive has " + std::to_string(vertices) + " vertices");
 }
 
 void add_triangles(const GltfDocument& document, const GltfContent& content, const GltfPrimitive& primitive,
@@ -85,6 +99,7 @@ void add_triangles(const GltfDocument& document, const GltfContent& content, con
   uint32_t* const index = is_list ? reinterpret_cast<uint32_t*>(out.data() + first) : of_strip.data();
   if (indices) read_checked_indices(document, *indices, vertices.count, index);
   const bool mirrors = vertices.to_world->mirrors();
+  if (is_list && indices && vertices.first == 0 && !mirrors) return;
   tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
     for (int64_t t = r.begin(); t < r.end(); ++t) {
       Triangle& triangle = out[first + size_t(t)];

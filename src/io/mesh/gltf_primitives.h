@@ -29,7 +29,8 @@ struct GltfContent {
   std::vector<int64_t> first_vertex;  ///< per instance, and one more
   std::vector<GltfVertices> vertices;
   std::vector<GltfPrimitive> primitives;  ///< of triangles
-  int64_t other_primitives = 0;           ///< of points and lines
+  int64_t other_primitives = 0;           ///< of points and lines, or without positions
+  int64_t posed_meshes = 0;               ///< with skins or morph targets
 };
 
 /// Reads no element of any accessor.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "io/mesh/gltf_materials.h"
 #include "io/mesh/gltf_primitives.h"
 #include "io/mesh/mesh_readers.h"
 #include "io/mesh/weld.h"
@@ -23,38 +24,40 @@ void for_each_index(int64_t count, Work work) {
   });
 }
 
-std::vector<WorldPoint> positions_of(const GltfDocument& document, const GltfContent& content) {
-  std::vector<WorldPoint> points(size_t(content.first_vertex.back()));
-  for (const GltfVertices& vertices : content.vertices) {
-    WorldPoint* const here = points.data() + vertices.first;
-    read_values(document, *vertices.find(document, "POSITION"), true, reinterpret_cast<double*>(here));
-    if (!vertices.to_world->is_identity)
-      for_each_index(vertices.count, [&](int64_t i) { here[i] = vertices.to_world->point(here[i]); });
-  }
+/// As they are stored, that is, in no more than single precision.
+std::vector<RawPosition<float>> positions_of(const GltfDocument& document, const GltfContent& content) {
+  std::vector<RawPosition<float>> points(size_t(content.first_vertex.back()));
+  for (const GltfVertices& vertices : content.vertices)
+    read_values(document, *vertices.find(document, "POSITION"), true, &points[size_t(vertices.first)].x);
   return points;
 }
 
 /// Vertices of the result, and per vertex of the content which one it is; empty where all are vertices of the result.
 struct Welded {
   VertexTable vertices;
-  std::vector<uint32_t> vertex_of = {};
+  std::vector<uint32_t> vertex_of;
 };
 
 /// Equal positions of an instance become one vertex; those of two instances stay apart.
-Welded weld(const MeshSource& source, const GltfContent& content, std::vector<WorldPoint> points) {
-  Welded all{VertexTable(source, 0)};
-  const auto count = int64_t(points.size());
-  for (size_t i = 0; i + 1 < content.first_vertex.size(); ++i) {
-    const int64_t first = content.first_vertex[i], here = content.first_vertex[i + 1] - first;
-    WeldedCorners welded = weld_corners(source, here, CornerArray{points.data() + first});
-    const auto base = uint32_t(all.vertices.points.size());
-    if (here == count && int64_t(welded.vertices.points.size()) == count) {
-      all.vertices = std::move(welded.vertices);
-      return all;
-    }
-    for (int64_t v = 0; v < here; ++v) all.vertex_of.push_back(base + welded.index[size_t(v / 3)][size_t(v % 3)]);
-    all.vertices.points.insert(all.vertices.points.end(), welded.vertices.points.begin(), welded.vertices.points.end());
+Welded weld(const MeshSource& source, const GltfContent& content, const std::vector<RawPosition<float>>& stored) {
+  Welded all{VertexTable(source, 0), std::vector<uint32_t>(stored.size())};
+  std::vector<WorldPoint>& points = all.vertices.points;
+  for (size_t i = 0; i < content.instances.size(); ++i) {
+    const int64_t first = content.first_vertex[i], count = content.first_vertex[i + 1] - first;
+    WeldedCorners welded = weld_corners(source, count, FloatCornerArray{stored.data() + first});
+    const size_t base = points.size();
+    for_each_index(count, [&](int64_t v) {
+      all.vertex_of[size_t(first + v)] = uint32_t(base) + welded.index[size_t(v / 3)][size_t(v % 3)];
+    });
+    if (base == 0)
+      points = std::move(welded.vertices.points);
+    else
+      points.insert(points.end(), welded.vertices.points.begin(), welded.vertices.points.end());
+    for_each_index(int64_t(points.size() - base), [&](int64_t v) {
+      points[base + size_t(v)] = content.instances[i].to_world.point(points[base + size_t(v)]);
+    });
   }
+  if (points.size() == stored.size()) all.vertex_of.clear();
   all.vertices.count_nonfinite();
   return all;
 }
@@ -141,8 +144,9 @@ class AttributeReader {
     attribute.values.assign(size_t(content_.first_vertex.back()) * components, missing);
     for (size_t i = 0; i < accessors.size(); ++i) {
       if (!accessors[i]) continue;
-      const std::vector<double> values = values_of(document_, *accessors[i], scaled);
       const auto have = size_t(accessors[i]->components);
+      std::vector<double> values(size_t(accessors[i]->count) * have);
+      read_values(document_, *accessors[i], scaled, values.data());
       double* const out = attribute.values.data() + size_t(content_.vertices[i].first) * components;
       for_each_index(accessors[i]->count,
                      [&](int64_t v) { std::copy_n(&values[size_t(v) * have], have, out + size_t(v) * components); });
@@ -197,6 +201,7 @@ void add_materials(const GltfDocument& document, const std::vector<double>& of_c
   }
   for (const uint32_t face : face_of) material.values.push_back(of_corners[face]);
   soup.attributes.push_back(std::move(material));
+  soup.files.gltf_materials = gltf_materials_of(document);
 }
 
 }  // namespace
@@ -223,6 +228,8 @@ TriangleSoup read_gltf(const MeshSource& source) {
   TriangleSoup soup = join_soup(source, std::move(welded.vertices), faces);
   if (has_more) AttributeReader(document, content, triangles.corners, faces[0].face_of(), welded, soup).read();
   add_materials(document, triangles.material, faces[0].face_of(), soup);
+  soup.dirt.other_primitives = content.other_primitives;
+  soup.dirt.posed_meshes = content.posed_meshes;
   soup.dirt.surplus_bytes = document.surplus_bytes();
   return soup;
 }

@@ -1,11 +1,13 @@
 #include "io/mesh/gltf_scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isoshell {
 namespace {
 
 using Json = GltfDocument::Json;
+constexpr double kRoundOff = 1e-6;  // of a single precision number near 1
 
 std::string numbered(const char* array, int64_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
@@ -38,8 +40,8 @@ GltfTransform transform_of(const GltfDocument& document, const Json& node, const
   if (document.numbers(node, "matrix", place, matrix, 16)) {
     for (int j = 0; j < 4; ++j) {
       for (int i = 0; i < 3; ++i) t.m[i][j] = matrix[4 * j + i];
-      if (matrix[4 * j + 3] != (j == 3 ? 1 : 0))
-        document.refuse(place + ".matrix", " has another last row than 0, 0, 0, 1");
+      if (!(std::abs(matrix[4 * j + 3] - (j == 3 ? 1 : 0)) <= kRoundOff))
+        document.refuse(place + ".matrix", " has another last row than 0, 0, 0, 1; write it as an affine transform");
     }
   } else {
     document.numbers(node, "translation", place, translation, 3);
@@ -91,13 +93,13 @@ class Walk {
 
   void visit(const Step& step) {
     const std::string place = numbered("nodes", step.node);
-    if (visited_[size_t(step.node)]) document_.refuse(place, " is a child twice; nodes must be trees");
+    if (visited_[size_t(step.node)]) document_.refuse(place, " is a child twice, or of its own; nodes must be trees");
     visited_[size_t(step.node)] = 1;
     const Json& node = document_.element("nodes", step.node, place);
     const GltfTransform to_world = step.parent * transform_of(document_, node, place);
     if (const auto mesh = document_.integer(node, "mesh", place)) {
       document_.element("meshes", *mesh, place + ".mesh");
-      instances_.push_back({*mesh, to_world});
+      instances_.push_back({*mesh, to_world, node.contains("skin")});
     }
     push(document_.list(node, "children", place), place + ".children", to_world);
   }
@@ -159,7 +161,7 @@ std::vector<GltfInstance> instances_of(const GltfDocument& document) {
     std::vector<GltfInstance> all;
     for (size_t i = 0; i < document.list(json, "meshes").size(); ++i) {
       document.element("meshes", int64_t(i), numbered("meshes", int64_t(i)));
-      all.push_back({int64_t(i), {}});
+      all.push_back({int64_t(i), {}, false});
     }
     return all;
   }

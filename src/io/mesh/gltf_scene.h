@@ -20,6 +20,7 @@ struct GltfTransform {
 struct GltfInstance {
   int64_t mesh;
   GltfTransform to_world;
+  bool has_skin;
 };
 
 /// Meshes of the nodes of the file's scene, each node before its children; all meshes where there are no nodes.

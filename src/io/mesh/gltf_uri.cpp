@@ -63,19 +63,19 @@ std::optional<std::string> file_name_of(const std::string& uri) {
   }
   const std::filesystem::path path(name);
   if (name.empty() || path.is_absolute() || name.find('\0') != std::string::npos) return {};
-  if (name.substr(0, name.find('/')).find(':') != std::string::npos) return {};
+  if (uri.substr(0, uri.find('/')).find(':') != std::string::npos) return {};
   if (std::find(path.begin(), path.end(), "..") != path.end()) return {};
   return name;
 }
 
-std::string base64_of(const std::vector<char>& bytes) {
+std::string base64_of(View<const char> bytes) {
   std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
+  text.reserve(size_t(bytes.size + 2) / 3 * 4);
+  for (int64_t i = 0; i < bytes.size; i += 3) {
     uint32_t bits = 0;
-    for (size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+    for (int64_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size ? static_cast<unsigned char>(bytes.data[i + k]) : 0u);
+    for (int64_t k = 0; k < 4; ++k) text += i + k <= bytes.size ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }

@@ -7,6 +7,7 @@
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "io/mesh/gltf_materials.h"
 #include "io/mesh/gltf_uri.h"
 #include "io/mesh/gltf_vertices.h"
 #include "io/mesh/mesh_writers.h"
@@ -52,32 +53,31 @@ class GltfWriter {
     for (const Attribute& a : mesh.attributes)
       if (a.domain == AttributeDomain::vertex) put_vertices(a);
     put_triangles();
+    put_document();
   }
 
   /// Its buffer is `bytes()`, at the uri or in the file's binary chunk.
   std::string json(const std::string& uri) const {
-    Json buffer = {{"byteLength", bytes_.size()}};
-    if (!uri.empty()) buffer["uri"] = uri;
-    Json node = {{"mesh", 0}};
-    if (origin_.x != 0 || origin_.y != 0 || origin_.z != 0) node["translation"] = {origin_.x, origin_.y, origin_.z};
-    Json all = {{"asset", {{"version", "2.0"}, {"generator", "isoshell"}}},
-                {"scene", 0},
-                {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-                {"nodes", Json::array({node})},
-                {"meshes", Json::array({{{"primitives", primitives_}}})},
-                {"accessors", accessors_},
-                {"bufferViews", views_},
-                {"buffers", Json::array({buffer})}};
-    for (size_t i = 0; material_ && i < material_->labels.size(); ++i)
-      all["materials"].push_back({{"name", material_->labels[i]}});
+    Json all = document_;
+    all["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
+    if (!uri.empty()) all["buffers"][0]["uri"] = uri;
     return all.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
-  const std::vector<char>& bytes() const { return bytes_; }
+  View<const char> bytes() const { return {bytes_.data(), int64_t(bytes_.size())}; }
 
  private:
   static bool is_kept_corner(const Attribute& a) {
     if (a.domain != AttributeDomain::corner) return false;
-    return (a.name == kNormalName && a.components == 3) || (a.name.rfind(kUvName, 0) == 0 && a.components == 2);
+    return (a.name == kNormalName && a.components == 3) || (uv_number(a) >= 0 && a.components == 2);
+  }
+
+  /// 0 for uv, 7 for uv7, -1 for what is no set of texture coordinates.
+  static int uv_number(const Attribute& a) {
+    if (a.name == kUvName) return 0;
+    const std::string digits = a.name.rfind(kUvName, 0) == 0 ? a.name.substr(std::strlen(kUvName)) : "";
+    const bool is_number =
+        !digits.empty() && digits.size() < 4 && digits.find_first_not_of("0123456789") == std::string::npos;
+    return is_number ? std::stoi(digits) : -1;
   }
 
   WorldPoint middle() const {
@@ -133,6 +133,15 @@ class GltfWriter {
 
   static float finite(float value) { return std::isfinite(value) ? value : 0; }  // the format has no other numbers
 
+  /// Sets of texture coordinates are numbered without a break.
+  std::string semantic_of(const Attribute& a) const {
+    if (a.name == kNormalName) return "NORMAL";
+    const auto before = std::count_if(of_corners_.begin(), of_corners_.end(), [&](const Attribute* other) {
+      return uv_number(*other) >= 0 && uv_number(*other) < uv_number(a);
+    });
+    return "TEXCOORD_" + std::to_string(before);
+  }
+
   /// Corners without a value get 0; normals must have a direction.
   void put_corners(const Attribute& a) {
     const bool is_normal = a.name == kNormalName;
@@ -143,16 +152,17 @@ class GltfWriter {
       for (int32_t c = 0; c < a.components; ++c)
         put(bytes_, has_value ? finite(float(value[c])) : is_normal && c == 2 ? 1.0f : 0.0f);
     }
-    const std::string set = a.name.size() > 2 ? a.name.substr(2) : "0";
-    attributes_[is_normal ? "NORMAL" : "TEXCOORD_" + set] =
+    attributes_[semantic_of(a)] =
         close(start, kVertexData, 4 * a.components,
               {{"componentType", kF32}, {"count", split_.vertex.size()}, {"type", is_normal ? "VEC3" : "VEC2"}});
   }
 
   void put_vertices(const Attribute& a) {
     if (a.name == kColorName && a.components >= 3) return put_colors(a);
-    if (a.components == 1)
-      put_numbers(a.name[0] == '_' ? a.name : "_" + a.name, [&](size_t v) { return a.values[split_.vertex[v]]; });
+    if (a.components != 1) return;
+    std::string semantic = a.name[0] == '_' ? a.name : "_" + a.name;
+    while (attributes_.contains(semantic)) semantic = "_" + semantic;
+    put_numbers(semantic, [&](size_t v) { return a.values[split_.vertex[v]]; });
   }
 
   /// Always with alpha: so the colours of bytes, too, are aligned.
@@ -193,6 +203,19 @@ class GltfWriter {
     }
   }
 
+  void put_document() {
+    Json node = {{"mesh", 0}};
+    if (origin_.x != 0 || origin_.y != 0 || origin_.z != 0) node["translation"] = {origin_.x, origin_.y, origin_.z};
+    document_ = {{"asset", {{"version", "2.0"}, {"generator", "isoshell"}}},
+                 {"scene", 0},
+                 {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                 {"nodes", Json::array({node})},
+                 {"meshes", Json::array({{{"primitives", primitives_}}})},
+                 {"accessors", accessors_},
+                 {"bufferViews", views_}};
+    if (material_) put_gltf_materials(mesh_.files.gltf_materials, material_->labels, document_, bytes_);
+  }
+
   const TriangleMesh& mesh_;
   std::vector<const Attribute*> of_corners_;
   const Attribute* material_ = nullptr;
@@ -200,6 +223,7 @@ class GltfWriter {
   WorldPoint origin_{0, 0, 0};  ///< where the node stands
   std::vector<char> bytes_;
   Json attributes_ = Json::object(), primitives_ = Json::array(), accessors_ = Json::array(), views_ = Json::array();
+  Json document_;  ///< all but the buffer
 };
 
 void require_triangles(const TriangleMesh& mesh) {
@@ -220,7 +244,7 @@ void write_glb(OutputFile& file, const TriangleMesh& mesh) {
   const GltfWriter writer(mesh);
   std::string json = writer.json("");
   json.resize((json.size() + 3) / 4 * 4, ' ');
-  const size_t total = 12 + 8 + json.size() + 8 + writer.bytes().size();  // all elements have a multiple of 4 bytes
+  const size_t total = 12 + 8 + json.size() + 8 + size_t(writer.bytes().size);  // a multiple of 4, as all elements have
   if (total > 0xffffffffu)
     throw Error(ErrorCode::unwritable_output, "write",
                 "the mesh needs " + std::to_string(total) + " bytes; a .glb file has at most 4294967295, write PLY");
@@ -228,11 +252,11 @@ void write_glb(OutputFile& file, const TriangleMesh& mesh) {
   for (const uint32_t number : {0x46546c67u, 2u, uint32_t(total), uint32_t(json.size()), 0x4e4f534au})
     put(head, number);
   std::vector<char> chunk;
-  for (const uint32_t number : {uint32_t(writer.bytes().size()), 0x004e4942u}) put(chunk, number);
+  for (const uint32_t number : {uint32_t(writer.bytes().size), 0x004e4942u}) put(chunk, number);
   file.write(head.data(), int64_t(head.size()));
   file.write(json);
   file.write(chunk.data(), int64_t(chunk.size()));
-  file.write(writer.bytes().data(), int64_t(writer.bytes().size()));
+  file.write(writer.bytes().data, writer.bytes().size);
 }
 
 }  // namespace isoshell

@@ -165,5 +165,6 @@ WeldedCorners weld_corners(const MeshSource& source, int64_t count, Corners corn
 
 template WeldedCorners weld_corners(const MeshSource&, int64_t, BinaryStlCorners);
 template WeldedCorners weld_corners(const MeshSource&, int64_t, CornerArray);
+template WeldedCorners weld_corners(const MeshSource&, int64_t, FloatCornerArray);
 
 }  // namespace isoshell

@@ -28,6 +28,11 @@ struct CornerArray {
     return {points[corner].x, points[corner].y, points[corner].z};
   }
 };
+struct FloatCornerArray {
+  using Real = float;
+  const RawPosition<float>* points;
+  RawPosition<float> operator[](int64_t corner) const { return points[corner]; }
+};
 
 struct WeldedCorners {
   VertexTable vertices;
