@@ -24,25 +24,32 @@ T load(const char* p) {
   return value;
 }
 
-/// Calls take(element, component, value) for all; the type of values is the accessor's.
+/// Calls take(number of the value, value) for all components of all elements; the type of values is the accessor's.
 template <class Take>
 void each_value(const GltfElements& e, Take take) {
   if (!e.data) return;
   with_type(e.type, [&](auto number) {
     using T = decltype(number);
-    if constexpr (sizeof(T) <= 4)
+    constexpr auto kBytes = int64_t(sizeof(T));
+    if constexpr (kBytes <= 4) {
+      const bool is_packed = e.stride == e.components * kBytes;
       tbb::parallel_for(tbb::blocked_range<int64_t>(0, e.count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
-        for (int64_t i = r.begin(); i < r.end(); ++i)
-          for (int32_t c = 0; c < e.components; ++c)
-            take(i, c, load<T>(e.data + i * e.stride + c * int64_t(sizeof(T))));
+        if (is_packed)
+          for (int64_t v = r.begin() * e.components; v < r.end() * e.components; ++v)
+            take(v, load<T>(e.data + v * kBytes));
+        else
+          for (int64_t i = r.begin(); i < r.end(); ++i)
+            for (int64_t c = 0; c < e.components; ++c)
+              take(i * e.components + c, load<T>(e.data + i * e.stride + c * kBytes));
       });
+    }
   });
 }
 
 /// Which elements a sparse accessor replaces, all in range.
 std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccessor& a) {
   std::vector<uint32_t> replaced(size_t(a.replaced.count));
-  each_value(a.replaced, [&](int64_t i, int32_t, auto value) { replaced[size_t(i)] = uint32_t(value); });
+  each_value(a.replaced, [&](int64_t i, auto value) { replaced[size_t(i)] = uint32_t(value); });
   for (const uint32_t i : replaced)
     if (i >= a.count)
       document.refuse(a.replaced.place,
@@ -50,15 +57,14 @@ std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccess
   return replaced;
 }
 
-/// `out` has zeros.
 template <class Out, class Convert>
 void read(const GltfDocument& document, const GltfAccessor& a, Convert convert, Out* out) {
   const auto components = size_t(a.components);
-  each_value(a, [&](int64_t i, int32_t c, auto value) { out[size_t(i) * components + size_t(c)] = convert(value); });
+  if (!a.data) std::fill_n(out, size_t(a.count) * components, Out(0));
+  each_value(a, [&](int64_t i, auto value) { out[i] = convert(value); });
   const std::vector<uint32_t> replaced = replaced_of(document, a);
   std::vector<Out> values(replaced.size() * components);
-  each_value(a.replacements,
-             [&](int64_t i, int32_t c, auto value) { values[size_t(i) * components + size_t(c)] = convert(value); });
+  each_value(a.replacements, [&](int64_t i, auto value) { values[size_t(i)] = convert(value); });
   // One after another: a file may name an element twice.
   for (size_t i = 0; i < replaced.size(); ++i)
     std::copy_n(&values[i * components], components, out + replaced[i] * components);

@@ -69,10 +69,10 @@ class GltfDocument {
   int64_t surplus_bytes_ = 0, bytes_ = 0;  ///< bytes_: of all buffers
 };
 
-/// The values of all elements, into zeros; normalised integers as they stand unless `scaled`. Real: float, double.
+/// The values of all elements; normalised integers as they stand unless `scaled`. Real: float, double.
 template <class Real>
 void read_values(const GltfDocument& document, const GltfAccessor& accessor, bool scaled, Real* out);
-/// Whole numbers, into zeros.
+/// Whole numbers.
 void read_indices(const GltfDocument& document, const GltfAccessor& accessor, uint32_t* out);
 
 }  // namespace isoshell

@@ -38,7 +38,9 @@ void free_of_buffers(const GltfDocument& document, const std::string& place, Jso
   image.erase("bufferView");
 }
 
-bool is_name_alone(const Json& material) { return material.empty() || (material.size() == 1 && material.count("name")); }
+bool is_name_alone(const Json& material) {
+  return material.empty() || (material.size() == 1 && material.count("name"));
+}
 
 /// An image that a uri holds gets a buffer view.
 void put_image(OrderedJson& image, OrderedJson& views, std::vector<char>& bytes) {
@@ -47,7 +49,8 @@ void put_image(OrderedJson& image, OrderedJson& views, std::vector<char>& bytes)
   const std::string text = *uri, start = "data:";
   const std::string type = text.substr(std::min(start.size(), text.size()), text.find(';') - start.size());
   const std::optional<std::vector<char>> decoded = decoded_data(text);
-  if (text.rfind(start, 0) != 0 || type.empty() || !decoded) return;  // a file, or nothing that would be better elsewhere
+  if (text.rfind(start, 0) != 0 || type.empty() || !decoded)
+    return;  // a file, or nothing that would be better elsewhere
   image.erase("uri");
   image["bufferView"] = views.size();
   image[kMimeType] = type;

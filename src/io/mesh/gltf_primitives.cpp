@@ -67,7 +67,7 @@ int64_t place_of(int64_t mode, int64_t t, int k) {
 /// Triangles with equal corners are a strip's way to turn a corner, not dirt.
 bool turns_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-/// The numbers of the primitive's own vertices, where it has some; `out` has room for them, and zeros.
+/// The numbers of the primitive's own vertices; `out` has room for them.
 void read_checked_indices(const GltfDocument& document, const GltfAccessor& a, int64_t vertices, uint32_t* out) {
   read_indices(document, a, out);
   const auto is_wrong = [&](uint32_t i) { return i >= vertices; };

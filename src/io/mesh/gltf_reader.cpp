@@ -144,10 +144,14 @@ class AttributeReader {
     attribute.values.assign(size_t(content_.first_vertex.back()) * components, missing);
     for (size_t i = 0; i < accessors.size(); ++i) {
       if (!accessors[i]) continue;
+      double* const out = attribute.values.data() + size_t(content_.vertices[i].first) * components;
       const auto have = size_t(accessors[i]->components);
+      if (have == components) {
+        read_values(document_, *accessors[i], scaled, out);
+        continue;
+      }
       std::vector<double> values(size_t(accessors[i]->count) * have);
       read_values(document_, *accessors[i], scaled, values.data());
-      double* const out = attribute.values.data() + size_t(content_.vertices[i].first) * components;
       for_each_index(accessors[i]->count,
                      [&](int64_t v) { std::copy_n(&values[size_t(v) * have], have, out + size_t(v) * components); });
     }
