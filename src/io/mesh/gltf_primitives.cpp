@@ -13,6 +13,7 @@ namespace {
 using Json = GltfDocument::Json;
 
 constexpr int64_t kGrain = 1 << 14;
+constexpr int64_t kMaxSoupTriangles = 0xffffffff / 3;  // corners have 32-bit numbers
 
 enum Mode : int64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
 
@@ -94,6 +95,9 @@ void add_triangles(const GltfDocument& document, const GltfContent& content, con
     document.refuse(primitive.place, " has " + std::to_string(corners) + " corners; triangles need a multiple of 3");
   const int64_t count = is_list ? corners / 3 : std::max<int64_t>(corners - 2, 0);
   const size_t first = out.size();
+  if (count > kMaxSoupTriangles - int64_t(first))
+    document.source().refuse("holds more than " + std::to_string(kMaxSoupTriangles) +
+                             " triangles, the most that can be read; split the file");
   out.resize(first + size_t(count));
   std::vector<uint32_t> of_strip(indices && !is_list ? size_t(corners) : 0);
   uint32_t* const index = is_list ? reinterpret_cast<uint32_t*>(out.data() + first) : of_strip.data();
