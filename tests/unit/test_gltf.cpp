@@ -237,6 +237,12 @@ TEST_CASE("glTF: what a file promises and does not hold is refused with its plac
   contains(accessor(R"("bufferView":0,"componentType":5130,"type":"VEC3","count":4)"), "componentType");
   contains(accessor(R"("bufferView":0,"componentType":5126,"type":"MAT5","count":4)"), "type");
   contains(refusal(R"("extensionsRequired":["KHR_draco_mesh_compression"])"), "KHR_draco_mesh_compression");
+  CHECK(read_text_as("glb",
+                     glb(document(48, square_views(R"("extras":")" + std::string(1000, '[') +
+                                                   R"(\"[","meshes":)"
+                                                   R"([{"primitives":[{"attributes":{"POSITION":0},"mode":5}]}])")),
+                         kSquare))
+            .vertices.size() == 4);
   contains(refusal(R"("extras":)" + std::string(100000, '[') + std::string(100000, ']')), "nested");
   contains(refusal(R"("asset":{"version":"2.1","minVersion":"2.1"})"), "minVersion");
   contains(refusal(R"("nodes":[{"children":[0]}],"scenes":[{"nodes":[0]}])"), "nodes[0]");

@@ -26,6 +26,22 @@ uint32_t load_u32(const char* p) {
   return byte(0) | byte(1) | byte(2) | byte(3);
 }
 
+/// Whether lists and objects of JSON lie too deep in each other; its parser would not mind.
+bool is_nested_deeply(View<const char> text) {
+  int depth = 0;
+  bool is_in_string = false;
+  for (int64_t i = 0; i < text.size && depth <= kMostNesting; ++i) {
+    const char c = text.data[i];
+    if (c == '"') is_in_string = !is_in_string;
+    if (is_in_string) {
+      i += c == '\\';  // what follows is no end
+    } else {
+      depth += (c == '[' || c == '{') - (c == ']' || c == '}');
+    }
+  }
+  return depth > kMostNesting;
+}
+
 std::string short_dump(const Json& value) {
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (text.size() > 40) text = text.substr(0, 40) + "...";
@@ -114,12 +130,10 @@ void GltfDocument::read_container() {
       at += kChunkHeaderBytes + bytes;
     }
   }
+  if (is_nested_deeply(text))
+    source_.refuse("its JSON is nested more than " + std::to_string(kMostNesting) + " deep, the most that is read");
   try {
-    json_ = Json::parse(text.data, text.data + text.size, [&](int depth, Json::parse_event_t, const Json&) {
-      if (depth > kMostNesting)
-        source_.refuse("its JSON is nested more than " + std::to_string(kMostNesting) + " deep, the most that is read");
-      return true;
-    });
+    json_ = Json::parse(text.data, text.data + text.size);
   } catch (const Json::exception& error) {
     source_.refuse("its JSON cannot be read: " + std::string(error.what()).substr(0, kMostMessage));
   }
