@@ -28,8 +28,8 @@ struct MeshWriteOptions {
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted
 /// by material, object and group, binary STL, OFF, glTF in one file with single precision about a node's translation,
 /// vertices split where corners differ. Written under a temporary name in the same folder and renamed. `path` "-"
-/// writes standard output. Throws: unwritable_output; usage for attributes that do not fit the mesh or have names that
-/// PLY cannot hold.
+/// writes standard output. Throws: unwritable_output; usage for attributes or materials that do not fit the mesh, and
+/// for names that PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
 
 }  // namespace isoshell
