@@ -188,7 +188,8 @@ void settle_options(const Raw& raw, AskedOptions& asked) {
   if (!raw.fit.empty()) o.fit = parse_fit("--fit", raw.fit);
 }
 
-void settle(CLI::App& app, Arguments& a, const Raw& raw) {
+/// All but where the run reads from, which a front may have in memory.
+void settle(const CLI::App& app, Arguments& a, const Raw& raw) {
   RunRequest& run = a.run;
   for (const CLI::Option* option : app.get_options())
     if (option->count() > 0 && !option->get_lnames().empty()) run.options.given.push_back(option->get_lnames()[0]);
@@ -216,11 +217,15 @@ void settle(CLI::App& app, Arguments& a, const Raw& raw) {
   if (a.verbosity == 0) run.measures = Measures::none;
   run.output = {raw.output, raw.output_format};
   check_request(run);
-  if (raw.input.empty()) refuse("INPUT is missing; see --help");
-  if (raw.output.empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
-  run.input = named_input(raw.input, raw.input_format);
-  if (run.options.was_given("iso")) run.input.iso = raw.iso;
   run.output = named_output(raw.output, raw.output_format, run.stop_after);
+  run.input.format = raw.input_format;
+  if (run.options.was_given("iso")) run.input.iso = raw.iso;
+}
+
+void settle_input(RunRequest& run, const std::string& name) {
+  const std::optional<double> iso = run.input.iso;
+  run.input = named_input(name, run.input.format);
+  run.input.iso = iso;
 }
 
 void refuse_leftovers(const CLI::App& app) {
@@ -243,6 +248,17 @@ void refuse_leftovers(const CLI::App& app) {
   refuse(option + " is '" + text.substr(equals + 3) + "'; it must be a " + (real ? "number" : "whole number"));
 }
 
+/// `words` are backwards, as CLI11 wants them.
+void split(CLI::App& app, std::vector<std::string> words, const Raw& raw) {
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ConversionError& e) {
+    refuse_conversion(e, raw);
+  } catch (const CLI::ParseError& e) {
+    refuse(std::string(e.what()) + "; see --help");
+  }
+}
+
 }  // namespace
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
@@ -251,24 +267,52 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   CLI::App app(kDescription);
   describe(app, a, raw);
 
-  std::vector<std::string> words;  // backwards, as CLI11 wants them
+  std::vector<std::string> words;
   for (int i = argc - 1; i > 0; --i) {
     std::string word = argv[i];
     if (word == "-help" || word == "-version") word.insert(0, "-");
     words.push_back(word);
   }
-  try {
-    app.parse(words);
-  } catch (const CLI::ConversionError& e) {
-    refuse_conversion(e, raw);
-  } catch (const CLI::ParseError& e) {
-    refuse(std::string(e.what()) + "; see --help");
-  }
+  split(app, std::move(words), raw);
   if (raw.help) return {std::nullopt, help_text(app)};
   if (raw.version) return {std::nullopt, version_text()};
   refuse_leftovers(app);
   settle(app, a, raw);
+  if (raw.input.empty()) refuse("INPUT is missing; see --help");
+  if (raw.output.empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
+  settle_input(a.run, raw.input);
   return {std::move(a), ""};
+}
+
+Arguments parse_given_options(const std::vector<GivenOption>& given, const std::string& output) {
+  Arguments a;
+  Raw raw;
+  CLI::App app(kDescription);
+  describe(app, a, raw);
+
+  std::vector<std::string> words;
+  for (const GivenOption& option : given)
+    words.push_back("--" + option.name + (option.value ? "=" + *option.value : ""));
+  split(app, std::move(words), raw);
+  refuse_leftovers(app);
+  raw.output = output;
+  settle(app, a, raw);
+  return a;
+}
+
+std::vector<OptionEntry> option_table() {
+  Arguments a;
+  Raw raw;
+  CLI::App app;
+  describe(app, a, raw);
+  std::vector<OptionEntry> table;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_lnames().empty()) continue;
+    const bool real = std::count(raw.reals.begin(), raw.reals.end(), option->get_name()) > 0;
+    table.push_back({option->get_group(), option->get_lnames()[0], option->get_type_name(), option->get_description(),
+                     option->get_default_str(), real});
+  }
+  return table;
 }
 
 }  // namespace isoshell::tool

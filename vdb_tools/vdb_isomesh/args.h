@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "isoshell/backend.h"
 #include "isoshell/run/run.h"
@@ -31,5 +32,24 @@ struct CommandLine {
 
 /// Throws: usage.
 CommandLine parse_command_line(int argc, const char* const* argv);
+
+/// An option by its name without dashes; a flag has no value.
+struct GivenOption {
+  std::string name;
+  std::optional<std::string> value;
+};
+/// The same from a front that has names and values, and perhaps no file: `output` may be empty, and of the input only
+/// its format and isovalue are set. Throws: usage.
+Arguments parse_given_options(const std::vector<GivenOption>& given, const std::string& output);
+
+/// A row of the table that README, --help and the Python module's keywords are made from.
+struct OptionEntry {
+  std::string group, name;
+  std::string value;  ///< what stands for it, as K; empty: a flag
+  std::string text;
+  std::string fallback;  ///< what holds without the option, for people
+  bool real = false;     ///< takes any number, not only whole ones
+};
+std::vector<OptionEntry> option_table();
 
 }  // namespace isoshell::tool

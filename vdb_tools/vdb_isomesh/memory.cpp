@@ -42,4 +42,10 @@ int64_t default_memory_limit_bytes(const std::string& group) {
   return free_bytes > 0 ? std::max<int64_t>(free_bytes / 5 * 4, 1) : 0;
 }
 
+void limit_memory(Context& context, const DeviceInfo& device) {
+  if (context.memory_limit_bytes > 0) return;
+  context.memory_limit_bytes =
+      device.backend == "cuda" ? std::max<int64_t>(device.free_bytes / 5 * 4, 1) : default_memory_limit_bytes();
+}
+
 }  // namespace isoshell::tool

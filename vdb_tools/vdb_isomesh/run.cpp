@@ -1,7 +1,6 @@
 // The library's run, with messages on the console and signals held off while a file is written.
 #include "vdb_isomesh/run.h"
 
-#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -18,10 +17,8 @@ namespace {
 /// record; this answer decides how much memory the run may take.
 void choose_device(Context& context, Console& console) {
   const DeviceInfo d = device_info(context);
-  const bool cuda = d.backend == "cuda";
-  if (context.memory_limit_bytes <= 0)
-    context.memory_limit_bytes = cuda ? std::max<int64_t>(d.free_bytes / 5 * 4, 1) : default_memory_limit_bytes();
-  if (!cuda) return;
+  limit_memory(context, d);
+  if (d.backend != "cuda") return;
   console.detail("device: cuda:" + std::to_string(d.number) + ", " + d.name + ", " + readable_bytes(d.free_bytes) +
                  " of " + readable_bytes(d.memory_bytes) + " free, driver " +
                  (d.driver_version.empty() ? "" : d.driver_version + ", ") + "CUDA " + d.cuda_version);
