@@ -14,6 +14,7 @@
 #include "core/file_format.h"
 #include "io/mesh/face_collector.h"
 #include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/readable.h"
@@ -119,6 +120,22 @@ class Reader {
            " % of the surface has no points near it and was closed smoothly");
   }
 
+  template <class Extract>
+  void hold_volume(Extract extract) {
+    input_.facts.kind = InputKind::volume;
+    VolumeInfo volume;
+    hold(extract(volume));
+    std::ostringstream text;
+    text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
+         << volume.voxel_size_world << ", " << counted(volume.blocks, "block")
+         << (volume.kind == VolumeKind::at_value ? "" : ", unsigned distances");
+    note(text.str());
+    if (volume.kind == VolumeKind::open_unsigned_distance)
+      warn(
+          "the zero set of its unsigned distances encloses nothing; the closed crust around it is meshed, 0.9 voxels "
+          "from it");
+  }
+
   Input taken() { return std::move(input_); }
 
  private:
@@ -131,18 +148,9 @@ class Reader {
   }
 
   void read_volume_file(const InputRequest& request) {
-    input_.facts.kind = InputKind::volume;
-    VolumeInfo volume;
-    hold(read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_, request.creases}, volume));
-    std::ostringstream text;
-    text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
-         << volume.voxel_size_world << ", " << counted(volume.blocks, "block")
-         << (volume.kind == VolumeKind::at_value ? "" : ", unsigned distances");
-    note(text.str());
-    if (volume.kind == VolumeKind::open_unsigned_distance)
-      warn(
-          "the zero set of its unsigned distances encloses nothing; the closed crust around it is meshed, 0.9 voxels "
-          "from it");
+    hold_volume([&](VolumeInfo& volume) {
+      return read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_, request.creases}, volume);
+    });
   }
 
   void read_stage_file() {
@@ -214,6 +222,12 @@ Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_
                VolumeCreases creases) {
   Reader reader(name, memory_limit_bytes, tell);
   reader.hold(cloud, creases);
+  return reader.taken();
+}
+
+Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options, const Tell& tell) {
+  Reader reader(name, options.memory_limit_bytes, tell);
+  reader.hold_volume([&](VolumeInfo& info) { return surface_of_volume(volume, name, options, info); });
   return reader.taken();
 }
 

@@ -30,11 +30,6 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-VolumeCreases volume_creases(Features::Creases creases) {
-  if (creases == Features::Creases::off) return VolumeCreases::none;
-  return creases == Features::Creases::automatic ? VolumeCreases::of_sharp_bodies : VolumeCreases::all;
-}
-
 MeshFormat mesh_format(const std::string& format) {
   if (format == "ply") return MeshFormat::ply;
   if (format == "obj") return MeshFormat::obj;
@@ -72,8 +67,10 @@ class Run {
   }
 
   RunEstimate estimate() {
+    return saying_what_stands([&] { return estimate_of(read()); });
+  }
+  RunEstimate estimate_of(const Input& input) {
     return saying_what_stands([&] {
-      const Input input = read();
       read_sizing_field();
       if (input.stage)
         throw Error(ErrorCode::usage, "options", "--dry-run needs a mesh as INPUT, a stage file has its grid already");
@@ -175,7 +172,7 @@ class Run {
   Input read() {
     return step("read", [&] {
       InputRequest request = request_.input;
-      request.creases = volume_creases(options_.values.features.creases);
+      request.creases = volume_creases(options_.values.features);
       Input input = read_input(request, context_.memory_limit_bytes,
                                [&](MessageKind kind, const std::string& text) { tell(kind, text); });
       take(input);
@@ -348,5 +345,14 @@ RunResult run(Input input, const RunRequest& request, Context& context) {
 }
 
 RunEstimate dry_run(const RunRequest& request, Context& context) { return Run(request, context).estimate(); }
+
+RunEstimate dry_run(const Input& input, const RunRequest& request, Context& context) {
+  return Run(request, context).estimate_of(input);
+}
+
+VolumeCreases volume_creases(const Features& features) {
+  if (features.creases == Features::Creases::off) return VolumeCreases::none;
+  return features.creases == Features::Creases::automatic ? VolumeCreases::of_sharp_bodies : VolumeCreases::all;
+}
 
 }  // namespace isoshell

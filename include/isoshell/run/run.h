@@ -63,5 +63,10 @@ RunResult run(Input input, const RunRequest& request, Context& context);
 /// What the run would take, from what is read alone; nothing is written. Throws: usage for a stage file, and as reading
 /// does.
 RunEstimate dry_run(const RunRequest& request, Context& context);
+/// The same of what is in memory already.
+RunEstimate dry_run(const Input& input, const RunRequest& request, Context& context);
+
+/// How a run with these features has a volume read; a run from a file does so by itself.
+VolumeCreases volume_creases(const Features& features);
 
 }  // namespace isoshell

@@ -6,11 +6,13 @@
 #include <cstring>
 #include <sstream>
 
+#include "implicit/dense_field.h"
 #include "implicit/iso_surface.h"
 #include "implicit/unsigned_field.h"
 #include "io/vdb/grid_names.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
 
 namespace isoshell {
 namespace {
@@ -86,6 +88,14 @@ double voxel_size(const AffineMap& map) {
   return std::sqrt(longest_sq);
 }
 
+TriangleSoup described_surface_of(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  info.grid = field.name;
+  info.grid_class = field.grid_class;
+  info.voxel_size_world = voxel_size(field.to_world);
+  info.blocks = int64_t(field.blocks().size());
+  return surface_of(field, options, info);
+}
+
 void check_map(const ScalarField& field) {
   const auto& m = field.to_world.at;
   const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
@@ -147,11 +157,12 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
       nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
   field->file = source.name();
   check_map(*field);
-  info.grid = field->name;
-  info.grid_class = field->grid_class;
-  info.voxel_size_world = voxel_size(field->to_world);
-  info.blocks = int64_t(field->blocks().size());
-  return surface_of(*field, options, info);
+  return described_surface_of(*field, options, info);
+}
+
+TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
+                               VolumeInfo& info) {
+  return described_surface_of(DenseField(volume, name, options.iso), options, info);
 }
 
 }  // namespace isoshell

@@ -1,0 +1,44 @@
+// What a program may have in memory beside triangles and points: polygons, and values on a regular lattice.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isoshell/io/input.h"
+
+namespace isoshell {
+
+/// Faces of any number of corners.
+struct PolygonSoup {
+  std::vector<WorldPoint> vertices;
+  std::vector<uint32_t> corners;  ///< of one face after the other
+  std::vector<uint32_t> sizes;    ///< per face its number of corners
+};
+
+/// The triangles that readers of mesh files make of the same faces. Throws: unreadable_input for a corner that is no
+/// vertex and for sizes that do not sum up to the corners, nothing_to_mesh without a usable face; `name` is what the
+/// message calls the surface.
+TriangleSoup split_polygons(PolygonSoup polygons, const std::string& name);
+
+/// Value (i, j, k) stands at origin + (i, j, k) * spacing. Borrows the values.
+struct DenseVolume {
+  const float* values = nullptr;
+  int64_t size[3] = {};    ///< values along each axis
+  int64_t stride[3] = {};  ///< values from one to the next along each axis
+  WorldPoint spacing_world{1, 1, 1}, origin_world{0, 0, 0};
+};
+
+/// The surface of a volume as read_volume extracts it, from values that no file gives a class. Without an isovalue they
+/// are signed distances where some are negative, and otherwise unsigned ones if they rise as such. The space beyond
+/// the array is outside. With an isovalue, the side of it that most values at the array's faces lie on is outside, too;
+/// without one the positive side. Where the body reaches a face, it is closed there. Throws: usage for an array without
+/// values or a spacing that is not above 0; unreadable_input for a value that is not finite; and as read_volume does.
+TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
+                               VolumeInfo& info);
+
+/// The same as an input. Throws: as surface_of_volume does.
+Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
+               const Tell& tell = {});
+
+}  // namespace isoshell
