@@ -1,60 +1,38 @@
-// Python's view of the library's run: options as JSON, the mesh as arrays over its own memory.
+// The compiled part of the package isoshell: what its Python files, which people see, stand on.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
-#include "isoshell/isoshell.h"
+#include "context.h"
+#include "errors.h"
+#include "keywords.h"
+#include "result.h"
+#include "run.h"
+#include "source.h"
+#include "vdb_isomesh/command.h"
 
 namespace nb = nanobind;
-using namespace isoshell;
 
 namespace {
 
-struct Result {
-  TriangleMesh mesh;
-  std::string report;
-};
-
-static_assert(sizeof(WorldPoint) == 3 * sizeof(double), "vertices are shown as rows of three doubles");
-
-Result result_of(RunResult run) { return {std::move(run.mesh), statistics_json(run.record)}; }
-
-Result remesh_file(const std::string& path, const std::string& options) {
-  const nb::gil_scoped_release released;
-  Context context;
-  RunRequest request;
-  request.input = named_input(path);
-  request.options = parse_options_json(options);
-  return result_of(run(request, context));
-}
-
-template <class T>
-using View = nb::ndarray<nb::numpy, T, nb::shape<-1, 3>, nb::c_contig>;
-
-View<const double> vertices(nb::handle self) {
-  const TriangleMesh& mesh = nb::cast<Result&>(self).mesh;
-  return {reinterpret_cast<const double*>(mesh.vertices.data()), {mesh.vertices.size(), 3}, self};
-}
-
-/// Indices of a mesh stay below 2^31: as signed numbers, which numpy's users expect, they are the same bits.
-View<const int32_t> faces(nb::handle self) {
-  const TriangleMesh& mesh = nb::cast<Result&>(self).mesh;
-  return {reinterpret_cast<const int32_t*>(mesh.triangles.data()), {mesh.triangles.size(), 3}, self};
-}
-
-void save(const Result& result, const std::string& path, bool overwrite) {
-  MeshWriteOptions options;
-  options.overwrite = overwrite;
-  write_mesh(path, result.mesh, options);
+int command(const std::vector<std::string>& arguments) {
+  std::vector<const char*> words;
+  for (const std::string& word : arguments) words.push_back(word.c_str());
+  return isoshell::tool::command(int(words.size()), words.data());
 }
 
 }  // namespace
 
 NB_MODULE(_isoshell, m) {
-  nb::class_<Result>(m, "Result")
-      .def_prop_ro("vertices", [](nb::handle self) { return vertices(self); })
-      .def_prop_ro("faces", [](nb::handle self) { return faces(self); })
-      .def_prop_ro("_report", [](const Result& r) { return r.report; })
-      .def("save", save, nb::arg("path"), nb::arg("overwrite") = false, nb::call_guard<nb::gil_scoped_release>());
-  m.def("remesh_file", remesh_file, nb::arg("path"), nb::arg("options"));
+  using namespace isoshell::python;
+  m.attr("__version__") = ISOSHELL_VERSION;
+  bind_errors(m);
+  bind_keywords(m);
+  bind_source(m);
+  bind_context(m);
+  bind_result(m);
+  bind_run(m);
+  m.def("command", command, nb::arg("arguments"), nb::call_guard<nb::gil_scoped_release>(),
+        "The command, with its name as the first argument. Returns its exit status; signals end the process from then "
+        "on.");
 }

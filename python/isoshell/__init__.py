@@ -1,33 +1,26 @@
-"""Isotropic triangle meshes from any surface."""
+"""Isotropic triangle meshes from any surface, through sparse volumes.
 
-import json
-import os
+    import isoshell
+    result = isoshell.remesh("scan.ply", vertices=20_000)
+    result = isoshell.remesh((vertices, faces), vertices=20_000, features="auto")
+    result.vertices, result.faces, result.report
+    result.save("mesh.ply")
+"""
+
+import atexit as _atexit
 
 from . import _isoshell
+from ._context import Context
+from ._errors import Error, RunWarning
+from ._isoshell import ErrorCode, __version__
+from ._options import Options
+from ._remesh import estimate, remesh
+from ._result import Result
+from ._sources import Points, Volume
 
+__all__ = ["Context", "Error", "ErrorCode", "Options", "Points", "Result", "RunWarning", "Volume", "__version__",
+           "estimate", "remesh"]
 
-class Result:
-    """A mesh and the report of its run."""
-
-    def __init__(self, made):
-        self._made = made
-        self.report = json.loads(made._report)
-
-    @property
-    def vertices(self):
-        """(K, 3) float64, world units: a read-only view of the result's own memory."""
-        return self._made.vertices
-
-    @property
-    def faces(self):
-        """(M, 3) int32: a read-only view of the result's own memory."""
-        return self._made.faces
-
-    def save(self, path, overwrite=False):
-        """Write the mesh; the name's ending says the format."""
-        self._made.save(os.fspath(path), overwrite)
-
-
-def remesh(path, **options):
-    """Remesh a file that the command can read; options as in the command's JSON."""
-    return Result(_isoshell.remesh_file(os.fspath(path), json.dumps(options)))
+for _name in ("Context", "Error", "Points", "Result", "RunWarning", "Volume", "estimate", "remesh"):
+    globals()[_name].__module__ = __name__
+_atexit.register(_isoshell.end_jobs_left_alone)

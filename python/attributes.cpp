@@ -1,0 +1,100 @@
+#include "attributes.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+/// An array that owns its values.
+template <class T>
+nb::object array_of(std::vector<T> values, const std::vector<size_t>& shape) {
+  auto owned = std::make_unique<std::vector<T>>(std::move(values));
+  T* data = owned->data();
+  const nb::capsule owner(owned.get(), [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  owned.release();
+  return nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner));
+}
+
+template <class T>
+T converted(double value) {
+  if constexpr (std::is_integral_v<T>) return std::isfinite(value) ? T(value) : T(0);
+  return T(value);
+}
+
+template <class T>
+nb::object values_of(const Attribute& a) {
+  const size_t n = size_t(a.components), elements = a.index.empty() ? a.values.size() / n : a.index.size();
+  std::vector<T> values(elements * n);
+  for (size_t e = 0; e < elements; ++e)
+    for (size_t c = 0; c < n; ++c)
+      values[e * n + c] = converted<T>(a.values[(a.index.empty() ? e : size_t(a.index[e])) * n + c]);
+  std::vector<size_t> shape{elements};
+  if (a.domain == AttributeDomain::corner) shape = {elements / 3, 3};
+  if (n > 1) shape.push_back(n);
+  return array_of(std::move(values), shape);
+}
+
+nb::object typed_values(const Attribute& a) {
+  switch (a.type) {
+    case NumberType::i8:
+      return values_of<int8_t>(a);
+    case NumberType::u8:
+      return values_of<uint8_t>(a);
+    case NumberType::i16:
+      return values_of<int16_t>(a);
+    case NumberType::u16:
+      return values_of<uint16_t>(a);
+    case NumberType::i32:
+      return values_of<int32_t>(a);
+    case NumberType::u32:
+      return values_of<uint32_t>(a);
+    case NumberType::f32:
+      return values_of<float>(a);
+    case NumberType::f64:
+      return values_of<double>(a);
+  }
+  return nb::none();
+}
+
+const char* domain_name(AttributeDomain domain) {
+  if (domain == AttributeDomain::vertex) return "vertex";
+  return domain == AttributeDomain::face ? "face" : "corner";
+}
+
+}  // namespace
+
+nb::list attributes_of(const TriangleMesh& mesh) {
+  nb::list list;
+  for (const Attribute& a : mesh.attributes)
+    list.append(nb::make_tuple(a.name, domain_name(a.domain), typed_values(a), a.labels));
+  if (!mesh.gap.empty())
+    list.append(nb::make_tuple("gap", "vertex", array_of(mesh.gap, {mesh.gap.size()}), std::vector<std::string>()));
+  return list;
+}
+
+nb::dict features_of(const TriangleMesh& mesh) {
+  const MeshFeatures& f = mesh.features;
+  std::vector<int32_t> edges, curves;
+  for (const MeshCurveEdge& e : f.curve_edges) {
+    edges.insert(edges.end(), {int32_t(e.vertex[0]), int32_t(e.vertex[1])});
+    curves.push_back(int32_t(e.curve));
+  }
+  const size_t edge_count = curves.size();
+  nb::dict dict;
+  dict["patch"] = array_of(std::vector<int32_t>(f.patch.begin(), f.patch.end()), {f.patch.size()});
+  dict["curve_edges"] = array_of(std::move(edges), {edge_count, 2});
+  dict["curve"] = array_of(std::move(curves), {edge_count});
+  dict["corners"] = array_of(std::vector<int32_t>(f.corners.begin(), f.corners.end()), {f.corners.size()});
+  return dict;
+}
+
+}  // namespace isoshell::python

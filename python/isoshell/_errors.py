@@ -1,0 +1,38 @@
+"""What goes wrong, and what people are warned of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._isoshell import ErrorCode
+
+if TYPE_CHECKING:
+    from ._result import Result
+
+
+class Error(Exception):
+    """An isoshell function failed; the message names the value, the limit and the remedy.
+
+    Attributes:
+        code: what went wrong, an ErrorCode: the exit status that the command has then.
+        stage: where, such as "arguments", "read" or "relax".
+        result: of code GATE_FAILED the mesh that does not meet its requirements, otherwise None.
+    """
+
+    code: ErrorCode
+    stage: str
+    result: Result | None
+
+    def __init__(self, message: str, code: ErrorCode = ErrorCode.USAGE, stage: str = "arguments",
+                 result: Result | None = None) -> None:
+        super().__init__(message)
+        self.code = code
+        self.stage = stage
+        self.result = result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.code, self.stage)
+
+
+class RunWarning(UserWarning):
+    """What a person should look at: the command writes the same behind "warning:"."""

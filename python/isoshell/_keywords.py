@@ -1,0 +1,63 @@
+"""Keywords of Python as options of the command, which one parser reads."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, List, Optional, Tuple
+
+import numpy as np
+
+from . import _isoshell
+from ._errors import Error
+
+Keywords = List[Tuple[str, Optional[str]]]
+
+PLACE = ("device", "threads", "max_memory")  # of a Context
+LEFT_OUT = {
+    "help": "see help(isoshell.Options)",
+    "version": "see isoshell.__version__",
+    "dry_run": "call isoshell.estimate",
+}
+
+_flags: dict[str, bool] = {}
+
+
+def flags() -> dict[str, bool]:
+    """Every option of the command by its keyword, and whether it is a flag."""
+    if not _flags:
+        _flags.update({o.name.replace("-", "_"): not o.value for o in _isoshell.option_table()})
+    return _flags
+
+
+def keywords_of(options: dict[str, Any]) -> Keywords:
+    """The options as the parser takes them; None is as if it were not there."""
+    words: Keywords = []
+    for name, value in options.items():
+        if name in LEFT_OUT:
+            raise Error(f"{name} is no keyword; {LEFT_OUT[name]}", stage="options")
+        option = name.replace("_", "-")
+        if name not in flags():
+            words.append((option, None))  # the parser refuses it, and knows the nearest name
+        elif value is None:
+            continue
+        elif not flags()[name]:
+            text = _text(name, value)
+            if text:
+                words.append((option, text))
+        elif not isinstance(value, (bool, np.bool_)):
+            raise Error(f"{name} is {value!r}; it must be True or False", stage="options")
+        elif value:
+            words.append((option, None))
+    return words
+
+
+def _text(name: str, value: Any) -> str:
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
+        return str(int(value))
+    if isinstance(value, (str, os.PathLike)):
+        return os.fsdecode(value)
+    if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):
+        return "none" if name == "attributes" and not value else ",".join(value)
+    raise Error(f"{name} is {value!r}; it must be a number, text or a list of texts", stage="options")

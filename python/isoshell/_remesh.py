@@ -1,0 +1,95 @@
+"""Runs."""
+
+from __future__ import annotations
+
+import logging
+import os
+import warnings
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+from . import _isoshell
+from ._context import Context
+from ._errors import Error, RunWarning
+from ._keywords import PLACE, Keywords, keywords_of
+from ._result import Result, checked
+from ._sources import SourceLike, is_true_or_false, source_of
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._options import Options
+
+CALLERS = 3  # frames between a warning and the line that asked for the run
+
+
+def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]] = None,
+           context: Optional[Context] = None, **options: Unpack[Options]) -> Result:
+    """Remesh a surface: an isotropic triangle mesh of it.
+
+    Args:
+        source: a path that the command can read; (vertices, faces), arrays of (K, 3) numbers in world units and of
+            (M, 3) whole numbers, or faces of more corners; anything with .vertices and .faces, such as a mesh of
+            trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Points; isoshell.Volume. Arrays are
+            whatever numpy or DLPack can take, of the host; they are copied once.
+        output: also write the result there, as the command does.
+        context: where to run; otherwise device, threads and max_memory say it.
+        **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
+            what these say, progress may be a function, called as progress(stage, fraction), and stats may be True, to
+            measure everything without writing a file.
+
+    Returns:
+        The mesh. Warnings of the run are RunWarning; notes go to the logger "isoshell".
+
+    Raises:
+        Error: its code says why; the message names the argument. GATE_FAILED when the result does not meet `require`,
+            or intersects itself without `allow_intersections`; the error has the result then.
+        KeyboardInterrupt: within .3 s of the key; nothing half-written is left.
+    """
+    given: dict[str, Any] = dict(options)
+    stats = given.pop("stats", None)
+    measure_all = stats is True
+    if stats is not False and stats is not True:
+        given["stats"] = stats
+    quiet = given.get("quiet") is True
+    place, progress, keywords = _settle(context, given, source)
+
+    def tell(is_warning: bool, text: str) -> None:
+        _tell(is_warning and not quiet, text)
+
+    made = _isoshell.remesh(place, source_of(source), keywords, os.fspath(output) if output is not None else "",
+                            measure_all, progress, tell)
+    return checked(Result(made))
+
+
+def estimate(source: SourceLike, *, context: Optional[Context] = None, **options: Unpack[Options]) -> dict[str, Any]:
+    """What a run would take, as the command's --dry-run; arguments and errors are those of remesh().
+
+    Returns:
+        resolution, voxel_size (world units), vertices, sites, active_voxels, sheet_vertices and memory_bytes, all of
+        them rather high than low.
+    """
+    given: dict[str, Any] = dict(options)
+    place, _, keywords = _settle(context, given, source)
+    return _isoshell.estimate(place, source_of(source), keywords, _tell)
+
+
+def _settle(context: Optional[Context], options: dict[str, Any], source: Any) -> tuple[Any, Any, Keywords]:
+    """Where to run, who hears of progress, and the other options."""
+    named = {name: options.pop(name) for name in PLACE if options.get(name) is not None}
+    if context is None:
+        context = Context(**named)
+    elif named:
+        raise Error(f"{', '.join(named)}: the context says it already; leave it out", stage="options")
+    progress = context.progress
+    if callable(options.get("progress")):
+        progress = options.pop("progress")
+    if is_true_or_false(source) and options.get("iso") is None:
+        options["iso"] = 0.5
+    return context._place, progress, keywords_of(options)
+
+
+def _tell(is_warning: bool, text: str) -> None:
+    if is_warning:
+        warnings.warn(text, RunWarning, stacklevel=CALLERS)
+    else:
+        logging.getLogger("isoshell").info("%s", text)

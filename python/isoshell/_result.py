@@ -1,0 +1,132 @@
+"""What a run made."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+from . import _isoshell
+from ._errors import Error
+
+if TYPE_CHECKING:
+    import pyvista
+    import trimesh
+
+    Floats = np.ndarray[Any, np.dtype[np.float64]]
+    Ints = np.ndarray[Any, np.dtype[np.int32]]
+    Array = np.ndarray[Any, np.dtype[Any]]
+
+
+class Result:
+    """An isotropic triangle mesh, and all that is known of its run."""
+
+    def __init__(self, made: _isoshell.RunResult) -> None:
+        self._made = made
+        self._report: Optional[dict[str, Any]] = None
+        self._attributes: Optional[list[tuple[str, str, Array, list[str]]]] = None
+
+    @property
+    def vertices(self) -> Floats:
+        """(K, 3) float64, world units: a read-only view of the result's own memory, which it keeps alive."""
+        return self._made.vertices  # type: ignore[return-value]
+
+    @property
+    def faces(self) -> Ints:
+        """(M, 3) int32, counter-clockwise seen from outside: a read-only view, as vertices is."""
+        return self._made.faces  # type: ignore[return-value]
+
+    @property
+    def attributes(self) -> dict[str, Array]:
+        """What the source has beside its positions, found for the result; by name, of the type that it had there.
+
+        (K, ...) of vertices, (M, ...) of faces, (M, 3, ...) of the corners of faces: see domains. "gap" is 1 where the
+        source has no surface. A name that attributes of two domains have is, for the second, "name:domain".
+        """
+        return {name: values for name, _, values, _ in self._named_attributes()}
+
+    @property
+    def domains(self) -> dict[str, str]:
+        """Of each attribute what has a value of its own: "vertex", "face" or "corner"."""
+        return {name: domain for name, domain, _, _ in self._named_attributes()}
+
+    @property
+    def labels(self) -> dict[str, list[str]]:
+        """Of the attributes whose values are numbers of names (-1: none), such as material and group: the names."""
+        return {name: labels for name, _, _, labels in self._named_attributes() if labels}
+
+    @property
+    def features(self) -> dict[str, Array]:
+        """The patches and curves of the source that the result has; int32, empty where none were kept.
+
+        patch (M,): of faces. curve_edges (E, 2): vertices of the edges on curves. curve (E,): the number of their
+        curve. corners (C,): vertices where curves end or turn sharply.
+        """
+        return self._made.features
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What the command's --stats writes: topology, quality, features, times, warnings and more.
+
+        Distances from the source, normals and digests are in it after remesh(..., stats=True).
+        """
+        if self._report is None:
+            self._report = json.loads(self._made.statistics)
+        assert self._report is not None
+        return self._report
+
+    @property
+    def digest(self) -> str:
+        """Sixteen hexadecimal digits: the same for the same vertices and faces."""
+        return self._made.digest
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the mesh with its attributes, as far as the format that the path's ending names has them.
+
+        Raises:
+            Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True; of code
+                USAGE for an ending that names no format.
+        """
+        self._made.save(os.fspath(path), overwrite)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """A trimesh.Trimesh with copies of vertices and faces, and the colours of vertices. Needs trimesh."""
+        import trimesh
+
+        colors = self.attributes.get("color") if self.domains.get("color") == "vertex" else None
+        return trimesh.Trimesh(self.vertices.copy(), self.faces.copy(), vertex_colors=colors, process=False)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """A pyvista.PolyData with copies of vertices, faces and the attributes of both. Needs pyvista."""
+        import pyvista
+
+        faces = np.column_stack([np.full(len(self.faces), 3, np.int32), self.faces]).ravel()
+        mesh = pyvista.PolyData(self.vertices.copy(), faces)
+        for name, domain, values, _ in self._named_attributes():
+            if domain != "corner":
+                (mesh.point_data if domain == "vertex" else mesh.cell_data)[name] = values
+        return mesh
+
+    def __repr__(self) -> str:
+        return f"<isoshell.Result: {len(self.vertices)} vertices, {len(self.faces)} faces>"
+
+    def _named_attributes(self) -> list[tuple[str, str, Array, list[str]]]:
+        if self._attributes is None:
+            self._attributes = []
+            names = set()
+            for name, domain, values, labels in self._made.attributes:
+                key = f"{name}:{domain}" if name in names else name
+                names.add(key)
+                self._attributes.append((key, domain, values, labels))
+        return self._attributes
+
+
+def checked(result: Result) -> Result:
+    """Raises Error of code GATE_FAILED for a result that misses a requirement."""
+    missed = result._made.missed_gates
+    if missed:
+        text = "; ".join(_isoshell.in_keywords(gate) for gate in missed)
+        raise Error(f"{text}; the error's result has the mesh", _isoshell.ErrorCode.GATE_FAILED, "gates", result)
+    return result

@@ -1,0 +1,152 @@
+"""What a run can start from."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Protocol, Tuple, Union
+
+import numpy as np
+
+from ._arrays import array_of
+from ._errors import Error
+from ._isoshell import Source
+
+
+class MeshLike(Protocol):
+    """Anything with vertices (K, 3) and faces: a mesh of trimesh, a Result."""
+
+    @property
+    def vertices(self) -> Any: ...
+
+    @property
+    def faces(self) -> Any: ...
+
+
+class PolyDataLike(Protocol):
+    """Anything with points (K, 3) and faces in one row, each behind its number of corners: a PolyData of pyvista."""
+
+    @property
+    def points(self) -> Any: ...
+
+    @property
+    def faces(self) -> Any: ...
+
+
+@dataclass(frozen=True)
+class Points:
+    """A point cloud; its surface is found by Poisson reconstruction.
+
+    Attributes:
+        positions: (K, 3), world units.
+        normals: (K, 3), outward directions of any length; without them they are estimated.
+    """
+
+    positions: Any
+    normals: Any = None
+
+
+@dataclass(frozen=True)
+class Volume:
+    """Values on a regular lattice: a CT, a segmentation, a simulation.
+
+    The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
+    True. Without `iso` the values are distances: negative inside, or unsigned.
+
+    Attributes:
+        values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
+            array begins with z, give values.transpose(2, 1, 0): that takes no copy.
+        spacing: world units from a value to the next, one number or one an axis.
+        origin: where values[0, 0, 0] stands, world units.
+    """
+
+    values: Any
+    spacing: Any = 1.0
+    origin: Any = 0.0
+
+
+SourceLike = Union[str, "os.PathLike[str]", Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
+
+
+def source_of(given: Any) -> Source:
+    """The source that an argument of remesh() means."""
+    if isinstance(given, (str, os.PathLike)):
+        return Source.file(os.fspath(given))
+    if isinstance(given, Points):
+        normals = None if given.normals is None else array_of("normals", given.normals)
+        return Source.points(array_of("points", given.positions), normals)
+    if isinstance(given, Volume):
+        return _source_of_volume(given)
+    if isinstance(given, (tuple, list)) and len(given) == 2:
+        return _source_of_faces("(vertices, faces)", given[0], given[1])
+    for name in ("vertices", "points"):
+        vertices, faces = getattr(given, name, None), getattr(given, "faces", None)
+        if vertices is not None and faces is not None:
+            return _source_of_faces(type(given).__name__, vertices, faces)
+    raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Points or "
+                f"isoshell.Volume, and is {type(given).__name__}")
+
+
+def is_true_or_false(volume: Any) -> bool:
+    """Whether it is a Volume of booleans, whose surface needs no isovalue."""
+    return isinstance(volume, Volume) and getattr(volume.values, "dtype", None) == np.bool_
+
+
+def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
+    positions = array_of("vertices", vertices)
+    if _is_ragged(faces):
+        sizes = np.array([len(face) for face in faces], np.int64)
+        corners = [corner for face in faces for corner in face]
+        return Source.polygons(name, positions, sizes, array_of("faces", corners))
+    indices = array_of("faces", faces)
+    if indices.ndim == 1 and indices.size > 0:
+        return Source.polygons(name, positions, *_counted_faces(indices))
+    if indices.ndim == 2 and indices.shape[1] > 3:
+        sizes = np.full(indices.shape[0], indices.shape[1], np.int64)
+        return Source.polygons(name, positions, sizes, indices.reshape(-1))
+    return Source.triangles(name, positions, indices)
+
+
+def _is_ragged(faces: Any) -> bool:
+    if not isinstance(faces, (list, tuple)):
+        return False
+    try:
+        return len({len(face) for face in faces}) > 1
+    except TypeError:
+        return False
+
+
+def _counted_faces(faces: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Sizes and corners of faces in one row, each behind its number of corners."""
+    if faces.dtype.kind not in "iu":
+        raise Error(f"faces must be whole numbers, such as int32 or int64, and is {faces.dtype}")
+    size = int(faces[0])
+    if size > 0 and faces.size % (size + 1) == 0 and np.all(faces[:: size + 1] == size):
+        rows = faces.reshape(-1, size + 1)
+        return rows[:, 0], rows[:, 1:].reshape(-1)
+    heads = []
+    at = 0
+    while at < faces.size:
+        heads.append(at)
+        size = int(faces[at])
+        if size < 0 or at + size >= faces.size:
+            raise Error(f"faces[{at}] is {size}, and {faces.size - at - 1} numbers follow; in one row each face stands "
+                        "behind its number of corners, otherwise faces has the shape (M, 3)")
+        at += size + 1
+    is_corner = np.ones(faces.size, bool)
+    is_corner[heads] = False
+    return faces[heads], faces[is_corner]
+
+
+def _source_of_volume(volume: Volume) -> Source:
+    values = array_of("volume", volume.values)
+    return Source.volume(values.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
+                         _triple("origin", volume.origin))
+
+
+def _triple(argument: str, value: Any) -> tuple[float, float, float]:
+    numbers = array_of(argument, value).astype(np.float64)
+    if numbers.shape not in ((), (3,)):
+        raise Error(f"{argument} must be one number or three, and has the shape {numbers.shape}")
+    x, y, z = np.broadcast_to(numbers, 3).tolist()
+    return x, y, z

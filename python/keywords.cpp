@@ -1,0 +1,27 @@
+#include "keywords.h"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+
+tool::Arguments arguments_of(const Keywords& keywords, const std::string& output) {
+  std::vector<tool::GivenOption> given;
+  for (const auto& [name, value] : keywords) given.push_back({name, value});
+  return tool::parse_given_options(given, output);
+}
+
+void bind_keywords(nb::module_& m) {
+  nb::class_<tool::OptionEntry>(m, "OptionEntry", "An option of the command.")
+      .def_ro("group", &tool::OptionEntry::group)
+      .def_ro("name", &tool::OptionEntry::name, "Without dashes.")
+      .def_ro("value", &tool::OptionEntry::value, "What stands for its value, as K; empty for a flag.")
+      .def_ro("text", &tool::OptionEntry::text)
+      .def_ro("fallback", &tool::OptionEntry::fallback, "What holds without it.")
+      .def_ro("real", &tool::OptionEntry::real, "Takes any number, not only whole ones.");
+  m.def("option_table", tool::option_table, "Every option of the command.");
+}
+
+}  // namespace isoshell::python

@@ -1,0 +1,100 @@
+#include "source.h"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "arrays.h"
+#include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+using Triple = std::array<double, 3>;
+
+void refuse_iso(const RunRequest& request) {
+  if (request.input.iso) throw Error(ErrorCode::usage, "arguments", "--iso is for volumes; leave it out");
+}
+
+Source file(const std::string& path) { return {path, {}, {}}; }
+
+Source surface(const std::string& name, TriangleSoup soup) {
+  const auto given = std::make_shared<TriangleSoup>(std::move(soup));
+  return {"",
+          [name, given](const RunRequest& request, const Context&) {
+            refuse_iso(request);
+            return input_of(std::move(*given), name, request.tell);
+          },
+          {}};
+}
+
+Source triangles(const std::string& name, const AnyArray& vertices, const AnyArray& faces) {
+  TriangleSoup soup;
+  soup.vertices = points_of("vertices", vertices);
+  soup.triangles = triangles_of("faces", faces, soup.vertices.size());
+  return surface(name, std::move(soup));
+}
+
+Source polygons(const std::string& name, const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+  PolygonSoup soup;
+  soup.vertices = points_of("vertices", vertices);
+  soup.sizes = indices_of("sizes of faces", sizes, size_t(UINT32_MAX));
+  soup.corners = indices_of("faces", corners, soup.vertices.size());
+  return surface(name, split_polygons(std::move(soup), name));
+}
+
+Source points(const AnyArray& positions, const std::optional<AnyArray>& normals) {
+  PointCloud cloud;
+  cloud.position = points_of("points", positions);
+  if (normals) cloud.normal = points_of("normals", *normals);
+  if (normals && cloud.normal.size() != cloud.position.size())
+    throw Error(ErrorCode::usage, "arguments",
+                "normals has " + std::to_string(cloud.normal.size()) + " rows, and points has " +
+                    std::to_string(cloud.position.size()) + "; give one normal a point");
+  const auto given = std::make_shared<PointCloud>(std::move(cloud));
+  return {"",
+          [given](const RunRequest& request, const Context& context) {
+            refuse_iso(request);
+            return input_of(*given, "points", context.memory_limit_bytes, request.tell);
+          },
+          {}};
+}
+
+Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin) {
+  DenseVolume v;
+  v.values = floats_of("volume", values, 3);
+  for (size_t i = 0; i < 3; ++i) {
+    v.size[i] = int64_t(values.shape(i));
+    v.stride[i] = values.stride(i);
+  }
+  v.spacing_world = {spacing[0], spacing[1], spacing[2]};
+  v.origin_world = {origin[0], origin[1], origin[2]};
+  return {"",
+          [v](const RunRequest& request, const Context& context) {
+            const VolumeReadOptions options{"", request.input.iso, context.memory_limit_bytes,
+                                            volume_creases(request.options.values.features)};
+            return input_of(v, "volume", options, request.tell);
+          },
+          nb::cast(values)};
+}
+
+}  // namespace
+
+void bind_source(nb::module_& m) {
+  nb::class_<Source>(m, "Source", "What one run starts from.")
+      .def_static("file", file, nb::arg("path"))
+      .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"))
+      .def_static("polygons", polygons, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"))
+      .def_static("points", points, nb::arg("positions"), nb::arg("normals").none())
+      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"));
+}
+
+}  // namespace isoshell::python

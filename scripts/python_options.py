@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Prints python/isoshell/_options.py, made from the command's option table. With --update, writes it.
+
+Needs the module that is built: PYTHONPATH=build/cpu/python/isoshell scripts/python_options.py --update
+"""
+
+import sys
+import textwrap
+from pathlib import Path
+
+import _isoshell
+
+TARGET = Path(__file__).resolve().parent.parent / "python/isoshell/_options.py"
+HEAD = '''"""Keywords of isoshell.remesh. Made by scripts/python_options.py from the option table of the command."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypedDict
+
+if TYPE_CHECKING:
+    import os
+    from typing import Callable, Literal, Optional, Sequence, Union
+
+    Path = Union[str, os.PathLike[str]]
+
+
+class Options(TypedDict, total=False):
+    """The options of the command vdb_isomesh, with underscores. None is as if a keyword were not there."""
+'''
+LEFT_OUT = {"help", "version", "dry-run"}
+SPECIAL = {
+    "features": "Union[float, str]",
+    "close-gaps": "Union[float, str]",
+    "attributes": "Union[str, Sequence[str]]",
+    "require": "Union[str, Sequence[str]]",
+    "max-memory": "Union[int, str]",
+    "device": "str",
+    "input-format": "str",
+    "output-format": "str",
+    "stats": "Union[bool, Path]",
+}
+
+
+def type_of(option: _isoshell.OptionEntry) -> str:
+    if option.name in SPECIAL:
+        return SPECIAL[option.name]
+    if not option.value:
+        return "bool"
+    if option.real:
+        return "float"
+    if option.value.startswith("F."):
+        return "Path"
+    if "|" in option.value:
+        words = ", ".join(f'"{word}"' for word in option.value.split("|"))
+        return f"Union[Literal[{words}], Callable[[str, float], object]]" if option.name == "progress" else f"Literal[{words}]"
+    return "int"
+
+
+def text_of(option: _isoshell.OptionEntry) -> str:
+    text = option.text[0].upper() + option.text[1:].replace("--", "")
+    fallback = "no bar" if option.name == "progress" else option.fallback
+    return text + (f" [{fallback}]" if fallback else "") + "."
+
+
+def options_file() -> str:
+    text = HEAD
+    group = ""
+    for option in _isoshell.option_table():
+        if option.name in LEFT_OUT:
+            continue
+        if option.group != group:
+            group = option.group
+            text += f"\n    # {group}\n"
+        kind = type_of(option)
+        text += f"    {option.name.replace('-', '_')}: {kind if kind == 'bool' else f'Optional[{kind}]'}\n"
+        text += textwrap.fill(f'"""{text_of(option)}"""', 120, initial_indent="    ", subsequent_indent="    ") + "\n"
+    return text
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--update"]:
+        TARGET.write_text(options_file())
+    else:
+        print(options_file(), end="")
