@@ -34,14 +34,7 @@ std::string type_text(const nb::dlpack::dtype& type) {
   return kind + std::to_string(type.bits);
 }
 
-void check_device(const char* argument, const AnyArray& a) {
-  if (a.device_type() == nb::device::cpu::value) return;
-  refuse(argument, " lies in the memory of a device, and only arrays of the host are read yet: bring it to the host "
-                   "(tensor.cpu(), cupy.asnumpy(array)); device=\"cuda\" still runs the stages there");
-}
-
 void check_rows(const char* argument, const AnyArray& a) {
-  check_device(argument, a);
   if (a.ndim() != 2 || a.shape(1) != 3)
     refuse(argument, " must be rows of three, of the shape (K, 3), and has the shape " + shape_text(a));
 }
@@ -84,8 +77,8 @@ void each_value(const AnyArray& a, Visit visit) {
 
 [[noreturn]] void refuse_index(const char* argument, const AnyArray& a, size_t at, const std::string& value,
                                size_t end) {
-  const std::string place = a.ndim() == 2 ? std::to_string(at / a.shape(1)) + ", " + std::to_string(at % a.shape(1))
-                                          : std::to_string(at);
+  const std::string place =
+      a.ndim() == 2 ? std::to_string(at / a.shape(1)) + ", " + std::to_string(at % a.shape(1)) : std::to_string(at);
   throw Error(ErrorCode::unreadable_input, "arguments",
               std::string(argument) + "[" + place + "] is " + value + "; indices count from 0 and are below " +
                   std::to_string(end) + ", the number of vertices");
@@ -128,7 +121,6 @@ std::vector<std::array<uint32_t, 3>> triangles_of(const char* argument, const An
 }
 
 std::vector<uint32_t> indices_of(const char* argument, const AnyArray& a, size_t end) {
-  check_device(argument, a);
   if (a.ndim() != 1) refuse(argument, " must be one row, and has the shape " + shape_text(a));
   std::vector<uint32_t> indices(a.shape(0));
   copy_indices(argument, a, end, indices.data());
@@ -136,11 +128,9 @@ std::vector<uint32_t> indices_of(const char* argument, const AnyArray& a, size_t
 }
 
 const float* floats_of(const char* argument, const AnyArray& a, size_t dimensions) {
-  check_device(argument, a);
   if (a.ndim() != dimensions)
     refuse(argument, " must have " + std::to_string(dimensions) + " dimensions, and has the shape " + shape_text(a));
-  if (!is(a.dtype(), DlpackCode::Float, 32))
-    refuse(argument, " must be float32 here, and is " + type_text(a.dtype()));
+  if (!is(a.dtype(), DlpackCode::Float, 32)) refuse(argument, " must be float32 here, and is " + type_text(a.dtype()));
   return static_cast<const float*>(a.data());
 }
 

@@ -12,10 +12,10 @@
 
 namespace isoshell::python {
 
-/// Any array that gives its memory by DLPack or the buffer protocol: of any type, shape, strides and device.
-using AnyArray = nanobind::ndarray<nanobind::ro>;
+/// An array of the host, of any type, shape and strides.
+using AnyArray = nanobind::ndarray<nanobind::ro, nanobind::device::cpu>;
 
-/// Rows of three numbers. Throws: usage, naming the argument, for another shape, type or device.
+/// Rows of three numbers. Throws: usage, naming the argument, for another shape or type.
 std::vector<WorldPoint> points_of(const char* argument, const AnyArray& array);
 
 /// Rows of three indices, each below `vertices`. Throws: as points_of; unreadable_input for an index out of range.

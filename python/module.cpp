@@ -25,7 +25,7 @@ int command(const std::vector<std::string>& arguments) {
 
 NB_MODULE(_isoshell, m) {
   using namespace isoshell::python;
-  m.attr("__version__") = ISOSHELL_VERSION;
+  m.attr("VERSION") = ISOSHELL_VERSION;
   bind_errors(m);
   bind_keywords(m);
   bind_source(m);

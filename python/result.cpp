@@ -28,8 +28,12 @@ void bind_result(nb::module_& m) {
   nb::class_<RunResult>(m, "RunResult", "What a run made.")
       .def_prop_ro("vertices", [](nb::handle self) { return rows_of(mesh_of(self).vertices, self); })
       .def_prop_ro("faces", [](nb::handle self) { return rows_of(mesh_of(self).triangles, self); })
-      .def_prop_ro("attributes", [](const RunResult& r) { return attributes_of(r.mesh); })
-      .def_prop_ro("features", [](const RunResult& r) { return features_of(r.mesh); })
+      .def_prop_ro(
+          "attributes", [](const RunResult& r) { return attributes_of(r.mesh); },
+          nb::for_getter(nb::sig("def attributes(self, /) -> list[tuple[str, str, typing.Any, list[str]]]")))
+      .def_prop_ro(
+          "features", [](const RunResult& r) { return features_of(r.mesh); },
+          nb::for_getter(nb::sig("def features(self, /) -> dict[str, typing.Any]")))
       .def_prop_ro("statistics", [](const RunResult& r) { return statistics_json(r.record); })
       .def_prop_ro("digest", [](const RunResult& r) { return digest_text(digest(r.mesh)); })
       .def_ro("missed_gates", &RunResult::missed_gates)

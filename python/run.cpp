@@ -118,7 +118,10 @@ nb::dict estimate(Place& place, const Source& source, const Keywords& keywords, 
 void bind_run(nb::module_& m) {
   m.def("remesh", remesh, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("output"),
         nb::arg("measure_all"), nb::arg("progress").none(), nb::arg("tell"));
-  m.def("estimate", estimate, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("tell"));
+  m.def(
+      "estimate", estimate, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("tell"),
+      nb::sig("def estimate(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | None]], "
+              "tell: typing.Any) -> dict[str, typing.Any]"));
   m.def("end_jobs_left_alone", end_jobs_left_alone);
 }
 

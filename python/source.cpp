@@ -55,10 +55,6 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
   PointCloud cloud;
   cloud.position = points_of("points", positions);
   if (normals) cloud.normal = points_of("normals", *normals);
-  if (normals && cloud.normal.size() != cloud.position.size())
-    throw Error(ErrorCode::usage, "arguments",
-                "normals has " + std::to_string(cloud.normal.size()) + " rows, and points has " +
-                    std::to_string(cloud.position.size()) + "; give one normal a point");
   const auto given = std::make_shared<PointCloud>(std::move(cloud));
   return {"",
           [given](const RunRequest& request, const Context& context) {
@@ -91,10 +87,16 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
 void bind_source(nb::module_& m) {
   nb::class_<Source>(m, "Source", "What one run starts from.")
       .def_static("file", file, nb::arg("path"))
-      .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"))
-      .def_static("polygons", polygons, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"))
-      .def_static("points", points, nb::arg("positions"), nb::arg("normals").none())
-      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"));
+      .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"),
+                  nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any) -> Source"))
+      .def_static("polygons", polygons, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
+                  nb::sig("def polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
+                          "Source"))
+      .def_static("points", points, nb::arg("positions"), nb::arg("normals").none(),
+                  nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
+      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
+                  nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
+                          "float, float]) -> Source"));
 }
 
 }  // namespace isoshell::python

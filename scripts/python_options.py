@@ -15,13 +15,10 @@ HEAD = '''"""Keywords of isoshell.remesh. Made by scripts/python_options.py from
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+import os
+from typing import Callable, Literal, Optional, Sequence, TypedDict, Union
 
-if TYPE_CHECKING:
-    import os
-    from typing import Callable, Literal, Optional, Sequence, Union
-
-    Path = Union[str, os.PathLike[str]]
+Path = Union[str, "os.PathLike[str]"]
 
 
 class Options(TypedDict, total=False):

@@ -12,7 +12,8 @@ import atexit as _atexit
 from . import _isoshell
 from ._context import Context
 from ._errors import Error, RunWarning
-from ._isoshell import ErrorCode, __version__
+from ._isoshell import VERSION as __version__
+from ._isoshell import ErrorCode
 from ._options import Options
 from ._remesh import estimate, remesh
 from ._result import Result

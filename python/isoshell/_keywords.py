@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 from typing import Any, List, Optional, Tuple
 
-import numpy as np
-
 from . import _isoshell
 from ._errors import Error
 
@@ -32,10 +30,13 @@ def flags() -> dict[str, bool]:
 def keywords_of(options: dict[str, Any]) -> Keywords:
     """The options as the parser takes them; None is as if it were not there."""
     words: Keywords = []
-    for name, value in options.items():
+    for name, given in options.items():
+        value = _plain(given)
         if name in LEFT_OUT:
             raise Error(f"{name} is no keyword; {LEFT_OUT[name]}", stage="options")
         option = name.replace("_", "-")
+        if "-" in name:
+            raise Error(f"unknown option {name}; did you mean {name.replace('-', '_')}?", stage="options")
         if name not in flags():
             words.append((option, None))  # the parser refuses it, and knows the nearest name
         elif value is None:
@@ -44,18 +45,21 @@ def keywords_of(options: dict[str, Any]) -> Keywords:
             text = _text(name, value)
             if text:
                 words.append((option, text))
-        elif not isinstance(value, (bool, np.bool_)):
+        elif not isinstance(value, bool):
             raise Error(f"{name} is {value!r}; it must be True or False", stage="options")
         elif value:
             words.append((option, None))
     return words
 
 
+def _plain(value: Any) -> Any:
+    """A scalar of numpy as Python's own."""
+    return value.item() if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0 else value
+
+
 def _text(name: str, value: Any) -> str:
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
-    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
-        return str(int(value))
+    if isinstance(value, (float, int)) and not isinstance(value, bool):
+        return repr(value)
     if isinstance(value, (str, os.PathLike)):
         return os.fsdecode(value)
     if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):

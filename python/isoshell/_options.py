@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+import os
+from typing import Callable, Literal, Optional, Sequence, TypedDict, Union
 
-if TYPE_CHECKING:
-    import os
-    from typing import Callable, Literal, Optional, Sequence, Union
-
-    Path = Union[str, os.PathLike[str]]
+Path = Union[str, "os.PathLike[str]"]
 
 
 class Options(TypedDict, total=False):

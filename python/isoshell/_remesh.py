@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 from . import _isoshell
 from ._context import Context
@@ -50,14 +49,9 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     measure_all = stats is True
     if stats is not False and stats is not True:
         given["stats"] = stats
-    quiet = given.get("quiet") is True
     place, progress, keywords = _settle(context, given, source)
-
-    def tell(is_warning: bool, text: str) -> None:
-        _tell(is_warning and not quiet, text)
-
-    made = _isoshell.remesh(place, source_of(source), keywords, os.fspath(output) if output is not None else "",
-                            measure_all, progress, tell)
+    target = "" if output is None else os.fsdecode(output)
+    made = _isoshell.remesh(place, source_of(source), keywords, target, measure_all, progress, _listener(given))
     return checked(Result(made))
 
 
@@ -70,7 +64,7 @@ def estimate(source: SourceLike, *, context: Optional[Context] = None, **options
     """
     given: dict[str, Any] = dict(options)
     place, _, keywords = _settle(context, given, source)
-    return _isoshell.estimate(place, source_of(source), keywords, _tell)
+    return _isoshell.estimate(place, source_of(source), keywords, _listener(given))
 
 
 def _settle(context: Optional[Context], options: dict[str, Any], source: Any) -> tuple[Any, Any, Keywords]:
@@ -88,8 +82,16 @@ def _settle(context: Optional[Context], options: dict[str, Any], source: Any) ->
     return context._place, progress, keywords_of(options)
 
 
-def _tell(is_warning: bool, text: str) -> None:
-    if is_warning:
-        warnings.warn(text, RunWarning, stacklevel=CALLERS)
-    else:
-        logging.getLogger("isoshell").info("%s", text)
+def _listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
+    """What hears the messages of a run: warnings, unless it is to be quiet, and notes."""
+    quiet = options.get("quiet") is True
+
+    def tell(is_warning: bool, text: str) -> None:
+        if is_warning and not quiet:
+            warnings.warn(text, RunWarning, stacklevel=CALLERS)
+        else:
+            import logging
+
+            logging.getLogger("isoshell").info("%s", text)
+
+    return tell

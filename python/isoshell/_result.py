@@ -6,14 +6,13 @@ import json
 import os
 from typing import TYPE_CHECKING, Any, Optional
 
-import numpy as np
-
 from . import _isoshell
 from ._errors import Error
 
 if TYPE_CHECKING:
-    import pyvista
-    import trimesh
+    import numpy as np
+    import pyvista  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     Floats = np.ndarray[Any, np.dtype[np.float64]]
     Ints = np.ndarray[Any, np.dtype[np.int32]]
@@ -31,12 +30,12 @@ class Result:
     @property
     def vertices(self) -> Floats:
         """(K, 3) float64, world units: a read-only view of the result's own memory, which it keeps alive."""
-        return self._made.vertices  # type: ignore[return-value]
+        return self._made.vertices
 
     @property
     def faces(self) -> Ints:
         """(M, 3) int32, counter-clockwise seen from outside: a read-only view, as vertices is."""
-        return self._made.faces  # type: ignore[return-value]
+        return self._made.faces
 
     @property
     def attributes(self) -> dict[str, Array]:
@@ -100,6 +99,7 @@ class Result:
 
     def to_pyvista(self) -> pyvista.PolyData:
         """A pyvista.PolyData with copies of vertices, faces and the attributes of both. Needs pyvista."""
+        import numpy as np
         import pyvista
 
         faces = np.column_stack([np.full(len(self.faces), 3, np.int32), self.faces]).ravel()

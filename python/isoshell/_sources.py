@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import Any, Protocol, Tuple, Union
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Protocol, Tuple, Union
 
 from ._arrays import array_of
 from ._errors import Error
 from ._isoshell import Source
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class MeshLike(Protocol):
@@ -33,36 +33,36 @@ class PolyDataLike(Protocol):
     def faces(self) -> Any: ...
 
 
-@dataclass(frozen=True)
 class Points:
     """A point cloud; its surface is found by Poisson reconstruction.
 
-    Attributes:
+    Args:
         positions: (K, 3), world units.
         normals: (K, 3), outward directions of any length; without them they are estimated.
     """
 
-    positions: Any
-    normals: Any = None
+    def __init__(self, positions: Any, normals: Any = None) -> None:
+        self.positions = positions
+        self.normals = normals
 
 
-@dataclass(frozen=True)
 class Volume:
     """Values on a regular lattice: a CT, a segmentation, a simulation.
 
     The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
     True. Without `iso` the values are distances: negative inside, or unsigned.
 
-    Attributes:
+    Args:
         values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
             array begins with z, give values.transpose(2, 1, 0): that takes no copy.
         spacing: world units from a value to the next, one number or one an axis.
         origin: where values[0, 0, 0] stands, world units.
     """
 
-    values: Any
-    spacing: Any = 1.0
-    origin: Any = 0.0
+    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0) -> None:
+        self.values = values
+        self.spacing = spacing
+        self.origin = origin
 
 
 SourceLike = Union[str, "os.PathLike[str]", Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
@@ -89,10 +89,12 @@ def source_of(given: Any) -> Source:
 
 def is_true_or_false(volume: Any) -> bool:
     """Whether it is a Volume of booleans, whose surface needs no isovalue."""
-    return isinstance(volume, Volume) and getattr(volume.values, "dtype", None) == np.bool_
+    return isinstance(volume, Volume) and array_of("volume", volume.values).dtype.kind == "b"
 
 
 def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
+    import numpy as np
+
     positions = array_of("vertices", vertices)
     if _is_ragged(faces):
         sizes = np.array([len(face) for face in faces], np.int64)
@@ -118,6 +120,8 @@ def _is_ragged(faces: Any) -> bool:
 
 def _counted_faces(faces: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Sizes and corners of faces in one row, each behind its number of corners."""
+    import numpy as np
+
     if faces.dtype.kind not in "iu":
         raise Error(f"faces must be whole numbers, such as int32 or int64, and is {faces.dtype}")
     size = int(faces[0])
@@ -139,12 +143,16 @@ def _counted_faces(faces: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], n
 
 
 def _source_of_volume(volume: Volume) -> Source:
+    import numpy as np
+
     values = array_of("volume", volume.values)
     return Source.volume(values.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
                          _triple("origin", volume.origin))
 
 
 def _triple(argument: str, value: Any) -> tuple[float, float, float]:
+    import numpy as np
+
     numbers = array_of(argument, value).astype(np.float64)
     if numbers.shape not in ((), (3,)):
         raise Error(f"{argument} must be one number or three, and has the shape {numbers.shape}")

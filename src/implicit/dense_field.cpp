@@ -126,8 +126,8 @@ void DenseField::copy(Voxel origin, const int size[3], float* to) const {
     for (int y = 0; y < size[1]; ++y)
       for (int z = 0; z < size[2]; ++z) {
         const int64_t i = int64_t(origin.x) + x, j = int64_t(origin.y) + y, k = int64_t(origin.z) + z;
-        const bool held = i >= 0 && j >= 0 && k >= 0 && i < volume_.size[0] && j < volume_.size[1] &&
-                          k < volume_.size[2];
+        const bool held =
+            i >= 0 && j >= 0 && k >= 0 && i < volume_.size[0] && j < volume_.size[1] && k < volume_.size[2];
         to[x * kWindowStride[0] + y * kWindowStride[1] + z] = held ? at(i, j, k) : float(background);
       }
 }

@@ -57,6 +57,22 @@ void check_surface(const TriangleSoup& soup, const std::string& name) {
       refuse(name + ": " + misfit);
 }
 
+/// And so with points, which readers leave out where they are not finite.
+void check_points(const PointCloud& cloud, const std::string& name) {
+  for (const auto* values : {&cloud.position, &cloud.normal})
+    for (size_t i = 0; i < values->size(); ++i) {
+      const WorldPoint& p = (*values)[i];
+      if (is_finite(p)) continue;
+      std::ostringstream text;
+      text << name << ": " << (values == &cloud.position ? "point " : "normal ") << i << " is (" << p.x << ", " << p.y
+           << ", " << p.z << "); positions and normals must be finite";
+      refuse(text.str());
+    }
+  if (!cloud.normal.empty() && cloud.normal.size() != cloud.position.size())
+    refuse_use(name + ": there are " + std::to_string(cloud.normal.size()) + " normals and " +
+               counted(int64_t(cloud.position.size()), "point") + "; give one normal a point");
+}
+
 class Reader {
  public:
   Reader(const std::string& path, int64_t memory_limit_bytes, const Tell& tell)
@@ -220,6 +236,7 @@ Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
 
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell,
                VolumeCreases creases) {
+  check_points(cloud, name);
   Reader reader(name, memory_limit_bytes, tell);
   reader.hold(cloud, creases);
   return reader.taken();

@@ -57,7 +57,8 @@ Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const 
 
 /// A surface and points that are in memory already, under the name that messages and statistics call them by. A surface
 /// that says no number of faces has its triangles. Throws: nothing_to_mesh; unreadable_input for a triangle whose
-/// vertex is not there or not finite; and as surface_of_points does.
+/// vertex is not there or not finite, a point or normal that is not finite; usage for another number of normals than of
+/// points; and as surface_of_points does.
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell = {});
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {},
                VolumeCreases creases = VolumeCreases::of_sharp_bodies);

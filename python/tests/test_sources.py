@@ -1,0 +1,172 @@
+"""Everything that a run can start from."""
+
+from types import SimpleNamespace
+
+import isoshell
+import numpy as np
+import pytest
+from conftest import write_obj
+from isoshell import ErrorCode
+
+SMALL = {"vertices": 100, "resolution": 32}
+
+
+def digest(source, **options):
+    return isoshell.remesh(source, **SMALL, **options).digest
+
+
+def test_objects_with_vertices_and_faces_are_meshes(ball):
+    assert digest(SimpleNamespace(vertices=ball[0], faces=ball[1])) == digest(ball)
+
+
+def test_a_result_is_a_source(ball):
+    made = isoshell.remesh(ball, **SMALL)
+    assert digest(made) == digest((made.vertices, made.faces))
+
+
+def test_a_mesh_of_trimesh_comes_and_goes(ball):
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.Trimesh(*ball, process=False)
+    result = isoshell.remesh(mesh, **SMALL)
+    assert result.digest == digest(ball)
+    assert result.to_trimesh().is_watertight
+    assert result.to_trimesh().volume == pytest.approx(4.19, rel=0.1)
+
+
+def test_a_mesh_of_pyvista_comes_and_goes(ball, box):
+    pyvista = pytest.importorskip("pyvista")
+    rows = np.column_stack([np.full(len(ball[1]), 3), ball[1]])
+    result = isoshell.remesh(pyvista.PolyData(ball[0], rows.ravel()), **SMALL)
+    assert result.digest == digest(ball)
+    assert result.to_pyvista().n_cells == len(result.faces)
+
+
+def test_faces_of_any_number_of_corners_are_the_same_in_a_row_a_list_and_columns(box):
+    vertices, quads = box
+    mixed = [quads[0][:3].tolist(), quads[0][[0, 2, 3]].tolist(), *quads[1:].tolist()]
+    row = np.concatenate([[len(face), *face] for face in mixed])
+    assert digest((vertices, row)) == digest((vertices, mixed))
+    in_a_row = SimpleNamespace(points=vertices, faces=np.column_stack([np.full(6, 4), quads]).ravel())
+    assert digest(in_a_row) == digest(box)
+
+
+def test_points_become_the_surface_that_a_file_of_them_becomes(tmp_path, ball):
+    rows = np.column_stack([ball[0], ball[0]])
+    np.savetxt(tmp_path / "points.xyz", rows, fmt="%.17g")
+    assert digest(isoshell.Points(ball[0], normals=ball[0])) == digest(tmp_path / "points.xyz")
+    assert isoshell.remesh(isoshell.Points(ball[0]), **SMALL).report["input"]["kind"] == "points"
+
+
+@pytest.mark.parametrize("positions, normals, name", [
+    (np.zeros((4, 2)), None, "points"),
+    (np.zeros((4, 3)), np.zeros((3, 3)), "normals"),
+    (np.zeros((4, 3)), np.zeros((4, 2)), "normals"),
+    (np.zeros((4, 3)), "up", "normals"),
+])
+def test_points_that_are_none_are_refused_by_the_name_of_the_argument(positions, normals, name):
+    with pytest.raises(isoshell.Error, match=name) as caught:
+        isoshell.remesh(isoshell.Points(positions, normals))
+    assert caught.value.code == ErrorCode.USAGE
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_points_that_are_not_finite_are_refused_by_their_place(ball, value):
+    wrong = ball[0].copy()
+    wrong[3] = value
+    for points in (isoshell.Points(wrong), isoshell.Points(ball[0], wrong)):
+        with pytest.raises(isoshell.Error, match="(point|normal) 3 is") as caught:
+            isoshell.remesh(points, **SMALL)
+        assert caught.value.code == ErrorCode.UNREADABLE_INPUT
+
+
+def ball_values(shape=(30, 26, 22), spacing=(0.1, 0.12, 0.14)):
+    """Distances from a ball of radius 1 around the middle of the array, negative inside."""
+    axes = [(np.arange(n) - (n - 1) / 2) * s for n, s in zip(shape, spacing)]
+    x, y, z = np.meshgrid(*axes, indexing="ij")
+    return np.sqrt(x**2 + y**2 + z**2) - 1, spacing, tuple(axis[0] for axis in axes)
+
+
+def radii(result):
+    return np.linalg.norm(result.vertices, axis=1)
+
+
+def test_a_volume_of_signed_distances_is_meshed_at_zero_where_it_stands():
+    values, spacing, origin = ball_values()
+    result = isoshell.remesh(isoshell.Volume(values, spacing, origin), **SMALL)
+    assert result.report["input"]["kind"] == "volume"
+    assert np.allclose(radii(result), 1, atol=0.05)
+
+
+def test_a_volume_is_meshed_at_its_isovalue_with_the_dense_side_inside():
+    values, spacing, origin = ball_values()
+    result = isoshell.remesh(isoshell.Volume(1000 - 500 * values, spacing, origin), iso=900, **SMALL)
+    assert np.allclose(radii(result), 1.2, atol=0.05)
+    normals = np.cross(*(result.vertices[result.faces[:, i]] - result.vertices[result.faces[:, 0]] for i in (1, 2)))
+    assert np.all(np.einsum("ij,ij->i", normals, result.vertices[result.faces[:, 0]]) > 0)
+
+
+def test_a_hole_in_something_dense_is_a_cavity():
+    values, spacing, origin = ball_values()
+    result = isoshell.remesh(isoshell.Volume(values, spacing, origin), iso=-0.2, **SMALL)
+    assert np.allclose(radii(result), 0.8, atol=0.05)
+
+
+def test_the_same_volume_in_any_order_and_type_gives_the_same_mesh():
+    values, spacing, origin = ball_values()
+    single = values.astype(np.float32)
+    expected = digest(isoshell.Volume(single, spacing, origin))
+    turned = np.ascontiguousarray(single.transpose(2, 1, 0)).transpose(2, 1, 0)
+    assert digest(isoshell.Volume(turned, spacing, origin)) == expected
+    assert digest(isoshell.Volume(single.astype(np.float64), spacing, origin)) == expected
+    assert digest(isoshell.Volume(np.pad(single, 1, constant_values=9)[1:-1, 1:-1, 1:-1], spacing, origin)) == expected
+
+
+def test_a_volume_of_true_and_false_needs_no_isovalue():
+    values, spacing, origin = ball_values()
+    result = isoshell.remesh(isoshell.Volume(values < 0, spacing, origin), **SMALL)
+    assert np.allclose(radii(result), 1, atol=0.12)
+    assert digest(isoshell.Volume((values < 0).astype(np.uint8), spacing, origin), iso=0.5) == result.digest
+
+
+def test_a_body_that_reaches_the_end_of_the_array_is_closed_there():
+    values, spacing, origin = ball_values()
+    half = isoshell.remesh(isoshell.Volume((values < 0)[:, :, 11:], spacing, origin), **SMALL)
+    assert half.report["topology"]["closed"]
+    assert half.report["topology"]["components"] == 1
+
+
+@pytest.mark.parametrize("volume, name, code", [
+    (isoshell.Volume(np.zeros((3, 3))), "volume", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((0, 3, 3))), "volume", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3), complex)), "volume", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), spacing=0), "spacing", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), spacing=(1, 1)), "spacing", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), spacing=(1, -1, 1)), "spacing", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), origin=(0, np.nan, 0)), "origin", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3))), "volume", ErrorCode.NOTHING_TO_MESH),
+    (isoshell.Volume(np.arange(27.0).reshape(3, 3, 3) ** 2), "iso", ErrorCode.USAGE),
+    (isoshell.Volume(np.where(np.arange(27) == 14, np.nan, 1).reshape(3, 3, 3)), r"value \(1, 1, 2\) is nan",
+     ErrorCode.UNREADABLE_INPUT),
+    (isoshell.Volume(np.where(np.arange(27) == 14, np.inf, 1).reshape(3, 3, 3)), r"value \(1, 1, 2\) is inf",
+     ErrorCode.UNREADABLE_INPUT),
+])
+def test_what_is_no_volume_is_refused_by_the_name_of_the_argument(volume, name, code):
+    with pytest.raises(isoshell.Error, match=name) as caught:
+        isoshell.remesh(volume)
+    assert caught.value.code == code
+
+
+def test_isovalues_are_for_volumes_and_formats_for_files(tmp_path, ball):
+    with pytest.raises(isoshell.Error, match="iso is for volumes"):
+        isoshell.remesh(ball, iso=1)
+    with pytest.raises(isoshell.Error, match="input_format is for files"):
+        isoshell.remesh(ball, input_format="obj")
+    write_obj(tmp_path / "ball.mesh", *ball)
+    assert digest(tmp_path / "ball.mesh", input_format="obj") == digest(ball)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(isoshell.Error, match="none.obj: no such file") as caught:
+        isoshell.remesh(tmp_path / "none.obj")
+    assert caught.value.code == ErrorCode.UNREADABLE_INPUT == 3
+    assert caught.value.stage == "read"

@@ -1,0 +1,30 @@
+"""A program that uses the package as its users do: mypy --strict has nothing to say about it."""
+
+from pathlib import Path
+from typing import Any
+
+import isoshell
+import numpy as np
+
+
+def remeshed(vertices: "np.ndarray[Any, Any]", faces: "np.ndarray[Any, Any]") -> isoshell.Result:
+    with isoshell.Context(device="cpu", threads=2, max_memory="1G", progress=lambda stage, fraction: None) as context:
+        return isoshell.remesh((vertices, faces), vertices=100, features="auto", close_gaps=0.1, context=context)
+
+
+def of_each_kind(array: "np.ndarray[Any, Any]") -> float:
+    sources = [isoshell.remesh(Path("a.ply")), isoshell.remesh(isoshell.Points(array, normals=array)),
+               isoshell.remesh(isoshell.Volume(array, spacing=(0.5, 0.5, 0.7), origin=(0, 0, 0)), iso=300)]
+    again = isoshell.remesh(sources[0], require=["closed", "genus=0"], attributes="none", stats=True)
+    estimated: dict[str, Any] = isoshell.estimate("a.ply", edge_length=0.5)
+    return float(again.vertices.mean()) + float(again.faces.max()) + float(estimated["memory_bytes"])
+
+
+def code_of_failure(path: str) -> int:
+    try:
+        isoshell.remesh(path, output="out.ply", force=True).save("other.obj", overwrite=True)
+    except isoshell.Error as error:
+        code: isoshell.ErrorCode = error.code
+        stage: str = error.stage
+        return int(code) if stage and code is not isoshell.ErrorCode.USAGE else len(str(error))
+    return 0
