@@ -9,6 +9,7 @@
 #include "result.h"
 #include "run.h"
 #include "source.h"
+#include "stages.h"
 #include "vdb_isomesh/command.h"
 
 namespace nb = nanobind;
@@ -32,6 +33,7 @@ NB_MODULE(_isoshell, m) {
   bind_context(m);
   bind_result(m);
   bind_run(m);
+  bind_stages(m);
   m.def("command", command, nb::arg("arguments"), nb::call_guard<nb::gil_scoped_release>(),
         "The command, with its name as the first argument. Returns its exit status; signals end the process from then "
         "on.");

@@ -6,7 +6,12 @@ preset=${1:-cpu}
 [ $# -gt 0 ] && shift
 launcher=()
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
-cmake --preset "$preset" "${launcher[@]}" >&2
+python=()  # the Python module, where setup.sh has made what it needs
+case "$preset" in
+  cpu | cuda)
+    [ -x build/python/bin/python ] && python=(-DISOSHELL_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python") ;;
+esac
+cmake --preset "$preset" "${launcher[@]}" "${python[@]}" >&2
 targets=()
 [ $# -gt 0 ] && targets=(--target "$@")
 cmake --build --preset "$preset" "${targets[@]}" >&2

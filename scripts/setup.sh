@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Installs what the build needs and this machine lacks. Debian 12 and 13, Ubuntu 24.04 and newer.
 # Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
-# `setup.sh tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write.
+# `setup.sh tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write,
+# and the environment of our own Python module.
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
           libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2)
 case "${1:-}" in
   "") ;;
-  tests) packages+=(libopenvdb-tools python3-openvdb) ;;
+  tests) packages+=(libopenvdb-tools python3-openvdb python3-dev python3-venv) ;;
   *) echo "setup: unknown argument: $1 (tests)" >&2; exit 2 ;;
 esac
 
@@ -28,16 +29,21 @@ for package in "${packages[@]}"; do
   status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
   [ "$status" = "install ok installed" ] || missing+=("$package")
 done
+
+install_missing() {
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "setup: need root or sudo to install: ${missing[*]}" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  echo "setup: installing ${missing[*]}" >&2
+  "${as_root[@]}" apt-get update
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+}
+
 if [ ${#missing[@]} -eq 0 ]; then
   echo "setup: everything is installed" >&2
-  exit 0
+else
+  install_missing
 fi
-
-as_root=()
-if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || { echo "setup: need root or sudo to install: ${missing[*]}" >&2; exit 1; }
-  as_root=(sudo)
-fi
-echo "setup: installing ${missing[*]}" >&2
-"${as_root[@]}" apt-get update
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+if [ "${1:-}" = tests ]; then "$(dirname "$0")/python_env.sh"; fi

@@ -49,9 +49,9 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     measure_all = stats is True
     if stats is not False and stats is not True:
         given["stats"] = stats
-    place, progress, keywords = _settle(context, given, source)
+    place, progress, keywords = settle(context, given, source)
     target = "" if output is None else os.fsdecode(output)
-    made = _isoshell.remesh(place, source_of(source), keywords, target, measure_all, progress, _listener(given))
+    made = _isoshell.remesh(place, source_of(source), keywords, target, measure_all, progress, listener(given))
     return checked(Result(made))
 
 
@@ -63,11 +63,11 @@ def estimate(source: SourceLike, *, context: Optional[Context] = None, **options
         them rather high than low.
     """
     given: dict[str, Any] = dict(options)
-    place, _, keywords = _settle(context, given, source)
-    return _isoshell.estimate(place, source_of(source), keywords, _listener(given))
+    place, _, keywords = settle(context, given, source)
+    return _isoshell.estimate(place, source_of(source), keywords, listener(given))
 
 
-def _settle(context: Optional[Context], options: dict[str, Any], source: Any) -> tuple[Any, Any, Keywords]:
+def settle(context: Optional[Context], options: dict[str, Any], source: Any) -> tuple[Any, Any, Keywords]:
     """Where to run, who hears of progress, and the other options."""
     named = {name: options.pop(name) for name in PLACE if options.get(name) is not None}
     if context is None:
@@ -82,7 +82,7 @@ def _settle(context: Optional[Context], options: dict[str, Any], source: Any) ->
     return context._place, progress, keywords_of(options)
 
 
-def _listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
+def listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
     """What hears the messages of a run: warnings, unless it is to be quiet, and notes."""
     quiet = options.get("quiet") is True
 

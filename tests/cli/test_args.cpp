@@ -169,3 +169,45 @@ TEST_CASE("args: help and version answer under every name", "[cli][args]") {
   for (const char* name : {"--help", "-help", "-h"}) CHECK(contains(parse({name}).text, "--close-gaps W"));
   for (const char* name : {"--version", "-version"}) CHECK(parse({name}).text.find("vdb_isomesh ") == 0);
 }
+
+TEST_CASE("args: options by name mean what they mean on the command line", "[cli][args]") {
+  const Arguments a =
+      parse_given_options({{"vertices", "123"}, {"outer-only", {}}, {"features", "off"}, {"iso", "-2"}}, "");
+  CHECK(a.run.options.values.vertices == 123);
+  CHECK(a.run.options.values.outer_only);
+  CHECK(a.run.options.values.features.creases == Features::Creases::off);
+  CHECK(a.run.options.given == std::vector<std::string>{"vertices", "outer-only", "features", "iso"});
+  CHECK(a.run.input.iso == -2.);
+  CHECK(a.run.output.path.empty());
+  CHECK(parse_given_options({}, "out.ply").run.output.format == "ply");
+}
+
+TEST_CASE("args: an option by a name that does not exist is refused with the nearest", "[cli][args]") {
+  const auto given_refusal = [](const std::string& name, const std::string& value) -> std::string {
+    try {
+      parse_given_options({{name, value}}, "");
+    } catch (const Error& e) {
+      CHECK(e.code() == ErrorCode::usage);
+      return e.what();
+    }
+    return "";
+  };
+  CHECK(contains(given_refusal("verticse", "7"), "did you mean --vertices?"));
+  CHECK(contains(given_refusal("vertices", "x"), "--vertices is 'x'"));
+}
+
+TEST_CASE("args: the table of options has them all, with what stands for their values", "[cli][args]") {
+  const std::vector<OptionEntry> table = option_table();
+  const auto entry = [&](const std::string& name) {
+    for (const OptionEntry& option : table)
+      if (option.name == name) return option;
+    return OptionEntry{};
+  };
+  CHECK(table.size() == 40);
+  CHECK(entry("vertices").value == "K");
+  CHECK(entry("vertices").fallback == "10000");
+  CHECK_FALSE(entry("vertices").real);
+  CHECK(entry("edge-length").real);
+  CHECK(entry("outer-only").value.empty());
+  CHECK(entry("outer-only").group == "Grid");
+}

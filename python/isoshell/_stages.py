@@ -1,0 +1,86 @@
+"""The stages of a run one by one."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Optional
+
+from . import _isoshell
+from ._context import Context
+from ._errors import Error
+from ._remesh import listener, settle
+from ._result import Result
+from ._sources import SourceLike, source_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from typing_extensions import Unpack
+
+    from ._options import Options
+
+OF_WHOLE_RUNS = ("save_shell", "save_voronoi", "stop_after", "stats", "force", "require", "allow_intersections",
+                 "output_format", "color_features", "attributes")
+
+
+class Stages:
+    """The stages of a run, to stop between them and look at their products.
+
+    Each runs those before it that have not run yet, and what it made is kept. All of them together make the mesh of
+    remesh() for a source without attributes.
+
+    Args:
+        source, context, options: as remesh() takes them, but for what concerns files, requirements and attributes.
+
+    Raises:
+        Error: as remesh() does. After prepare() or relax() failed, or were interrupted, the stages refuse to go on.
+    """
+
+    def __init__(self, source: SourceLike, *, context: Optional[Context] = None, **options: Unpack[Options]) -> None:
+        given: dict[str, Any] = dict(options)
+        refused = [name for name in OF_WHOLE_RUNS if given.get(name)]
+        if refused:
+            raise Error(f"{', '.join(refused)}: only remesh() takes that", stage="options")
+        place, progress, keywords = settle(context, given, source)
+        self._run = _isoshell.StageRun(place, source_of(source), keywords, progress, listener(given))
+
+    def prepare(self) -> Stages:
+        """Repair the surface, choose the grid, voxelise: surface, sites, shell and sheet."""
+        self._run.prepare()
+        return self
+
+    def relax(self) -> Stages:
+        """Place the seeds and relax them: a centroidal Voronoi tessellation of the sheet."""
+        self._run.relax()
+        return self
+
+    def triangulate(self) -> Result:
+        """Make the mesh: the dual of the tessellation, repaired and improved."""
+        return Result(self._run.triangulate())
+
+    @property
+    def digests(self) -> dict[str, str]:
+        """Of each product that was made, by name, sixteen hexadecimal digits: the same on every machine."""
+        return dict(self._run.digests())
+
+    @property
+    def frame(self) -> dict[str, Any]:
+        """Where the lattice lies: origin and voxel_size (world units), resolution and extent (voxels)."""
+        return self._run.frame()
+
+    @property
+    def sheet(self) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+        """The closed surface that seeds move on: vertices (N, 3) float64, world units, and faces (F, 3) int32."""
+        return self._run.sheet()
+
+    @property
+    def seeds(self) -> np.ndarray[Any, Any]:
+        """(K, 3) float64, world units: where the relaxed seeds are."""
+        return self._run.seeds()  # type: ignore[no-any-return]
+
+    def save_shell(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the stage file of the shell, from which remesh() and the command resume."""
+        self._run.save_shell(os.fsdecode(path), overwrite)
+
+    def save_voronoi(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the stage file of the Voronoi volume. Surfaces with creases or borders that are kept have none."""
+        self._run.save_voronoi(os.fsdecode(path), overwrite)

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Makes build/python, where the Python module is built and tested: a virtual environment with packages from PyPI. Where
+# they cannot be had, the module and its tests are left out.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+packages=(numpy nanobind pytest mypy trimesh)
+python=build/python/bin/python
+
+if ! "$python" -c "import ${packages[*]/%/,} sys" 2>/dev/null; then
+  echo "setup: installing ${packages[*]} from PyPI into build/python" >&2
+  python3 -m venv build/python
+  if ! "$python" -m pip install --quiet --disable-pip-version-check "${packages[@]}"; then
+    echo "setup: PyPI cannot be reached, so the Python module and its tests are left out" >&2
+    rm -rf build/python
+  fi
+fi

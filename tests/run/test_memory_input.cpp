@@ -1,0 +1,195 @@
+// Polygons and dense arrays of values in memory: the surfaces that files of the same would give.
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/mesh_topology.h"
+#include "isoshell/run/run.h"
+#include "support/catch.h"
+#include "support/mesh_files.h"
+
+using namespace isoshell;
+
+namespace {
+
+/// A cube of five quads and two triangles.
+PolygonSoup cube() {
+  PolygonSoup soup;
+  for (int i = 0; i < 8; ++i) soup.vertices.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  soup.sizes = {4, 4, 4, 4, 4, 3, 3};
+  soup.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 1, 7, 5};
+  return soup;
+}
+
+std::string text_of(const PolygonSoup& soup) {
+  std::string text;
+  for (const WorldPoint& p : soup.vertices)
+    text += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+  size_t corner = 0;
+  for (const uint32_t size : soup.sizes) {
+    text += "f";
+    for (uint32_t i = 0; i < size; ++i) text += " " + std::to_string(soup.corners[corner++] + 1);
+    text += "\n";
+  }
+  return text;
+}
+
+ErrorCode code_of(const std::function<void()>& work, const std::string& part) {
+  try {
+    work();
+  } catch (const Error& e) {
+    INFO(e.what());
+    CHECK(std::string(e.what()).find(part) != std::string::npos);
+    return e.code();
+  }
+  return ErrorCode::internal;
+}
+
+/// Distances from a ball of radius 6.3 around the middle of an array of n^3, z fastest.
+std::vector<float> ball_values(int64_t n) {
+  std::vector<float> values;
+  const double middle = double(n - 1) / 2;
+  for (int64_t x = 0; x < n; ++x)
+    for (int64_t y = 0; y < n; ++y)
+      for (int64_t z = 0; z < n; ++z)
+        values.push_back(float(std::hypot(double(x) - middle, double(y) - middle, double(z) - middle) - 6.3));
+  return values;
+}
+
+DenseVolume volume_of(const std::vector<float>& values, int64_t n) {
+  return {values.data(), {n, n, n}, {n * n, n, 1}, {1, 1, 1}, {0, 0, 0}};
+}
+
+TriangleSoup surface(const DenseVolume& volume, std::optional<double> iso = {}) {
+  VolumeInfo info;
+  return surface_of_volume(volume, "mine", {"", iso, 0, VolumeCreases::none}, info);
+}
+
+bool is_closed(const TriangleSoup& soup) {
+  return check_mesh(TriangleMesh{soup.vertices, soup.triangles}).is_closed_manifold();
+}
+
+double six_volume(const TriangleSoup& soup) {
+  double sum = 0;
+  for (const auto& t : soup.triangles) {
+    const WorldPoint &a = soup.vertices[t[0]], &b = soup.vertices[t[1]], &c = soup.vertices[t[2]];
+    sum += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("memory: polygons become the triangles that a file of them becomes", "[memory_input]") {
+  const TemporaryFolder folder;
+  put_file(folder / "cube.obj", text_of(cube()));
+  const TriangleSoup read = read_mesh(folder / "cube.obj"), made = split_polygons(cube(), "mine");
+  CHECK(made.triangles == read.triangles);
+  CHECK(made.faces_in_file == 7);
+}
+
+TEST_CASE("memory: polygons that do not fit their vertices or sizes are refused by the face", "[memory_input]") {
+  PolygonSoup soup = cube();
+  soup.corners[5] = 8;
+  CHECK(code_of([&] { split_polygons(soup, "mine"); }, "mine: face 1 has vertex 8") == ErrorCode::unreadable_input);
+  soup = cube();
+  soup.sizes.back() = 4;
+  CHECK(code_of([&] { split_polygons(soup, "mine"); }, "face 6 ends behind") == ErrorCode::unreadable_input);
+  soup.sizes.pop_back();
+  CHECK(code_of([&] { split_polygons(soup, "mine"); }, "23 corners, and 26") == ErrorCode::unreadable_input);
+  CHECK(code_of([&] { split_polygons({}, "mine"); }, "mine") == ErrorCode::nothing_to_mesh);
+}
+
+TEST_CASE("memory: the surface of an array is where its values are", "[memory_input]") {
+  const int64_t n = 20;
+  const std::vector<float> values = ball_values(n);
+  DenseVolume volume = volume_of(values, n);
+  volume.spacing_world = {1, 2, 0.5};
+  volume.origin_world = {10, -20, 30};
+  const TriangleSoup soup = surface(volume);
+  CHECK(is_closed(soup));
+  CHECK(six_volume(soup) > 0);
+  for (const WorldPoint& p : soup.vertices)
+    CHECK(std::hypot(p.x - 10 - 9.5, (p.y + 20) / 2 - 9.5, (p.z - 30) * 2 - 9.5) == Approx(6.3).margin(0.05));
+}
+
+TEST_CASE("memory: strides say the order of the axes", "[memory_input]") {
+  const int64_t n = 20;
+  std::vector<float> values = ball_values(n), turned(values.size());
+  for (int64_t x = 0; x < n; ++x) values[size_t(x)] += 0.001f * float(x);  // no longer the same from all sides
+  for (int64_t i = 0; i < n * n * n; ++i)
+    turned[size_t(i % n * n * n + i / n % n * n + i / n / n)] = values[size_t(i)];
+  DenseVolume volume = volume_of(turned, n);
+  std::swap(volume.stride[0], volume.stride[2]);
+  CHECK(surface(volume, 0).triangles == surface(volume_of(values, n), 0).triangles);
+}
+
+TEST_CASE("memory: outside is the side of the isovalue that most of the array's faces lie on", "[memory_input]") {
+  const int64_t n = 20;
+  std::vector<float> values = ball_values(n), dense;
+  for (const float v : values) dense.push_back(-v);
+  const double inner = six_volume(surface(volume_of(values, n), -1));
+  CHECK(inner == Approx(8 * std::acos(-1) * 5.3 * 5.3 * 5.3).epsilon(0.02));
+  CHECK(six_volume(surface(volume_of(dense, n), 1)) == Approx(inner).epsilon(1e-6));
+}
+
+TEST_CASE("memory: a body that reaches a face of the array is closed there", "[memory_input]") {
+  const int64_t n = 20;
+  const std::vector<float> values = ball_values(n);
+  DenseVolume half = volume_of(values, n);
+  half.size[0] = 10;
+  const TriangleSoup soup = surface(half, 0);
+  CHECK(is_closed(soup));
+  CHECK(six_volume(soup) == Approx(4 * std::acos(-1) * 6.3 * 6.3 * 6.3).epsilon(0.05));
+}
+
+TEST_CASE("memory: blocks of one value cost nothing and change nothing", "[memory_input]") {
+  const int64_t n = 40;
+  std::vector<float> mask, noisy;
+  for (const float v : ball_values(n)) {
+    mask.push_back(v < 0 ? 1.f : 0.f);
+    noisy.push_back(mask.back());
+  }
+  noisy[0] = 0.25f;  // its block is no tile now
+  CHECK(surface(volume_of(mask, n), 0.5).triangles == surface(volume_of(noisy, n), 0.5).triangles);
+}
+
+TEST_CASE("memory: an array without a surface is refused", "[memory_input]") {
+  std::vector<float> values(27, 1);
+  DenseVolume volume = volume_of(values, 3);
+  CHECK(code_of([&] { surface(volume, 0); }, "no surface") == ErrorCode::nothing_to_mesh);
+  values[14] = std::numeric_limits<float>::quiet_NaN();
+  CHECK(code_of([&] { surface(volume, 0); }, "mine: value (1, 1, 2) is") == ErrorCode::unreadable_input);
+  values[14] = std::numeric_limits<float>::infinity();
+  CHECK(code_of([&] { surface(volume, 0); }, "must be finite") == ErrorCode::unreadable_input);
+  volume.spacing_world.y = 0;
+  CHECK(code_of([&] { surface(volume, 0); }, "spacing") == ErrorCode::usage);
+  volume = volume_of(values, 3);
+  volume.size[1] = 0;
+  CHECK(code_of([&] { surface(volume, 0); }, "0 values along an axis") == ErrorCode::usage);
+}
+
+TEST_CASE("memory: points of a program are refused where they are not finite", "[memory_input]") {
+  PointCloud cloud;
+  cloud.position = cube().vertices;
+  cloud.position[3].y = std::numeric_limits<double>::quiet_NaN();
+  CHECK(code_of([&] { input_of(cloud, "mine", 0); }, "mine: point 3 is") == ErrorCode::unreadable_input);
+  cloud.position[3].y = 0;
+  cloud.normal = {{0, 0, 1}};
+  CHECK(code_of([&] { input_of(cloud, "mine", 0); }, "1 normals and 8 points") == ErrorCode::usage);
+}
+
+TEST_CASE("memory: what a run would take is the same from a file and from memory", "[memory_input]") {
+  const TemporaryFolder folder;
+  put_file(folder / "cube.obj", text_of(cube()));
+  RunRequest request;
+  Context context;
+  const RunEstimate made = dry_run(input_of(split_polygons(cube(), "mine"), "mine"), request, context);
+  request.input = named_input(folder / "cube.obj");
+  const RunEstimate read = dry_run(request, context);
+  CHECK(made.bytes == read.bytes);
+  CHECK(made.sites == read.sites);
+}
