@@ -91,8 +91,7 @@ class StageRun {
       RunResult result;
       SeedSet seeds = to_host(*products->seeds);  // they change, and may be looked at afterwards
       RemeshReport report = products->report;
-      result.mesh =
-          isoshell::triangulate(*products->prepared, seeds, products->options, report, context);
+      result.mesh = isoshell::triangulate(*products->prepared, seeds, products->options, report, context);
       result.record.options = products->options;
       result.record.input = products->facts;
       result.record.report = std::move(report);
@@ -119,8 +118,9 @@ class StageRun {
   void save_voronoi(const std::string& path, bool overwrite) {
     relax();
     if (products().prepared->cut)
-      refuse("a Voronoi stage file does not hold the seeds of creases, borders and lines; give --features off and "
-             "--boundary close, or save the shell");
+      refuse(
+          "a Voronoi stage file does not hold the seeds of creases, borders and lines; give --features off and "
+          "--boundary close, or save the shell");
     work("save-voronoi", [products = products_, path, overwrite](const RunRequest& request, Context& context) {
       const Prepared& p = *products->prepared;
       const VoronoiLabels labels = flood_shell(p.shell, *products->seeds, context);
@@ -215,8 +215,8 @@ class StageRun {
 void bind_stages(nb::module_& m) {
   nb::class_<TriangleMesh>(m, "OwnedMesh", "Owns the memory of arrays.");
   nb::class_<StageRun>(m, "StageRun", "The stages of one run.")
-      .def(nb::init<Place&, const Source&, const Keywords&, nb::object, nb::object>(), nb::arg("place"), nb::arg("source"),
-           nb::arg("keywords"), nb::arg("progress").none(), nb::arg("tell"), nb::keep_alive<1, 2>())
+      .def(nb::init<Place&, const Source&, const Keywords&, nb::object, nb::object>(), nb::arg("place"),
+           nb::arg("source"), nb::arg("keywords"), nb::arg("progress").none(), nb::arg("tell"), nb::keep_alive<1, 2>())
       .def("prepare", &StageRun::prepare)
       .def("relax", &StageRun::relax)
       .def("triangulate", &StageRun::triangulate)

@@ -22,7 +22,8 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 class Options(TypedDict, total=False):
-    """The options of the command vdb_isomesh, with underscores. None is as if a keyword were not there."""
+    """The options of the command vdb_isomesh, with underscores. None is as if a keyword were not there; what holds then
+    is in brackets.
 '''
 LEFT_OUT = {"help", "version", "dry-run"}
 SPECIAL = {
@@ -54,24 +55,23 @@ def type_of(option: _isoshell.OptionEntry) -> str:
 
 
 def text_of(option: _isoshell.OptionEntry) -> str:
-    text = option.text[0].upper() + option.text[1:].replace("--", "")
+    text = _isoshell.in_keywords(option.text)
     fallback = "no bar" if option.name == "progress" else option.fallback
     return text + (f" [{fallback}]" if fallback else "") + "."
 
 
 def options_file() -> str:
-    text = HEAD
-    group = ""
-    for option in _isoshell.option_table():
-        if option.name in LEFT_OUT:
-            continue
+    options = [option for option in _isoshell.option_table() if option.name not in LEFT_OUT]
+    text, group, members = HEAD, "", ""
+    for option in options:
+        keyword, kind = option.name.replace("-", "_"), type_of(option)
         if option.group != group:
             group = option.group
-            text += f"\n    # {group}\n"
-        kind = type_of(option)
-        text += f"    {option.name.replace('-', '_')}: {kind if kind == 'bool' else f'Optional[{kind}]'}\n"
-        text += textwrap.fill(f'"""{text_of(option)}"""', 120, initial_indent="    ", subsequent_indent="    ") + "\n"
-    return text
+            text += f"\n    {group}:\n"
+        text += textwrap.fill(f"{keyword}: {text_of(option)}", 120, initial_indent=8 * " ", subsequent_indent=12 * " ")
+        text += "\n"
+        members += f"    {keyword}: {kind if kind == 'bool' else f'Optional[{kind}]'}\n"
+    return f'{text}    """\n\n{members}'
 
 
 if __name__ == "__main__":

@@ -120,8 +120,7 @@ TEST_CASE("memory: strides say the order of the axes", "[memory_input]") {
   const int64_t n = 20;
   std::vector<float> values = ball_values(n), turned(values.size());
   for (int64_t x = 0; x < n; ++x) values[size_t(x)] += 0.001f * float(x);  // no longer the same from all sides
-  for (int64_t i = 0; i < n * n * n; ++i)
-    turned[size_t(i % n * n * n + i / n % n * n + i / n / n)] = values[size_t(i)];
+  for (int64_t i = 0; i < n * n * n; ++i) turned[size_t(i % n * n * n + i / n % n * n + i / n / n)] = values[size_t(i)];
   DenseVolume volume = volume_of(turned, n);
   std::swap(volume.stride[0], volume.stride[2]);
   CHECK(surface(volume, 0).triangles == surface(volume_of(values, n), 0).triangles);
