@@ -21,17 +21,26 @@ try_wheel() { # python, wheel
   empty=$(mktemp -d)
   "$1" -m venv "$empty"
   "$empty/bin/pip" install --quiet --disable-pip-version-check "$2"
+  env -i "$empty/bin/python" -c "import isoshell"  # files are compiled and read now
   (cd "$empty" && env -i "$empty/bin/python" - < "$OLDPWD/python/tests/try_wheel.py")
   rm -rf "$empty"
 }
 
+mkdir -p build/dist
+stable=()  # the wheel of this call that later versions take, too
 for python in "${pythons[@]}"; do
-  made=$(mktemp -d)
-  "$python" -m pip wheel . --quiet --disable-pip-version-check --no-deps -w "$made" "${settings[@]}"
-  PATH=$PWD/$tools/bin:$PATH auditwheel repair --wheel-dir "$made/repaired" "$made"/*.whl
-  try_wheel "$python" "$made"/repaired/*.whl
-  mkdir -p build/dist
-  mv "$made"/repaired/*.whl build/dist/
-  rm -rf "$made"
+  if [ ${#stable[@]} -eq 0 ] || ! "$python" -c "import sys; sys.exit(sys.version_info < (3, 12))"; then
+    made=$(mktemp -d)
+    "$python" -m pip wheel . --quiet --disable-pip-version-check --no-deps -w "$made" "${settings[@]}"
+    PATH=$PWD/$tools/bin:$PATH auditwheel repair --wheel-dir "$made/repaired" "$made"/*.whl
+    wheels=("$made"/repaired/*.whl)
+    mv "${wheels[0]}" build/dist/
+    rm -rf "$made"
+    wheel=build/dist/${wheels[0]##*/}
+    case "$wheel" in *-abi3-*) stable=("$wheel") ;; esac
+  else
+    wheel=${stable[0]}
+  fi
+  try_wheel "$python" "$wheel"
 done
 ls -l build/dist

@@ -10,19 +10,26 @@ import pytest
 HERE = Path(__file__).parent
 
 
-def mypy(*arguments):
+@pytest.fixture(scope="module")
+def mypy(tmp_path_factory):
+    """Runs mypy --strict over the package and these files; what it found of numpy is kept from run to run."""
     pytest.importorskip("mypy")
+    words = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--cache-dir", tmp_path_factory.mktemp("mypy")]
     package = str(Path(isoshell.__file__).parent.parent)
-    return subprocess.run([sys.executable, "-m", "mypy", "--strict", "--config-file=", *map(str, arguments)],
-                          env={"MYPYPATH": package, "PATH": ""}, cwd=HERE, capture_output=True, text=True)
+
+    def run(*arguments):
+        return subprocess.run([*map(str, words), *map(str, arguments)], env={"MYPYPATH": package, "PATH": ""}, cwd=HERE,
+                              capture_output=True, text=True)
+
+    return run
 
 
-def test_a_user_of_the_package_is_checked_strictly():
+def test_a_user_of_the_package_is_checked_strictly(mypy):
     done = mypy("user_of_types.py")
     assert done.returncode == 0, done.stdout
 
 
-def test_a_mistyped_keyword_and_a_wrong_type_are_found(tmp_path):
+def test_a_mistyped_keyword_and_a_wrong_type_are_found(mypy, tmp_path):
     wrong = tmp_path / "wrong.py"
     wrong.write_text('import isoshell\nisoshell.remesh("a.ply", verticse=7)\nisoshell.remesh("a.ply", vertices="x")\n'
                      'isoshell.remesh(7)\nisoshell.remesh("a.ply").no_such_thing\n')
@@ -30,7 +37,7 @@ def test_a_mistyped_keyword_and_a_wrong_type_are_found(tmp_path):
     assert found.count("error:") == 4, found
 
 
-def test_the_package_itself_is_checked_strictly():
+def test_the_package_itself_is_checked_strictly(mypy):
     done = mypy("-p", "isoshell")
     assert done.returncode == 0, done.stdout
 
