@@ -7,7 +7,10 @@
 #include <cmath>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
+
+#include "isoshell/error.h"
 
 namespace nb = nanobind;
 
@@ -70,7 +73,58 @@ const char* domain_name(AttributeDomain domain) {
   return domain == AttributeDomain::face ? "face" : "corner";
 }
 
+[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+  throw Error(ErrorCode::usage, "arguments", "the attribute '" + name + "' " + what);
+}
+
+AttributeDomain domain_of(const std::string& name, const std::string& domain) {
+  const bool by_corner = name == kUvName || name == kNormalName;
+  if (by_corner != (domain == "corner"))
+    refuse(name, by_corner ? "is one of corners: give values[faces]" : "is one of vertices or of faces");
+  if (name == kTextureName && domain != "face") refuse(name, "is one of faces");
+  if (domain == "corner") return AttributeDomain::corner;
+  return domain == "face" ? AttributeDomain::face : AttributeDomain::vertex;
+}
+
+void check_components(const Attribute& a) {
+  const int32_t n = a.components;
+  if (a.name == kColorName && n != 3 && n != 4) refuse(a.name, "has 3 or 4 values each, not " + std::to_string(n));
+  if (a.name == kUvName && n != 2) refuse(a.name, "has 2 values each, not " + std::to_string(n));
+  if (a.name == kNormalName && n != 3) refuse(a.name, "has 3 values each, not " + std::to_string(n));
+  if (a.name != kColorName && a.domain != AttributeDomain::corner && n != 1)
+    refuse(a.name, "has " + std::to_string(n) + " values each; give each of them a name of its own");
+}
+
+template <class T>
+bool take_values(const AnyArray& rows, NumberType type, Attribute& to) {
+  if (rows.dtype() != nb::dtype<T>()) return false;
+  to.type = type;
+  const T* values = static_cast<const T*>(rows.data());
+  for (size_t i = 0; i < rows.shape(0); ++i)
+    for (size_t j = 0; j < rows.shape(1); ++j)
+      to.values.push_back(double(values[int64_t(i) * rows.stride(0) + int64_t(j) * rows.stride(1)]));
+  return true;
+}
+
 }  // namespace
+
+Attribute attribute_of(const std::string& name, const std::string& domain, const AnyArray& rows,
+                       std::vector<std::string> labels) {
+  Attribute a;
+  a.name = name;
+  a.domain = domain_of(name, domain);
+  a.components = int32_t(rows.shape(1));
+  a.labels = std::move(labels);
+  check_components(a);
+  a.values.reserve(rows.shape(0) * rows.shape(1));
+  const bool taken = take_values<uint8_t>(rows, NumberType::u8, a) || take_values<float>(rows, NumberType::f32, a) ||
+                     take_values<double>(rows, NumberType::f64, a) || take_values<int32_t>(rows, NumberType::i32, a) ||
+                     take_values<uint32_t>(rows, NumberType::u32, a) ||
+                     take_values<int16_t>(rows, NumberType::i16, a) ||
+                     take_values<uint16_t>(rows, NumberType::u16, a) || take_values<int8_t>(rows, NumberType::i8, a);
+  if (!taken) refuse(name, "must be numbers of at most 32 bits, or float64");
+  return a;
+}
 
 nb::list attributes_of(const TriangleMesh& mesh) {
   nb::list list;

@@ -3,13 +3,18 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <array>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "arrays.h"
+#include "attributes.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
 
@@ -36,10 +41,15 @@ Source surface(const std::string& name, TriangleSoup soup) {
           {}};
 }
 
-Source triangles(const std::string& name, const AnyArray& vertices, const AnyArray& faces) {
+using GivenAttribute = std::tuple<std::string, std::string, AnyArray, std::vector<std::string>>;
+
+Source triangles(const std::string& name, const AnyArray& vertices, const AnyArray& faces,
+                 const std::vector<GivenAttribute>& attributes) {
   TriangleSoup soup;
   soup.vertices = points_of("vertices", vertices);
   soup.triangles = triangles_of("faces", faces, soup.vertices.size());
+  for (const auto& [attribute, domain, values, labels] : attributes)
+    soup.attributes.push_back(attribute_of(attribute, domain, values, labels));
   return surface(name, std::move(soup));
 }
 
@@ -87,8 +97,9 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
 void bind_source(nb::module_& m) {
   nb::class_<Source>(m, "Source", "What one run starts from.")
       .def_static("file", file, nb::arg("path"))
-      .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"),
-                  nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any) -> Source"))
+      .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"), nb::arg("attributes"),
+                  nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any, attributes: "
+                          "list[tuple[str, str, typing.Any, list[str]]]) -> Source"))
       .def_static("polygons", polygons, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
                   nb::sig("def polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
                           "Source"))

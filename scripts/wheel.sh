@@ -7,8 +7,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 pythons=("$@")
 [ ${#pythons[@]} -eq 0 ] && pythons=(python3)
-settings=(-C "cmake.define.ISOSHELL_CUDA=${ISOSHELL_CUDA:-off}")
-command -v ccache >/dev/null && settings+=(-C cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+settings=("--config-settings=cmake.define.ISOSHELL_CUDA=${ISOSHELL_CUDA:-off}")
+command -v ccache >/dev/null && settings+=(--config-settings=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache)
 
 tools=build/wheel/tools
 if [ ! -x $tools/bin/auditwheel ]; then

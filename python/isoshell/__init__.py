@@ -17,12 +17,12 @@ from ._isoshell import ErrorCode
 from ._options import Options
 from ._remesh import estimate, remesh
 from ._result import Result
-from ._sources import Points, Volume
+from ._sources import Mesh, Points, Volume
 from ._stages import Stages
 
-__all__ = ["Context", "Error", "ErrorCode", "Options", "Points", "Result", "RunWarning", "Stages", "Volume",
+__all__ = ["Context", "Error", "ErrorCode", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages", "Volume",
            "__version__", "estimate", "remesh"]
 
-for _name in ("Context", "Error", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate", "remesh"):
+for _name in ("Context", "Error", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate", "remesh"):
     globals()[_name].__module__ = __name__
 _atexit.register(_isoshell.end_jobs_left_alone)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Protocol, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
 from ._arrays import array_of
 from ._errors import Error
 from ._isoshell import Source
+from ._result import Result
 
 if TYPE_CHECKING:
     import numpy as np
+
+
+Named = Tuple[str, str, Any, List[str]]  # an attribute: name, domain, values, labels
 
 
 class MeshLike(Protocol):
@@ -31,6 +35,32 @@ class PolyDataLike(Protocol):
 
     @property
     def faces(self) -> Any: ...
+
+
+class Mesh:
+    """Triangles with attributes, which the result keeps: see the option `attributes`.
+
+    Where uv, texnumber or values with labels jump, the result has edges. A Result that is a source has its attributes.
+
+    Args:
+        vertices: (K, 3), world units.
+        faces: (M, 3), whole numbers.
+        of_vertices: by name (K,) numbers, and "color" (K, 3) or (K, 4): of whole numbers parts of the largest of their
+            type, otherwise 0 to 1.
+        of_faces: by name (M,) numbers, and "color" (M, 3) or (M, 4).
+        of_corners: "uv" (M, 3, 2) and "normal" (M, 3, 3).
+        labels: by name the names that an attribute's values are the numbers of, -1 being none: "material", for one.
+    """
+
+    def __init__(self, vertices: Any, faces: Any, *, of_vertices: Optional[Mapping[str, Any]] = None,
+                 of_faces: Optional[Mapping[str, Any]] = None, of_corners: Optional[Mapping[str, Any]] = None,
+                 labels: Optional[Mapping[str, Sequence[str]]] = None) -> None:
+        self.vertices = vertices
+        self.faces = faces
+        self.of_vertices = dict(of_vertices or {})
+        self.of_faces = dict(of_faces or {})
+        self.of_corners = dict(of_corners or {})
+        self.labels = dict(labels or {})
 
 
 class Points:
@@ -65,7 +95,7 @@ class Volume:
         self.origin = origin
 
 
-SourceLike = Union[str, "os.PathLike[str]", Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
+SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
 
 
 def source_of(given: Any) -> Source:
@@ -79,6 +109,11 @@ def source_of(given: Any) -> Source:
         return _source_of_volume(given)
     if isinstance(given, (tuple, list)) and len(given) == 2:
         return _source_of_faces("(vertices, faces)", given[0], given[1])
+    if isinstance(given, Result):
+        named = [attribute for attribute in given._named_attributes() if attribute[0] != "gap"]
+        return _source_of_triangles("result", given.vertices, given.faces, named)
+    if isinstance(given, Mesh):
+        return _source_of_triangles("mesh", given.vertices, given.faces, _attributes_of(given))
     for name in ("vertices", "points"):
         vertices, faces = getattr(given, name, None), getattr(given, "faces", None)
         if vertices is not None and faces is not None:
@@ -106,7 +141,40 @@ def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
     if indices.ndim == 2 and indices.shape[1] > 3:
         sizes = np.full(indices.shape[0], indices.shape[1], np.int64)
         return Source.polygons(name, positions, sizes, indices.reshape(-1))
-    return Source.triangles(name, positions, indices)
+    return Source.triangles(name, positions, indices, [])
+
+
+def _attributes_of(mesh: Mesh) -> list[Named]:
+    domains = {"vertex": mesh.of_vertices, "face": mesh.of_faces, "corner": mesh.of_corners}
+    return [(name, domain, values, list(mesh.labels.get(name, [])))
+            for domain, values_of in domains.items() for name, values in values_of.items()]
+
+
+def _source_of_triangles(name: str, vertices: Any, faces: Any, attributes: Sequence[Named]) -> Source:
+    given = [(attribute.split(":")[0], domain, _rows(attribute, domain, values), labels)
+             for attribute, domain, values, labels in attributes]
+    return Source.triangles(name, array_of("vertices", vertices), array_of("faces", faces), given)
+
+
+def _rows(name: str, domain: str, values: Any) -> np.ndarray[Any, Any]:
+    """Values of an attribute as one row each."""
+    import numpy as np
+
+    array = array_of(f"the attribute '{name}'", values)
+    if array.dtype.kind == "b":
+        array = array.astype(np.uint8)
+    if array.dtype in (np.int64, np.uint64):
+        small = array.astype(np.int32)
+        if not np.array_equal(small, array):
+            raise Error(f"the attribute '{name}' has whole numbers of more than 32 bits; give float64")
+        array = small
+    if domain == "corner":
+        if array.ndim != 3 or array.shape[1] != 3:
+            raise Error(f"the attribute '{name}' of corners must have the shape (M, 3, ...), and has {array.shape}")
+        array = array.reshape(-1, array.shape[2])
+    if array.ndim not in (1, 2):
+        raise Error(f"the attribute '{name}' must have one row for each of its elements, and has the shape {array.shape}")
+    return array.reshape(array.shape[0], -1) if array.size else array.reshape(array.shape[0], 1)
 
 
 def _is_ragged(faces: Any) -> bool:

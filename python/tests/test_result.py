@@ -123,3 +123,64 @@ def test_names_of_materials_are_labels(tmp_path, box):
     labels, numbers = result.labels["material"], result.attributes["material"]
     assert sorted(labels) == ["iron", "wood"] and len(numbers) == len(result.faces)
     assert {labels[n] for n in np.unique(numbers)} == {"iron", "wood"}
+
+
+def test_attributes_given_as_arrays_are_those_of_a_file_that_has_them(tmp_path, ball):
+    vertices, faces = ball
+    heat = np.arange(len(vertices), dtype=np.float32)
+    part = (np.arange(len(faces)) % 5).astype(np.int16)
+    head = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", *(f"property double {c}" for c in "xyz"),
+            "property float heat", f"element face {len(faces)}", "property list uchar int vertex_indices",
+            "property short part", "end_header"]
+    rows = [f"{x!r} {y!r} {z!r} {h}" for (x, y, z), h in zip(vertices.tolist(), heat)]
+    rows += [f"3 {a} {b} {c} {p}" for (a, b, c), p in zip(faces.tolist(), part)]
+    (tmp_path / "ball.ply").write_text("\n".join(head + rows) + "\n")
+    mesh = isoshell.Mesh(vertices, faces, of_vertices={"heat": heat}, of_faces={"part": part})
+    ours, theirs = isoshell.remesh(mesh, **SMALL), isoshell.remesh(tmp_path / "ball.ply", **SMALL)
+    assert ours.digest == theirs.digest and ours.domains == theirs.domains
+    for name in ("heat", "part"):
+        assert ours.attributes[name].dtype == theirs.attributes[name].dtype
+        assert np.array_equal(ours.attributes[name], theirs.attributes[name])
+    assert "heat" not in isoshell.remesh(mesh, attributes="part", **SMALL).attributes
+
+
+def test_a_result_as_a_source_passes_its_attributes_on(colored):
+    again = isoshell.remesh(colored, vertices=200, resolution=40)
+    assert {name: again.domains[name] for name in ("color", "heat", "uv", "part")} == {
+        name: colored.domains[name] for name in ("color", "heat", "uv", "part")}
+    assert np.allclose(again.attributes["heat"], again.vertices[:, 2], atol=1e-2)
+
+
+def test_labels_given_as_arrays_reach_the_result(box):
+    vertices, quads = box
+    faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    mesh = isoshell.Mesh(vertices, faces, of_faces={"material": np.repeat([0, 1, 0, 1, 0, -1], 2)},
+                         labels={"material": ["wood", "iron"]})
+    result = isoshell.remesh(mesh, vertices=200, resolution=32)
+    assert result.labels["material"] == ["wood", "iron"]
+    assert set(np.unique(result.attributes["material"])) == {-1, 0, 1}
+
+
+@pytest.mark.parametrize("attributes", [
+    {"of_vertices": {"heat": np.zeros(7)}},
+    {"of_vertices": {"heat": np.zeros((8, 2))}},
+    {"of_vertices": {"heat": np.zeros((8, 1, 1))}},
+    {"of_vertices": {"heat": "warm"}},
+    {"of_vertices": {"heat": np.full(8, 2**40)}},
+    {"of_vertices": {"heat": np.float32(1)}},
+    {"of_vertices": {"uv": np.zeros((8, 2))}},
+    {"of_vertices": {"color": np.zeros((8, 2))}},
+    {"of_faces": {"part": np.zeros(3)}},
+    {"of_faces": {"part": np.zeros(0)}},
+    {"of_faces": {"material": np.full(12, 7)}, "labels": {"material": ["wood"]}},
+    {"of_corners": {"uv": np.zeros((12, 2))}},
+    {"of_corners": {"uv": np.zeros((12, 3, 3))}},
+    {"of_corners": {"uv": np.zeros((11, 3, 2))}},
+    {"of_corners": {"heat": np.zeros((12, 3, 1))}},
+])
+def test_attributes_that_do_not_fit_are_refused_by_name(box, attributes):
+    vertices, quads = box
+    faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    name = next(name for key, values in attributes.items() if key != "labels" for name in values)
+    with pytest.raises(isoshell.Error, match=f"'{name}'"):
+        isoshell.remesh(isoshell.Mesh(vertices, faces, **attributes), **SMALL)
