@@ -213,7 +213,7 @@ class StageRun {
 }  // namespace
 
 void bind_stages(nb::module_& m) {
-  nb::class_<TriangleMesh>(m, "OwnedMesh", "Owns the memory of arrays.");
+  [[maybe_unused]] const nb::class_<TriangleMesh> owned(m, "OwnedMesh", "Owns the memory of arrays.");
   nb::class_<StageRun>(m, "StageRun", "The stages of one run.")
       .def(nb::init<Place&, const Source&, const Keywords&, nb::object, nb::object>(), nb::arg("place"),
            nb::arg("source"), nb::arg("keywords"), nb::arg("progress").none(), nb::arg("tell"), nb::keep_alive<1, 2>())
