@@ -50,7 +50,8 @@ def type_of(option: _isoshell.OptionEntry) -> str:
         return "Path"
     if "|" in option.value:
         words = ", ".join(f'"{word}"' for word in option.value.split("|"))
-        return f"Union[Literal[{words}], Callable[[str, float], object]]" if option.name == "progress" else f"Literal[{words}]"
+        words = f"Literal[{words}]"
+        return f"Union[{words}, Callable[[str, float], object]]" if option.name == "progress" else words
     return "int"
 
 

@@ -28,8 +28,9 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     Args:
         source: a path that the command can read; (vertices, faces), arrays of (K, 3) numbers in world units and of
             (M, 3) whole numbers, or faces of more corners; anything with .vertices and .faces, such as a mesh of
-            trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Points; isoshell.Volume. Arrays are
-            whatever numpy or DLPack can take, of the host; they are copied once.
+            trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Mesh, which has attributes;
+            isoshell.Points; isoshell.Volume. Arrays are whatever numpy or DLPack can take, of the host; they are
+            copied once.
         output: also write the result there, as the command does.
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond

@@ -118,8 +118,8 @@ def source_of(given: Any) -> Source:
         vertices, faces = getattr(given, name, None), getattr(given, "faces", None)
         if vertices is not None and faces is not None:
             return _source_of_faces(type(given).__name__, vertices, faces)
-    raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Points or "
-                f"isoshell.Volume, and is {type(given).__name__}")
+    raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Mesh, Points "
+                f"or Volume, and is {type(given).__name__}")
 
 
 def is_true_or_false(volume: Any) -> bool:
@@ -173,7 +173,7 @@ def _rows(name: str, domain: str, values: Any) -> np.ndarray[Any, Any]:
             raise Error(f"the attribute '{name}' of corners must have the shape (M, 3, ...), and has {array.shape}")
         array = array.reshape(-1, array.shape[2])
     if array.ndim not in (1, 2):
-        raise Error(f"the attribute '{name}' must have one row for each of its elements, and has the shape {array.shape}")
+        raise Error(f"the attribute '{name}' must have a row for each of its elements, and has the shape {array.shape}")
     return array.reshape(array.shape[0], -1) if array.size else array.reshape(array.shape[0], 1)
 
 

@@ -135,7 +135,8 @@ def test_without_a_triangle_that_has_area_there_is_nothing_to_mesh(vertices, fac
     assert refusal((vertices, faces))[0] == ErrorCode.NOTHING_TO_MESH
 
 
-@pytest.mark.parametrize("source", [None, 7, object(), (), ([1],), ([1], [2], [3]), {"vertices": 1}, b"path", [], np.zeros(3)])
+@pytest.mark.parametrize("source", [
+    None, 7, object(), (), ([1],), ([1], [2], [3]), {"vertices": 1}, b"path", [], np.zeros(3)])
 def test_what_is_no_source_is_refused(source):
     code, message = refusal(source)
     assert code in (ErrorCode.USAGE, ErrorCode.UNREADABLE_INPUT) and message

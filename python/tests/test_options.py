@@ -34,7 +34,8 @@ def refusal(**options):
 
 
 @pytest.mark.parametrize("mistyped, meant", [
-    ("verticse", "vertices"), ("edge_lenght", "edge_length"), ("closegaps", "close_gaps"), ("edge-length", "edge_length"),
+    ("verticse", "vertices"), ("edge_lenght", "edge_length"), ("closegaps", "close_gaps"),
+    ("edge-length", "edge_length"),
 ])
 def test_an_unknown_keyword_is_refused_with_the_nearest(mistyped, meant):
     for value in (7, True, None, "text"):
