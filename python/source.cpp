@@ -69,7 +69,8 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
   return {"",
           [given](const RunRequest& request, const Context& context) {
             refuse_iso(request);
-            return input_of(*given, "points", context.memory_limit_bytes, request.tell);
+            return input_of(*given, "points", context.memory_limit_bytes, request.tell,
+                            volume_creases(request.options.values.features));
           },
           {}};
 }

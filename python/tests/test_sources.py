@@ -57,6 +57,17 @@ def test_points_become_the_surface_that_a_file_of_them_becomes(tmp_path, ball):
     assert isoshell.remesh(isoshell.Points(ball[0]), **SMALL).report["input"]["kind"] == "points"
 
 
+@pytest.mark.parametrize("features", ["auto", "off"])
+def test_points_of_a_cube_keep_their_creases_as_those_of_a_file_do(tmp_path, features):
+    random = np.random.default_rng(1)
+    points = random.uniform(-1, 1, (20_000, 3))
+    points[np.arange(len(points)), random.integers(0, 3, len(points))] = random.choice([-1.0, 1.0], len(points))
+    np.savetxt(tmp_path / "points.xyz", points, fmt="%.17g")
+    result = isoshell.remesh(isoshell.Points(points), vertices=500, features=features)
+    assert result.digest == isoshell.remesh(tmp_path / "points.xyz", vertices=500, features=features).digest
+    assert (len(result.features["curve_edges"]) > 0) == (features == "auto")
+
+
 @pytest.mark.parametrize("positions, normals, name", [
     (np.zeros((4, 2)), None, "points"),
     (np.zeros((4, 3)), np.zeros((3, 3)), "normals"),
