@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/world_vector.h"
 #include "features/edge_sides.h"
@@ -24,7 +25,9 @@ constexpr double kRoundedAway = 1e-9;    ///< sums of two angles of 180 degrees,
 /// the corner of the one that passes it so, d that of the other.
 class FlatEdges {
  public:
-  explicit FlatEdges(FineMesh& mesh) : mesh_(mesh), twin_(3 * mesh.triangles.size(), kNone) {
+  /// No edge is made that `avoided` has, which is ascending.
+  FlatEdges(FineMesh& mesh, const std::vector<uint64_t>& avoided)
+      : mesh_(mesh), avoided_(avoided), twin_(3 * mesh.triangles.size(), kNone) {
     for (const CurvePath& path : mesh.paths)
       for (size_t i = 0; i < path.edge_count(); ++i) on_path_.push_back(edge_key(path.vertex[i], path.edge_end(i)));
     std::sort(on_path_.begin(), on_path_.end());
@@ -121,7 +124,8 @@ class FlatEdges {
     if (!faces_so(at_c, area_c) || !faces_so(at_d, area_d)) return false;
     if (dot(cross(d - a, c - a), both) <= 0 || dot(cross(c - b, d - b), both) <= 0) return false;
     return length(d - c) <= std::max({ab, length(c - a), length(c - b), length(d - a), length(d - b)}) &&
-           !is_beside(next(next(h)), opposite(twin_[h]));
+           !is_beside(next(next(h)), opposite(twin_[h])) &&
+           !std::binary_search(avoided_.begin(), avoided_.end(), edge_key(opposite(h), opposite(twin_[h])));
   }
 
   /// Whether an edge joins the vertex that a half-edge begins at to another one, in the fan of its triangle.
@@ -157,15 +161,49 @@ class FlatEdges {
   }
 
   FineMesh& mesh_;
+  const std::vector<uint64_t>& avoided_;
   std::vector<uint32_t> twin_;  ///< kNone where an edge stays
   std::vector<uint64_t> on_path_;
 };
 
+/// Edges of more than two triangles, ascending.
+std::vector<uint64_t> crowded_edges(const MeshTriangles& triangles, size_t vertices) {
+  const EdgeSides sides = find_edge_sides(triangles, vertices);
+  std::vector<uint8_t> begins(vertices, 0);
+  tbb::parallel_for(size_t(0), vertices, [&](size_t u) {
+    for_each_edge_from(sides, int64_t(u),
+                       [&](uint32_t, View<const EdgeSide> on_edge) { begins[u] |= on_edge.size > 2; });
+  });
+  std::vector<uint64_t> edges;
+  for (size_t u = 0; u < vertices; ++u)
+    if (begins[u])
+      for_each_edge_from(sides, int64_t(u), [&](uint32_t v, View<const EdgeSide> on_edge) {
+        if (on_edge.size > 2) edges.push_back(edge_key(uint32_t(u), v));
+      });
+  return edges;
+}
+
+/// Adds to `made` the crowded edges that flips made. Whether there are any.
+bool add_crowded(const FineMesh& mesh, const MeshTriangles& before, std::vector<uint64_t>& made) {
+  const std::vector<uint64_t> now = crowded_edges(mesh.triangles, mesh.position.size());
+  if (now.empty()) return false;
+  const std::vector<uint64_t> then = crowded_edges(before, mesh.position.size());
+  const size_t known = made.size();
+  std::set_difference(now.begin(), now.end(), then.begin(), then.end(), std::back_inserter(made));
+  std::sort(made.begin(), made.end());
+  return made.size() > known;
+}
+
 }  // namespace
 
 FineMesh flip_flat_edges(FineMesh mesh) {
-  FlatEdges(mesh).flip_all();
-  return mesh;
+  const MeshTriangles before = mesh.triangles;
+  std::vector<uint64_t> crowded;  // what both sides of a thin part would make
+  for (;;) {
+    FlatEdges(mesh, crowded).flip_all();
+    if (!add_crowded(mesh, before, crowded)) return mesh;
+    mesh.triangles = before;
+  }
 }
 
 }  // namespace isoshell

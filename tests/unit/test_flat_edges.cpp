@@ -75,3 +75,17 @@ TEST_CASE("flat edges: edges of paths and of bends stay", "[features]") {
   bent.position[1].z = bent.position[3].z = 40;
   CHECK(sorted(flip_flat_edges(bent)) == sorted(bent));
 }
+
+TEST_CASE("flat edges: the two sides of a thin part do not come to share an edge", "[features]") {
+  FineMesh mesh;
+  mesh.position = {{0, 0, 0}, {1000, -100, 0}, {2000, 0, 0}, {1000, 100, 0}};
+  mesh.paths.resize(1);
+  mesh.paths[0].vertex = {0, 1, 2, 3};
+  mesh.paths[0].is_loop = true;
+  FineMesh above = mesh;
+  above.triangles = {{0, 1, 2}, {0, 2, 3}};
+  CHECK(sorted(flip_flat_edges(above)) != sorted(above));
+  mesh.triangles = above.triangles;
+  for (const auto& t : std::vector<std::array<uint32_t, 3>>{{0, 3, 1}, {1, 3, 2}}) mesh.triangles.push_back(t);
+  CHECK(sorted(flip_flat_edges(mesh)) == sorted(mesh));
+}
