@@ -57,12 +57,21 @@ std::vector<CurveEdge> with_edges(const std::vector<CurveEdge>& curve_edges, con
   return all;
 }
 
+std::vector<CurveEdge> without_creases_at(std::vector<CurveEdge> curve_edges, const std::vector<uint32_t>& smooth) {
+  const auto is_smooth = [&](const CurveEdge& c) {
+    return c.kind == CurveKind::crease && std::binary_search(smooth.begin(), smooth.end(), c.edge);
+  };
+  curve_edges.erase(std::remove_if(curve_edges.begin(), curve_edges.end(), is_smooth), curve_edges.end());
+  return curve_edges;
+}
+
 std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges& edges, const CurveOptions& options,
                                         CreaseReport& report) {
   std::vector<CurveEdge> found = find_fixed_curve_edges(edges);
   if (options.mode == CreaseMode::threshold) found = with_creases_above(mesh, edges, found, options.degrees);
   if (options.mode == CreaseMode::automatic)
     found = with_creases_beside_smooth(mesh, edges, found, options.edge_length_world, report);
+  if (!options.smooth.empty()) found = without_creases_at(std::move(found), inner_edges(edges, options.smooth));
   if (!options.lines.empty()) found = with_edges(found, inner_edges(edges, options.lines), CurveKind::line);
   if (!options.seams.empty()) found = with_edges(found, inner_edges(edges, options.seams), CurveKind::seam);
   if (options.mode != CreaseMode::off)

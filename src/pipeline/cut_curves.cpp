@@ -4,10 +4,12 @@
 #include <algorithm>
 
 #include "core/half_edge_list.h"
+#include "core/near_points.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/free_seeds.h"
 #include "features/separate_fans.h"
+#include "features/split_edges.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/to_host.h"
 #include "pipeline/choose_grid.h"
@@ -102,6 +104,26 @@ std::vector<uint64_t> edges_of(const CurveNetwork& network) {
   return all;
 }
 
+/// The edges of creases that are within about an edge length of places.
+std::vector<std::array<uint32_t, 2>> creases_near(const FeatureMesh& mesh, const CurveNetwork& network,
+                                                  const std::vector<PointQ8>& places, double reach_world,
+                                                  const LatticeFrame& frame) {
+  const NearPoints near(places, reach_world / frame.voxel_size * kOneVoxelQ8);
+  std::vector<std::array<uint32_t, 2>> found;
+  for (const FeatureCurve& curve : network.curves) {
+    if (curve.kind != CurveKind::crease) continue;
+    for (const uint64_t edge : edges_of(curve)) {
+      const std::array<uint32_t, 2> end{uint32_t(edge >> 32), uint32_t(edge)};
+      const WorldPoint &a = mesh.vertices[end[0]], &b = mesh.vertices[end[1]];
+      const int64_t parts = parts_of(a, b, reach_world);
+      bool is_near = false;
+      for (int64_t i = 0; i <= parts && !is_near; ++i) is_near = near.holds(frame.snap(point_between(a, b, i, parts)));
+      if (is_near) found.push_back(end);
+    }
+  }
+  return found;
+}
+
 /// The curves of a network of which less than half is among some edges.
 std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& network,
                                    const std::vector<uint64_t>& kept) {
@@ -113,7 +135,7 @@ std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& 
                                     [&](uint64_t e) { return std::binary_search(kept.begin(), kept.end(), e); });
     if (2 * size_t(held) >= edges.size()) continue;
     out.push_back(all[c]);
-    out.back().reason = "it runs around a patch that is too small for the edges";
+    out.back().reason = "the edges are too long for it";
   }
   return out;
 }
@@ -168,25 +190,35 @@ bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curv
       p.cut = make_cut(source, network, p.surface.frame, found, context);
       return std::string();
     });
-    if (!refused.empty()) p.cut = cut_along_fewer(source, p.surface.frame, report, context);
+    if (!refused.empty()) p.cut = cut_along_fewer(source, {}, p.surface.frame, report, context);
     return p.cut ? "" : refused;
   });
   if (!why.empty()) give_up(report, if_lost, why);
   return why.empty();
 }
 
-std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const LatticeFrame& frame,
-                                                  RemeshReport& report, Context& context) {
-  if (source.curves.drops_small_patches) return nullptr;
+std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const std::vector<PointQ8>& places,
+                                                  const LatticeFrame& frame, RemeshReport& report, Context& context) {
+  const FeatureMesh& mesh = *source.mesh;
   CutSource fewer = source;
+  CurveNetwork network;
+  const auto leaves_some_out = [&] {
+    network = find_curves(mesh, fewer.curves);
+    fewer.curve_edges = edges_of(network);
+    return fewer.curve_edges != source.curve_edges;
+  };
   fewer.curves.drops_small_patches = true;
-  const CurveNetwork network = find_curves(*source.mesh, fewer.curves);
-  fewer.curve_edges = edges_of(network);
-  if (fewer.curve_edges == source.curve_edges) return nullptr;
-  const CurveNetwork all = find_curves(*source.mesh, source.curves);
-  fewer.left_out = left_out_of(*source.mesh, all, fewer.curve_edges);
+  if (!leaves_some_out()) {
+    const auto near = creases_near(mesh, network, places, source.curves.edge_length_world, frame);
+    fewer.curves.smooth.insert(fewer.curves.smooth.end(), near.begin(), near.end());
+    if (!leaves_some_out()) return nullptr;
+  }
+  CurveOptions all = source.curves;
+  all.smooth.clear();
+  all.drops_small_patches = false;
+  fewer.left_out = left_out_of(mesh, find_curves(mesh, all), fewer.curve_edges);
   const int64_t border_loops = report.features.border_loops;
-  report_found(*source.mesh, network, border_loops > 0, report.features);
+  report_found(mesh, network, border_loops > 0, report.features);
   report.features.border_loops = border_loops;
   return make_cut(std::move(fewer), network, frame, report.features, context);
 }

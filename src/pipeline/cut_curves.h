@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
@@ -30,10 +31,11 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
 bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curves, const RemeshOptions& options,
                Prepared& p, RemeshReport& report, Context& context);
 
-/// The same without the sharp creases around patches that are too small for the edges. Null where there are none left
-/// to leave out. Throws: as cut_surface.
-std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const LatticeFrame& frame,
-                                                  RemeshReport& report, Context& context);
+/// The same without the creases that the edges of the result cannot follow: those around patches that are too small for
+/// the edges, and, once these are out, those within about an edge length of `places`, where it went wrong. Null where
+/// there are none left to leave out. Throws: as cut_surface.
+std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const std::vector<PointQ8>& places,
+                                                  const LatticeFrame& frame, RemeshReport& report, Context& context);
 
 /// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
 /// Result: why it cannot be done, said by the work or by the stage that refuses; empty where it is done.

@@ -87,7 +87,7 @@ void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report)
   const WorldPoint& at = curves.front().at;
   std::ostringstream text;
   text << counted(int64_t(curves.size()), "crease is", "creases are") << " not kept, the first near " << at.x << ' '
-       << at.y << ' ' << at.z << ": patches there are too small for the edges; ask for more --vertices";
+       << at.y << ' ' << at.z << ": the edges are too long for them; ask for more --vertices";
   report.warnings.push_back(text.str());
   report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
 }

@@ -30,6 +30,7 @@
 #include "pipeline/feature_report.h"
 #include "pipeline/given_lines.h"
 #include "pipeline/part_fans.h"
+#include "pipeline/patch_defects.h"
 #include "pipeline/relax_level.h"
 #include "pipeline/resolve_intersections.h"
 #include "pipeline/sizing.h"
@@ -46,7 +47,7 @@ CurveOptions curve_options(const RemeshOptions& options, double edge_length_worl
   return {mode, options.features.degrees, edge_length_world};
 }
 
-constexpr int kRoundsOfShorterSegments = 1;  ///< each costs a whole relaxation
+constexpr int kRoundsOfShorterSegments = 1, kRoundsOfFewerCurves = 4;  ///< each costs a whole relaxation
 
 /// The snapped surface: what a stage file holds, so that a run that resumes finds the same features.
 TriangleSoup soup_of(const LatticeSurface& surface) {
@@ -151,23 +152,41 @@ std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>&
   });
 }
 
-/// The same without the curves around patches that are too small. Result: `why` where there are none.
-std::string mesh_with_fewer_curves(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
-                                   PatchOptions options, const std::string& why, RemeshReport& report,
-                                   Context& context) {
-  const FeatureReport all = report.features;
-  std::string against = reason_against([&] {
-    const std::shared_ptr<const CutSurface> fewer = timed(
-        report, "features", context, [&] { return cut_along_fewer(*p.cut->source, p.surface.frame, report, context); });
+/// Where triangles of a mesh that cannot be the run's are wrong.
+std::vector<PointQ8> wrong_places(const SeededMesh& made, const RemeshReport& report) {
+  if (report.dual.failed_cells > 0) return find_patch_defects(made);
+  return crossing_corners(*OnHost(made.mesh), OnHost(made.seeds)->fixed.joined.view());
+}
+
+/// The same once without curves that cannot be followed. Result: `why` where there are none to leave out.
+std::string mesh_without_some_curves(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
+                                     PatchOptions options, const std::string& why, RemeshReport& report,
+                                     Context& context) {
+  const std::string against = reason_against([&] {
+    const std::shared_ptr<const CutSurface> fewer = timed(report, "features", context, [&] {
+      return cut_along_fewer(*cut->source, wrong_places(made, report), p.surface.frame, report, context);
+    });
     if (!fewer) return why;
     cut = fewer;
     options.seeds.count = cut->seeds;
     made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
     return std::string();
   });
-  if (against.empty()) against = mesh_in_rounds(p, cut, made, options, report, context);
-  if (!against.empty()) report.features = all;
-  return against;
+  return against.empty() ? mesh_in_rounds(p, cut, made, options, report, context) : against;
+}
+
+/// The mesh with as many curves as can be kept. Result: why there is none; empty where there is.
+std::string mesh_with_curves(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
+                             const PatchOptions& options, RemeshReport& report, Context& context) {
+  const FeatureReport all = report.features;
+  std::string why = mesh_in_rounds(p, cut, made, options, report, context);
+  for (int rounds = kRoundsOfFewerCurves; !why.empty() && rounds > 0; --rounds) {
+    const std::shared_ptr<const CutSurface> before = cut;
+    why = mesh_without_some_curves(p, cut, made, options, why, report, context);
+    if (cut == before) break;
+  }
+  if (!why.empty()) report.features = all;
+  return why;
 }
 
 /// Says which attributes have none that could be kept.
@@ -268,8 +287,7 @@ RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
                                                 RemeshReport& report, Context& context) {
   std::shared_ptr<const CutSurface> cut = p.cut;
-  std::string why = mesh_in_rounds(p, cut, made, options, report, context);
-  if (!why.empty()) why = mesh_with_fewer_curves(p, cut, made, options, why, report, context);
+  std::string why = mesh_with_curves(p, cut, made, options, report, context);
   std::optional<TriangleMesh> mesh;
   JoinedPatches joined;
   if (why.empty())

@@ -395,6 +395,21 @@ TEST_CASE("curves: patches too small for the edges lose sharp creases, too, wher
   CHECK(length_on(fewer, false) < 10);
 }
 
+TEST_CASE("curves: edges said to be smooth are no creases, borders stay what they are", "[curves][unit]") {
+  const FeatureMesh mesh = weld_for_features(cube(2));
+  CurveOptions options{CreaseMode::threshold, 40, .1};
+  for (const FeatureCurve& curve : find_curves(mesh, options).curves)
+    for (size_t i = 1; i < curve.vertex.size(); ++i)
+      if (mesh.vertices[curve.vertex[i]].z == mesh.vertices[curve.vertex[i - 1]].z)
+        options.smooth.push_back({curve.vertex[i], curve.vertex[i - 1]});
+  CHECK(find_curves(mesh, options).curves.size() == 4);
+  const FeatureMesh flat = weld_for_features(sheet(4, 4, .25, 25));
+  CurveOptions of_flat{CreaseMode::threshold, 26, .1};
+  const CurveNetwork borders = find_curves(flat, of_flat);
+  for (const FeatureCurve& curve : borders.curves) of_flat.smooth.push_back({curve.vertex[0], curve.vertex[1]});
+  CHECK(find_curves(flat, of_flat).curves.size() == borders.curves.size());
+}
+
 TEST_CASE("curves: they do not depend on the order of vertices and triangles", "[curves][unit]") {
   for (const TriangleSoup& soup : {shaken(cube(12), .1 / 12), cylinder(20, 5, 2), plate_with_round_hole(6),
                                    shapes::random_soup(300, 1, .4, 5), sheet(9, 7, .25, 70)}) {
