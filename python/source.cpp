@@ -17,6 +17,7 @@
 #include "attributes.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
+#include "isoshell/triangle_mesh.h"
 
 namespace nb = nanobind;
 
@@ -53,12 +54,24 @@ Source triangles(const std::string& name, const AnyArray& vertices, const AnyArr
   return surface(name, std::move(soup));
 }
 
-Source polygons(const std::string& name, const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+PolygonSoup polygon_soup(const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
   PolygonSoup soup;
   soup.vertices = points_of("vertices", vertices);
   soup.sizes = indices_of("sizes of faces", sizes, size_t(UINT32_MAX));
   soup.corners = indices_of("faces", corners, soup.vertices.size());
-  return surface(name, split_polygons(std::move(soup), name));
+  return soup;
+}
+
+Source polygons(const std::string& name, const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+  return surface(name, split_polygons(polygon_soup(vertices, sizes, corners), name));
+}
+
+/// What split_polygons makes of the faces: their triangles, in the faces' order.
+nb::object split(const std::string& name, const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+  TriangleMesh mesh;
+  mesh.triangles = split_polygons(polygon_soup(vertices, sizes, corners), name).triangles;
+  const nb::object owner = nb::cast(std::move(mesh));
+  return nb::cast(rows_of(nb::cast<const TriangleMesh&>(owner).triangles, owner));
 }
 
 Source points(const AnyArray& positions, const std::optional<AnyArray>& normals) {
@@ -109,6 +122,10 @@ void bind_source(nb::module_& m) {
       .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
                   nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
                           "float, float]) -> Source"));
+  m.def("split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
+        nb::sig("def split_polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
+                "typing.Any"),
+        "The triangles of faces of any number of corners, in their order; what has no area or no finite place has none.");
 }
 
 }  // namespace isoshell::python

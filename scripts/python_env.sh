@@ -3,7 +3,7 @@
 # they cannot be had, the module and its tests are left out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-packages=(numpy nanobind pytest mypy trimesh)
+packages=(numpy nanobind pytest mypy trimesh usd-core)
 python=build/python/bin/python
 
 if ! "$python" -c "import ${packages[*]/%/,} sys" 2>/dev/null; then
