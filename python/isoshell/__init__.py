@@ -25,4 +25,15 @@ __all__ = ["Context", "Error", "ErrorCode", "Mesh", "Options", "Points", "Result
 
 for _name in ("Context", "Error", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate", "remesh"):
     globals()[_name].__module__ = __name__
+
+
+def __getattr__(name: str) -> object:
+    """isoshell.usd, which is imported where it is used."""
+    if name == "usd":
+        import importlib
+
+        return importlib.import_module(".usd", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 _atexit.register(_isoshell.end_jobs_left_alone)

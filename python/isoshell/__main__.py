@@ -8,7 +8,13 @@ from . import _isoshell
 
 def main() -> int:
     """Run the command with the arguments of this process. Returns its exit status."""
-    return _isoshell.command(["vdb_isomesh", *map(os.fspath, sys.argv[1:])])
+    words = [*map(os.fspath, sys.argv[1:])]
+    if any(".usd" in word.lower() for word in words):
+        from ._usd_command import names_usd, run
+
+        if names_usd(words):
+            return run(words)
+    return _isoshell.command(["vdb_isomesh", *words])
 
 
 if __name__ == "__main__":

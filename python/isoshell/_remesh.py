@@ -11,13 +11,15 @@ from ._context import Context
 from ._errors import Error, RunWarning
 from ._keywords import PLACE, Keywords, keywords_of
 from ._result import Result, checked
-from ._sources import SourceLike, is_true_or_false, source_of
+from ._sources import SourceLike, is_true_or_false, opened, source_of
+from ._usd import is_usd
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._options import Options
 
+OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
 CALLERS = 3  # frames between a warning and the line that asked for the run
 
 
@@ -26,12 +28,14 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     """Remesh a surface: an isotropic triangle mesh of it.
 
     Args:
-        source: a path that the command can read; (vertices, faces), arrays of (K, 3) numbers in world units and of
+        source: a path that the command can read, or a stage of USD, perhaps with a prim in it, as
+            scene.usda:/World/Mesh (see isoshell.usd); (vertices, faces), arrays of (K, 3) numbers in world units and of
             (M, 3) whole numbers, or faces of more corners; anything with .vertices and .faces, such as a mesh of
             trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Mesh, which has attributes;
             isoshell.Points; isoshell.Volume. Arrays are whatever numpy or DLPack can take, of the host; they are
             copied once.
-        output: also write the result there, as the command does.
+        output: also write the result there, as the command does, or as a stage of USD, which names the files of
+            save_shell and save_voronoi as volumes.
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
             what these say, progress may be a function, called as progress(stage, fraction), and stats may be True, to
@@ -52,8 +56,17 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
         given["stats"] = stats
     place, progress, keywords = settle(context, given, source)
     target = "" if output is None else os.fsdecode(output)
-    made = _isoshell.remesh(place, source_of(source), keywords, target, measure_all, progress, listener(given))
-    return checked(Result(made))
+    volumes = [os.fsdecode(given[name]) for name in ("save_shell", "save_voronoi") if given.get(name)]
+    is_stage = is_usd(target)
+    if is_stage:
+        check_stage(target, given, volumes)
+    source = opened(source)
+    made = _isoshell.remesh(place, source_of(source), keywords, "" if is_stage else target, measure_all, progress,
+                            listener(given))
+    result = Result(made, getattr(source, "origin", None), volumes)
+    if is_stage:
+        result.save(target, overwrite=given.get("force") is True)
+    return checked(result)
 
 
 def estimate(source: SourceLike, *, context: Optional[Context] = None, **options: Unpack[Options]) -> dict[str, Any]:
@@ -66,6 +79,16 @@ def estimate(source: SourceLike, *, context: Optional[Context] = None, **options
     given: dict[str, Any] = dict(options)
     place, _, keywords = settle(context, given, source)
     return _isoshell.estimate(place, source_of(source), keywords, listener(given))
+
+
+def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> None:
+    """Before a run whose output is a stage of USD: whether it can be."""
+    from ._usd_write import check_target
+
+    refused = [name for name in OF_OTHER_OUTPUTS if options.get(name)]
+    if refused:
+        raise Error(f"{', '.join(refused)}: not where output is {target}", stage="options")
+    check_target(target, options.get("force") is True, volumes)
 
 
 def settle(context: Optional[Context], options: dict[str, Any], source: Any) -> tuple[Any, Any, Keywords]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 from . import _isoshell
 from ._errors import Error
+from ._usd import Origin, is_usd
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,10 +21,19 @@ if TYPE_CHECKING:
 
 
 class Result:
-    """An isotropic triangle mesh, and all that is known of its run."""
+    """An isotropic triangle mesh, and all that is known of its run.
 
-    def __init__(self, made: _isoshell.RunResult) -> None:
+    Attributes:
+        origin: what the scene that it comes from says of axes, units and materials, otherwise None: see isoshell.usd.
+    """
+
+    origin: Optional[Origin]
+
+    def __init__(self, made: _isoshell.RunResult, origin: Optional[Origin] = None,
+                 volumes: Sequence[str] = ()) -> None:
         self._made = made
+        self.origin = origin
+        self._volumes = list(volumes)
         self._report: Optional[dict[str, Any]] = None
         self._attributes: Optional[list[tuple[str, str, Array, list[str]]]] = None
 
@@ -84,11 +94,20 @@ class Result:
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write the mesh with its attributes, as far as the format that the path's ending names has them.
 
+        A stage of USD (.usda, .usdc, .usd, .usdz; needs usd-core) also names the stage files that the run saved, but
+        in packages: see isoshell.usd.write, which takes more.
+
         Raises:
             Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True; of code
                 USAGE for an ending that names no format.
         """
-        self._made.save(os.fspath(path), overwrite)
+        if is_usd(path):
+            from . import usd
+
+            package = os.fsdecode(path).lower().endswith(".usdz")
+            usd.write(path, self, volumes=[] if package else self._volumes, overwrite=overwrite)
+        else:
+            self._made.save(os.fspath(path), overwrite)
 
     def to_trimesh(self) -> trimesh.Trimesh:
         """A trimesh.Trimesh with copies of vertices and faces, and the colours of vertices. Needs trimesh."""

@@ -9,6 +9,7 @@ from ._arrays import array_of
 from ._errors import Error
 from ._isoshell import Source
 from ._result import Result
+from ._usd import Origin, is_usd
 
 if TYPE_CHECKING:
     import numpy as np
@@ -50,6 +51,10 @@ class Mesh:
         of_faces: by name (M,) numbers, and "color" (M, 3) or (M, 4).
         of_corners: "uv" (M, 3, 2) and "normal" (M, 3, 3).
         labels: by name the names that an attribute's values are the numbers of, -1 being none: "material", for one.
+
+    Attributes:
+        name: what messages call it.
+        origin: of a mesh from a scene, what that says of axes, units and materials: see isoshell.usd.
     """
 
     def __init__(self, vertices: Any, faces: Any, *, of_vertices: Optional[Mapping[str, Any]] = None,
@@ -61,6 +66,8 @@ class Mesh:
         self.of_faces = dict(of_faces or {})
         self.of_corners = dict(of_corners or {})
         self.labels = dict(labels or {})
+        self.name = "mesh"
+        self.origin: Optional[Origin] = None
 
 
 class Points:
@@ -98,8 +105,18 @@ class Volume:
 SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
 
 
+def opened(given: Any) -> Any:
+    """Files that are read here and not by the library, as meshes; anything else as it is."""
+    if not is_usd(given):
+        return given
+    from . import usd
+
+    return usd.read(given)
+
+
 def source_of(given: Any) -> Source:
     """The source that an argument of remesh() means."""
+    given = opened(given)
     if isinstance(given, (str, os.PathLike)):
         return Source.file(os.fspath(given))
     if isinstance(given, Points):
@@ -113,7 +130,7 @@ def source_of(given: Any) -> Source:
         named = [attribute for attribute in given._named_attributes() if attribute[0] != "gap"]
         return _source_of_triangles("result", given.vertices, given.faces, named)
     if isinstance(given, Mesh):
-        return _source_of_triangles("mesh", given.vertices, given.faces, _attributes_of(given))
+        return _source_of_triangles(given.name, given.vertices, given.faces, _attributes_of(given))
     for name in ("vertices", "points"):
         vertices, faces = getattr(given, name, None), getattr(given, "faces", None)
         if vertices is not None and faces is not None:

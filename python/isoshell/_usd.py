@@ -1,0 +1,81 @@
+"""What reading and writing USD share: names of files, the library, and what a scene says beside its meshes."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import re
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+from ._errors import Error
+from ._isoshell import ErrorCode
+
+ENDINGS = (".usd", ".usda", ".usdc", ".usdz")
+NAMED = re.compile(r"(?P<file>.*\.usd[acz]?)(?::(?P<prim>[^:\\]*))?", re.IGNORECASE | re.DOTALL)
+MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "UsdVol", "Vt")
+
+
+@dataclass
+class Origin:
+    """What a scene says beside its meshes; a result keeps it, and writes it again.
+
+    Attributes:
+        up_axis: "Y" or "Z"; nothing is ever turned.
+        meters_per_unit: metres in a unit of the coordinates.
+        name: of the mesh.
+        root: of the prim that holds everything.
+        uv_name: the primvar that the attribute uv comes from.
+        vectors: by name the USD type of attributes that come apart into name.0, name.1 and so on.
+        constants: names of attributes that have one value for all.
+        materials: a layer of USD, as text, with the materials by their labels below /Materials.
+    """
+
+    up_axis: str = "Y"
+    meters_per_unit: float = 1.0
+    name: str = "mesh"
+    root: str = "World"
+    uv_name: str = "st"
+    vectors: dict[str, str] = field(default_factory=dict)
+    constants: set[str] = field(default_factory=set)
+    materials: str = ""
+
+
+def is_usd(path: Any) -> bool:
+    """Whether a path names a USD file, perhaps with a prim in it."""
+    return isinstance(path, (str, os.PathLike)) and NAMED.fullmatch(os.fsdecode(path)) is not None
+
+
+def split_name(path: str | os.PathLike[str]) -> tuple[str, Optional[str]]:
+    """FILE.usd:/PRIM as file and prim, or None without one."""
+    found = NAMED.fullmatch(os.fsdecode(path))
+    if found is None:
+        raise Error(f"{os.fsdecode(path)}: the ending must be one of {', '.join(ENDINGS)}")
+    return found["file"], found["prim"]
+
+
+def library() -> Any:
+    """The package pxr with the modules used here.
+
+    Raises:
+        Error: of code USAGE, saying what to install.
+    """
+    try:
+        package = importlib.import_module("pxr")
+        for name in MODULES:
+            importlib.import_module(f"pxr.{name}")
+    except ImportError as error:
+        raise Error(f"USD files need usd-core, which cannot be imported ({error}): pip install 'isoshell[usd]', or "
+                    "pip install usd-core", stage="usd") from error
+    return package
+
+
+def unreadable(place: str, what: str) -> Error:
+    """The error of a file that cannot be read."""
+    return Error(f"{place}: {what}", ErrorCode.UNREADABLE_INPUT, "read")
+
+
+def reason_of(error: Exception) -> str:
+    """What USD says of its errors, without where in its sources that was."""
+    found = re.findall(r"'([^'\n]{12,})'", str(error).replace("\\n", " "))
+    return found[-1] if found else " ".join(str(error).split())

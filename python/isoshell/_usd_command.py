@@ -1,0 +1,105 @@
+"""The command where INPUT or OUTPUT is a stage of USD, which the command itself does not read."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+import warnings
+from typing import Any, Optional
+
+from ._errors import Error, RunWarning
+from ._isoshell import ErrorCode
+from ._keywords import flags
+from ._remesh import estimate, remesh
+from ._result import Result
+from ._usd import is_usd
+
+SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help"}
+
+
+def names_usd(words: list[str]) -> bool:
+    """Whether INPUT or OUTPUT is one, and nobody asks for the help."""
+    places, options = split_words(words)
+    return any(is_usd(place) for place in places) and not {"help", "version"} & set(options)
+
+
+def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
+    """The places that are no options, and the options as keywords, not checked."""
+    places: list[str] = []
+    options: dict[str, Any] = {}
+    left = [SHORT.get(word, word) for word in words]
+    while left:
+        word = left.pop(0)
+        if not word.startswith("--"):
+            places.append(word)
+            continue
+        option, is_joined, value = word[2:].partition("=")
+        name = option.replace("-", "_")
+        if is_joined:
+            options[name] = value
+        elif flags().get(name, True):
+            options[name] = True
+        else:
+            options[name] = left.pop(0) if left else ""
+    return places, options
+
+
+def run(words: list[str]) -> int:
+    """Run the command. Returns its exit status."""
+    places, options = split_words(words)
+    if options.get("verbose"):
+        logging.basicConfig(format="vdb_isomesh: %(message)s", level=logging.INFO)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", RunWarning)
+        warnings.showwarning = _show_warning
+        try:
+            if len(places) != 2 and not (options.get("dry_run") and len(places) == 1):
+                raise Error(f"{len(places)} names of files; give INPUT and OUTPUT", stage="command line")
+            _run(places, options)
+        except Error as error:
+            if error.result is not None:
+                _tell(f"error: gate failed: {error}")
+            else:
+                _tell(f"error: {error}")
+            return int(error.code)
+        except KeyboardInterrupt:
+            _tell("error: interrupted")
+            return int(ErrorCode.INTERRUPTED)
+    return 0
+
+
+def _run(places: list[str], options: dict[str, Any]) -> None:
+    missing = [name for name, value in options.items() if value == ""]
+    if missing:
+        raise Error(f"--{missing[0].replace('_', '-')} needs a value", stage="command line")
+    start = time.perf_counter()
+    options.setdefault("progress", "auto")
+    if options.pop("dry_run", False):
+        _tell("estimate: " + ", ".join(f"{name} {value}" for name, value in estimate(places[0], **options).items()))
+        return
+    result: Optional[Result] = None
+    try:
+        result = remesh(places[0], output=places[1], **options)
+    except Error as error:
+        result = error.result
+        raise
+    finally:
+        if result is not None and not options.get("quiet"):
+            _tell(f"{places[1]}: {_summary(result)}, {time.perf_counter() - start:.1f} s")
+
+
+def _summary(result: Result) -> str:
+    topology, quality = result.report["topology"], result.report["quality"]
+    kind = f"closed 2-manifold of genus {topology['genus']}" if topology["closed"] else "not closed"
+    return (f"{len(result.vertices)} vertices, {len(result.faces)} triangles, {topology['components']} "
+            f"component{'' if topology['components'] == 1 else 's'}, {kind}, smallest angle "
+            f"{quality['theta_min_deg']:.1f}")
+
+
+def _show_warning(message: Any, *_: Any) -> None:
+    _tell(f"warning: {message}")
+
+
+def _tell(text: str) -> None:
+    print(f"vdb_isomesh: {text}", file=sys.stderr)

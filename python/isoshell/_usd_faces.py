@@ -1,0 +1,158 @@
+"""A mesh prim of USD as triangles in world units, checked before anything is made of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from . import _isoshell
+from ._errors import Error
+from ._usd import unreadable
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, np.dtype[Any]]
+
+
+@dataclass
+class Column:
+    """An attribute of one mesh: a row for each of its elements."""
+
+    values: Array
+    domain: str  # "vertex", "face", "corner" or "constant"
+    labels: list[str] = field(default_factory=list)  # where values are numbers of names
+
+
+@dataclass
+class Triangles:
+    """The triangles of one mesh, and where each comes from."""
+
+    path: str
+    points: Array  # (K, 3) float64, world units
+    faces: Array  # (M, 3) vertices
+    face_of: Array  # (M,): the face of the prim
+    corner_of: Array  # (M, 3): the place in faceVertexIndices
+    face_count: int
+    corner_count: int
+    columns: dict[str, Column] = field(default_factory=dict)
+
+
+def triangles_of(pxr: Any, prim: Any, matrix: Any, time: Any) -> Triangles:
+    """The faces of a mesh prim, holes left out, polygons split as readers of mesh files split them.
+
+    Raises:
+        Error: of code UNREADABLE_INPUT for what contradicts itself.
+    """
+    import numpy as np
+
+    mesh = pxr.UsdGeom.Mesh(prim)
+    path = str(prim.GetPath())
+    stored = _array(mesh.GetPointsAttr().Get(time), np.float32).reshape(-1, 3)
+    sizes = _array(mesh.GetFaceVertexCountsAttr().Get(time), np.int64)
+    corners = _array(mesh.GetFaceVertexIndicesAttr().Get(time), np.int64)
+    _check(path, len(stored), sizes, corners)
+    rows = rows_of(path, matrix)
+    points = placed(stored.astype(np.float64), rows)
+    used = np.ones(len(sizes), bool)
+    holes = _array(mesh.GetHoleIndicesAttr().Get(time), np.int64)
+    if np.any((holes < 0) | (holes >= len(sizes))):
+        raise unreadable(path, f"holeIndices name a face that is none of its {len(sizes)}")
+    used[holes] = False
+    face_of, corner_of = _split(path, points, sizes, corners, used)
+    is_left_handed = mesh.GetOrientationAttr().Get(time) == pxr.UsdGeom.Tokens.leftHanded
+    if is_left_handed != (determinant(rows) < 0):
+        corner_of = corner_of[:, [0, 2, 1]]
+    return Triangles(path, points, corners[corner_of], face_of, corner_of, len(sizes), len(corners))
+
+
+def rows_of(path: str, matrix: Any) -> Array:
+    """A matrix of USD, which turns rows: three rows of axes and one of the place."""
+    import numpy as np
+
+    rows = np.array(matrix, np.float64)
+    if not np.all(np.isfinite(rows)):
+        raise unreadable(path, "its transform is not finite")
+    return rows[:, :3]
+
+
+def placed(points: Array, rows: Array) -> Array:
+    """Points in the world. Sums are written out, so that they are the same on every machine."""
+    x, y, z = points[:, 0:1], points[:, 1:2], points[:, 2:3]
+    return x * rows[0] + y * rows[1] + z * rows[2] + rows[3]
+
+
+def turned_normals(normals: Array, rows: Array) -> Array:
+    """Normals in the world: by the cofactors, which stay what they are where an axis is flat."""
+    import numpy as np
+
+    a, b, c = rows[0], rows[1], rows[2]
+    cofactors = np.array([_cross(b, c), _cross(c, a), _cross(a, b)])
+    if determinant(rows) < 0:
+        cofactors = -cofactors
+    x, y, z = normals[:, 0:1], normals[:, 1:2], normals[:, 2:3]
+    return x * cofactors[0] + y * cofactors[1] + z * cofactors[2]
+
+
+def determinant(rows: Array) -> float:
+    """Below 0 where the transform mirrors."""
+    normal = _cross(rows[1], rows[2])
+    return float(rows[0][0] * normal[0] + rows[0][1] * normal[1] + rows[0][2] * normal[2])
+
+
+def _cross(a: Array, b: Array) -> Array:
+    import numpy as np
+
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def _array(value: Any, dtype: Any) -> Array:
+    import numpy as np
+
+    return np.zeros(0, dtype) if value is None else np.array(value, dtype)
+
+
+def _check(path: str, vertex_count: int, sizes: Array, corners: Array) -> None:
+    import numpy as np
+
+    if np.any(sizes < 0):
+        face = int(np.argmax(sizes < 0))
+        raise unreadable(path, f"faceVertexCounts[{face}] is {sizes[face]}; counts are not negative")
+    if int(sizes.sum()) != len(corners):
+        raise unreadable(path, f"its faceVertexCounts sum up to {sizes.sum()}, and it has {len(corners)} "
+                               "faceVertexIndices; both must be the same")
+    wrong = (corners < 0) | (corners >= vertex_count)
+    if np.any(wrong):
+        corner = int(np.argmax(wrong))
+        raise unreadable(path, f"faceVertexIndices[{corner}] is {corners[corner]} in a mesh of {vertex_count} points; "
+                               "indices count from 0 and are below that")
+
+
+def _split(path: str, points: Array, sizes: Array, corners: Array, used: Array) -> tuple[Array, Array]:
+    """Per triangle its face and the places of its corners, in the order of the faces."""
+    import numpy as np
+
+    first = np.cumsum(sizes) - sizes
+    simple = np.flatnonzero((sizes == 3) & used)
+    corner_of = first[simple][:, None] + np.arange(3)
+    polygons = np.flatnonzero((sizes > 3) & used)
+    if len(polygons) == 0:
+        return simple, corner_of
+    in_face = np.repeat(polygons, sizes[polygons])
+    starts = np.cumsum(sizes[polygons]) - sizes[polygons]
+    at = first[in_face] + np.arange(len(in_face)) - np.repeat(starts, sizes[polygons])
+    follows = at + 1
+    ends = follows == first[in_face] + sizes[in_face]
+    follows[ends] = first[in_face[ends]]
+    kept = corners[at] != corners[follows]  # a quad that is closed to a triangle stays one
+    at, in_face = at[kept], in_face[kept]
+    counts = np.bincount(in_face, minlength=len(sizes))[polygons]
+    try:
+        split = _isoshell.split_polygons(path, points[corners[at]], counts, np.arange(len(at)))
+    except Error as error:
+        if error.code != _isoshell.ErrorCode.NOTHING_TO_MESH:
+            raise
+        split = np.zeros((0, 3), np.int64)
+    faces = np.concatenate([simple, in_face[split[:, 0]]])
+    order = np.argsort(faces, kind="stable")
+    return faces[order], np.concatenate([corner_of, at[split]])[order]

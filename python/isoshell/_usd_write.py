@@ -1,0 +1,223 @@
+"""A result as a stage of USD, with the volumes that belong to it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import TYPE_CHECKING, Any, Iterable, Optional
+
+from ._errors import Error
+from ._isoshell import VERSION, ErrorCode
+from ._result import Result
+from ._usd import Origin, library, reason_of, split_name
+from ._usd_attributes import add_primvars
+from ._usd_materials import relative_asset, write_materials
+from ._vdb_header import Box, Grid, grids_of
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, np.dtype[Any]]
+
+FIELD_TYPES = {"float": "float", "double": "double", "int32": "int", "int64": "int64", "bool": "bool", "vec3s": "float3",
+               "vec3d": "double3", "vec3i": "int3"}
+CLASSES = {"level set": "levelSet", "fog volume": "fogVolume", "staggered": "staggered"}
+VECTOR_ROLES = {"closest_offset": "Vector", "color": "Color"}
+FAR = 64  # sizes of itself from the origin: beyond, single precision takes more than a millionth of the size
+
+
+def check_target(path: str, overwrite: bool, volumes: Iterable[str] = ()) -> None:
+    """Before a run: whether its result could be written there.
+
+    Raises:
+        Error: of code UNWRITABLE_OUTPUT or USAGE.
+    """
+    library()
+    file, prim = split_name(path)
+    if prim is not None:
+        raise Error(f"{path}: a prim is named; give the file alone", stage="write")
+    if os.path.isdir(file):
+        raise _unwritable(file, "is a directory")
+    if os.path.exists(file) and not overwrite:
+        raise _unwritable(file, "exists; overwrite=True (force of a run) replaces it")
+    if not os.path.isdir(os.path.dirname(file) or "."):
+        raise _unwritable(file, "its folder does not exist")
+    if file.lower().endswith(".usdz") and list(volumes):
+        raise Error(f"{file}: packages hold no volumes; give a .usda or .usdc", stage="write")
+
+
+def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str | os.PathLike[str]] = (),
+          up_axis: Optional[str] = None, meters_per_unit: Optional[float] = None, overwrite: bool = False) -> None:
+    """Write a result as a stage: a mesh with its attributes as primvars, materials, and volumes where they belong.
+
+    Args:
+        path: .usda (text), .usdc or .usd (binary), or .usdz (a package, without volumes).
+        result: what to write.
+        volumes: OpenVDB files, such as those of save_shell and save_voronoi; their paths are written relative to the
+            stage's, and each is a Volume of as many fields as it has grids.
+        up_axis: "Y" or "Z"; without it the source's, or Y.
+        meters_per_unit: without it the source's, or 1.
+        overwrite: replace a file that is there.
+
+    Raises:
+        Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there; UNREADABLE_INPUT for what is no OpenVDB
+            file; USAGE without usd-core.
+    """
+    pxr = library()
+    target = os.fsdecode(path)
+    files = [os.fsdecode(volume) for volume in volumes]
+    check_target(target, overwrite, files)
+    origin = result.origin or Origin()
+    axis = origin.up_axis if up_axis is None else up_axis
+    if axis not in ("Y", "Z"):
+        raise Error(f"up_axis is {axis!r}; it must be 'Y' or 'Z'", stage="write")
+    unit = origin.meters_per_unit if meters_per_unit is None else meters_per_unit
+    if not 0 < unit < float("inf"):
+        raise Error(f"meters_per_unit is {unit!r}; it must be above 0", stage="write")
+    folder = os.path.dirname(os.path.abspath(target))
+    grids = [grids_of(file) for file in files]
+
+    stage = pxr.Usd.Stage.CreateInMemory()
+    pxr.UsdGeom.SetStageUpAxis(stage, axis)
+    pxr.UsdGeom.SetStageMetersPerUnit(stage, unit)
+    stage.GetRootLayer().comment = f"isoshell {VERSION}"
+    root = pxr.UsdGeom.Xform.Define(stage, f"/{pxr.Tf.MakeValidIdentifier(origin.root)}")
+    stage.SetDefaultPrim(root.GetPrim())
+    names: set[str] = {"Materials"}
+    mesh = _write_mesh(pxr, stage, _free(pxr, root, origin.name, names), result)
+    add_primvars(pxr, mesh, result, origin)
+    _write_materials(pxr, stage, root.GetPath().AppendChild("Materials"), mesh, result, origin, folder)
+    for file, of_file in zip(files, grids):
+        name = os.path.basename(file).removesuffix(".vdb").split(".")[-1]
+        _write_volume(pxr, stage, _free(pxr, root, name, names), file, of_file, folder)
+    _save(pxr, stage, target)
+
+
+def _free(pxr: Any, root: Any, name: str, names: set[str]) -> Any:
+    """A path below the root that nothing has yet."""
+    base = free = pxr.Tf.MakeValidIdentifier(name)
+    while free in names:
+        free = f"{base}_{len(names)}"
+    names.add(free)
+    return root.GetPath().AppendChild(free)
+
+
+def _write_mesh(pxr: Any, stage: Any, path: Any, result: Result) -> Any:
+    import numpy as np
+
+    mesh = pxr.UsdGeom.Mesh.Define(stage, path)
+    points = result.vertices
+    offset = _offset_of(points)
+    if np.any(offset):
+        mesh.AddTranslateOp(pxr.UsdGeom.XformOp.PrecisionDouble).Set(pxr.Gf.Vec3d(*map(float, offset)))
+    stored = pxr.Vt.Vec3fArray.FromNumpy((points - offset).astype(np.float32))
+    mesh.CreatePointsAttr(stored)
+    mesh.CreateFaceVertexCountsAttr(pxr.Vt.IntArray.FromNumpy(np.full(len(result.faces), 3, np.int32)))
+    mesh.CreateFaceVertexIndicesAttr(pxr.Vt.IntArray.FromNumpy(np.ascontiguousarray(result.faces.reshape(-1))))
+    mesh.CreateSubdivisionSchemeAttr(pxr.UsdGeom.Tokens.none)
+    mesh.CreateExtentAttr(pxr.UsdGeom.PointBased.ComputeExtent(stored))
+    return mesh
+
+
+def _offset_of(points: Array) -> Array:
+    """What to take from the points, so that single precision has room for their shape; 0 near the origin."""
+    import numpy as np
+
+    if len(points) == 0:
+        return np.zeros(3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float(np.max(high - low))
+    if float(np.max(np.abs([low, high]))) <= FAR * size:
+        return np.zeros(3)
+    step = 2.0 ** np.ceil(np.log2(size)) if size > 0 else 1.0
+    return np.asarray(np.round((low + high) / (2 * step)) * step)
+
+
+def _write_materials(pxr: Any, stage: Any, scope: Any, mesh: Any, result: Result, origin: Origin, folder: str) -> None:
+    import numpy as np
+
+    labels = result.labels.get("material")
+    if not labels or result.domains["material"] != "face":
+        return
+    numbers = result.attributes["material"]
+    used = [label for i, label in enumerate(labels) if np.any(numbers == i)]
+    if not used:
+        return
+    materials = write_materials(pxr, stage, scope, used, origin.materials, folder)
+    api = pxr.UsdShade.MaterialBindingAPI
+    if len(used) == 1 and np.all(numbers == labels.index(used[0])):
+        api.Apply(mesh.GetPrim()).Bind(pxr.UsdShade.Material(materials[used[0]]))
+        return
+    binding = api.Apply(mesh.GetPrim())
+    for label in used:
+        faces = np.flatnonzero(numbers == labels.index(label)).astype(np.int32)
+        subset = binding.CreateMaterialBindSubset(materials[label].GetName(), pxr.Vt.IntArray.FromNumpy(faces))
+        api.Apply(subset.GetPrim()).Bind(pxr.UsdShade.Material(materials[label]))
+    whole = bool(np.all(numbers >= 0))
+    binding.SetMaterialBindSubsetsFamilyType(
+        pxr.UsdGeom.Tokens.partition if whole else pxr.UsdGeom.Tokens.nonOverlapping)
+
+
+def _write_volume(pxr: Any, stage: Any, path: Any, file: str, grids: list[Grid], folder: str) -> None:
+    """A volume without a transform of its own: its grids have theirs, to the same world as the mesh."""
+    volume = pxr.UsdVol.Volume.Define(stage, path)
+    boxes: list[Box] = []
+    names: set[str] = set()
+    for number, grid in enumerate(grids):
+        kind = FIELD_TYPES.get(grid.type.removeprefix("Tree_").split("_")[0])
+        if kind is None:
+            continue
+        name = pxr.Tf.MakeValidIdentifier(grid.name or "density")
+        name = f"{name}_{number}" if name in names else name
+        names.add(name)
+        asset = pxr.UsdVol.OpenVDBAsset.Define(stage, path.AppendChild(name))
+        asset.CreateFilePathAttr(pxr.Sdf.AssetPath(relative_asset(os.path.abspath(file), folder)))
+        asset.CreateFieldNameAttr(grid.name)
+        asset.CreateFieldDataTypeAttr(kind)
+        asset.CreateFieldClassAttr(CLASSES.get(grid.metadata.get("class", ""), "unknown"))
+        if grid.name in VECTOR_ROLES and kind.endswith("3"):
+            asset.CreateVectorDataRoleHintAttr(VECTOR_ROLES[grid.name])
+        volume.CreateFieldRelationship(name, asset.GetPath())
+        box = grid.box()
+        if box is not None:
+            boxes.append(box)
+    if boxes:
+        low = [min(box[0][i] for box in boxes) for i in range(3)]
+        high = [max(box[1][i] for box in boxes) for i in range(3)]
+        volume.CreateExtentAttr(pxr.Vt.Vec3fArray([pxr.Gf.Vec3f(*low), pxr.Gf.Vec3f(*high)]))
+
+
+def _save(pxr: Any, stage: Any, target: str) -> None:
+    """Under another name first, so that nothing half-written is left."""
+    folder = os.path.dirname(os.path.abspath(target))
+    package = target.lower().endswith(".usdz")
+    try:
+        with tempfile.TemporaryDirectory(prefix=".isoshell-", dir=folder) as work:
+            name, ending = os.path.splitext(os.path.basename(target))
+            made = os.path.join(work, name + (".usdc" if package else ending.lower()))
+            if package:
+                for attribute in (a for prim in stage.Traverse() for a in prim.GetAttributes()):
+                    _up_a_folder(pxr, attribute)
+            if not stage.GetRootLayer().Export(made):
+                raise _unwritable(target, "USD could not write it")
+            if package:
+                packed = os.path.join(work, "packed.usdz")
+                if not pxr.UsdUtils.CreateNewUsdzPackage(pxr.Sdf.AssetPath(made), packed):
+                    raise _unwritable(target, "USD could not pack it")
+                made = packed
+            os.replace(made, target)
+    except OSError as error:
+        raise _unwritable(target, os.strerror(error.errno or 0)) from error
+    except pxr.Tf.ErrorException as error:
+        raise _unwritable(target, reason_of(error)) from error
+
+
+def _up_a_folder(pxr: Any, attribute: Any) -> None:
+    """Files are named as seen from the target, and the package is made one folder below it."""
+    value = attribute.Get()
+    if isinstance(value, pxr.Sdf.AssetPath) and value.path.startswith(("./", "../")):
+        attribute.Set(pxr.Sdf.AssetPath("../" + value.path.removeprefix("./")))
+
+
+def _unwritable(path: str, what: str) -> Error:
+    return Error(f"{path}: {what}", ErrorCode.UNWRITABLE_OUTPUT, "write")
