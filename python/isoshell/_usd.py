@@ -76,6 +76,9 @@ def unreadable(place: str, what: str) -> Error:
 
 
 def reason_of(error: Exception) -> str:
-    """What USD says of its errors, without where in its sources that was."""
-    found = re.findall(r"'([^'\n]{12,})'", str(error).replace("\\n", " "))
-    return found[-1] if found else " ".join(str(error).split())
+    """What USD says of its errors, in one line and without where in its sources that was."""
+    try:  # pxr.Tf.ErrorException has its errors as arguments
+        texts = [str(getattr(part, "commentary", part)) for part in error.args] or [str(error)]
+    except UnicodeDecodeError:  # it quotes the file
+        return "it is damaged"
+    return " ".join("; ".join(texts).split())

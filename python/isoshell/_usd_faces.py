@@ -48,14 +48,14 @@ def triangles_of(pxr: Any, prim: Any, matrix: Any, time: Any) -> Triangles:
 
     mesh = pxr.UsdGeom.Mesh(prim)
     path = str(prim.GetPath())
-    stored = _array(mesh.GetPointsAttr().Get(time), np.float32).reshape(-1, 3)
-    sizes = _array(mesh.GetFaceVertexCountsAttr().Get(time), np.int64)
-    corners = _array(mesh.GetFaceVertexIndicesAttr().Get(time), np.int64)
+    stored = values_of(mesh.GetPointsAttr(), time, "f", 3)
+    sizes = values_of(mesh.GetFaceVertexCountsAttr(), time)
+    corners = values_of(mesh.GetFaceVertexIndicesAttr(), time)
     _check(path, len(stored), sizes, corners)
     rows = rows_of(path, matrix)
     points = placed(stored.astype(np.float64), rows)
     used = np.ones(len(sizes), bool)
-    holes = _array(mesh.GetHoleIndicesAttr().Get(time), np.int64)
+    holes = values_of(mesh.GetHoleIndicesAttr(), time)
     if np.any((holes < 0) | (holes >= len(sizes))):
         raise unreadable(path, f"holeIndices name a face that is none of its {len(sizes)}")
     used[holes] = False
@@ -106,10 +106,21 @@ def _cross(a: Array, b: Array) -> Array:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def _array(value: Any, dtype: Any) -> Array:
+def values_of(attribute: Any, time: Any, kinds: str = "iu", width: int = 1) -> Array:
+    """A list of whole numbers, or of rows of numbers; empty where there is none.
+
+    Raises:
+        Error: of code UNREADABLE_INPUT where the file has something else under that name.
+    """
     import numpy as np
 
-    return np.zeros(0, dtype) if value is None else np.array(value, dtype)
+    value = attribute.Get(time)
+    values = np.zeros((0, width)) if value is None else np.array(value)
+    if values.size == 0:
+        values = np.zeros((0, width), np.int64)
+    elif values.dtype.kind not in kinds or values.shape[1:] != ((width,) if width > 1 else ()):
+        raise unreadable(str(attribute.GetPath()), f"its type is {attribute.GetTypeName()}, which no mesh has there")
+    return values.reshape(-1, width) if width > 1 else values.reshape(-1).astype(np.int64)
 
 
 def _check(path: str, vertex_count: int, sizes: Array, corners: Array) -> None:

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from ._usd import unreadable
-from ._usd_faces import Column, Triangles
+from ._usd_faces import Column, Triangles, values_of
 from ._usd_scene import note
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Materials:
         for subset in api(prim).GetMaterialBindSubsets():
             if subset.GetElementTypeAttr().Get() != self._pxr.UsdGeom.Tokens.face:
                 continue
-            faces = np.array(subset.GetIndicesAttr().Get(self._time) or [], np.int64)
+            faces = values_of(subset.GetIndicesAttr(), self._time)
             if np.any((faces < 0) | (faces >= triangles.face_count)):
                 raise unreadable(str(subset.GetPath()), f"its indices name a face that is none of the "
                                                         f"{triangles.face_count} of the mesh")

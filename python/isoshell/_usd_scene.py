@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import warnings
@@ -26,6 +27,19 @@ def warn(text: str) -> None:
     warnings.warn(text, RunWarning, stacklevel=2)
 
 
+@contextlib.contextmanager
+def reading(pxr: Any, file: str) -> Iterator[None]:
+    """What USD says meanwhile stays off the terminal, and what it throws is an Error of code UNREADABLE_INPUT."""
+    delegate = pxr.UsdUtils.CoalescingDiagnosticDelegate()
+    try:
+        yield
+    except (pxr.Tf.ErrorException, RuntimeError, TypeError, UnicodeDecodeError) as error:
+        raise unreadable(file, f"USD cannot read it: {reason_of(error)}") from error
+    finally:
+        delegate.TakeUncoalescedDiagnostics()
+        del delegate
+
+
 def open_stage(pxr: Any, file: str) -> Any:
     """The stage of a file.
 
@@ -34,14 +48,7 @@ def open_stage(pxr: Any, file: str) -> Any:
     """
     if not os.path.isfile(file):
         raise unreadable(file, "is a directory" if os.path.isdir(file) else "no such file")
-    delegate = pxr.UsdUtils.CoalescingDiagnosticDelegate()  # keeps USD's messages off the terminal
-    try:
-        stage = pxr.Usd.Stage.Open(file)
-    except (pxr.Tf.ErrorException, RuntimeError) as error:
-        raise unreadable(file, f"USD cannot read it: {reason_of(error)}") from error
-    finally:
-        delegate.TakeUncoalescedDiagnostics()
-        del delegate
+    stage = pxr.Usd.Stage.Open(file)
     if not stage:
         raise unreadable(file, "USD cannot read it")
     broken = stage.GetCompositionErrors()

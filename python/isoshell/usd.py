@@ -22,7 +22,7 @@ from ._usd import Origin, is_usd, library, split_name
 from ._usd_faces import Triangles, rows_of, triangles_of
 from ._usd_materials import Materials
 from ._usd_primvars import add_columns, joined_columns
-from ._usd_scene import meshes_of, note, open_stage, root_of, time_of
+from ._usd_scene import meshes_of, note, open_stage, reading, root_of, time_of
 from ._usd_write import write
 
 __all__ = ["Origin", "is_usd", "read", "write"]
@@ -47,12 +47,19 @@ def read(path: str | os.PathLike[str], prim: Optional[str] = None, *, time: Opti
         Error: of code UNREADABLE_INPUT for a file that cannot be read or contradicts itself, NOTHING_TO_MESH without a
             mesh that is seen, USAGE for a prim that is not there and without usd-core.
     """
-    import numpy as np
-
     pxr = library()
     file, named = split_name(path)
+    with reading(pxr, file):
+        made = _read(pxr, file, prim if prim is not None else named, time, purposes)
+    made.name = os.fsdecode(path) if prim is None else f"{file}:{prim}"
+    return made
+
+
+def _read(pxr: Any, file: str, prim: Optional[str], time: Optional[float], purposes: Sequence[str]) -> Mesh:
+    import numpy as np
+
     stage = open_stage(pxr, file)
-    root = root_of(pxr, stage, file, prim if prim is not None else named)
+    root = root_of(pxr, stage, file, prim)
     code = time_of(pxr, stage, time)
     materials = Materials(pxr, code)
     origin = _origin_of(pxr, stage)
@@ -77,7 +84,6 @@ def read(path: str | os.PathLike[str], prim: Optional[str] = None, *, time: Opti
         {"vertex": made.of_vertices, "face": made.of_faces, "corner": made.of_corners}[domain][name] = _flat(values)
         if labels:
             made.labels[name] = labels
-    made.name = os.fsdecode(path) if prim is None else f"{file}:{prim}"
     made.origin = origin
     return made
 
