@@ -47,9 +47,7 @@ def _create(pxr: Any, api: Any, name: str, type_name: Any, interpolation: str) -
 
 def _of_all(name: str, domain: str, values: Array, origin: Origin) -> tuple[str, Array]:
     """The interpolation; one value where the source has one and all are the same."""
-    import numpy as np
-
-    if name in origin.constants and len(values) > 0 and np.all(values == values[0]):
+    if name in origin.constants and len(values) > 0 and bool((values == values[:1]).all()):
         return "constant", values[:1]
     return INTERPOLATIONS[domain], values
 
@@ -85,7 +83,7 @@ def _add_normals(pxr: Any, mesh: Any, result: Result, values: Array) -> None:
     import numpy as np
 
     normals = values.astype(np.float32)
-    missing = ~np.isfinite(normals).all(axis=2)
+    missing = np.asarray(~np.isfinite(normals).all(axis=2))
     if missing.any():
         a, b, c = (result.vertices[result.faces[:, i]] for i in range(3))
         across = np.cross(b - a, c - a)

@@ -52,7 +52,7 @@ def run(words: list[str]) -> int:
         logging.basicConfig(format="vdb_isomesh: %(message)s", level=logging.INFO)
     with warnings.catch_warnings():
         warnings.simplefilter("always", RunWarning)
-        warnings.showwarning = _show_warning
+        setattr(warnings, "showwarning", _show_warning)
         try:
             if len(places) != 2 and not (options.get("dry_run") and len(places) == 1):
                 raise Error(f"{len(places)} names of files; give INPUT and OUTPUT", stage="command line")

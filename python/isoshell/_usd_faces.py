@@ -78,8 +78,10 @@ def rows_of(path: str, matrix: Any) -> Array:
 
 def placed(points: Array, rows: Array) -> Array:
     """Points in the world. Sums are written out, so that they are the same on every machine."""
+    import numpy as np
+
     x, y, z = points[:, 0:1], points[:, 1:2], points[:, 2:3]
-    return x * rows[0] + y * rows[1] + z * rows[2] + rows[3]
+    return np.asarray(x * rows[0] + y * rows[1] + z * rows[2] + rows[3])
 
 
 def turned_normals(normals: Array, rows: Array) -> Array:
@@ -91,7 +93,7 @@ def turned_normals(normals: Array, rows: Array) -> Array:
     if determinant(rows) < 0:
         cofactors = -cofactors
     x, y, z = normals[:, 0:1], normals[:, 1:2], normals[:, 2:3]
-    return x * cofactors[0] + y * cofactors[1] + z * cofactors[2]
+    return np.asarray(x * cofactors[0] + y * cofactors[1] + z * cofactors[2])
 
 
 def determinant(rows: Array) -> float:

@@ -158,8 +158,9 @@ def _checked(name: str, values: Array, interpolation: str, triangles: Triangles)
     return Column(values.reshape(needed, -1), domain)
 
 
-def _left_out(name: str, triangles: Triangles, why: str) -> None:
+def _left_out(name: str, triangles: Triangles, why: str) -> Optional[Column]:
     warn(f"{triangles.path}: the primvar {name} is left out: {why}")
+    return None
 
 
 def joined_columns(meshes: list[Triangles]) -> list[tuple[str, str, Array, list[str]]]:

@@ -91,11 +91,12 @@ class _Reader:
         if map_type in MATRIX_MAPS:
             m = self.take("16d")
             return [list(m[4 * i:4 * i + 3]) for i in range(4)]
-        moved, scale = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+        moved: tuple[Any, ...] = (0.0, 0.0, 0.0)
+        scale: tuple[Any, ...] = (1.0, 1.0, 1.0)
         if "Translat" in map_type:
-            moved = self.take("3d")  # type: ignore[assignment]
+            moved = self.take("3d")
         if "Scale" in map_type:
-            scale = self.take("3d")  # type: ignore[assignment]
+            scale = self.take("3d")
         if map_type not in ("TranslationMap", "ScaleMap", "UniformScaleMap", "ScaleTranslateMap",
                             "UniformScaleTranslateMap"):
             raise self.refused(f"a grid has a {map_type}, whose place is not known")
