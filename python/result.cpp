@@ -36,6 +36,7 @@ void bind_result(nb::module_& m) {
           nb::for_getter(nb::sig("def features(self, /) -> dict[str, typing.Any]")))
       .def_prop_ro("statistics", [](const RunResult& r) { return statistics_json(r.record); })
       .def_prop_ro("digest", [](const RunResult& r) { return digest_text(digest(r.mesh)); })
+      .def_ro("gates", &RunResult::gates)
       .def_ro("missed_gates", &RunResult::missed_gates)
       .def("save", save, nb::arg("path"), nb::arg("overwrite"), nb::call_guard<nb::gil_scoped_release>());
 }

@@ -110,6 +110,7 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
 
 void bind_source(nb::module_& m) {
   nb::class_<Source>(m, "Source", "What one run starts from.")
+      .def_prop_ro("is_file", &Source::is_file)
       .def_static("file", file, nb::arg("path"))
       .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"), nb::arg("attributes"),
                   nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any, attributes: "

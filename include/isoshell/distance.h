@@ -1,6 +1,8 @@
 // How far a mesh is from another one, both ways.
 #pragma once
 
+#include <vector>
+
 #include "isoshell/backend.h"
 #include "isoshell/lattice_surface.h"
 #include "isoshell/triangle_mesh.h"
@@ -41,6 +43,9 @@ constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh th
 /// about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160. Throws: usage when a mesh has no
 /// triangle or names a vertex that it does not have.
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context);
+
+/// Of each point to the nearest one of the mesh, exact up to rounding, world units. Throws: usage as measure_distance.
+std::vector<double> distances(const std::vector<WorldPoint>& points, const TriangleMesh& mesh, Context& context);
 
 /// The triangles of the input as the stages see it: snapped, and repaired where it was.
 TriangleMesh to_world(const LatticeSurface& surface);

@@ -16,14 +16,16 @@ from ._isoshell import VERSION as __version__
 from ._isoshell import ErrorCode
 from ._options import Options
 from ._remesh import estimate, remesh
+from ._report import report
 from ._result import Result
 from ._sources import Mesh, Points, Volume
 from ._stages import Stages
 
 __all__ = ["Context", "Error", "ErrorCode", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages", "Volume",
-           "__version__", "estimate", "remesh"]
+           "__version__", "estimate", "remesh", "report"]
 
-for _name in ("Context", "Error", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate", "remesh"):
+for _name in ("Context", "Error", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate", "remesh",
+              "report"):
     globals()[_name].__module__ = __name__
 
 

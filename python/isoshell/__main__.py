@@ -4,6 +4,7 @@ import os
 import sys
 
 from . import _isoshell
+from ._report import has_k3d, write_of_command
 
 
 def main() -> int:
@@ -14,7 +15,7 @@ def main() -> int:
 
         if names_usd(words):
             return run(words)
-    return _isoshell.command(["vdb_isomesh", *words])
+    return _isoshell.command(["vdb_isomesh", *words], write_of_command if has_k3d() else None)
 
 
 if __name__ == "__main__":

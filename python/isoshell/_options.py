@@ -54,6 +54,8 @@ class Options(TypedDict, total=False):
         save_voronoi: also write the Voronoi volume, to resume from.
         stop_after: stop after this stage; OUTPUT is its .vdb file.
         stats: write all statistics as JSON; - writes to standard output.
+        report: also write a page that shows the result beside the input, with all that was measured; by the Python
+            module alone: pip install isoshell[report].
         force: overwrite existing files.
 
     Run:
@@ -99,6 +101,7 @@ class Options(TypedDict, total=False):
     save_voronoi: Optional[Path]
     stop_after: Optional[Literal["shell", "voronoi"]]
     stats: Optional[Union[bool, Path]]
+    report: Optional[Path]
     force: bool
     require: Optional[Union[str, Sequence[str]]]
     allow_intersections: bool

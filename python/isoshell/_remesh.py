@@ -6,10 +6,10 @@ import os
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
-from . import _isoshell
+from . import _isoshell, _report
 from ._context import Context
 from ._errors import Error, RunWarning
-from ._keywords import PLACE, Keywords, keywords_of
+from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._result import Result, checked
 from ._sources import SourceLike, is_true_or_false, opened, source_of
 from ._usd import is_usd
@@ -60,12 +60,17 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     is_stage = is_usd(target)
     if is_stage:
         check_stage(target, given, volumes)
+    if options.get("report"):
+        _report.require_k3d()
     source = opened(source)
-    made = _isoshell.remesh(place, source_of(source), keywords, "" if is_stage else target, measure_all, progress,
-                            listener(given))
-    result = Result(made, getattr(source, "origin", None), volumes)
+    start = source_of(source)
+    made = _isoshell.remesh(place, start, keywords, "" if is_stage else target, measure_all, progress, listener(given))
+    result = Result(made, start if start.is_file else None, [word for word in keywords if word[0] in READING],
+                    getattr(source, "origin", None), volumes)
     if is_stage:
         result.save(target, overwrite=given.get("force") is True)
+    if options.get("report"):
+        _report.write(result, source_of(source), os.fsdecode(str(options["report"])))
     return checked(result)
 
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     import pyvista  # type: ignore[import-not-found, import-untyped, unused-ignore]
     import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
+    from ._keywords import Keywords
+
     Floats = np.ndarray[Any, np.dtype[np.float64]]
     Ints = np.ndarray[Any, np.dtype[np.int32]]
     Array = np.ndarray[Any, np.dtype[Any]]
@@ -29,9 +31,12 @@ class Result:
 
     origin: Optional[Origin]
 
-    def __init__(self, made: _isoshell.RunResult, origin: Optional[Origin] = None,
+    def __init__(self, made: _isoshell.RunResult, source: Optional[_isoshell.Source] = None,
+                 reading: Optional[Keywords] = None, origin: Optional[Origin] = None,
                  volumes: Sequence[str] = ()) -> None:
         self._made = made
+        self._source = source  # of a file; what memory has is not kept
+        self._reading = reading or []  # the options that decide how it is read
         self.origin = origin
         self._volumes = list(volumes)
         self._report: Optional[dict[str, Any]] = None

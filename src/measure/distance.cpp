@@ -1,6 +1,7 @@
 // Distances between meshes by samples. Chunks of fixed size are looked at in parallel and joined in order.
 #include "isoshell/distance.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -168,6 +169,21 @@ MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& refe
     const double size = diagonal(reference);
     const OneSide to = one_sided(mesh, reference, size, context), from = one_sided(reference, mesh, size, context);
     return MeshDistance{to.distance, from.distance, size, to.normals, from.normals};
+  });
+}
+
+std::vector<double> distances(const std::vector<WorldPoint>& points, const TriangleMesh& mesh, Context& context) {
+  check(mesh);
+  return run_with_threads(context, [&] {
+    const TriangleGrid grid(mesh);
+    std::vector<double> found(points.size());
+    const auto part = [&](const tbb::blocked_range<size_t>& range) {
+      if (context.cancel.load(std::memory_order_relaxed)) return;
+      for (size_t i = range.begin(); i < range.end(); ++i) found[i] = std::sqrt(grid.distance_sq(points[i]));
+    };
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), size_t(kChunk)), part);
+    check_cancel(context, "distance");
+    return found;
   });
 }
 

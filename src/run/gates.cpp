@@ -91,7 +91,10 @@ bool are_the_inputs(const RunRecord& record) { return record.report.features.bor
 Gates parse_gates(const std::string& list) {
   Gates gates;
   std::istringstream items(list);
-  for (std::string gate; std::getline(items, gate, ',');) set_gate(gate, gates);
+  for (std::string gate; std::getline(items, gate, ',');) {
+    set_gate(gate, gates);
+    gates.asked.push_back(gate);
+  }
   return gates;
 }
 

@@ -74,6 +74,8 @@ Features possible_features(const RemeshOptions& options, const RunRequest& r) {
 void check_request(const RunRequest& r) {
   check_method(r.options);
   if (r.gates.any() && r.stop_after != StopAfter::mesh) refuse_use("--require needs a mesh; leave out --stop-after");
+  if (!r.report.empty() && r.stop_after != StopAfter::mesh) refuse_use("--report needs a mesh; leave out --stop-after");
+  if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
   if (r.save_shell == "-" || r.save_voronoi == "-") refuse_vdb_to_pipe();
   possible_features(r.options.values, r);
   if (r.output.path == "-" && r.statistics == "-") refuse_use("OUTPUT and --stats cannot both be standard output");
@@ -85,7 +87,7 @@ void check_request(const RunRequest& r) {
 }
 
 void check_outputs(const RunRequest& r) {
-  std::vector<std::string> files = {r.output.path, r.statistics, r.save_shell, r.save_voronoi};
+  std::vector<std::string> files = {r.output.path, r.statistics, r.report, r.save_shell, r.save_voronoi};
   if (!r.save_voronoi.empty()) files.push_back(preview_path(r.save_voronoi));
   if (r.stop_after == StopAfter::voronoi && !r.output.path.empty()) files.push_back(preview_path(r.output.path));
   if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty()))

@@ -116,7 +116,9 @@ class Run {
   }
 
   bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
-  bool measures_all() const { return request_.measures == Measures::all || !request_.statistics.empty(); }
+  bool measures_all() const {
+    return request_.measures == Measures::all || !request_.statistics.empty() || !request_.report.empty();
+  }
 
   template <class Work>
   std::invoke_result_t<Work> step(const char* name, Work work) {
@@ -318,7 +320,7 @@ class Run {
     for (const std::string& text : record_.report.warnings) warn(text);
     if (!request_.statistics.empty()) around_write(request_.statistics, [&] { write_statistics(); });
     std::vector<std::string> missed = missed_gates(request_.gates, record_);
-    return {std::move(mesh), std::move(record_), std::move(missed)};
+    return {std::move(mesh), std::move(record_), request_.gates.asked, std::move(missed)};
   }
 
   void write_statistics() const {

@@ -151,6 +151,13 @@ TEST_CASE("args: what excludes each other is refused", "[cli][args]") {
   CHECK(contains(refusal({"a.obj", "b.ply", "--method", "shell", "--adaptivity", "1"}), "--method sheet"));
 }
 
+TEST_CASE("args: a report needs a mesh and a file", "[cli][args]") {
+  CHECK(arguments({"--report", "page.html"}).run.report == "page.html");
+  CHECK(contains(refusal({"in.obj", "out.vdb", "--stop-after", "shell", "--report", "page.html"}),
+                 "leave out --stop-after"));
+  CHECK(contains(refusal({"in.obj", "out.ply", "--report", "-"}), "name a file"));
+}
+
 TEST_CASE("args: files must say what they are", "[cli][args]") {
   CHECK(contains(refusal({}), "INPUT is missing"));
   CHECK(contains(refusal({"a.obj"}), "OUTPUT is missing"));
@@ -203,7 +210,7 @@ TEST_CASE("args: the table of options has them all, with what stands for their v
       if (option.name == name) return option;
     return OptionEntry{};
   };
-  CHECK(table.size() == 40);
+  CHECK(table.size() == 41);
   CHECK(entry("vertices").value == "K");
   CHECK(entry("vertices").fallback == "10000");
   CHECK_FALSE(entry("vertices").real);

@@ -52,6 +52,19 @@ TEST_CASE("distance: what only one of two meshes has shows in one direction", "[
   CHECK(d.largest() == d.from_reference.max);
 }
 
+TEST_CASE("distance: that of points is the one to the nearest triangle, whatever the threads", "[distance][unit]") {
+  const TriangleMesh mesh = square(1, 0);
+  const std::vector<WorldPoint> points = {{0.5, 0.5, 2}, {2, 0.5, 0}, {4, 5, 0}, {0.25, 0.75, 0}};
+  for (const int threads : {1, 2}) {
+    Context context;
+    context.threads = threads;
+    CHECK(distances(points, mesh, context) == std::vector<double>{2, 1, 5, 0});
+  }
+  Context context;
+  CHECK(distances({}, mesh, context).empty());
+  CHECK_THROWS_AS(distances(points, {}, context), Error);
+}
+
 TEST_CASE("distance: samples weigh areas, not triangles", "[distance][unit]") {
   TriangleMesh mesh = square(1, 0);  // and a thousand small triangles far up, a millionth of its area
   for (uint32_t i = 0; i < 1000; ++i) {

@@ -116,6 +116,9 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
   option(files, "--save-voronoi", run.save_voronoi, "F.vdb", "also write the Voronoi volume, to resume from");
   option(files, "--stop-after", raw.stop_after, "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file");
   option(files, "--stats", run.statistics, "F.json", "write all statistics as JSON; - writes to standard output");
+  option(files, "--report", run.report, "F.html",
+         "also write a page that shows the result beside the input, with all that was measured; by the Python module "
+         "alone: pip install isoshell[report]");
   flag(files, "--force", run.overwrite, "overwrite existing files");
 
   const char* process = "Run";

@@ -8,7 +8,6 @@
 
 #include "isoshell/error.h"
 #include "vdb_isomesh/interrupt.h"
-#include "vdb_isomesh/run.h"
 
 namespace isoshell::tool {
 namespace {
@@ -20,20 +19,24 @@ void print(const std::string& text) {
     throw Error(ErrorCode::unwritable_output, "write", std::string("standard output: ") + std::strerror(errno));
 }
 
-int run_command(int argc, const char* const* argv) {
+int run_command(int argc, const char* const* argv, const WriteReport& write_report) {
   const CommandLine command = parse_command_line(argc, argv);
   if (!command.run) {
     print(command.text);
     return 0;
   }
   const Arguments& a = *command.run;
+  if (!a.run.report.empty() && !write_report)
+    throw Error(ErrorCode::usage, "command line",
+                "--report is made by the Python module: pip install 'isoshell[report]', then isoshell INPUT OUTPUT "
+                "--report FILE.html, with the same options");
   Console console(a.progress, a.verbosity);
   context.backend = a.backend;
   context.device = a.device;
   context.threads = a.threads;
   context.memory_limit_bytes = a.max_memory_bytes;
   context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
-  return run(a, context, console);
+  return run(a, context, console, write_report);
 }
 
 int report(ErrorCode code, const char* message) {
@@ -43,10 +46,10 @@ int report(ErrorCode code, const char* message) {
 
 }  // namespace
 
-int command(int argc, const char* const* argv) {
+int command(int argc, const char* const* argv, const WriteReport& write_report) {
   answer_signals(context);
   try {
-    return run_command(argc, argv);
+    return run_command(argc, argv, write_report);
   } catch (const Error& e) {
     return report(e.code(), e.what());
   } catch (const std::bad_alloc&) {

@@ -81,7 +81,7 @@ void tell_result(const RunRecord& record, Console& console) {
 
 }  // namespace
 
-int run(const Arguments& arguments, Context& context, Console& console) {
+int run(const Arguments& arguments, Context& context, Console& console, const WriteReport& write_report) {
   choose_device(context, console);
   RunRequest request = arguments.run;
   request.tell = [&](MessageKind kind, const std::string& text) {
@@ -95,6 +95,7 @@ int run(const Arguments& arguments, Context& context, Console& console) {
   const RunResult result = isoshell::run(request, context);
   tell_times(result.record, console);
   tell_result(result.record, console);
+  if (!request.report.empty()) write_report(request, result);
   for (const std::string& text : result.missed_gates) console.error("gate failed: " + text);
   return result.missed_gates.empty() ? 0 : int(ErrorCode::gate_failed);
 }

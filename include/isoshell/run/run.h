@@ -29,6 +29,7 @@ struct RunRequest {
   StopAfter stop_after = StopAfter::mesh;
   std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
   std::string statistics;                ///< file, or "-"; empty: none
+  std::string report;  ///< page that the front writes of the result afterwards, from all that is measured; empty: none
   Gates gates;
   Measures measures = Measures::mesh;
   bool overwrite = false;
@@ -49,6 +50,7 @@ void check_request(const RunRequest& request);
 struct RunResult {
   TriangleMesh mesh;  ///< empty when the run stopped before it
   RunRecord record;
+  std::vector<std::string> gates;  ///< as they were asked for
   std::vector<std::string> missed_gates;
 };
 

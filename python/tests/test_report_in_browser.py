@@ -1,0 +1,143 @@
+"""The page in a browser: chromium, which Debian's package of that name installs."""
+
+import shutil
+
+import isoshell
+import numpy as np
+import pytest
+
+pytest.importorskip("k3d", reason="a report needs k3d: pip install 'isoshell[report]'")
+playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+if not CHROMIUM:
+    pytest.skip("there is no chromium: apt install chromium", allow_module_level=True)
+
+pytestmark = pytest.mark.filterwarnings("ignore::isoshell.RunWarning")
+DRAWS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+DOES_NOT_DRAW = ["--disable-gpu", "--disable-3d-apis", "--no-sandbox"]
+
+
+@pytest.fixture(scope="module")
+def page_file(tmp_path_factory, ball):
+    """Of a ball with a hole."""
+    vertices, faces = ball
+    source = vertices, faces[vertices[faces][:, :, 2].max(axis=1) < 0.95]
+    path = tmp_path_factory.mktemp("report") / "holed.html"
+    isoshell.report(isoshell.remesh(source, stats=True, vertices=150, resolution=32), path, source=source)
+    return path
+
+
+@pytest.fixture(scope="module")
+def browsers():
+    with playwright.sync_playwright() as started:
+        open_ones = {}
+
+        def browser(arguments):
+            key = tuple(arguments)
+            if key not in open_ones:
+                open_ones[key] = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
+            return open_ones[key]
+
+        yield browser
+        for one in open_ones.values():
+            one.close()
+
+
+class Opened:
+    """The page, with all that it tells and asks for."""
+
+    def __init__(self, browser, path, **settings):
+        self.errors, self.asked = [], []
+        self.page = browser.new_context(viewport={"width": 900, "height": 900}, **settings).new_page()
+        self.page.on("console", lambda message: self.errors.append(message.text) if message.type == "error" else None)
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.route("**/*", self.answer)
+        self.page.goto(path.as_uri())
+
+    def answer(self, route):
+        self.asked.append(route.request.url)
+        route.continue_() if len(self.asked) == 1 else route.abort()
+
+    def wait_until_drawn(self):
+        self.page.wait_for_selector("body[data-drawn=yes]", timeout=60_000)
+        return self
+
+    def cameras(self):
+        return np.array(self.page.evaluate(
+            "isoshellReport.views.map((view) => view.plot.getWorld().controls.getCameraArray())"))
+
+    def picture(self, side):
+        """Different colours of the canvas."""
+        self.page.wait_for_timeout(300)
+        return self.page.evaluate(
+            """(side) => {
+              const canvas = document.querySelector(`#${side} canvas`), copy = document.createElement('canvas');
+              copy.width = copy.height = 64;
+              copy.getContext('2d').drawImage(canvas, 0, 0, 64, 64);
+              return Array.from(copy.getContext('2d').getImageData(0, 0, 64, 64).data);
+            }""", side)
+
+
+@pytest.fixture(scope="module")
+def opened(browsers, page_file):
+    return Opened(browsers(DRAWS), page_file).wait_until_drawn()
+
+
+def test_both_surfaces_are_drawn_in_every_colouring(opened):
+    seen = set()
+    modes = ["shape", "deviation", "quality", "valence", "gaps", "creases"]  # the rim of the cap is one
+    assert opened.page.locator("label:has(input[name=mode]):visible").count() == len(modes)
+    for mode in modes:
+        opened.page.locator(f"label:has(input[value={mode}])").click()
+        for side in ("before", "after"):
+            picture = np.array(opened.picture(side)).reshape(-1, 4)
+            assert len(np.unique(picture, axis=0)) > 20, (mode, side)
+            seen.add((side, picture.tobytes()))
+        assert (opened.page.locator("#legend").inner_text() != "") == (mode != "shape")
+    assert len(seen) > len(modes)
+
+
+def test_both_panes_have_one_camera(opened):
+    opened.page.locator("#reset").click()
+    first = opened.cameras()
+    assert np.allclose(first[0], first[1])
+    box = opened.page.locator("#before canvas").bounding_box()
+    opened.page.mouse.move(box["x"] + 100, box["y"] + 100)
+    opened.page.mouse.down()
+    opened.page.mouse.move(box["x"] + 200, box["y"] + 130, steps=4)
+    opened.page.mouse.up()
+    turned = opened.cameras()
+    assert np.allclose(turned[0], turned[1]) and not np.allclose(turned[0], first[0])
+
+
+def test_a_click_moves_the_cameras_to_the_place(opened):
+    opened.page.locator("#reset").click()
+    wide = opened.cameras()[0]
+    button = opened.page.locator("[data-place='0']")
+    button.click()
+    near = opened.cameras()
+    place = opened.page.evaluate("JSON.parse(document.getElementById('data').textContent).places[0]")
+    assert np.allclose(near[:, 3:6], place["at"])
+    assert np.linalg.norm(near[0, :3] - near[0, 3:6]) < np.linalg.norm(wide[:3] - wide[3:6])
+    assert np.dot(near[0, :3] - near[0, 3:6], place["from"]) > 0  # from outside
+    assert button.get_attribute("aria-pressed") == "true"
+
+
+def test_no_request_leaves_the_page_and_nothing_goes_wrong(opened, page_file):
+    assert opened.asked == [page_file.as_uri()]
+    assert opened.errors == []
+
+
+def test_in_the_dark_it_is_dark(browsers, page_file):
+    dark = Opened(browsers(DRAWS), page_file, color_scheme="dark").wait_until_drawn()
+    assert dark.picture("after")[:3] < [60, 60, 60]
+    assert dark.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 23, 26)"
+    assert dark.errors == []
+
+
+@pytest.mark.parametrize("settings", [{}, {"java_script_enabled": False}])
+def test_without_webgl_or_scripts_the_numbers_remain(browsers, page_file, settings):
+    plain = Opened(browsers(DOES_NOT_DRAW), page_file, **settings)
+    assert plain.page.locator("#unseen").is_visible() and not plain.page.locator("#look").is_visible()
+    assert plain.page.locator("svg").count() == 4 and "Closed 2-manifold" in plain.page.inner_text("body")
+    assert plain.errors == [] and len(plain.asked) == 1
