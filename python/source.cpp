@@ -17,6 +17,7 @@
 #include "attributes.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
+#include "isoshell/io/sizing_vdb.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace nb = nanobind;
@@ -30,7 +31,7 @@ void refuse_iso(const RunRequest& request) {
   if (request.input.iso) throw Error(ErrorCode::usage, "arguments", "--iso is for volumes; leave it out");
 }
 
-Source file(const std::string& path) { return {path, {}, {}}; }
+Source file(const std::string& path) { return {path, {}, {}, {}}; }
 
 Source surface(const std::string& name, TriangleSoup soup) {
   const auto given = std::make_shared<TriangleSoup>(std::move(soup));
@@ -39,6 +40,7 @@ Source surface(const std::string& name, TriangleSoup soup) {
             refuse_iso(request);
             return input_of(std::move(*given), name, request.tell);
           },
+          {},
           {}};
 }
 
@@ -85,25 +87,36 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
             return input_of(*given, "points", context.memory_limit_bytes, request.tell,
                             volume_creases(request.options.values.features));
           },
+          {},
           {}};
 }
 
-Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin) {
+DenseVolume dense_volume(const char* argument, const AnyArray& values, const Triple& spacing, const Triple& origin) {
   DenseVolume v;
-  v.values = floats_of("volume", values, 3);
+  v.values = floats_of(argument, values, 3);
   for (size_t i = 0; i < 3; ++i) {
     v.size[i] = int64_t(values.shape(i));
     v.stride[i] = values.stride(i);
   }
   v.spacing_world = {spacing[0], spacing[1], spacing[2]};
   v.origin_world = {origin[0], origin[1], origin[2]};
+  return v;
+}
+
+Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin) {
+  const DenseVolume v = dense_volume("volume", values, spacing, origin);
   return {"",
           [v](const RunRequest& request, const Context& context) {
             const VolumeReadOptions options{"", request.input.iso, context.memory_limit_bytes,
                                             volume_creases(request.options.values.features)};
             return input_of(v, "volume", options, request.tell);
           },
-          nb::cast(values)};
+          nb::cast(values),
+          {}};
+}
+
+void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, const Triple& origin) {
+  source.sizing = sizing_of(dense_volume("sizing", lengths, spacing, origin), "sizing");
 }
 
 }  // namespace
@@ -122,7 +135,10 @@ void bind_source(nb::module_& m) {
                   nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
       .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
                   nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
-                          "float, float]) -> Source"));
+                          "float, float]) -> Source"))
+      .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
+           nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
+                   "tuple[float, float, float]) -> None"));
   m.def("split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
         nb::sig("def split_polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
                 "typing.Any"),

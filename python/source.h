@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "isoshell/run/run.h"
@@ -14,7 +15,8 @@ struct Source {
   std::string path;  ///< of a file; empty: of memory
   /// Of memory: makes the input, once, on the thread of the run.
   std::function<Input(const RunRequest&, const Context&)> read;
-  nanobind::object kept;  ///< whose memory is borrowed meanwhile
+  nanobind::object kept;                      ///< whose memory is borrowed meanwhile
+  std::shared_ptr<const SizingField> sizing;  ///< edge lengths that were given as an array; null: none were
 
   bool is_file() const { return !read; }
 };

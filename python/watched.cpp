@@ -9,10 +9,22 @@ namespace nb = nanobind;
 
 namespace isoshell::python {
 
+namespace {
+
+/// As the name of a file with a sizing field does it, which is read later.
+void set_sizing(const std::shared_ptr<const SizingField>& sizing, AskedOptions& options) {
+  options.values.sizing = sizing;
+  if (!options.was_given("vertices")) options.values.vertices.reset();
+  options.given.push_back("sizing");
+}
+
+}  // namespace
+
 Asked asked_of(const Source& source, const Keywords& keywords, const std::string& output, nb::object progress,
                nb::object tell) {
   Asked asked{arguments_of(keywords, output), std::move(progress), std::move(tell)};
   RunRequest& request = asked.arguments.run;
+  if (source.sizing) set_sizing(source.sizing, request.options);
   if (!source.is_file()) {
     if (!request.input.format.empty())
       throw Error(ErrorCode::usage, "arguments", "--input-format is for files; leave it out");

@@ -18,6 +18,8 @@ from __future__ import annotations
 import os
 from typing import Callable, Literal, Optional, Sequence, TypedDict, Union
 
+from ._sources import Volume
+
 Path = Union[str, "os.PathLike[str]"]
 
 
@@ -35,6 +37,7 @@ SPECIAL = {
     "device": "str",
     "input-format": "str",
     "output-format": "str",
+    "sizing": "Union[Path, Volume]",
     "stats": "Union[bool, Path]",
 }
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from typing import Callable, Literal, Optional, Sequence, TypedDict, Union
 
+from ._sources import Volume
+
 Path = Union[str, "os.PathLike[str]"]
 
 
@@ -75,7 +77,7 @@ class Options(TypedDict, total=False):
 
     vertices: Optional[int]
     edge_length: Optional[float]
-    sizing: Optional[Path]
+    sizing: Optional[Union[Path, Volume]]
     adaptivity: Optional[float]
     gradation: Optional[float]
     resolution: Optional[int]

@@ -11,7 +11,7 @@ from ._context import Context
 from ._errors import Error, RunWarning
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._result import Result, checked
-from ._sources import SourceLike, is_true_or_false, opened, source_of
+from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of
 from ._usd import is_usd
 
 if TYPE_CHECKING:
@@ -38,8 +38,8 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
             save_shell and save_voronoi as volumes.
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
-            what these say, progress may be a function, called as progress(stage, fraction), and stats may be True, to
-            measure everything without writing a file.
+            what these say, progress may be a function, called as progress(stage, fraction), stats may be True, to
+            measure everything without writing a file, and sizing may be an isoshell.Volume of edge lengths.
 
     Returns:
         The mesh. Warnings of the run are RunWarning; notes go to the logger "isoshell".
@@ -54,6 +54,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     measure_all = stats is True
     if stats is not False and stats is not True:
         given["stats"] = stats
+    sizing = sizing_of(given)
     place, progress, keywords = settle(context, given, source)
     target = "" if output is None else os.fsdecode(output)
     volumes = [os.fsdecode(given[name]) for name in ("save_shell", "save_voronoi") if given.get(name)]
@@ -63,7 +64,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     if options.get("report"):
         _report.require_k3d()
     source = opened(source)
-    start = source_of(source)
+    start = source_of(source, sizing)
     made = _isoshell.remesh(place, start, keywords, "" if is_stage else target, measure_all, progress, listener(given))
     result = Result(made, start if start.is_file else None, [word for word in keywords if word[0] in READING],
                     getattr(source, "origin", None), volumes)
@@ -82,8 +83,9 @@ def estimate(source: SourceLike, *, context: Optional[Context] = None, **options
         them rather high than low.
     """
     given: dict[str, Any] = dict(options)
+    sizing = sizing_of(given)
     place, _, keywords = settle(context, given, source)
-    return _isoshell.estimate(place, source_of(source), keywords, listener(given))
+    return _isoshell.estimate(place, source_of(source, sizing), keywords, listener(given))
 
 
 def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> None:

@@ -49,7 +49,7 @@ class Mesh:
         of_vertices: by name (K,) numbers, and "color" (K, 3) or (K, 4): of whole numbers parts of the largest of their
             type, otherwise 0 to 1.
         of_faces: by name (M,) numbers, and "color" (M, 3) or (M, 4).
-        of_corners: "uv" (M, 3, 2) and "normal" (M, 3, 3).
+        of_corners: "uv" (M, 3, 2), further sets of them "uv1", "uv2", and "normal" (M, 3, 3).
         labels: by name the names that an attribute's values are the numbers of, -1 being none: "material", for one.
 
     Attributes:
@@ -87,7 +87,8 @@ class Volume:
     """Values on a regular lattice: a CT, a segmentation, a simulation.
 
     The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
-    True. Without `iso` the values are distances: negative inside, or unsigned.
+    True. Without `iso` the values are distances: negative inside, or unsigned. As a sizing field it holds edge lengths,
+    and NaN where it says nothing.
 
     Args:
         values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
@@ -114,16 +115,22 @@ def opened(given: Any) -> Any:
     return usd.read(given)
 
 
-def source_of(given: Any) -> Source:
-    """The source that an argument of remesh() means."""
-    given = opened(given)
+def source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
+    """The source that an argument of remesh() means, with a sizing field that is in memory."""
+    source = _source_of(opened(given))
+    if sizing is not None:
+        source.set_sizing(*_lattice_of("sizing", sizing))
+    return source
+
+
+def _source_of(given: Any) -> Source:
     if isinstance(given, (str, os.PathLike)):
         return Source.file(os.fspath(given))
     if isinstance(given, Points):
         normals = None if given.normals is None else array_of("normals", given.normals)
         return Source.points(array_of("points", given.positions), normals)
     if isinstance(given, Volume):
-        return _source_of_volume(given)
+        return Source.volume(*_lattice_of("volume", given))
     if isinstance(given, (tuple, list)) and len(given) == 2:
         return _source_of_faces("(vertices, faces)", given[0], given[1])
     if isinstance(given, Result):
@@ -137,6 +144,11 @@ def source_of(given: Any) -> Source:
             return _source_of_faces(type(given).__name__, vertices, faces)
     raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Mesh, Points "
                 f"or Volume, and is {type(given).__name__}")
+
+
+def sizing_of(options: dict[str, Any]) -> Optional[Volume]:
+    """Takes a sizing field in memory out of the options; one in a file stays there."""
+    return options.pop("sizing") if isinstance(options.get("sizing"), Volume) else None
 
 
 def is_true_or_false(volume: Any) -> bool:
@@ -227,12 +239,12 @@ def _counted_faces(faces: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], n
     return faces[heads], faces[is_corner]
 
 
-def _source_of_volume(volume: Volume) -> Source:
+def _lattice_of(argument: str, volume: Volume) -> tuple[Any, tuple[float, float, float], tuple[float, float, float]]:
     import numpy as np
 
-    values = array_of("volume", volume.values)
-    return Source.volume(values.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
-                         _triple("origin", volume.origin))
+    values = array_of(argument, volume.values)
+    return (values.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
+            _triple("origin", volume.origin))
 
 
 def _triple(argument: str, value: Any) -> tuple[float, float, float]:

@@ -10,7 +10,7 @@ from ._context import Context
 from ._errors import Error
 from ._remesh import listener, settle
 from ._result import Result
-from ._sources import SourceLike, source_of
+from ._sources import SourceLike, sizing_of, source_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,8 +40,9 @@ class Stages:
         refused = [name for name in OF_WHOLE_RUNS if given.get(name)]
         if refused:
             raise Error(f"{', '.join(refused)}: only remesh() takes that", stage="options")
+        sizing = sizing_of(given)
         place, progress, keywords = settle(context, given, source)
-        self._run = _isoshell.StageRun(place, source_of(source), keywords, progress, listener(given))
+        self._run = _isoshell.StageRun(place, source_of(source, sizing), keywords, progress, listener(given))
 
     def prepare(self) -> Stages:
         """Repair the surface, choose the grid, voxelise: surface, sites, shell and sheet."""

@@ -199,7 +199,8 @@ void check_method(const AskedOptions& options) {
     refuse("lines in --features need --method sheet: the paper's loop on the shell knows no curves");
   if (options.values.method == Method::shell && options.values.boundary == Boundary::keep)
     refuse("--boundary keep needs --method sheet: the paper's loop on the shell knows no borders");
-  if (options.values.method == Method::shell && (!options.sizing.empty() || options.values.adaptivity > 0))
+  if (options.values.method == Method::shell &&
+      (!options.sizing.empty() || options.values.sizing || options.values.adaptivity > 0))
     refuse("--sizing and --adaptivity need --method sheet: the paper's loop on the shell has even cells");
 }
 

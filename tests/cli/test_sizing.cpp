@@ -1,4 +1,5 @@
 // Sizing fields and adaptivity: what files are taken, and what meshes become of them.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -53,6 +54,37 @@ TEST_CASE("sizing: between voxels lengths are interpolated, outside the backgrou
   CHECK(with_background[3] == 7);
   CHECK(with_background[4] == 7);
   CHECK(std::abs(with_background[2] - 4.5) < 1e-6);
+}
+
+TEST_CASE("sizing: lengths in memory are the field that a file of them is, and NaN says nothing", "[sizing]") {
+  constexpr int kSide = 4;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto length = [](int i, int j, int k) { return i == 3 ? 0.f : 1 + 0.25f * float(i) + 0.5f * float(j * k); };
+  auto grid = openvdb::FloatGrid::create(0);
+  grid->setName("a");
+  auto transform = openvdb::math::Transform::createLinearTransform(0.5);
+  transform->postTranslate({-1, 2, 3});
+  grid->setTransform(transform);
+  std::vector<float> values;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      for (int k = 0; k < kSide; ++k) {
+        values.push_back(length(i, j, k) > 0 ? length(i, j, k) : nan);
+        if (length(i, j, k) > 0) grid->getAccessor().setValue({i, j, k}, length(i, j, k));
+      }
+  Folder folder;
+  const std::string path = (folder / "lengths.vdb").string();
+  write_grids(path, {grid});
+  DenseVolume dense{values.data(), {kSide, kSide, kSide}, {kSide * kSide, kSide, 1}, {0.5, 0.5, 0.5}, {-1, 2, 3}};
+
+  std::vector<WorldPoint> points;
+  for (int i = 0; i < 300; ++i) points.push_back({-1.3 + 0.0087 * i, 1.8 + 0.0071 * i, 4.6 - 0.0063 * i});
+  const std::vector<double> at = sizing_of(dense, "lengths")->lengths_at(points);
+  CHECK(at == read_sizing(path)->lengths_at(points));
+  CHECK(std::count(at.begin(), at.end(), 0) > 0);
+  CHECK(std::count(at.begin(), at.end(), 0) < 300);
+  dense.spacing_world.y = 0;
+  CHECK_THROWS_AS(sizing_of(dense, "lengths"), Error);
 }
 
 TEST_CASE("sizing: files that are no sizing fields are refused with what is wrong and what to do", "[sizing]") {

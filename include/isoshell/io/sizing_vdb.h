@@ -1,9 +1,10 @@
-// Sizing fields from .vdb files.
+// Sizing fields from .vdb files and from memory.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "isoshell/io/memory_input.h"
 #include "isoshell/sizing.h"
 
 namespace isoshell {
@@ -14,5 +15,10 @@ namespace isoshell {
 /// Throws: unreadable_input (names file, grid, value and remedy) also where an active value is no length; out_of_memory
 /// for a file larger than `max_bytes` (0: no limit).
 std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_t max_bytes = 0);
+
+/// The same from values in memory, which are copied; NaN is what an inactive voxel is in a file. `name` is what
+/// messages call the field. Throws: usage for an array without values or a spacing that is not above 0; as read_sizing
+/// does.
+std::shared_ptr<const SizingField> sizing_of(const DenseVolume& lengths, const std::string& name);
 
 }  // namespace isoshell

@@ -35,6 +35,9 @@ bool unpack_stream(View<const char>, bool, View<char>) {
 std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_t) {
   throw_without_openvdb(ErrorCode::unreadable_input, source);
 }
+std::shared_ptr<const SizingField> sizing_of(const DenseVolume&, const std::string& name) {
+  throw_without_openvdb(ErrorCode::unreadable_input, name);
+}
 StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
 
 }  // namespace isoshell

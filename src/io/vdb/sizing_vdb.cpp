@@ -1,4 +1,4 @@
-// Sizing fields: a float grid of a .vdb file, checked once, then sampled.
+// Sizing fields: a float grid of a .vdb file or from memory, checked once, then sampled.
 #include "isoshell/io/sizing_vdb.h"
 
 #include <openvdb/openvdb.h>
@@ -84,6 +84,28 @@ VdbFloatGrid::ConstPtr load(const Source& source, int64_t max_bytes) {
 
 bool is_length(double value) { return value > 0 && std::isfinite(value); }
 
+VdbFloatGrid::Ptr grid_of(const DenseVolume& lengths, const std::string& name) {
+  const WorldPoint &spacing = lengths.spacing_world, &origin = lengths.origin_world;
+  for (const double s : {spacing.x, spacing.y, spacing.z})
+    if (!(s > 0) || !std::isfinite(s))
+      throw Error(ErrorCode::usage, "arguments", name + ": its spacing must be above 0 along every axis");
+  initialize_openvdb();
+  auto grid = VdbFloatGrid::create(0);
+  grid->setName(name);
+  auto transform = openvdb::math::Transform::createLinearTransform(1);
+  transform->postScale({spacing.x, spacing.y, spacing.z});
+  transform->postTranslate({origin.x, origin.y, origin.z});
+  grid->setTransform(transform);
+  auto voxels = grid->getAccessor();
+  for (int64_t i = 0; i < lengths.size[0]; ++i)
+    for (int64_t j = 0; j < lengths.size[1]; ++j)
+      for (int64_t k = 0; k < lengths.size[2]; ++k) {
+        const float length = lengths.values[i * lengths.stride[0] + j * lengths.stride[1] + k * lengths.stride[2]];
+        if (!std::isnan(length)) voxels.setValueOn(openvdb::Coord(int(i), int(j), int(k)), length);
+      }
+  return grid;
+}
+
 void check_values(const std::string& path, const VdbFloatGrid& grid) {
   if (grid.activeVoxelCount() == 0)
     throw_unreadable_vdb(path, "grid \"" + grid.getName() +
@@ -149,6 +171,12 @@ std::shared_ptr<const SizingField> read_sizing(const std::string& text, int64_t 
   auto grid = load(source, max_bytes);
   check_values(source.path, *grid);
   return std::make_shared<VdbSizing>(text, std::move(grid));
+}
+
+std::shared_ptr<const SizingField> sizing_of(const DenseVolume& lengths, const std::string& name) {
+  auto grid = grid_of(lengths, name);
+  check_values(name, *grid);
+  return std::make_shared<VdbSizing>("", std::move(grid));
 }
 
 }  // namespace isoshell
