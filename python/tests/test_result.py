@@ -161,6 +161,15 @@ def test_labels_given_as_arrays_reach_the_result(box):
     assert set(np.unique(result.attributes["material"])) == {-1, 0, 1}
 
 
+def test_there_may_be_several_sets_of_texture_coordinates(box):
+    vertices, quads = box
+    faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    uv = vertices[faces][:, :, :2]
+    result = isoshell.remesh(isoshell.Mesh(vertices, faces, of_corners={"uv": uv, "uv1": 1 - uv}), vertices=200)
+    assert np.allclose(result.attributes["uv"], result.vertices[result.faces][:, :, :2], atol=1e-3)
+    assert np.allclose(result.attributes["uv"], 1 - result.attributes["uv1"], atol=1e-6)
+
+
 @pytest.mark.parametrize("attributes", [
     {"of_vertices": {"heat": np.zeros(7)}},
     {"of_vertices": {"heat": np.zeros((8, 2))}},
@@ -176,6 +185,8 @@ def test_labels_given_as_arrays_reach_the_result(box):
     {"of_corners": {"uv": np.zeros((12, 2))}},
     {"of_corners": {"uv": np.zeros((12, 3, 3))}},
     {"of_corners": {"uv": np.zeros((11, 3, 2))}},
+    {"of_corners": {"uv1": np.zeros((12, 3, 3))}},
+    {"of_corners": {"uvw": np.zeros((12, 3, 2))}},
     {"of_corners": {"heat": np.zeros((12, 3, 1))}},
 ])
 def test_attributes_that_do_not_fit_are_refused_by_name(box, attributes):
