@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a user chooses: the same for the panel and for the operator."""
+
+import math
+
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+
+class Size:
+    by: EnumProperty(name="Size", default="COUNT", items=(
+        ("COUNT", "Count", "Number of vertices of the result"),
+        ("LENGTH", "Edge Length", "Edges of the result are about as long, in world units")))
+    vertices: IntProperty(name="Vertices", default=10000, min=4, soft_max=1000000,
+                          description="Number of vertices of the result")
+    edge_length: FloatProperty(name="Edge Length", default=0.1, min=1e-6, soft_min=0.001, unit="LENGTH", precision=4,
+                               description="Length of the edges of the result in the world, after the object's scale")
+    features: EnumProperty(name="Creases", default="AUTO", items=(
+        ("AUTO", "Auto", "Sharp edges of crisp parts stay; scans have none"),
+        ("ANGLE", "Angle", "All edges stay whose faces turn by so much"),
+        ("OFF", "Off", "All edges are rounded off")))
+    angle: FloatProperty(name="Angle", default=math.radians(30), min=math.radians(1), max=math.radians(180),
+                         subtype="ANGLE", description="Edges stay whose faces turn by so much or more")
+    adaptivity: FloatProperty(name="Adaptivity", default=0, min=0, max=1, subtype="FACTOR",
+                              description="Fraction of the vertices that are distributed by curvature, not by area")
+    device: EnumProperty(name="Device", default="auto", items=(
+        ("auto", "Auto", "The GPU if this build of isoshell has CUDA and there is one"),
+        ("cpu", "CPU", "The processor"),
+        ("cuda", "CUDA", "The GPU; an error if there is none, or this build has no CUDA")))
+
+    def keywords(self):
+        """Of isoshell.remesh."""
+        words = {"vertices": self.vertices} if self.by == "COUNT" else {"edge_length": self.edge_length}
+        words["features"] = math.degrees(self.angle) if self.features == "ANGLE" else self.features.lower()
+        return words | {"adaptivity": self.adaptivity}
+
+    def draw_size(self, layout):
+        layout.prop(self, "by", expand=True)
+        layout.prop(self, "vertices" if self.by == "COUNT" else "edge_length")
+        layout.prop(self, "adaptivity")
+        layout.prop(self, "features")
+        if self.features == "ANGLE":
+            layout.prop(self, "angle")
+
+
+class Remesh(Size):
+    boundary: EnumProperty(name="Borders", default="CLOSE", items=(
+        ("CLOSE", "Close", "The result is closed"),
+        ("KEEP", "Keep", "Borders of the surface are borders of the result, if they are wider than the gaps")))
+    gaps: EnumProperty(name="Gaps", default="AUTO", items=(
+        ("AUTO", "Auto", "Those of holes and gaps that the surface has"),
+        ("NONE", "None", "No gaps are bridged; every border may stay"),
+        ("WIDTH", "Width", "Up to a width")))
+    gap_width: FloatProperty(name="Gap Width", default=0.1, min=0, unit="LENGTH", precision=4,
+                             description="Widest gap that is bridged, in the world")
+    density: StringProperty(name="Density", description="Vertex group: the higher the weight, the shorter the edges")
+    density_ratio: FloatProperty(name="Ratio", default=4, min=1, max=16,
+                                 description="How many times shorter edges are where the weight is 1 than where it is "
+                                             "0. An edge length is that where it is 0")
+    apply_modifiers: BoolProperty(name="Apply Modifiers", default=True,
+                                  description="Remesh what the viewport shows, and remove the modifiers that it shows; "
+                                              "otherwise remesh the mesh below them, and keep them")
+
+    def keywords(self):
+        gaps = {"AUTO": "auto", "NONE": 0, "WIDTH": self.gap_width}[self.gaps]
+        return super().keywords() | {"boundary": self.boundary.lower(), "close_gaps": gaps}
+
+    def draw_remesh(self, layout, obj):
+        self.draw_size(layout)
+        layout.prop_search(self, "density", obj, "vertex_groups")
+        if self.density:
+            layout.prop(self, "density_ratio")
+        layout.prop(self, "boundary")
+        layout.prop(self, "gaps")
+        if self.gaps == "WIDTH":
+            layout.prop(self, "gap_width")
+        layout.prop(self, "apply_modifiers")
+        layout.prop(self, "device")
+
+
+class Extract(Size):
+    use_threshold: BoolProperty(name="Use Threshold", default=True,
+                                description="The surface is where the values of the grid are the threshold, as that of "
+                                            "a fog volume. Otherwise it is where they are 0, as that of distances is")
+    threshold: FloatProperty(name="Threshold", default=0.1, description="Value of the grid on the surface")
+    grid: StringProperty(name="Grid", description="Name of the grid; empty: the active one")
+
+    def draw_extract(self, layout):
+        self.draw_size(layout)
+        layout.prop(self, "grid")
+        layout.prop(self, "use_threshold")
+        if self.use_threshold:
+            layout.prop(self, "threshold")
+        layout.prop(self, "device")
+
+
+def names_of(options):
+    """All properties, those of base classes too."""
+    return [name for base in reversed(options.__mro__) for name in getattr(base, "__annotations__", {})]
