@@ -25,7 +25,7 @@ class Origin:
         meters_per_unit: metres in a unit of the coordinates.
         name: of the mesh.
         root: of the prim that holds everything.
-        uv_name: the primvar that the attribute uv comes from.
+        uv_sets: the primvars that the attributes uv, uv1, uv2 and so on come from.
         vectors: by name the USD type of attributes that come apart into name.0, name.1 and so on.
         constants: names of attributes that have one value for all.
         materials: a layer of USD, as text, with the materials by their labels below /Materials.
@@ -35,7 +35,7 @@ class Origin:
     meters_per_unit: float = 1.0
     name: str = "mesh"
     root: str = "World"
-    uv_name: str = "st"
+    uv_sets: list[str] = field(default_factory=list)
     vectors: dict[str, str] = field(default_factory=dict)
     constants: set[str] = field(default_factory=set)
     materials: str = ""

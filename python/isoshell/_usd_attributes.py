@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ._result import Result
 from ._usd import Origin
-from ._usd_primvars import base_of
+from ._usd_primvars import base_of, is_of_corners
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,8 +25,8 @@ def add_primvars(pxr: Any, mesh: Any, result: Result, origin: Origin) -> None:
         base, component = base_of(name)
         if name == "color":
             _add_color(pxr, api, domain, values, origin)
-        elif name == "uv":
-            _add_uv(pxr, api, values, origin.uv_name)
+        elif is_of_corners(name) and name != "normal":
+            _add_uv(pxr, api, values, _uv_set_of(name, origin))
         elif name == "normal":
             _add_normals(pxr, mesh, result, values)
         elif name == "material" and labels:
@@ -65,6 +65,11 @@ def _add_color(pxr: Any, api: Any, domain: str, values: Array, origin: Origin) -
     if colors.shape[1] == 4:
         _create(pxr, api, "displayOpacity", names.FloatArray, interpolation).Set(
             pxr.Vt.FloatArray.FromNumpy(np.ascontiguousarray(colors[:, 3])))
+
+
+def _uv_set_of(name: str, origin: Origin) -> str:
+    number = int(name.removeprefix("uv") or 0)
+    return origin.uv_sets[number] if number < len(origin.uv_sets) else f"st{number or ''}"
 
 
 def _add_uv(pxr: Any, api: Any, values: Array, name: str) -> None:

@@ -26,23 +26,23 @@ def add_columns(pxr: Any, prim: Any, time: Any, rows: Array, triangles: Triangle
                 if p.HasValue()}
     _add_color(primvars, time, triangles, origin)
     _add_normals(pxr, prim, primvars, time, rows, triangles)
-    uv = _uv_of(primvars)
-    for name, primvar in sorted(primvars.items()):
+    sets = _uv_sets(primvars)
+    for name in sets + sorted(set(primvars) - set(sets)):
         if name in TAKEN or name.startswith("skel:"):
             continue
+        primvar = primvars[name]
         column = _column_of(primvar, time, triangles)
         if column is None:
             continue
-        if name == uv:
-            origin.uv_name = name
-            triangles.columns["uv"] = column
+        if name in sets:
+            triangles.columns[_uv_name(name, name == sets[0], origin)] = column
         else:
             _add_plain(name, column, str(primvar.GetTypeName()), triangles, origin)
 
 
 def _add_plain(name: str, column: Column, type_name: str, triangles: Triangles, origin: Origin) -> None:
     """A name that has a meaning of its own gets another; values of several numbers come apart."""
-    if name in ("color", "uv", "normal", "material", "texnumber", "gap"):
+    if is_of_corners(name) or name in ("color", "material", "texnumber", "gap"):
         name += "_"
     if column.domain == "constant":
         origin.constants.add(name)
@@ -54,13 +54,31 @@ def _add_plain(name: str, column: Column, type_name: str, triangles: Triangles, 
         triangles.columns[f"{name}.{i}"] = Column(column.values[:, i:i + 1], column.domain)
 
 
-def _uv_of(primvars: dict[str, Any]) -> Optional[str]:
-    """The set that materials use first, by its name or else its type."""
-    flat = [name for name, p in primvars.items() if str(p.GetTypeName()).rstrip("[]") in
-            ("texCoord2f", "texCoord2d", "texCoord2h", "float2", "double2", "half2")]
-    named = [name for name in FIRST_UV if name in flat]
-    typed = sorted(name for name in flat if str(primvars[name].GetTypeName()).startswith("texCoord2"))
-    return (named + typed + [None])[0]
+def is_of_corners(name: str) -> bool:
+    """Whether an attribute is one of those that may differ between the faces around a vertex."""
+    return re.fullmatch(r"uv\d*|normal", name) is not None
+
+
+def _uv_sets(primvars: dict[str, Any]) -> list[str]:
+    """Texture coordinates by their names and types; first those that materials use first."""
+    typed, flat = [], []
+    for name, primvar in sorted(primvars.items()):
+        kind = str(primvar.GetTypeName()).removesuffix("[]")
+        if kind in ("texCoord2f", "texCoord2d", "texCoord2h"):
+            typed.append(name)
+        elif kind in ("float2", "double2", "half2") and (name in FIRST_UV or primvar.GetInterpolation() == "faceVarying"):
+            flat.append(name)
+    return sorted(typed + flat, key=lambda name: FIRST_UV.index(name) if name in FIRST_UV else len(FIRST_UV))
+
+
+def _uv_name(primvar: str, is_first: bool, origin: Origin) -> str:
+    """The attribute that a set becomes, the same in all meshes."""
+    if is_first:
+        origin.uv_sets[:1] = origin.uv_sets[:1] or [primvar]
+        return "uv"
+    if primvar not in origin.uv_sets[1:]:
+        origin.uv_sets[:] = (origin.uv_sets or [primvar]) + [primvar]
+    return f"uv{origin.uv_sets.index(primvar, 1)}"
 
 
 def _add_color(primvars: dict[str, Any], time: Any, triangles: Triangles, origin: Origin) -> None:
@@ -197,7 +215,7 @@ def _of_one_kind(columns: list[Optional[Column]]) -> list[Optional[Column]]:
 
 
 def _common_domain(name: str, domains: list[str]) -> str:
-    if name in ("uv", "normal"):
+    if is_of_corners(name):
         return "corner"
     given = set(domains) - {"constant"}
     if not given or given == {"face"}:
@@ -210,7 +228,7 @@ def _count(mesh: Triangles, domain: str) -> int:
 
 
 def _missing(name: str, labels: list[str]) -> float:
-    if name in ("uv", "normal"):
+    if is_of_corners(name):
         return float("nan")
     if labels:
         return -1

@@ -183,6 +183,7 @@ def colored(stage, mesh):
     types = Sdf.ValueTypeNames
     primvar(mesh, "displayColor", types.Color3fArray, "uniform", [(1, 0, 0), (0, 0, 1)], [0, 0, 0, 1, 1, 1])
     primvar(mesh, "st", types.TexCoord2fArray, "faceVarying", [(0, 0), (1, 0), (1, 1), (0, 1)], [0, 1, 2, 3] * 6)
+    primvar(mesh, "map2", types.TexCoord2fArray, "faceVarying", [(0, 0), (1, 0), (1, 1), (0, 1)], [3, 0, 1, 2] * 6)
     primvar(mesh, "heat", types.FloatArray, "vertex", [0, 1] * 4)
     primvar(mesh, "cold", types.DoubleArray, "varying", [0.5] * 8)
     primvar(mesh, "flow", types.Vector3fArray, "vertex", [(1, 2, 3)] * 8)
@@ -196,7 +197,7 @@ def colored(stage, mesh):
 def test_primvars_of_every_interpolation_are_attributes(stage_of, box):
     read = isoshell.usd.read(stage_of(box, colored))
     assert set(read.of_vertices) == {"heat", "cold", "flow.0", "flow.1", "flow.2"}
-    assert set(read.of_faces) == {"color", "part", "kind", "weight"} and set(read.of_corners) == {"uv", "normal"}
+    assert set(read.of_faces) == {"color", "part", "kind", "weight"} and set(read.of_corners) == {"uv", "uv1", "normal"}
     assert read.of_faces["color"].tolist() == [[1, 0, 0]] * 6 + [[0, 0, 1]] * 6
     assert read.of_faces["kind"].tolist() == [1] * 6 + [0] * 6 and read.labels["kind"] == ["steel", "wood"]
     assert read.of_vertices["flow.1"].tolist() == [2] * 8 and read.of_faces["weight"].tolist() == [4] * 12
@@ -281,7 +282,8 @@ def test_a_round_trip_keeps_points_primvars_materials_units_and_axis(stage_of, t
             assert np.allclose(of_all[name], values, atol=1e-6), name
     primvars = {p.GetPrimvarName(): p for p in UsdGeom.PrimvarsAPI(mesh.GetPrim()).GetPrimvars()}
     assert str(primvars["flow"].GetTypeName()) == "vector3f[]" and primvars["weight"].GetInterpolation() == "constant"
-    assert primvars["st"].GetInterpolation() == "faceVarying" and primvars["st"].IsIndexed()
+    for name in ("st", "map2"):
+        assert primvars[name].GetInterpolation() == "faceVarying" and primvars[name].IsIndexed()
     assert str(primvars["cold"].GetTypeName()) == "double[]"
     blue = UsdShade.Shader.Get(stage, "/World/Materials/Blue/Picture").GetInput("file").Get()
     assert os.path.exists(blue.resolvedPath) or ending == "usdz" and blue.resolvedPath.endswith(".png]")
