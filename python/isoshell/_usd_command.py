@@ -51,7 +51,7 @@ def run(words: list[str]) -> int:
     if options.get("verbose"):
         logging.basicConfig(format="vdb_isomesh: %(message)s", level=logging.INFO)
     with warnings.catch_warnings():
-        warnings.simplefilter("always", RunWarning)
+        warnings.simplefilter("ignore" if options.get("quiet") else "always", RunWarning)
         setattr(warnings, "showwarning", _show_warning)
         try:
             if len(places) != 2 and not (options.get("dry_run") and len(places) == 1):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import sys
 import warnings
 from collections import Counter
 from typing import Any, Callable, Iterator, Optional, Sequence
@@ -23,8 +24,11 @@ def note(text: str) -> None:
 
 
 def warn(text: str) -> None:
-    """What a person should look at."""
-    warnings.warn(text, RunWarning, stacklevel=2)
+    """What a person should look at: a warning at the line that asked for the run."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, RunWarning, stacklevel=level)
 
 
 @contextlib.contextmanager

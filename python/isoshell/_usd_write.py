@@ -182,9 +182,17 @@ def _write_volume(pxr: Any, stage: Any, path: Any, file: str, grids: list[Grid],
         if box is not None:
             boxes.append(box)
     if boxes:
-        low = [min(box[0][i] for box in boxes) for i in range(3)]
-        high = [max(box[1][i] for box in boxes) for i in range(3)]
-        volume.CreateExtentAttr(pxr.Vt.Vec3fArray([pxr.Gf.Vec3f(*low), pxr.Gf.Vec3f(*high)]))
+        volume.CreateExtentAttr(pxr.Vt.Vec3fArray.FromNumpy(_extent_of(boxes)))
+
+
+def _extent_of(boxes: list[Box]) -> Array:
+    """The box around boxes, in single precision and not smaller."""
+    import numpy as np
+
+    low, high = np.min([box[0] for box in boxes], axis=0), np.max([box[1] for box in boxes], axis=0)
+    ends = np.array([low, high], np.float32)
+    down, up = np.nextafter(ends[0], np.float32(-np.inf)), np.nextafter(ends[1], np.float32(np.inf))
+    return np.array([np.where(ends[0] > low, down, ends[0]), np.where(ends[1] < high, up, ends[1])], np.float32)
 
 
 def _save(pxr: Any, stage: Any, target: str) -> None:
