@@ -66,8 +66,9 @@ def _uv_sets(primvars: dict[str, Any]) -> list[str]:
         kind = str(primvar.GetTypeName()).removesuffix("[]")
         if kind in ("texCoord2f", "texCoord2d", "texCoord2h"):
             typed.append(name)
-        elif kind in ("float2", "double2", "half2") and (name in FIRST_UV or primvar.GetInterpolation() == "faceVarying"):
-            flat.append(name)
+        elif kind in ("float2", "double2", "half2"):
+            if name in FIRST_UV or primvar.GetInterpolation() == "faceVarying":
+                flat.append(name)
     return sorted(typed + flat, key=lambda name: FIRST_UV.index(name) if name in FIRST_UV else len(FIRST_UV))
 
 

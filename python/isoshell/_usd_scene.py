@@ -127,7 +127,8 @@ def _all(pxr: Any, root: Any) -> Any:
 def _other_shapes(pxr: Any, root: Any) -> str:
     kinds = Counter(str(prim.GetTypeName()) for prim in _all(pxr, root)
                     if prim.IsA(pxr.UsdGeom.Gprim) and not prim.IsA(pxr.UsdGeom.Mesh))
-    return f"; its {', '.join(f'{count} {kind}' for kind, count in sorted(kinds.items()))} are not read" if kinds else ""
+    counts = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    return f"; its {counts} are not read" if kinds else ""
 
 
 def _walk(pxr: Any, root: Any, time: Any, is_seen: Callable[[Any], bool], place: Callable[[Any], Any],

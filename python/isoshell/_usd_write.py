@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     Array = np.ndarray[Any, np.dtype[Any]]
 
-FIELD_TYPES = {"float": "float", "double": "double", "int32": "int", "int64": "int64", "bool": "bool", "vec3s": "float3",
-               "vec3d": "double3", "vec3i": "int3"}
+FIELD_TYPES = {"float": "float", "double": "double", "int32": "int", "int64": "int64", "bool": "bool",
+               "vec3s": "float3", "vec3d": "double3", "vec3i": "int3"}
 CLASSES = {"level set": "levelSet", "fog volume": "fogVolume", "staggered": "staggered"}
 VECTOR_ROLES = {"closest_offset": "Vector", "color": "Color"}
 FAR = 64  # sizes of itself from the origin: beyond, single precision takes more than a millionth of the size
