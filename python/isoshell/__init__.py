@@ -8,6 +8,7 @@
 """
 
 import atexit as _atexit
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from . import _isoshell
 from ._context import Context
@@ -20,6 +21,9 @@ from ._report import report
 from ._result import Result
 from ._sources import Mesh, Points, Volume
 from ._stages import Stages
+
+if _TYPE_CHECKING:
+    from . import usd as usd
 
 __all__ = ["Context", "Error", "ErrorCode", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages", "Volume",
            "__version__", "estimate", "remesh", "report"]

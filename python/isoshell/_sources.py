@@ -180,7 +180,7 @@ def _attributes_of(mesh: Mesh) -> list[Named]:
 
 
 def _source_of_triangles(name: str, vertices: Any, faces: Any, attributes: Sequence[Named]) -> Source:
-    given = [(attribute.split(":")[0], domain, _rows(attribute, domain, values), labels)
+    given = [(attribute.removesuffix(f":{domain}"), domain, _rows(attribute, domain, values), labels)
              for attribute, domain, values, labels in attributes]
     return Source.triangles(name, array_of("vertices", vertices), array_of("faces", faces), given)
 

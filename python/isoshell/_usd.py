@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import os
 import re
-from dataclasses import dataclass, field
 from typing import Any, Optional
 
 from ._errors import Error
@@ -16,7 +15,6 @@ NAMED = re.compile(r"(?P<file>.*\.usd[acz]?)(?::(?P<prim>[^:\\]*))?", re.IGNOREC
 MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "UsdVol", "Vt")
 
 
-@dataclass
 class Origin:
     """What a scene says beside its meshes; a result keeps it, and writes it again.
 
@@ -31,14 +29,16 @@ class Origin:
         materials: a layer of USD, as text, with the materials by their labels below /Materials.
     """
 
-    up_axis: str = "Y"
-    meters_per_unit: float = 1.0
-    name: str = "mesh"
-    root: str = "World"
-    uv_sets: list[str] = field(default_factory=list)
-    vectors: dict[str, str] = field(default_factory=dict)
-    constants: set[str] = field(default_factory=set)
-    materials: str = ""
+    def __init__(self, up_axis: str = "Y", meters_per_unit: float = 1.0, name: str = "mesh",
+                 root: str = "World") -> None:
+        self.up_axis = up_axis
+        self.meters_per_unit = meters_per_unit
+        self.name = name
+        self.root = root
+        self.uv_sets: list[str] = []
+        self.vectors: dict[str, str] = {}
+        self.constants: set[str] = set()
+        self.materials = ""
 
 
 def is_usd(path: Any) -> bool:

@@ -21,14 +21,17 @@ def add_primvars(pxr: Any, mesh: Any, result: Result, origin: Origin) -> None:
     api = pxr.UsdGeom.PrimvarsAPI(mesh.GetPrim())
     vectors: dict[tuple[str, str], list[Array]] = {}
     for key, domain, values, labels in result._named_attributes():
-        name = key.split(":")[0]
+        name = key.removesuffix(f":{domain}")
         base, component = base_of(name)
-        if name == "color":
+        if key != name:  # the second attribute of that name
+            if values.ndim == 1:
+                _add_numbers(pxr, api, f"{name}_{domain}", domain, values, origin)
+        elif name == "color":
             _add_color(pxr, api, domain, values, origin)
-        elif is_of_corners(name) and name != "normal":
-            _add_uv(pxr, api, values, _uv_set_of(name, origin))
         elif name == "normal":
             _add_normals(pxr, mesh, result, values)
+        elif is_of_corners(name):
+            _add_uv(pxr, api, values, _uv_set_of(name, origin))
         elif name == "material" and labels:
             continue
         elif component >= 0 and base in origin.vectors:
@@ -122,17 +125,15 @@ def _add_numbers(pxr: Any, api: Any, name: str, domain: str, values: Array, orig
 
 
 def _add_vectors(pxr: Any, api: Any, name: str, domain: str, columns: list[Array], origin: Origin) -> None:
+    """In the source's type; where a run kept some of the numbers only, each by itself."""
     import numpy as np
 
+    type_name = pxr.Sdf.ValueTypeNames.Find(origin.vectors[name].removesuffix("[]") + "[]")
+    array = type_name.type.pythonClass
+    row = np.array(array(1))
+    if row.shape[1] != len(columns):
+        for i, column in enumerate(columns):
+            _add_numbers(pxr, api, f"{name}_{i}", domain, column, origin)
+        return
     interpolation, values = _of_all(name, domain, np.column_stack(columns), origin)
-    stem = origin.vectors[name].removesuffix("[]")
-    type_name = pxr.Sdf.ValueTypeNames.Find(stem + "[]")
-    kind = values.dtype.kind == "f" and values.dtype.itemsize == 8 and "d" or "f" if values.dtype.kind == "f" else "i"
-    if type_name and type_name.type.pythonClass and not stem.startswith("quat"):
-        array = type_name.type.pythonClass
-    else:
-        count = values.shape[1]
-        type_name = pxr.Sdf.ValueTypeNames.Find(f"{ {'d': 'double', 'f': 'float', 'i': 'int'}[kind] }{count}[]")
-        array = type_name.type.pythonClass
-    dtype = np.array(array(1)).dtype
-    _create(pxr, api, name, type_name, interpolation).Set(array.FromNumpy(np.ascontiguousarray(values, dtype)))
+    _create(pxr, api, name, type_name, interpolation).Set(array.FromNumpy(np.ascontiguousarray(values, row.dtype)))

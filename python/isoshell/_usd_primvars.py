@@ -139,7 +139,8 @@ def _column_of(primvar: Any, time: Any, triangles: Triangles) -> Optional[Column
         values = np.array(value)
         if not primvar.GetTypeName().isArray:
             values = values[None]
-    if values.dtype.kind not in "biuf" or values.ndim > 2 or (values.ndim == 2 and values.shape[1] > MAX_COMPONENTS):
+    are_numbers = values.dtype.kind in "biuf" and not str(primvar.GetTypeName()).startswith("quat")
+    if not are_numbers or values.ndim > 2 or (values.ndim == 2 and values.shape[1] > MAX_COMPONENTS):
         return _left_out(name, triangles, f"values of the type {primvar.GetTypeName()} are not read")
     if primvar.IsIndexed():
         indices = np.array(primvar.GetIndices(time) or [], np.int64)

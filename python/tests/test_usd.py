@@ -185,6 +185,7 @@ def colored(stage, mesh):
     primvar(mesh, "st", types.TexCoord2fArray, "faceVarying", [(0, 0), (1, 0), (1, 1), (0, 1)], [0, 1, 2, 3] * 6)
     primvar(mesh, "map2", types.TexCoord2fArray, "faceVarying", [(0, 0), (1, 0), (1, 1), (0, 1)], [3, 0, 1, 2] * 6)
     primvar(mesh, "heat", types.FloatArray, "vertex", [0, 1] * 4)
+    primvar(mesh, "my:flux", types.Half2Array, "uniform", [(1, 2)] * 6)
     primvar(mesh, "cold", types.DoubleArray, "varying", [0.5] * 8)
     primvar(mesh, "flow", types.Vector3fArray, "vertex", [(1, 2, 3)] * 8)
     primvar(mesh, "part", types.IntArray, "uniform", [0, 0, 0, 7, 7, 7])
@@ -197,7 +198,8 @@ def colored(stage, mesh):
 def test_primvars_of_every_interpolation_are_attributes(stage_of, box):
     read = isoshell.usd.read(stage_of(box, colored))
     assert set(read.of_vertices) == {"heat", "cold", "flow.0", "flow.1", "flow.2"}
-    assert set(read.of_faces) == {"color", "part", "kind", "weight"} and set(read.of_corners) == {"uv", "uv1", "normal"}
+    assert set(read.of_faces) == {"color", "part", "kind", "weight", "my:flux.0", "my:flux.1"}
+    assert set(read.of_corners) == {"uv", "uv1", "normal"}
     assert read.of_faces["color"].tolist() == [[1, 0, 0]] * 6 + [[0, 0, 1]] * 6
     assert read.of_faces["kind"].tolist() == [1] * 6 + [0] * 6 and read.labels["kind"] == ["steel", "wood"]
     assert read.of_vertices["flow.1"].tolist() == [2] * 8 and read.of_faces["weight"].tolist() == [4] * 12
@@ -284,7 +286,7 @@ def test_a_round_trip_keeps_points_primvars_materials_units_and_axis(stage_of, t
     assert str(primvars["flow"].GetTypeName()) == "vector3f[]" and primvars["weight"].GetInterpolation() == "constant"
     for name in ("st", "map2"):
         assert primvars[name].GetInterpolation() == "faceVarying" and primvars[name].IsIndexed()
-    assert str(primvars["cold"].GetTypeName()) == "double[]"
+    assert str(primvars["cold"].GetTypeName()) == "double[]" and str(primvars["my:flux"].GetTypeName()) == "half2[]"
     blue = UsdShade.Shader.Get(stage, "/World/Materials/Blue/Picture").GetInput("file").Get()
     assert os.path.exists(blue.resolvedPath) or ending == "usdz" and blue.resolvedPath.endswith(".png]")
     assert UsdShade.Shader.Get(stage, "/World/Materials/Red/Surface").GetInput("roughness").Get() == 0.25

@@ -20,6 +20,13 @@ def of_each_kind(array: "np.ndarray[Any, Any]") -> float:
     return float(again.vertices.mean()) + float(again.faces.max()) + float(estimated["memory_bytes"])
 
 
+def of_a_stage(path: str) -> float:
+    mesh = isoshell.usd.read(path, "/World/Mesh", time=24)
+    result = isoshell.remesh(mesh, vertices=100)
+    isoshell.usd.write("out.usda", result, volumes=["out.shell.vdb"], up_axis="Z")
+    return result.origin.meters_per_unit if result.origin else 1.0
+
+
 def code_of_failure(path: str) -> int:
     try:
         isoshell.remesh(path, output="out.ply", force=True).save("other.obj", overwrite=True)
