@@ -19,18 +19,19 @@ install(FILES ${PROJECT_BINARY_DIR}/isoshellConfig.cmake ${PROJECT_BINARY_DIR}/i
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev COMPONENT dev)
 
+# For builds without CMake. The archive is static, so what it needs is part of --libs.
+set(isoshell_pc_requires "tbb")
+set(isoshell_pc_libs "")
+if(ISOSHELL_VDB)
+  set(isoshell_pc_requires "tbb blosc zlib")
+  set(isoshell_pc_libs " -lopenvdb -lboost_iostreams")
+endif()
+if(ISOSHELL_HAS_CUDA)
+  string(APPEND isoshell_pc_libs " -lcudart")
+endif()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/isoshell.pc.in ${PROJECT_BINARY_DIR}/isoshell.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/isoshell.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+
 if(PROJECT_IS_TOP_LEVEL)
-  set(CPACK_GENERATOR DEB)
-  set(CPACK_PACKAGE_CONTACT "the isoshell maintainers <maintainers@isoshell.invalid>")
-  set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
-  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
-  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-  set(CPACK_DEB_COMPONENT_INSTALL ON)
-  set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME isoshell)
-  set(CPACK_DEBIAN_DEV_PACKAGE_NAME libisoshell-dev)
-  # The library is static, and OpenVDB's CMake module asks for all that OpenVDB was built with.
-  set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-      "libtbb-dev, libopenvdb-dev, libblosc-dev, libboost-iostreams-dev, libimath-dev, zlib1g-dev")
-  include(CPack)
+  include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)
 endif()

@@ -53,7 +53,7 @@ if [ "$with_tests" -eq 1 ]; then
   cp -r tests/fuzz/corpus "$folder/tests/fuzz"
   cp README.md "$folder"  # three more files that tests of the command read
   cp examples/01_remesh.cpp "$folder/examples"
-  cp scripts/option_table.sh "$folder/scripts"
+  cp scripts/option_table.sh scripts/command_docs.py "$folder/scripts"
 fi
 find "$from/bench" -maxdepth 1 -name 'bench_*' -type f -perm -u+x | while read -r bench; do copy "$bench" "$folder/bench"; done
 cp LICENSE "$folder"

@@ -2,15 +2,16 @@
 # Installs what the build needs and this machine lacks. Debian 12 and 13, Ubuntu 24.04 and newer.
 # Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
 # `setup.sh tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write,
-# and the environment of our own Python module.
+# and the environment of our own Python module. `setup.sh packages` adds what scripts/packages.sh needs.
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
-          libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2)
+          libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2 python3-minimal)
 case "${1:-}" in
   "") ;;
   tests) packages+=(libopenvdb-tools python3-openvdb python3-dev python3-venv) ;;
-  *) echo "setup: unknown argument: $1 (tests)" >&2; exit 2 ;;
+  packages) packages+=(python3-dev python3-venv dpkg-dev file) ;;
+  *) echo "setup: unknown argument: $1 (tests, packages)" >&2; exit 2 ;;
 esac
 
 # CUDA is not installed from here: which toolkit fits is the driver's and the administrator's to say.

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian packages into a clean system of each named suite, builds the project of tests/install against them
-# there and runs it. For a maintainer before a release: needs root, debootstrap, 4 GB of disk and some minutes a suite.
+# there and runs it, checks them with lintian, and executes the RUN lines of packaging/docker. For a maintainer before a
+# release: needs root, debootstrap, 4 GB of disk and some minutes a suite.
 #   scripts/test_packages.sh [SUITE...]        default: bookworm trixie (Debian 12 and 13)
-# Packages depend on their suite's OpenVDB and TBB. Those of this system's suite are built here, in build/cpu, others
-# from HEAD in a system of that suite.
+# Packages depend on their suite's OpenVDB and TBB. Those of this system's suite are built here, in build/packages, others
+# from HEAD in a system of that suite, by the stage build of the Dockerfile.
 # The mirror is this system's own; MIRROR names another. KEEP=1 leaves the packages in build/packages-SUITE.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -35,29 +36,53 @@ install_packages() { # root, package...
   quietly inside "$root" apt-get -qq install -y --no-install-recommends "$@"
 }
 
+# Executes the RUN lines of a stage of a Dockerfile, as a container engine would.
+run_stage() { # root, Dockerfile, stage
+  local line
+  while read -r line; do
+    quietly inside "$1" bash -c "cd /isoshell && $line" </dev/null
+  done < <(awk -v stage="$3" '/^FROM/ { here = $NF == stage } here && sub(/^RUN /, "")' "packaging/docker/$2.Dockerfile")
+}
+
 build_here() { # folder of the packages
-  quietly scripts/build.sh cpu
-  quietly cpack --config build/cpu/CPackConfig.cmake -B "$1"
+  quietly scripts/packages.sh
+  cp build/packages/*.deb "$1"
 }
 
 build_inside() { # root
-  quietly inside "$1" bash -c 'cd /isoshell && scripts/setup.sh'
-  install_packages "$1" dpkg-dev file
-  quietly inside "$1" bash -c 'cd /isoshell && cmake --preset cpu -DISOSHELL_TESTS=OFF -DISOSHELL_BENCH=OFF &&
-    cmake --build --preset cpu && cpack --config build/cpu/CPackConfig.cmake -B /packages'
+  run_stage "$1" cpu build
+  cp "$1"/isoshell/build/packages/*.deb "$1/packages"
+}
+
+check_packages() { # root: lintian knows the suite's policy
+  install_packages "$1" lintian
+  inside "$1" sh -c 'lintian --fail-on error --no-tag-display-limit /packages/*.deb'
 }
 
 use_packages() { # root
-  local packages=("$1"/packages/*.deb)
+  local root=$1 packages=("$1"/packages/libisoshell-dev_*.deb)
+  run_stage "$root" cpu run
+  quietly inside "$root" apt-get update  # the stage leaves no lists behind
+  quietly inside "$root" python3 -m isoshell /isoshell/tests/data/nefertiti.ply /python.ply --vertices 4000 -q
   # A name with a slash is a file to apt, which takes from the mirror what it depends on.
-  install_packages "$1" "${packages[@]#"$1"}" g++ cmake make
-  quietly inside "$1" cmake -S /isoshell/tests/install -B /user
-  quietly inside "$1" cmake --build /user
-  inside "$1" /user/remesh /isoshell/tests/data/nefertiti.ply /out
-  inside "$1" vdb_isomesh /isoshell/tests/data/nefertiti.ply /command.ply --vertices 4000 -q --require closed,manifold
-  inside "$1" vdb_isomesh --version
-  inside "$1" sha256sum /out.ply /command.ply
-  inside "$1" dpkg-query -W '*isoshell*' 'libopenvdb*'
+  install_packages "$root" "${packages[@]#"$root"}" g++ cmake make pkg-config man-db bash-completion zsh fish mandoc groff-base
+  quietly inside "$root" cmake -S /isoshell/tests/install -B /user
+  quietly inside "$root" cmake --build /user
+  inside "$root" /user/remesh /isoshell/tests/data/nefertiti.ply /out
+  quietly inside "$root" sh -c 'g++ -std=c++17 /isoshell/examples/01_remesh.cpp -o /by_pkg_config $(pkg-config --cflags --libs isoshell)'
+  inside "$root" /by_pkg_config /isoshell/tests/data/nefertiti.ply /by_pkg_config_out
+  inside "$root" vdb_isomesh /isoshell/tests/data/nefertiti.ply /command.ply --vertices 4000 -q --require closed,manifold
+  inside "$root" cmp /command.ply /python.ply
+  inside "$root" vdb_isomesh --version
+  inside "$root" sh -c 'mkdir /docs && cp /usr/share/bash-completion/completions/vdb_isomesh /docs/vdb_isomesh.bash &&
+    cp /usr/share/zsh/vendor-completions/_vdb_isomesh /usr/share/fish/vendor_completions.d/vdb_isomesh.fish /docs &&
+    zcat /usr/share/man/man1/vdb_isomesh.1.gz > /docs/vdb_isomesh.1 &&
+    /isoshell/tests/cli/test_command_docs.sh vdb_isomesh /docs'
+  inside "$root" sha256sum /out.ply /command.ply
+  inside "$root" dpkg-query -W '*isoshell*' 'libopenvdb*'
+  quietly inside "$root" apt-get -qq purge -y isoshell python3-isoshell libisoshell-dev
+  run_stage "$root" cuda run
+  inside "$root" vdb_isomesh --version
 }
 
 [ $# -gt 0 ] || set -- bookworm trixie
@@ -69,8 +94,7 @@ for suite in "$@"; do
   mkdir "$work/$suite/user/isoshell" "$work/$suite/user/packages"
   git archive HEAD | tar -x -C "$work/$suite/user/isoshell"
   if [ "$suite" = "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" ]; then
-    build_here "$work/$suite/made"
-    cp "$work/$suite"/made/*.deb "$work/$suite/user/packages"
+    build_here "$work/$suite/user/packages"
   else
     cp -a "$work/$suite/user" "$work/$suite/build"
     build_inside "$work/$suite/build"
@@ -80,6 +104,8 @@ for suite in "$@"; do
     mkdir -p "build/packages-$suite"
     cp "$work/$suite"/user/packages/*.deb "build/packages-$suite"
   fi
+  cp -a "$work/$suite/user" "$work/$suite/lintian"
+  check_packages "$work/$suite/lintian"
   use_packages "$work/$suite/user"
   umount "$work/$suite"/*/proc
   rm -rf --one-file-system "${work:?}/$suite"

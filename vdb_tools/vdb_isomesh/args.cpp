@@ -19,11 +19,12 @@ namespace {
 constexpr const char* kDescription =
     "vdb_isomesh INPUT OUTPUT [options]\n\n"
     "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
-    "INPUT   a mesh (.obj .ply .stl .off), a point cloud (.ply .xyz .pcd), a volume (.vdb .nvdb: a level\n"
-    "        set, unsigned distances, or with --iso a fog volume; FILE.vdb:NAME names a grid), or a\n"
-    "        stage file that this command wrote (.vdb); - reads standard input and needs --input-format\n"
-    "OUTPUT  a mesh (.ply .obj .stl .off), or a .vdb file with --stop-after; - writes standard output\n"
-    "        and needs --output-format";
+    "INPUT   a mesh (.obj .ply .stl .off .glb .gltf), a point cloud (.ply .xyz .pcd), a volume (.vdb\n"
+    "        .nvdb: a level set, unsigned distances, or with --iso a fog volume; FILE.vdb:NAME names a\n"
+    "        grid), or a stage file that this command wrote (.vdb); - reads standard input and needs\n"
+    "        --input-format\n"
+    "OUTPUT  a mesh (.ply .obj .stl .off .glb .gltf), or a .vdb file with --stop-after; - writes standard\n"
+    "        output and needs --output-format";
 
 /// What CLI11 fills in before it is checked and turned into Arguments.
 struct Raw {

@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# Man page and completions of one command: the page has no warning, and every shell that is installed completes options,
+# choices and files by their suffixes.
+#   test_command_docs.sh COMMAND FOLDER      FOLDER holds COMMAND.1, COMMAND.bash, _COMMAND and COMMAND.fish
+set -euo pipefail
+name=$1
+docs=$(cd "$2" && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+touch scan.ply scan.vdb scan.txt
+mkdir shells
+
+fail() { echo "$name: $*" >&2; exit 1; }
+
+expect() { # what, wanted words, found words
+  [ "$(tr -s ' \n' '\n' <<<"$2" | sort)" = "$(tr -s ' \n' '\n' <<<"$3" | sort)" ] || fail "$1 gives '$3', not '$2'"
+}
+
+page=$docs/$name.1
+if command -v man >/dev/null; then
+  said=$(LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings=w -l "$page" 2>&1 >/dev/null) && [ -z "$said" ] || fail "man: $said"
+fi
+if command -v groff >/dev/null; then
+  said=$(groff -man -ww -z "$page" 2>&1) && [ -z "$said" ] || fail "groff: $said"
+fi
+if command -v mandoc >/dev/null; then
+  said=$(mandoc -Tlint -Wwarning "$page") || fail "mandoc: $said"
+fi
+
+in_bash() { # words of the line, the last of which is completed
+  COMP_WORDS=("$name" "$@") COMP_CWORD=$#
+  "_$name"
+  echo "${COMPREPLY[*]}"
+}
+
+in_fish() { fish --no-config -c "source '$docs/$name.fish'; complete -C '$name $*'" | cut -f 1 | tr '\n' ' '; }
+
+# The line after two presses of the tabulator in a terminal: what it shows so many seconds later, without the line itself.
+in_zsh() { # line, seconds
+  zsh -f -s "$docs" "$1" "$folder" "$2" <<'END' | tr -d '\r' | tail -n 2
+    zmodload zsh/zpty
+    zpty shell env TERM=dumb zsh -f -i
+    zpty -w shell "PS1='> '; fpath=($1 \$fpath); autoload -Uz compinit; compinit -u -D; cd $3; echo RE''ADY"
+    zpty -r -m shell shown "*READY*"
+    zpty -w -n shell "$2"$'\t\t'
+    sleep $4
+    while zpty -r -t shell shown; do print -rn -- "$shown"; done
+    zpty -d shell
+END
+}
+
+# A terminal does not say when it has shown all: what is not there soon is looked for again later.
+zsh_shows() { # what, pattern, line
+  local found seconds
+  for seconds in 1 5 20; do
+    found=$(in_zsh "$3" "$seconds")
+    if grep -qE "$2" <<<"$found"; then return; fi
+  done
+  fail "$1 shows '$found', without '$2'"
+}
+
+# shellcheck disable=SC1090
+source "$docs/$name.bash"
+case "$name" in
+  vdb_isomesh)
+    expect "bash, a choice" "close keep" "$(in_bash a.ply b.ply --boundary "")"
+    expect "bash, a choice begun" "keep" "$(in_bash a.ply b.ply --boundary k)"
+    expect "bash, a choice after =" "keep" "$(in_bash a.ply b.ply --boundary = k)"
+    expect "bash, a choice after = alone" "close keep" "$(in_bash a.ply b.ply --boundary =)"
+    expect "bash, a file of an option" "scan.vdb shells" "$(in_bash --save-shell s)"
+    expect "bash, INPUT" "scan.ply scan.vdb shells" "$(in_bash s)"
+    expect "bash, OUTPUT" "scan.ply scan.vdb shells" "$(in_bash --vertices 10 a.ply s)"
+    expect "bash, a third file" "" "$(in_bash a.ply b.ply s)"
+    expect "bash, a number" "" "$(in_bash --vertices "")"
+    expect "bash, options" "--save-shell --save-voronoi" "$(in_bash --save)"
+    expect "bash, formats" "gltf glb" "$(in_bash --output-format g)"
+    if command -v fish >/dev/null; then
+      expect "fish, a choice" "close keep" "$(in_fish a.ply b.ply --boundary "")"
+      expect "fish, a file of an option" "scan.vdb shells/" "$(in_fish --save-shell s)"
+      expect "fish, INPUT" "scan.ply scan.vdb shells/" "$(in_fish s)"
+      expect "fish, options" "--save-shell --save-voronoi" "$(in_fish --save)"
+    fi
+    if command -v zsh >/dev/null; then
+      zsh_shows "zsh, a choice" "^close +keep" "$name a.ply b.ply --boundary "
+      zsh_shows "zsh, a file of an option" "$name --save-shell scan.vdb" "$name --save-shell sca"
+      zsh_shows "zsh, INPUT" "^scan.ply +scan.vdb$" "$name scan"
+    fi
+    ;;
+esac
+expect "bash, help" "--help" "$(in_bash --hel)"
+if command -v fish >/dev/null; then expect "fish, help" "--help" "$(in_fish --hel)"; fi
