@@ -8,7 +8,7 @@
 
 #include "core/half_edge_list.h"
 #include "isoshell/error.h"
-#include "voxel/union_find.h"
+#include "measure/index_sets.h"
 
 namespace isoshell {
 namespace {
@@ -18,18 +18,6 @@ struct HalfEdge {
   uint32_t larger_end;
   uint32_t number;
   bool rises;  ///< runs from the smaller to the larger end
-};
-
-class Sets {
- public:
-  explicit Sets(int64_t count) : parent_(count) {
-    for (int64_t i = 0; i < count; ++i) parent_[i] = uint32_t(i);
-  }
-  void unite(uint32_t a, uint32_t b) { join(parent_.view(), a, b); }
-  uint32_t root(uint32_t i) { return find_root(parent_.view(), i); }
-
- private:
-  Buffer<uint32_t> parent_;
 };
 
 class Checker {
@@ -81,7 +69,7 @@ class Checker {
 
   /// Joins corners around their vertex through edges with two faces, vertices through all edges.
   void match_half_edges() {
-    Sets fans(int64_t(corners_.size())), vertices(vertex_count_);
+    IndexSets fans(int64_t(corners_.size())), vertices(vertex_count_);
     std::vector<uint32_t> boundary;
     for (uint32_t v = 0; v < vertex_count_; ++v) {
       HalfEdge* const begin = half_edges_.data() + first_[v];
@@ -110,7 +98,7 @@ class Checker {
     count_loops(fans, boundary);
   }
 
-  void count_fans(Sets& fans, Sets& vertices) {
+  void count_fans(IndexSets& fans, IndexSets& vertices) {
     fans_.assign(size_t(vertex_count_), 0);
     for (uint32_t h = 0; h < corners_.size(); ++h)
       if (fans.root(h) == h) ++fans_[corners_[h]];
@@ -119,9 +107,9 @@ class Checker {
   }
 
   /// Boundary edges that end in one fan belong to one loop.
-  void count_loops(Sets& fans, const std::vector<uint32_t>& boundary) {
+  void count_loops(IndexSets& fans, const std::vector<uint32_t>& boundary) {
     if (boundary.empty()) return;
-    Sets loops(int64_t(corners_.size()));
+    IndexSets loops(int64_t(corners_.size()));
     std::vector<uint32_t> ends;
     for (uint32_t h : boundary) {
       const uint32_t from = fans.root(h), to = fans.root(next_in_triangle(h));

@@ -8,13 +8,12 @@
 
 #include "core/triangle_list.h"
 #include "core/world_vector.h"
+#include "measure/triangle_shape.h"
 
 namespace isoshell {
 namespace {
 
 constexpr int64_t kChunk = 4096;
-constexpr double kDegrees = 57.29577951308232;
-constexpr double kEquilateral = 3.4641016151377544;  // 6 / sqrt(3)
 
 struct Moments {
   double sum = 0, sum_sq = 0;
@@ -51,24 +50,16 @@ struct Part {
 };
 
 void measure_triangle(int64_t number, WorldPoint a, WorldPoint b, WorldPoint c, Part& part) {
-  const WorldPoint side[3] = {b - a, c - b, a - c};
-  const double edge[3] = {length(side[0]), length(side[1]), length(side[2])};
-  const double twice_area = length(cross(side[0], side[2]));
-  const double longest = std::max({edge[0], edge[1], edge[2]}), around = edge[0] + edge[1] + edge[2];
-  const double q = longest > 0 ? kEquilateral * (twice_area / around) / longest : 0;
-  double smallest = 180;
-  for (int i = 0; i < 3; ++i) {
-    const double angle = std::atan2(twice_area, -dot(side[i], side[(i + 2) % 3])) * kDegrees;
-    smallest = std::min(smallest, angle);
-    part.theta_max = std::max(part.theta_max, angle);
-    part.edge.add(edge[i]);
-  }
+  const TriangleShape shape = shape_of(a, b, c);
+  const double q = shape.q, smallest = shape.smallest_deg();
+  part.theta_max = std::max(part.theta_max, shape.largest_deg());
+  for (const double edge : shape.edge) part.edge.add(edge);
   part.q_min = std::min(part.q_min, q);
   part.q_sum += q;
   if (smallest < part.theta_min) part.theta_min = smallest, part.theta_min_at = number;
   part.theta_sum += smallest;
   part.below_30 += smallest < 30;
-  part.area.add(twice_area / 2);
+  part.area.add(shape.area);
 }
 
 /// The triangles with the smallest angles below 30 degrees, the worst first; of equal ones the first.

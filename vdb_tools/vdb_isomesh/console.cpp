@@ -22,8 +22,12 @@ bool wants_colour() {
 
 }  // namespace
 
-Console::Console(ProgressMode progress, int verbosity)
-    : progress_(progress), verbosity_(verbosity), colour_(wants_colour()), start_(std::chrono::steady_clock::now()) {
+Console::Console(ProgressMode progress, int verbosity, const char* program)
+    : progress_(progress),
+      verbosity_(verbosity),
+      program_(program),
+      colour_(wants_colour()),
+      start_(std::chrono::steady_clock::now()) {
   if (progress_ == ProgressMode::automatic)
     progress_ = is_terminal() && verbosity_ > 0 ? ProgressMode::always : ProgressMode::never;
 }
@@ -42,7 +46,7 @@ void Console::detail(const std::string& message) {
 void Console::print(const char* label, const char* colour, const std::string& message) {
   clear_bar();
   const bool coloured = colour_ && *colour;
-  std::fprintf(stderr, "vdb_isomesh: %s%s%s%s\n", coloured ? colour : "", label, coloured ? "\033[0m" : "",
+  std::fprintf(stderr, "%s: %s%s%s%s\n", program_, coloured ? colour : "", label, coloured ? "\033[0m" : "",
                message.c_str());
 }
 

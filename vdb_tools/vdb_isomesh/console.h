@@ -12,7 +12,8 @@ namespace isoshell::tool {
 /// standard error is a terminal and NO_COLOR is not set.
 class Console {
  public:
-  Console(ProgressMode progress, int verbosity);
+  /// Messages begin with the name of the program, which outlives the console.
+  Console(ProgressMode progress, int verbosity, const char* program = "vdb_isomesh");
   ~Console() { clear_bar(); }
 
   void error(const std::string& message);
@@ -30,6 +31,7 @@ class Console {
 
   ProgressMode progress_;
   int verbosity_;
+  const char* program_;
   bool colour_;
   bool bar_drawn_ = false;
   std::string last_stage_;

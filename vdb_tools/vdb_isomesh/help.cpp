@@ -56,7 +56,7 @@ size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string help_text(const CLI::App& app) {
+std::string options_text(const CLI::App& app) {
   std::string text = app.get_description() + "\n";
   for (const std::string& group : app.get_groups()) {
     std::string rows;
@@ -70,11 +70,14 @@ std::string help_text(const CLI::App& app) {
     }
     if (!rows.empty()) text += "\n" + group + ":\n" + rows;
   }
-  text +=
-      "\nExit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read, 4 output cannot be\n"
-      "written, 5 nothing to mesh, 6 a requirement of --require is not met or the result intersects\n"
-      "itself, 7 over the memory limit or out of memory, 8 no such device, 130 interrupted.\n";
   return text;
+}
+
+std::string help_text(const CLI::App& app) {
+  return options_text(app) +
+         "\nExit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read, 4 output cannot be\n"
+         "written, 5 nothing to mesh, 6 a requirement of --require is not met or the result intersects\n"
+         "itself, 7 over the memory limit or out of memory, 8 no such device, 130 interrupted.\n";
 }
 
 std::string version_text() { return "vdb_isomesh " VDB_ISOMESH_VERSION "\n"; }

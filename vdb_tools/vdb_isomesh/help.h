@@ -10,6 +10,8 @@ class App;
 namespace isoshell::tool {
 
 std::string help_text(const CLI::App& app);
+/// The same without the exit statuses, which are each command's own.
+std::string options_text(const CLI::App& app);
 std::string version_text();
 
 /// The option of `app` closest to a mistyped one, "--name"; empty when none is close.

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstring>
 
 #include "isoshell/error.h"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr suseconds_t kPatienceUs = 250000, kAgainUs = 20000;
 
 std::atomic<Context*> cancelled_by_signal{nullptr};
+std::atomic<const char*> speaker{""};
 std::atomic<int> writing{0};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Context*>::is_always_lock_free,
               "handlers of signals may use them");
@@ -26,8 +28,10 @@ void wake_in(suseconds_t us) {
 
 extern "C" void end_unless_writing(int) {
   if (writing > 0) return wake_in(kAgainUs);
-  constexpr char kText[] = "vdb_isomesh: error: interrupted\n";
-  if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) {  // nobody to tell
+  constexpr char kText[] = ": error: interrupted\n";
+  const char* const program = speaker;
+  if (write(STDERR_FILENO, program, std::strlen(program)) < 0 ||
+      write(STDERR_FILENO, kText, sizeof kText - 1) < 0) {  // nobody to tell
   }
   _exit(int(ErrorCode::interrupted));
 }
@@ -39,7 +43,8 @@ extern "C" void cancel_run(int number) {
 
 }  // namespace
 
-void answer_signals(Context& context) {
+void answer_signals(Context& context, const char* program) {
+  speaker = program;
   cancelled_by_signal = &context;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write that fails, not a silent end
   std::signal(SIGXFSZ, SIG_IGN);  // and so is one beyond a limit of file sizes

@@ -8,7 +8,8 @@ namespace isoshell::tool {
 /// From now on SIGINT, SIGTERM and SIGHUP cancel the context, which must live as long as the process. A run that has
 /// not ended a quarter of a second later, or by the next signal, is ended with status 130, unless a file is being
 /// written then.
-void answer_signals(Context& context);
+/// `program` is what the last words begin with; it lives as long.
+void answer_signals(Context& context, const char* program = "vdb_isomesh");
 
 /// While one of these lives, a file is being written: it is finished or removed before the process ends.
 class WhileWriting {

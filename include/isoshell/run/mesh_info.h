@@ -1,0 +1,43 @@
+// A certificate for any mesh, whoever made it: what vdb_meshinfo says.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/distance.h"
+#include "isoshell/io/input.h"
+#include "isoshell/mesh_census.h"
+#include "isoshell/run/gates.h"
+
+namespace isoshell {
+
+struct MeshInfoRequest {
+  InputRequest mesh;
+  std::optional<InputRequest> reference;  ///< anything that has a surface; without it no distance is measured
+  Gates gates;
+};
+
+struct MeshInfo {
+  InputFacts mesh;
+  std::optional<InputFacts> reference;
+  DirtCounts dirt;  ///< of the mesh's file; what a reader left out is in no other count but repeated corners
+  MeshCensus census;
+  std::optional<MeshDistance> distance;  ///< of the mesh and the reference
+  std::vector<std::string> missed_gates;
+};
+
+/// Reads, counts and measures; nothing is repaired or snapped. Its steps ("read", "census", "distance") are progress of
+/// the context. Result: the same for every number of threads. Throws: usage for a gate of curves, a gate of distances
+/// without a reference, a mesh that is no mesh and a reference that is a stage file; and as read_input, take_census and
+/// measure_distance do.
+MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell = {});
+/// The same of what is read already, or came from memory.
+MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gates, Context& context);
+
+/// As JSON, schema 1; what was not measured is null.
+std::string mesh_info_json(const MeshInfo& info);
+/// To a file, or "-". Throws: unwritable_output.
+void write_mesh_info(const std::string& path, const MeshInfo& info, bool overwrite);
+
+}  // namespace isoshell

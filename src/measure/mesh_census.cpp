@@ -1,0 +1,164 @@
+// The census of a mesh: its complex, the shapes of its triangles, its intersections.
+#include "isoshell/mesh_census.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/triangle_list.h"
+#include "core/watched.h"
+#include "core/world_vector.h"
+#include "measure/complex_counts.h"
+#include "measure/self_intersections.h"
+#include "measure/triangle_shape.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kChunk = 4096;
+constexpr double kDegenerateHeight = 1e-7;  ///< of the longest edge
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "census", message); }
+
+void check(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) refuse("the mesh has no triangle; give one that has");
+  if (mesh.triangles.size() > UINT32_MAX / 3)
+    refuse("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles; at most " +
+           std::to_string(UINT32_MAX / 3) + " can be numbered, split it");
+  require_indices(mesh.triangles, mesh.vertices.size(), "census");
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t v : t)
+      if (!is_finite(mesh.vertices[v]))
+        refuse("vertex " + std::to_string(v) + " is not finite; leave its triangles out");
+}
+
+struct Box {
+  WorldPoint lo, hi;
+};
+Box box_of(const TriangleMesh& mesh) {
+  Box box{mesh.vertices[mesh.triangles[0][0]], mesh.vertices[mesh.triangles[0][0]]};
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t v : t) {
+      const WorldPoint& p = mesh.vertices[v];
+      box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y), std::min(box.lo.z, p.z)};
+      box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y), std::max(box.hi.z, p.z)};
+    }
+  return box;
+}
+
+template <size_t kBins>
+void count_in(std::array<int64_t, kBins>& histogram, double part) {
+  ++histogram[std::min(size_t(std::max(part, 0.0) * double(kBins)), kBins - 1)];
+}
+
+/// Sums over some triangles; the shares of `shapes` are counts until the end.
+struct Part {
+  TriangleShapes shapes;
+  double area_sq = 0;
+
+  Part() {
+    shapes.q_min = 1;
+    shapes.angle_min_deg = 180;
+  }
+  void add(const TriangleShape& t) {
+    TriangleShapes& s = shapes;
+    const double smallest = t.smallest_deg(), largest = t.largest_deg();
+    s.q_min = std::min(s.q_min, t.q);
+    s.q_mean += t.q;
+    s.angle_min_deg = std::min(s.angle_min_deg, smallest);
+    s.angle_max_deg = std::max(s.angle_max_deg, largest);
+    s.smallest_angle_mean_deg += smallest;
+    s.below_10_pct += smallest < 10;
+    s.below_20_pct += smallest < 20;
+    s.below_30_pct += smallest < 30;
+    s.above_90_pct += largest > 90;
+    s.above_120_pct += largest > 120;
+    s.below_1 += smallest < 1;
+    s.degenerate += !(t.longest > 0) || 2 * t.area / (t.longest * t.longest) < kDegenerateHeight;
+    s.without_area += !(t.area > 0);
+    s.area_world += t.area;
+    area_sq += t.area * t.area;
+    count_in(s.q_histogram, t.q);
+    count_in(s.smallest_angle_histogram, smallest / 60);
+    count_in(s.largest_angle_histogram, (largest - 60) / 120);
+  }
+  void add(const Part& other) {
+    TriangleShapes& s = shapes;
+    const TriangleShapes& o = other.shapes;
+    s.q_min = std::min(s.q_min, o.q_min);
+    s.angle_min_deg = std::min(s.angle_min_deg, o.angle_min_deg);
+    s.angle_max_deg = std::max(s.angle_max_deg, o.angle_max_deg);
+    for (double TriangleShapes::*sum :
+         {&TriangleShapes::q_mean, &TriangleShapes::smallest_angle_mean_deg, &TriangleShapes::below_10_pct,
+          &TriangleShapes::below_20_pct, &TriangleShapes::below_30_pct, &TriangleShapes::above_90_pct,
+          &TriangleShapes::above_120_pct, &TriangleShapes::area_world})
+      s.*sum += o.*sum;
+    for (int64_t TriangleShapes::*count :
+         {&TriangleShapes::below_1, &TriangleShapes::degenerate, &TriangleShapes::without_area})
+      s.*count += o.*count;
+    area_sq += other.area_sq;
+    for (size_t i = 0; i < s.q_histogram.size(); ++i) s.q_histogram[i] += o.q_histogram[i];
+    for (size_t i = 0; i < s.smallest_angle_histogram.size(); ++i) {
+      s.smallest_angle_histogram[i] += o.smallest_angle_histogram[i];
+      s.largest_angle_histogram[i] += o.largest_angle_histogram[i];
+    }
+  }
+  TriangleShapes finished(double count) const {
+    TriangleShapes s = shapes;
+    s.q_mean /= count;
+    s.smallest_angle_mean_deg /= count;
+    for (double TriangleShapes::*share :
+         {&TriangleShapes::below_10_pct, &TriangleShapes::below_20_pct, &TriangleShapes::below_30_pct,
+          &TriangleShapes::above_90_pct, &TriangleShapes::above_120_pct})
+      s.*share *= 100 / count;
+    const double mean = s.area_world / count;
+    if (mean > 0) s.area_variation = std::sqrt(std::max(0.0, area_sq / count - mean * mean)) / mean;
+    return s;
+  }
+};
+
+TriangleShape shape_of_repeated() {
+  TriangleShape shape;
+  shape.angle_deg = {0, 0, 180};
+  return shape;
+}
+
+TriangleShapes measure_shapes(const TriangleMesh& mesh, int64_t dropped) {
+  const int64_t count = int64_t(mesh.triangles.size());
+  std::vector<Part> parts(size_t((count + kChunk - 1) / kChunk));
+  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+    for (int64_t i = int64_t(c) * kChunk; i < std::min(count, int64_t(c + 1) * kChunk); ++i) {
+      const auto& [p, q, r] = mesh.triangles[size_t(i)];
+      const TriangleShape shape = shape_of(mesh.vertices[p], mesh.vertices[q], mesh.vertices[r]);
+      const bool has_angles = p != q && q != r && r != p && shape.longest > 0;
+      parts[c].add(has_angles ? shape : shape_of_repeated());
+    }
+  });
+  Part all;
+  for (const Part& part : parts) all.add(part);
+  for (int64_t i = 0; i < dropped; ++i) all.add(shape_of_repeated());
+  return all.finished(double(count + dropped));
+}
+
+}  // namespace
+
+MeshCensus take_census(const TriangleMesh& mesh, Context& context, int64_t dropped) {
+  check(mesh);
+  return run_with_threads(context, [&] {
+    const Box box = box_of(mesh);
+    const EdgeCensus edges = count_complex(mesh, .5 * (box.lo + box.hi), dropped);
+    check_cancel(context, "census");
+    const std::vector<uint32_t> first_at = first_at_position(mesh.vertices);
+    const SelfIntersections crossing = find_self_intersections(mesh, first_at, context);
+    MeshCensus census{
+        edges.counts,   edges.valence,     edges.edges, measure_shapes(mesh, dropped), length(box.hi - box.lo),
+        crossing.pairs, crossing.triangles};
+    for (uint32_t v = 0; v < first_at.size(); ++v) census.counts.duplicate_vertices += first_at[v] != v;
+    return census;
+  });
+}
+
+}  // namespace isoshell

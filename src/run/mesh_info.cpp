@@ -1,0 +1,78 @@
+// The certificate of a mesh: read, counted, measured, compared with what it must be.
+#include "isoshell/run/mesh_info.h"
+
+#include <utility>
+
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "mesh_info", message); }
+
+void check_gates(const Gates& gates, bool has_reference) {
+  if (gates.features) refuse("--require features is for a run that keeps curves; leave it out");
+  if (gates.needs_distance() && !has_reference)
+    refuse("--require max-deviation and normal-deviation compare with a reference; give one by --ref");
+}
+
+template <class Work>
+void step(const char* name, const Context& context, Work work) {
+  if (context.progress) context.progress(name, 0);
+  work();
+  if (context.progress) context.progress(name, 1);
+}
+
+TriangleMesh mesh_of(TriangleSoup soup) { return {std::move(soup.vertices), std::move(soup.triangles)}; }
+
+/// Gates ask records of runs: one with what they look at, as it was measured here.
+RunRecord record_of(const MeshInfo& info, const TriangleMesh& mesh) {
+  RunRecord record;
+  record.topology = check_mesh(mesh);
+  record.topology->manifold = record.topology->manifold && info.census.counts.repeated_corners == 0;
+  if (!record.topology->manifold) record.topology->genus = -1;
+  record.quality.emplace().theta_min_deg = info.census.shapes.angle_min_deg;
+  record.distance = info.distance;
+  record.report.post_done = true;
+  record.report.post.self_intersections = info.census.intersecting_pairs;
+  return record;
+}
+
+}  // namespace
+
+MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gates, Context& context) {
+  check_gates(gates, reference.has_value());
+  if (mesh.facts.kind != InputKind::mesh)
+    refuse(mesh.facts.name() + " is no mesh but " + kind_name(mesh.facts.kind) + "; make a mesh of it by vdb_isomesh");
+  if (reference && reference->stage)
+    refuse(reference->facts.name() + " is a stage file; give the surface that it is of");
+  MeshInfo info;
+  info.mesh = mesh.facts;
+  info.dirt = mesh.soup.dirt;
+  const TriangleMesh measured = mesh_of(std::move(mesh.soup));
+  step("census", context, [&] { info.census = take_census(measured, context, info.dirt.degenerate_faces); });
+  if (reference) {
+    info.reference = reference->facts;
+    const TriangleMesh other = mesh_of(std::move(reference->soup));
+    step("distance", context, [&] { info.distance = measure_distance(measured, other, context); });
+  }
+  if (gates.any()) {
+    Gates asked = gates;
+    asked.allow_intersections = true;  // they are told, and a gate only where one was asked for
+    info.missed_gates = missed_gates(asked, record_of(info, measured));
+  }
+  return info;
+}
+
+MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell) {
+  check_gates(request.gates, request.reference.has_value());
+  Input mesh;
+  std::optional<Input> reference;
+  step("read", context, [&] {
+    mesh = read_input(request.mesh, context.memory_limit_bytes, tell);
+    if (request.reference) reference = read_input(*request.reference, context.memory_limit_bytes, tell);
+  });
+  return mesh_info(std::move(mesh), std::move(reference), request.gates, context);
+}
+
+}  // namespace isoshell

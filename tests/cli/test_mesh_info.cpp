@@ -1,0 +1,70 @@
+// vdb_meshinfo as people run it, on meshes whose counts are known by hand.
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "support/catch.h"
+
+using namespace isoshell;
+
+namespace {
+
+const char* const kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+const char* const kOpen = "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n";
+const char* const kCrossing = "OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n2 1 1\n3 0 1 2\n3 3 4 5\n";
+
+nlohmann::json info_of(cli::Folder& folder, const std::string& arguments) {
+  const auto r = folder.run(arguments + " --json");
+  CAPTURE(r.err);
+  REQUIRE(r.status == 0);
+  return nlohmann::json::parse(r.out);
+}
+
+}  // namespace
+
+TEST_CASE("mesh info: a tetrahedron is a closed 2-manifold of genus 0", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kTetrahedron);
+  const auto topology = info_of(folder, "t.off")["topology"];
+  CHECK(topology["closed_manifold"] == true);
+  CHECK(topology["edges"] == 6);
+  CHECK(topology["genus"] == 0);
+  CHECK(topology["euler"] == 2);
+  CHECK(topology["self_intersecting_pairs"] == 0);
+  CHECK(topology["volume"].get<double>() == Approx(1. / 6));
+}
+
+TEST_CASE("mesh info: a tetrahedron without a face has one border of three edges", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kOpen);
+  const auto topology = info_of(folder, "t.off")["topology"];
+  CHECK(topology["closed_manifold"] == false);
+  CHECK(topology["boundary_edges"] == 3);
+  CHECK(topology["boundary_loops"] == 1);
+}
+
+TEST_CASE("mesh info: two triangles that cross are one pair", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kCrossing);
+  CHECK(info_of(folder, "t.off")["topology"]["self_intersecting_pairs"] == 1);
+}
+
+TEST_CASE("mesh info: a gate that is missed ends with 6", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kTetrahedron);
+  folder.write("open.off", kOpen);
+  folder.write("crossing.off", kCrossing);
+  CHECK(folder.run("t.off --require closed,manifold,genus=0,no-self-intersections").status == 0);
+  CHECK(folder.run("open.off --require closed").status == 6);
+  CHECK(folder.run("crossing.off --require no-self-intersections").status == 6);
+  CHECK(folder.run("t.off --ref t.off --require max-deviation=0.001").status == 0);
+  CHECK(folder.run("t.off --require max-deviation=0.001").status == 2);
+}
+
+TEST_CASE("mesh info: files that cannot be measured are refused", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+  folder.write("empty.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n");
+  CHECK(folder.run("index.off").status == 3);
+  CHECK(folder.run("empty.off").status == 5);
+  CHECK(folder.run("missing.off").status == 3);
+}

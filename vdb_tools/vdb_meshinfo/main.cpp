@@ -1,0 +1,74 @@
+// vdb_meshinfo: the certificate of any mesh.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "isoshell/error.h"
+#include "vdb_isomesh/console.h"
+#include "vdb_isomesh/interrupt.h"
+#include "vdb_isomesh/memory.h"
+#include "vdb_meshinfo/args.h"
+#include "vdb_meshinfo/table.h"
+
+namespace isoshell::tool {
+namespace {
+
+constexpr const char* kProgram = "vdb_meshinfo";
+Context context;
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw Error(ErrorCode::unwritable_output, "write", std::string("standard output: ") + std::strerror(errno));
+}
+
+void write_statistics(const MeshInfoArguments& a, const MeshInfo& info) {
+  std::optional<WhileWriting> writing;
+  if (a.statistics != "-") writing.emplace();  // standard output cannot be left in order
+  write_mesh_info(a.statistics, info, a.overwrite);
+}
+
+int run_command(int argc, const char* const* argv) {
+  const MeshInfoCommandLine command = parse_mesh_info(argc, argv);
+  if (!command.arguments) {
+    print(command.text);
+    return 0;
+  }
+  const MeshInfoArguments& a = *command.arguments;
+  Console console(ProgressMode::automatic, a.quiet ? 0 : 1, kProgram);
+  context.backend = Backend::cpu;
+  context.threads = a.threads;
+  context.memory_limit_bytes = a.max_memory_bytes > 0 ? a.max_memory_bytes : default_memory_limit_bytes();
+  context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
+  const MeshInfo info = mesh_info(a.request, context, [&](MessageKind kind, const std::string& text) {
+    kind == MessageKind::warning ? console.warn(text) : console.detail(text);
+  });
+  if (!a.statistics.empty()) write_statistics(a, info);
+  if (a.statistics != "-" && !a.quiet) print(mesh_info_table(info));
+  for (const std::string& text : info.missed_gates) console.error("gate failed: " + text);
+  return info.missed_gates.empty() ? 0 : int(ErrorCode::gate_failed);
+}
+
+int report(ErrorCode code, const char* message) {
+  Console(ProgressMode::never, 0, kProgram).error(message);
+  return int(code);
+}
+
+int command(int argc, const char* const* argv) {
+  answer_signals(context, kProgram);
+  try {
+    return run_command(argc, argv);
+  } catch (const Error& e) {
+    return report(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return report(ErrorCode::out_of_memory, "out of memory; the mesh is too large for this machine");
+  } catch (const std::exception& e) {
+    return report(ErrorCode::internal, e.what());
+  }
+}
+
+}  // namespace
+}  // namespace isoshell::tool
+
+int main(int argc, char* argv[]) { return isoshell::tool::command(argc, argv); }
