@@ -139,10 +139,11 @@ void bind_source(nb::module_& m) {
       .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
            nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
                    "tuple[float, float, float]) -> None"));
-  m.def("split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
-        nb::sig("def split_polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
-                "typing.Any"),
-        "The triangles of faces of any number of corners, in their order; what has no area or no finite place has none.");
+  m.def(
+      "split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
+      nb::sig("def split_polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
+              "typing.Any"),
+      "The triangles of faces of any number of corners, in their order; what has no area or no finite place has none.");
 }
 
 }  // namespace isoshell::python

@@ -102,7 +102,8 @@ void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const s
   if (features.seams > 0) add(counted(features.seams, "seam"));
   if (features.lines > 0) add(counted(features.lines, "line"));
   if (what.empty()) what = "creases";  // none was found yet
-  report.warnings.push_back(what + " are not kept: " + why +
+  const bool is_one = features.border_loops == 0 && features.curves == 1;
+  report.warnings.push_back(what + (is_one ? " is not kept: " : " are not kept: ") + why +
                             (features.border_loops > 0 ? "; the result is closed" : "") +
                             (features.seams > 0 ? "; triangles lie across seams" : ""));
   for (const LostCurve& curve : curves) {
