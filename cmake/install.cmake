@@ -29,6 +29,11 @@ endif()
 if(ISOSHELL_HAS_CUDA)
   string(APPEND isoshell_pc_libs " -lcudart")
 endif()
+# From where the file lies, so that an installed folder may be moved.
+file(RELATIVE_PATH isoshell_pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" isoshell_pc_prefix "${isoshell_pc_prefix}")
+file(RELATIVE_PATH isoshell_pc_libdir ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_LIBDIR})
+file(RELATIVE_PATH isoshell_pc_includedir ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 configure_file(${CMAKE_CURRENT_LIST_DIR}/isoshell.pc.in ${PROJECT_BINARY_DIR}/isoshell.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/isoshell.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 

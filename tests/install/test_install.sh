@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs a build into a folder of its own and builds and runs the first example against it.
+# Installs a build into a folder of its own and builds and runs the first example against it, as found by CMake and, where
+# pkg-config is, by that after the folder was moved.
 #   test_install.sh BUILD [options of CMake]
 set -euo pipefail
 build=$1
@@ -21,4 +22,21 @@ if cmake -S "$source/tests/install" -B "$folder/older" "$@" -Disoshell_ROOT="$fo
   echo "version 0.0 was asked for, and this one was taken" >&2
   exit 1
 fi
-find "$folder/isoshell" -name LICENSE | grep -q .
+# The compiler and its options are among those of CMake.
+by_pkg_config() {
+  local option compiler=c++ compile=() found
+  for option; do
+    case "$option" in
+      -DCMAKE_CXX_COMPILER=*) compiler=${option#*=} ;;
+      -DCMAKE_CXX_FLAGS=*) read -r -a compile <<<"${option#*=}" ;;
+    esac
+  done
+  mv "$folder/isoshell" "$folder/moved"
+  found=$(PKG_CONFIG_PATH=$(dirname "$(find "$folder/moved" -name isoshell.pc)") pkg-config --cflags --libs isoshell)
+  # shellcheck disable=SC2086
+  "$compiler" -std=c++17 "${compile[@]}" "$source/examples/01_remesh.cpp" -o "$folder/by_pkg_config" $found
+  "$folder/by_pkg_config" "$source/tests/data/nefertiti.ply" "$folder/out_by_pkg_config"
+  cmp "$folder/out.ply" "$folder/out_by_pkg_config.ply"
+}
+if command -v pkg-config >/dev/null; then by_pkg_config "$@"; fi
+find "$folder" -name LICENSE | grep -q .
