@@ -1,4 +1,4 @@
-# The Debian packages that cpack makes: isoshell (the command), libisoshell-dev and, with ISOSHELL_PYTHON_DIR,
+# The Debian packages that cpack makes: isoshell (the commands), libisoshell-dev and, with ISOSHELL_PYTHON_DIR,
 # python3-isoshell. scripts/packages.sh builds them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_STRIP_FILES ON)
@@ -30,7 +30,7 @@ execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/packaging/changelog.Debi
 set(isoshell_about "Any surface (a scan with holes, a triangle soup, points, a volume) becomes a\n\
 mesh of nearly equilateral triangles, through sparse volumes.")
 isoshell_package(runtime isoshell graphics
-                 "${isoshell_about}\n.\nThis package holds the command vdb_isomesh.")
+                 "${isoshell_about}\n.\nThis package holds the commands vdb_isomesh and vdb_meshinfo.")
 isoshell_package(dev libisoshell-dev libdevel
                  "${isoshell_about}\n.\nThis package holds headers, the static library, and files for CMake\nand pkg-config.")
 # The library is static, and OpenVDB's CMake module asks for all that OpenVDB was built with.

@@ -15,16 +15,21 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 
+def suffixes_in(text: str) -> list[str]:
+    """Of files, as in: a mesh (.obj .ply) or a volume (.vdb)."""
+    return list(dict.fromkeys(re.findall(r"(?<=[ (])\.([a-z0-9]+)", text)))
+
+
 @dataclass
 class Argument:
-    """INPUT or OUTPUT."""
+    """As INPUT or OUTPUT."""
 
     name: str
     text: str
 
     @property
     def suffixes(self) -> list[str]:
-        return list(dict.fromkeys(re.findall(r"(?<=[ (])\.([a-z0-9]+)", self.text)))
+        return suffixes_in(self.text)
 
 
 @dataclass
@@ -43,10 +48,11 @@ class Option:
         return [word for word in words if word.islower() and word.isalpha()]
 
     @property
-    def suffix(self) -> str:
-        """Of the files that the value names; empty where it is no file."""
-        match = re.match(r"(?:F|FILE)\.(\w+)", self.value)
-        return match[1] if match else ""
+    def suffixes(self) -> list[str]:
+        """Of the files that the value names; none where it is no file."""
+        if match := re.match(r"(?:F|FILE)\.(\w+)", self.value):
+            return [match[1]]
+        return suffixes_in(self.text) if self.value == "INPUT" else []
 
 
 @dataclass
@@ -156,8 +162,8 @@ def bash(command: Command) -> str:
         if not option.value:
             continue
         does = "return"
-        if option.suffix:
-            does = f"{function}_files {option.suffix}; return"
+        if option.suffixes:
+            does = f"{function}_files {' '.join(option.suffixes)}; return"
         elif option.words:
             does = f"{function}_words {' '.join(option.words)}; return"
         values.append(f"    {'|'.join(option.names)}) {does} ;;")
@@ -216,7 +222,7 @@ def zsh(command: Command) -> str:
         text = re.sub(r"([\[\]:\\])", r"\\\1", option.text)
         action = ""
         if option.value:
-            does = files([option.suffix]) if option.suffix else f"({' '.join(option.words)})" if option.words else " "
+            does = files(option.suffixes) if option.suffixes else f"({' '.join(option.words)})" if option.words else " "
             label = re.sub(r"([:\\])", r"\\\1", option.value)
             action = f":{label}:{does}"
         for name in option.names:
@@ -248,7 +254,7 @@ def fish(command: Command) -> str:
         for spelled in option.names:
             line += f" -l {spelled[2:]}" if spelled.startswith("--") else f" -s {spelled[1:]}"
         if option.value:
-            does = files([option.suffix]) if option.suffix else quoted(" ".join(option.words)) if option.words else ""
+            does = files(option.suffixes) if option.suffixes else quoted(" ".join(option.words)) if option.words else ""
             line += f" -x -a {does}" if does else " -x"
         lines.append(f"{line} -d {quoted(option.text)}")
     return "\n".join(lines) + "\n"

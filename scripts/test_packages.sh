@@ -5,7 +5,8 @@
 #   scripts/test_packages.sh [SUITE...]        default: bookworm trixie (Debian 12 and 13)
 # Packages depend on their suite's OpenVDB and TBB. Those of this system's suite are built here, in build/packages, others
 # from HEAD in a system of that suite, by the stage build of the Dockerfile.
-# The mirror is this system's own; MIRROR names another. KEEP=1 leaves the packages in build/packages-SUITE.
+# The mirror is this system's own; MIRROR names another. KEEP=1 leaves the packages in build/packages-SUITE, and
+# CMAKE_BUILD_PARALLEL_LEVEL says how many compilers run at once.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ "$(id -u)" -eq 0 ] || { echo "packages: needs root, for chroot" >&2; exit 1; }
@@ -15,6 +16,7 @@ command -v debootstrap >/dev/null || { echo "packages: needs debootstrap (apt-ge
 
 mirror=${MIRROR:-$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | grep -v security | head -n 1)}
 [ -n "$mirror" ] || { echo "packages: apt names no mirror; set MIRROR" >&2; exit 1; }
+jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-}
 work=$(mktemp -d)
 trap 'umount -q "$work"/*/*/proc 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 
@@ -23,7 +25,7 @@ inside() { # root, command...
   shift
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-    ${http_proxy:+http_proxy="$http_proxy"} chroot "$root" "$@"
+    ${http_proxy:+http_proxy="$http_proxy"} ${jobs:+CMAKE_BUILD_PARALLEL_LEVEL="$jobs"} chroot "$root" "$@"
 }
 
 quietly() { # command...: its output only when it fails
@@ -59,6 +61,13 @@ check_packages() { # root: lintian knows the suite's policy
   inside "$1" sh -c 'lintian --fail-on error --no-tag-display-limit /packages/*.deb'
 }
 
+# Man page and completions as they are installed.
+check_command_docs() { # root, command
+  inside "$1" sh -c "mkdir /docs_$2 && cd /docs_$2 && cp /usr/share/bash-completion/completions/$2 $2.bash &&
+    cp /usr/share/zsh/vendor-completions/_$2 /usr/share/fish/vendor_completions.d/$2.fish . &&
+    zcat /usr/share/man/man1/$2.1.gz > $2.1 && /isoshell/tests/cli/test_command_docs.sh $2 ."
+}
+
 use_packages() { # root
   local root=$1 packages=("$1"/packages/libisoshell-dev_*.deb)
   run_stage "$root" cpu run
@@ -73,14 +82,16 @@ use_packages() { # root
   inside "$root" /by_pkg_config /isoshell/tests/data/nefertiti.ply /by_pkg_config_out
   inside "$root" vdb_isomesh /isoshell/tests/data/nefertiti.ply /command.ply --vertices 4000 -q --require closed,manifold
   inside "$root" cmp /command.ply /python.ply
+  inside "$root" vdb_meshinfo /command.ply --ref /isoshell/tests/data/nefertiti.ply --require closed,manifold
   inside "$root" vdb_isomesh --version
-  inside "$root" sh -c 'mkdir /docs && cp /usr/share/bash-completion/completions/vdb_isomesh /docs/vdb_isomesh.bash &&
-    cp /usr/share/zsh/vendor-completions/_vdb_isomesh /usr/share/fish/vendor_completions.d/vdb_isomesh.fish /docs &&
-    zcat /usr/share/man/man1/vdb_isomesh.1.gz > /docs/vdb_isomesh.1 &&
-    /isoshell/tests/cli/test_command_docs.sh vdb_isomesh /docs'
+  check_command_docs "$root" vdb_isomesh
+  check_command_docs "$root" vdb_meshinfo
   inside "$root" sha256sum /out.ply /command.ply
   inside "$root" dpkg-query -W '*isoshell*' 'libopenvdb*'
   quietly inside "$root" apt-get -qq purge -y isoshell python3-isoshell libisoshell-dev
+  local left
+  left=$(find "$root/usr" "$root/etc" "$root/var" -xdev -name '*isoshell*' -o -name '*vdb_isomesh*' -o -name '*vdb_meshinfo*')
+  [ -z "$left" ] || { echo "packages: left after purge: $left" >&2; return 1; }
   run_stage "$root" cuda run
   inside "$root" vdb_isomesh --version
 }

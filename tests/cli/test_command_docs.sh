@@ -87,6 +87,21 @@ case "$name" in
       zsh_shows "zsh, INPUT" "^scan.ply +scan.vdb$" "$name scan"
     fi
     ;;
+  vdb_meshinfo)
+    expect "bash, MESH" "scan.ply shells" "$(in_bash s)"
+    expect "bash, a second file" "" "$(in_bash a.ply s)"
+    expect "bash, the reference" "scan.ply scan.vdb shells" "$(in_bash a.ply --ref s)"
+    expect "bash, options" "--ref --ref-format" "$(in_bash --ref)"
+    expect "bash, formats of the reference" "pcd ply" "$(in_bash --ref-format p)"
+    if command -v fish >/dev/null; then
+      expect "fish, MESH" "scan.ply shells/" "$(in_fish s)"
+      expect "fish, the reference" "scan.ply scan.vdb shells/" "$(in_fish a.ply --ref s)"
+    fi
+    if command -v zsh >/dev/null; then
+      zsh_shows "zsh, MESH" "$name scan.ply" "$name sca"
+      zsh_shows "zsh, the reference" "^scan.ply +scan.vdb$" "$name a.ply --ref scan"
+    fi
+    ;;
 esac
 expect "bash, help" "--help" "$(in_bash --hel)"
 if command -v fish >/dev/null; then expect "fish, help" "--help" "$(in_fish --hel)"; fi

@@ -43,15 +43,16 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
   };
   const char* measure = "Measures";
   option(measure, "--ref", raw.reference, "INPUT",
-         "also measure distances and deviations of normals from this surface, both ways; anything that vdb_isomesh "
-         "reads but its stage files");
+         "also measure distances and deviations of normals from this surface, both ways: a mesh (.obj .ply .stl .off "
+         ".glb .gltf), a point cloud (.ply .xyz .pcd) or a volume (.vdb .nvdb)");
   option(measure, "--require", raw.require, "LIST",
          "exit with status 6 unless the mesh meets every requirement of this comma-separated list: closed, manifold, "
          "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG, max-deviation=W (world units, "
          "from --ref), normal-deviation=DEG (mean, from --ref)");
   const char* files = "Files";
   option(files, "--input-format", raw.format, "F", "format of MESH: obj, ply, stl, off, glb or gltf", "by its name");
-  option(files, "--ref-format", raw.reference_format, "F", "format of the reference", "by its name");
+  option(files, "--ref-format", raw.reference_format, "F", "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb",
+         "by its name");
   flag(files, "--json", raw.json, "write everything as JSON to standard output instead of the table");
   option(files, "--stats", a.statistics, "F.json", "write everything as JSON; - is --json");
   flag(files, "--force", a.overwrite, "overwrite an existing file");
