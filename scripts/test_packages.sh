@@ -4,7 +4,7 @@
 # release: needs root, debootstrap, 4 GB of disk and some minutes a suite.
 #   scripts/test_packages.sh [SUITE...]        default: bookworm trixie (Debian 12 and 13)
 # Packages depend on their suite's OpenVDB and TBB. Those of this system's suite are built here, in build/packages, others
-# from HEAD in a system of that suite, by the stage build of the Dockerfile.
+# and with BUILD_INSIDE=1 all from HEAD in a clean system of that suite, by the stage build of the Dockerfile.
 # The mirror is this system's own; MIRROR names another. KEEP=1 leaves the packages in build/packages-SUITE, and
 # CMAKE_BUILD_PARALLEL_LEVEL says how many compilers run at once.
 set -euo pipefail
@@ -18,12 +18,13 @@ mirror=${MIRROR:-$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Pack
 [ -n "$mirror" ] || { echo "packages: apt names no mirror; set MIRROR" >&2; exit 1; }
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-}
 work=$(mktemp -d)
-trap 'umount -q "$work"/*/*/proc 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
+trap 'umount -q "$work"/*/*/proc "$work"/*/*/dev/pts 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 
 inside() { # root, command...
   local root=$1
   shift
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+  mountpoint -q "$root/dev/pts" || mount -t devpts -o newinstance,ptmxmode=666 devpts "$root/dev/pts"  # terminals of zsh
   env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     ${http_proxy:+http_proxy="$http_proxy"} ${jobs:+CMAKE_BUILD_PARALLEL_LEVEL="$jobs"} chroot "$root" "$@"
 }
@@ -58,7 +59,7 @@ build_inside() { # root
 
 check_packages() { # root: lintian knows the suite's policy
   install_packages "$1" lintian
-  inside "$1" sh -c 'lintian --fail-on error --no-tag-display-limit /packages/*.deb'
+  inside "$1" sh -c 'lintian --fail-on error --tag-display-limit 0 --allow-root /packages/*.deb'
 }
 
 # Man page and completions as they are installed.
@@ -82,7 +83,7 @@ use_packages() { # root
   inside "$root" /by_pkg_config /isoshell/tests/data/nefertiti.ply /by_pkg_config_out
   inside "$root" vdb_isomesh /isoshell/tests/data/nefertiti.ply /command.ply --vertices 4000 -q --require closed,manifold
   inside "$root" cmp /command.ply /python.ply
-  inside "$root" vdb_meshinfo /command.ply --ref /isoshell/tests/data/nefertiti.ply --require closed,manifold
+  inside "$root" vdb_meshinfo /command.ply --ref /isoshell/tests/data/nefertiti.ply -q --require closed,manifold
   inside "$root" vdb_isomesh --version
   check_command_docs "$root" vdb_isomesh
   check_command_docs "$root" vdb_meshinfo
@@ -104,7 +105,7 @@ for suite in "$@"; do
   quietly debootstrap --variant=minbase "$suite" "$work/$suite/user" "$mirror"
   mkdir "$work/$suite/user/isoshell" "$work/$suite/user/packages"
   git archive HEAD | tar -x -C "$work/$suite/user/isoshell"
-  if [ "$suite" = "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" ]; then
+  if [ -z "${BUILD_INSIDE:-}" ] && [ "$suite" = "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" ]; then
     build_here "$work/$suite/user/packages"
   else
     cp -a "$work/$suite/user" "$work/$suite/build"
@@ -118,7 +119,7 @@ for suite in "$@"; do
   cp -a "$work/$suite/user" "$work/$suite/lintian"
   check_packages "$work/$suite/lintian"
   use_packages "$work/$suite/user"
-  umount "$work/$suite"/*/proc
+  umount "$work/$suite"/*/proc "$work/$suite"/*/dev/pts
   rm -rf --one-file-system "${work:?}/$suite"
   echo "== $suite: installed, built and ran in $((SECONDS - start)) s"
 done

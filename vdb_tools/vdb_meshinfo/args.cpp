@@ -51,8 +51,8 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
          "from --ref), normal-deviation=DEG (mean, from --ref)");
   const char* files = "Files";
   option(files, "--input-format", raw.format, "F", "format of MESH: obj, ply, stl, off, glb or gltf", "by its name");
-  option(files, "--ref-format", raw.reference_format, "F", "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb",
-         "by its name");
+  option(files, "--ref-format", raw.reference_format, "F",
+         "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb", "by its name");
   flag(files, "--json", raw.json, "write everything as JSON to standard output instead of the table");
   option(files, "--stats", a.statistics, "F.json", "write everything as JSON; - is --json");
   flag(files, "--force", a.overwrite, "overwrite an existing file");
