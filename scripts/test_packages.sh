@@ -6,7 +6,8 @@
 # Packages depend on their suite's OpenVDB and TBB. Those of this system's suite are built here, in build/packages, others
 # and with BUILD_INSIDE=1 all from HEAD in a clean system of that suite, by the stage build of the Dockerfile.
 # The mirror is this system's own; MIRROR names another. KEEP=1 leaves the packages in build/packages-SUITE, and
-# CMAKE_BUILD_PARALLEL_LEVEL says how many compilers run at once.
+# CMAKE_BUILD_PARALLEL_LEVEL says how many compilers run at once. http_proxy and PIP_CERT, the certificates of a network
+# that has its own, hold inside, too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ "$(id -u)" -eq 0 ] || { echo "packages: needs root, for chroot" >&2; exit 1; }
@@ -26,7 +27,7 @@ inside() { # root, command...
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   mountpoint -q "$root/dev/pts" || mount -t devpts -o newinstance,ptmxmode=666 devpts "$root/dev/pts"  # terminals of zsh
   env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-    ${http_proxy:+http_proxy="$http_proxy"} ${jobs:+CMAKE_BUILD_PARALLEL_LEVEL="$jobs"} chroot "$root" "$@"
+    ${http_proxy:+http_proxy="$http_proxy"} ${PIP_CERT:+PIP_CERT=/pip_cert.pem} ${jobs:+CMAKE_BUILD_PARALLEL_LEVEL="$jobs"} chroot "$root" "$@"
 }
 
 quietly() { # command...: its output only when it fails
@@ -104,6 +105,7 @@ for suite in "$@"; do
   mkdir -p "$work/$suite"
   quietly debootstrap --variant=minbase "$suite" "$work/$suite/user" "$mirror"
   mkdir "$work/$suite/user/isoshell" "$work/$suite/user/packages"
+  [ -z "${PIP_CERT:-}" ] || cp "$PIP_CERT" "$work/$suite/user/pip_cert.pem"
   git archive HEAD | tar -x -C "$work/$suite/user/isoshell"
   if [ -z "${BUILD_INSIDE:-}" ] && [ "$suite" = "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" ]; then
     build_here "$work/$suite/user/packages"

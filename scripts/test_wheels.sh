@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the wheels of scripts/wheel.sh into clean systems that have their own Python and none of our packages, and
-# remeshes there. For a maintainer before a release: needs root, debootstrap, PyPI and a minute a suite.
+# remeshes there, to the bytes of the command, which is VDB_ISOMESH or that of the preset cpu. For a maintainer before a
+# release: needs root, debootstrap, PyPI and a minute a suite.
 #   scripts/test_wheels.sh [SUITE...]        default: bookworm trixie (Debian 12 and 13)
 # The mirror is this system's own; MIRROR names another.
 set -euo pipefail
@@ -10,6 +11,8 @@ command -v debootstrap >/dev/null || { echo "wheels: needs debootstrap (apt-get 
 # A mount namespace of its own: whatever is mounted below ends with this script, however it ends.
 [ -n "${ISOSHELL_IN_NAMESPACE:-}" ] || ISOSHELL_IN_NAMESPACE=1 exec unshare --mount --pid --fork "$0" "$@"
 
+command=${VDB_ISOMESH:-build/cpu/vdb_isomesh}
+[ -x "$command" ] || { echo "wheels: needs the command (scripts/build.sh cpu vdb_isomesh)" >&2; exit 1; }
 mirror=${MIRROR:-$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | grep -v security | head -n 1)}
 suites=("$@")
 [ ${#suites[@]} -eq 0 ] && suites=(bookworm trixie)
@@ -38,4 +41,6 @@ for suite in "${suites[@]}"; do
   echo "$suite:"
   inside "$root" /empty/bin/python -c "import isoshell"  # files are compiled and read now
   inside "$root" sh -c 'cd /tmp && /empty/bin/python -' < python/tests/try_wheel.py
+  "$command" "$root/tmp/box.obj" "$work/command.ply" --vertices 300 -q --force
+  cmp "$work/command.ply" "$root/tmp/out.ply"
 done
