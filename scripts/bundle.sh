@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a folder, and a packed copy of it, that runs on a machine without compilers and libraries: the command, the tests
+# Makes a folder, and a packed copy of it, that runs on a machine without compilers and libraries: the commands, the tests
 # with what they read, the benches, and the shared libraries that they need. A GPU machine needs its driver, nothing more.
 #   scripts/bundle.sh [--no-build] [--without-tests] [PRESET [FOLDER]]
 # PRESET is cuda unless named; FOLDER is build/PRESET/isoshell-bundle. --no-build takes what is built already.
@@ -19,7 +19,9 @@ preset=${1:-cuda}
 from=$PWD/build/$preset
 folder=${2:-$from/isoshell-bundle}
 [ "$build" -eq 0 ] || scripts/build.sh "$preset"
-[ -x "$from/vdb_isomesh" ] || { echo "bundle: $from/vdb_isomesh is not built" >&2; exit 1; }
+for command in vdb_isomesh vdb_meshinfo; do
+  [ -x "$from/$command" ] || { echo "bundle: $from/$command is not built" >&2; exit 1; }
+done
 limit_mb=60
 
 rm -rf "$folder" "$folder.tar.xz"
@@ -37,7 +39,7 @@ copy() {
   cmake -P "$script"
 }
 
-copy "$from/vdb_isomesh" "$folder"
+for command in vdb_isomesh vdb_meshinfo; do copy "$from/$command" "$folder"; done
 if [ "$with_tests" -eq 1 ]; then
   while read -r name executable arguments; do
     path=$(find "$from/tests" -name "$executable" -type f -perm -u+x)

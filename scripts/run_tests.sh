@@ -15,7 +15,7 @@ done
 shift $((OPTIND - 1))
 [ -n "$logs" ] || logs=$(mktemp -d)
 mkdir -p "$logs"
-export ISOSHELL_SOURCE=$root VDB_ISOMESH=$root/vdb_isomesh
+export ISOSHELL_SOURCE=$root VDB_ISOMESH=$root/vdb_isomesh VDB_MESHINFO=$root/vdb_meshinfo
 
 chosen() { # name, pattern...
   local name=$1 pattern

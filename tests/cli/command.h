@@ -18,9 +18,13 @@ namespace isoshell::cli {
 
 namespace fs = std::filesystem;
 
-/// The environment variable VDB_ISOMESH, or the command of this build.
+#ifndef COMMAND_VARIABLE
+#define COMMAND_VARIABLE "VDB_ISOMESH"
+#endif
+
+/// What the environment variable of the command under test says, or the command of this build.
 inline std::string command_path() {
-  const char* path = std::getenv("VDB_ISOMESH");
+  const char* path = std::getenv(COMMAND_VARIABLE);
   return path ? path : VDB_ISOMESH_BUILT;
 }
 
