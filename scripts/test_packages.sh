@@ -88,7 +88,8 @@ use_packages() { # root
   inside "$root" vdb_isomesh --version
   check_command_docs "$root" vdb_isomesh
   check_command_docs "$root" vdb_meshinfo
-  inside "$root" sha256sum /out.ply /command.ply
+  inside "$root" cmp /command.ply /out.ply
+  inside "$root" cmp /command.ply /by_pkg_config_out.ply
   inside "$root" dpkg-query -W '*isoshell*' 'libopenvdb*'
   quietly inside "$root" apt-get -qq purge -y isoshell python3-isoshell libisoshell-dev
   local left

@@ -1,5 +1,6 @@
-# The command and the Python module on a CPU. From the root of the project:
+# The commands and the Python module on a CPU. From the root of the project:
 #   docker build -f packaging/docker/cpu.Dockerfile -t isoshell . && docker run -v "$PWD:/work" isoshell scan.ply mesh.ply
+# vdb_meshinfo is run by --entrypoint vdb_meshinfo.
 # scripts/test_packages.sh executes the RUN lines, so one line each.
 FROM debian:12 AS build
 COPY . /isoshell

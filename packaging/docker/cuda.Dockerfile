@@ -1,4 +1,4 @@
-# The command and the Python module on a CUDA device. From the root of the project:
+# The commands and the Python module on a CUDA device. From the root of the project:
 #   docker build -f packaging/docker/cuda.Dockerfile -t isoshell-cuda .
 #   docker run --gpus all -v "$PWD:/work" isoshell-cuda scan.ply mesh.ply
 # scripts/test_packages.sh executes the RUN lines of the stage run, with packages without CUDA: NVIDIA's images and the
