@@ -13,10 +13,10 @@ SeedSet CudaBackend::subdivide_seeds(const SurfaceMesh& surface, const DualMesh&
                               *OnDevice<SeedSet>(exec, seeds), target);
 }
 
-void CudaBackend::collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
-                                 Context& context, bool keep_apart) const {
+void CudaBackend::collapse_edges(const SurfaceMesh& surface, const CollapseOptions& options, SeedSet& seeds,
+                                 DualMesh& mesh, Context& context) const {
   CudaExecutor exec(context, "collapse");
-  collapse_edges_body(exec, *OnDevice<SurfaceMesh>(exec, surface), {target, keep_apart}, on_device(exec, seeds),
+  collapse_edges_body(exec, *OnDevice<SurfaceMesh>(exec, surface), options, on_device(exec, seeds),
                       on_device(exec, mesh));
 }
 

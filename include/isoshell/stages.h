@@ -210,12 +210,13 @@ SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const 
 struct CollapseOptions {
   int64_t target = 0;       ///< vertices to be left, every copy of a fixed one counted
   bool keep_apart = false;  ///< no edge is taken where triangles would intersect then
+  bool keep_ids = false;    ///< ids below the vertices left stay, and what stays of the others takes the ids set free
 };
 /// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
 /// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The
-/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up. Cost: a sort of the
-/// edges a round, then one step for each looked at. Fixed vertices and the edges of borders stay: an edge that has one
-/// fixed end is taken into that. Throws: usage when surface or mesh have a border without fixed seeds.
+/// topology stays, and no triangle turns over; so more than `target` may be left. Ids close up, or are kept. Cost: a
+/// sort of the edges a round, then one step for each looked at. Fixed vertices and the edges of borders stay: an edge
+/// that has one fixed end is taken into that. Throws: usage when surface or mesh have a border without fixed seeds.
 SeededMesh collapse_edges(const SurfaceMesh& surface, SeededMesh&& mesh, const CollapseOptions& options,
                           Context& context);
 
@@ -239,6 +240,7 @@ struct OptimizeOptions {
   int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
+  bool relocate = true;       ///< takes vertices from flat places to those that are far from the mesh
   bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
   bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began, and no relocation
 };

@@ -38,7 +38,7 @@ class CpuBackend final : public BackendTable {
   OptimizeReport optimize_mesh(const SurfaceMesh&, const OptimizeOptions&, SeedSet&, DualMesh&,
                                Context&) const override;
   int64_t six_volume_vox(const SurfaceMesh&, Context&) const override;
-  void collapse_edges(const SurfaceMesh&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const override;
+  void collapse_edges(const SurfaceMesh&, const CollapseOptions&, SeedSet&, DualMesh&, Context&) const override;
   int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const override;
   void finish_stages(Context&) const override {}
 };

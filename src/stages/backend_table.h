@@ -44,7 +44,7 @@ class BackendTable {
   virtual OptimizeReport optimize_mesh(const SurfaceMesh&, const OptimizeOptions&, SeedSet&, DualMesh&,
                                        Context&) const = 0;
   virtual int64_t six_volume_vox(const SurfaceMesh&, Context&) const = 0;
-  virtual void collapse_edges(const SurfaceMesh&, int64_t, SeedSet&, DualMesh&, Context&, bool keep_apart) const = 0;
+  virtual void collapse_edges(const SurfaceMesh&, const CollapseOptions&, SeedSet&, DualMesh&, Context&) const = 0;
   virtual int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const = 0;
   virtual void finish_stages(Context&) const = 0;
 

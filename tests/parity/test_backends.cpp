@@ -203,6 +203,10 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
     SeededMesh run = collapse_edges(p.sheet, seeded_mesh_of(p), {p.seeds.size() * 4 / 5}, c);
     return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));
   });
+  both.stage("mesh with edges collapsed and ids kept", &Products::dual, [](const Products& p, Context& c) {
+    SeededMesh run = collapse_edges(p.sheet, seeded_mesh_of(p), {p.seeds.size() * 4 / 5, false, true}, c);
+    return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));
+  });
   both.stage("mesh without intersections", &Products::dual, [](const Products& p, Context& c) {
     UntangledSheet start = untangle_sheet(to_host(p.sheet), to_host(p.seeds), c);
     const int64_t asked = start.seeds.size();

@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 
+#include "core/copy_product.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/stages.h"
 #include "stages/halfedge/triangle_shape.h"
@@ -139,4 +140,41 @@ TEST_CASE("collapse: nothing is taken where nothing is asked for", "[collapse][s
   collapse_edges(sheet, 1000, m.seeds, m.mesh, context);
   CHECK(m.seeds.size() == count);
   CHECK(std::equal(before.begin(), before.end(), m.mesh.triangles.begin()));
+}
+
+TEST_CASE("collapse: ids below the number left are kept, and others take those set free", "[collapse][stage]") {
+  TestContext context;
+  const Sheet sheet = sheet_of_soup(shapes::torus(2, 0.7, 160, 70), 256, 1, 1);
+  for (const int64_t target : {400, 399, 350, 120}) {
+    Meshed m = meshed(sheet, 400, 20, context);
+    const SeededMesh closed = collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {target}, context);
+    const SeededMesh kept =
+        collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {target, false, true}, context);
+    INFO(target << " vertices");
+    // The same mesh under other numbers: found by positions, of which no two are the same.
+    std::map<std::tuple<int32_t, int32_t, int32_t>, uint32_t> at;
+    const auto key = [](PointQ8 p) { return std::tuple{p.x, p.y, p.z}; };
+    for (int64_t v = 0; v < target; ++v) at[key(kept.mesh.position[v])] = uint32_t(v);
+    REQUIRE(int64_t(at.size()) == target);
+    std::vector<uint32_t> to;
+    for (int64_t v = 0; v < target; ++v) to.push_back(at.at(key(closed.mesh.position[v])));
+    std::set<std::array<uint32_t, 3>> expected, found;
+    const auto turned = [](std::array<uint32_t, 3> t) {
+      std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+      return t;
+    };
+    for (const TriangleIndices& t : closed.mesh.triangles) expected.insert(turned({to[t.a], to[t.b], to[t.c]}));
+    for (const TriangleIndices& t : kept.mesh.triangles) found.insert({t.a, t.b, t.c});
+    CHECK(found == expected);
+    // Vertices that did not move have their ids, unless these are beyond those that are left.
+    int64_t stayed = 0;
+    for (int64_t v = 0; v < target; ++v) {
+      const auto same = at.find(key(m.mesh.position[v]));
+      if (same == at.end()) continue;
+      CHECK(same->second == uint32_t(v));
+      ++stayed;
+    }
+    CHECK(stayed >= target - 2 * (400 - target));
+    CHECK(std::equal(kept.seeds.position.begin(), kept.seeds.position.end(), kept.mesh.position.begin()));
+  }
 }

@@ -14,12 +14,11 @@ SeedSet CpuBackend::subdivide_seeds(const SurfaceMesh& surface, const DualMesh& 
       context, [&] { return subdivide_seeds_body(exec, *OnHost(surface), *OnHost(mesh), *OnHost(seeds), target); });
 }
 
-void CpuBackend::collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
-                                Context& context, bool keep_apart) const {
+void CpuBackend::collapse_edges(const SurfaceMesh& surface, const CollapseOptions& options, SeedSet& seeds,
+                                DualMesh& mesh, Context& context) const {
   CpuExecutor exec(context, "collapse");
-  run_with_threads(context, [&] {
-    collapse_edges_body(exec, *OnHost(surface), {target, keep_apart}, on_host(seeds), on_host(mesh));
-  });
+  run_with_threads(context,
+                   [&] { collapse_edges_body(exec, *OnHost(surface), options, on_host(seeds), on_host(mesh)); });
 }
 
 }  // namespace isoshell

@@ -136,10 +136,11 @@ struct CopyKeptSeed {
     home[i] = from_home[kept[i]];
   }
 };
-struct CopyKeptMark {
+template <class T>
+struct CopyKept {
   View<const uint32_t> kept;
-  View<const uint8_t> from;
-  View<uint8_t> to;
+  View<const T> from;
+  View<T> to;
   ISOSHELL_HD void operator()(int64_t i) const { to[i] = from[kept[i]]; }
 };
 struct CopyKeptTriangle {
@@ -150,6 +151,24 @@ struct CopyKeptTriangle {
     const TriangleIndices t = from[kept[i]];
     to[i] = smallest_first({new_id[merged_into[t.a]], new_id[merged_into[t.b]], new_id[merged_into[t.c]]});
   }
+};
+
+struct KeepId {
+  View<const uint32_t> was;
+  View<uint32_t> by_id;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    if (was[v] < by_id.size) by_id[was[v]] = uint32_t(v);
+  }
+};
+struct IsFree {
+  View<const uint32_t> by_id;
+  ISOSHELL_HD bool operator()(int64_t id) const { return by_id[id] == kNone; }
+};
+struct TakeFreeId {
+  View<const uint32_t> free_id;
+  uint32_t first;  ///< of the vertices without an id
+  View<uint32_t> by_id;
+  ISOSHELL_HD void operator()(int64_t i) const { by_id[free_id[i]] = first + uint32_t(i); }
 };
 
 /// Takes back, of the chosen edges, those that take part in intersections, until none does. Returns how many.
@@ -180,51 +199,63 @@ int64_t part_crossing(Exec& exec, const SurfaceMesh& surface, const WalkOntoShee
   return chosen - exec.sum(vertices, IsMerged{merged_into});
 }
 
-struct CollapseOptions {
-  int64_t target;
-  bool keep_apart;
-};
-
-/// Numbers what stays anew.
+/// Numbers what stays anew: vertex i becomes what kept[i] was.
 template <class Exec>
-void close_up(Exec& exec, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh, Buffer<uint8_t>& blocked) {
-  const Buffer<uint32_t> vertices = exec.select(merged_into.size, StaysVertex{merged_into});
+void renumber(Exec& exec, View<const uint32_t> kept, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh,
+              Buffer<uint8_t>& blocked) {
   const Buffer<uint32_t> triangles =
       exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
   Buffer<uint32_t> new_id = exec.template make<uint32_t>(merged_into.size);
-  exec.for_each("number vertices", vertices.size(), NumberKept{vertices.view(), new_id.view()});
+  exec.for_each("number vertices", kept.size, NumberKept{kept, new_id.view()});
   SeedSet left;
-  left.position = exec.template make<PointQ8>(vertices.size());
-  left.normal = exec.template make<Normal8>(vertices.size());
-  left.home = exec.template make<uint32_t>(vertices.size());
+  left.position = exec.template make<PointQ8>(kept.size);
+  left.normal = exec.template make<Normal8>(kept.size);
+  left.home = exec.template make<uint32_t>(kept.size);
   left.fixed = std::move(seeds.fixed);  // which come first, and all stay
   DualMesh out;
-  out.position = exec.template make<PointQ8>(vertices.size());
+  out.position = exec.template make<PointQ8>(kept.size);
   out.triangles = exec.template make<TriangleIndices>(triangles.size());
-  exec.for_each("copy kept seeds", vertices.size(),
-                CopyKeptSeed{vertices.view(), seeds.position.view(), seeds.normal.view(), seeds.home.view(),
-                             left.position.view(), out.position.view(), left.normal.view(), left.home.view()});
+  exec.for_each("copy kept seeds", kept.size,
+                CopyKeptSeed{kept, seeds.position.view(), seeds.normal.view(), seeds.home.view(), left.position.view(),
+                             out.position.view(), left.normal.view(), left.home.view()});
   exec.for_each(
       "copy kept triangles", triangles.size(),
       CopyKeptTriangle{triangles.view(), merged_into, new_id.view(), mesh.triangles.view(), out.triangles.view()});
   exec.sort(out.triangles.view(), ByIndices{});
-  Buffer<uint8_t> still_blocked = exec.template make<uint8_t>(vertices.size());
-  exec.for_each("copy blocked", vertices.size(), CopyKeptMark{vertices.view(), blocked.view(), still_blocked.view()});
+  Buffer<uint8_t> still_blocked = exec.template make<uint8_t>(kept.size);
+  exec.for_each("copy blocked", kept.size,
+                CopyKept<uint8_t>{kept, View<const uint8_t>(blocked.view()), still_blocked.view()});
   blocked = std::move(still_blocked);
   seeds = std::move(left);
   mesh = std::move(out);
 }
 
+/// Per id the vertex that gets it, from the ids that the vertices had, ascending: those below their number keep them,
+/// and the others take what is free.
+template <class Exec>
+Buffer<uint32_t> vertices_by_kept_ids(Exec& exec, View<const uint32_t> was) {
+  const int64_t vertices = was.size;
+  Buffer<uint32_t> by_id = exec.template make<uint32_t>(vertices);
+  exec.fill(by_id.view(), kNone);
+  exec.for_each("keep ids", vertices, KeepId{was, by_id.view()});
+  const Buffer<uint32_t> free_ids = exec.select(vertices, IsFree{View<const uint32_t>(by_id.view())});
+  exec.for_each("take free ids", free_ids.size(),
+                TakeFreeId{free_ids.view(), uint32_t(vertices - free_ids.size()), by_id.view()});
+  return by_id;
+}
+
 }  // namespace collapse
 
 template <class Exec>
-void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const collapse::CollapseOptions& options,
-                         SeedSet& seeds, DualMesh& mesh) {
+void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const CollapseOptions& options, SeedSet& seeds,
+                         DualMesh& mesh) {
   using namespace collapse;
   const WalkOntoSheet walk = walk_onto(surface);
   Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
   exec.fill(blocked.view(), uint8_t(0));
   Buffer<uint32_t> fixed_valence;  // of the mesh as it comes in, see optimize::FixedView
+  Buffer<uint32_t> was = exec.template make<uint32_t>(options.keep_ids ? seeds.size() : 0);  // their ids, ascending
+  exec.for_each("number vertices", was.size(), StartApart{was.view()});
   for (bool any = true; any && seeds.size() > options.target;) {
     const int64_t before = seeds.size();
     optimize::Connections connections(exec, mesh);
@@ -252,9 +283,20 @@ void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const collapse:
     exec.for_each("move to the middle", before,
                   MoveToMiddle{walk, seeds.fixed.count, merged_into.view(), seeds.position.view(), seeds.normal.view(),
                                seeds.home.view()});
-    close_up(exec, merged_into.view(), seeds, mesh, blocked);
+    const Buffer<uint32_t> kept = exec.select(before, StaysVertex{merged_into.view()});
+    renumber(exec, kept.view(), merged_into.view(), seeds, mesh, blocked);
+    if (options.keep_ids) {
+      Buffer<uint32_t> still = exec.template make<uint32_t>(kept.size());
+      exec.for_each("copy ids", kept.size(), CopyKept<uint32_t>{kept.view(), was.view(), still.view()});
+      was = std::move(still);
+    }
     any = seeds.size() < before || taken_back > 0;
   }
+  if (!options.keep_ids) return;
+  const Buffer<uint32_t> by_id = vertices_by_kept_ids(exec, was.view());
+  Buffer<uint32_t> alone = exec.template make<uint32_t>(seeds.size());
+  exec.for_each("start apart", alone.size(), StartApart{alone.view()});
+  renumber(exec, by_id.view(), alone.view(), seeds, mesh, blocked);
 }
 
 }  // namespace isoshell

@@ -19,7 +19,7 @@ SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const 
 SeededMesh collapse_edges(const SurfaceMesh& surface, SeededMesh&& mesh, const CollapseOptions& options,
                           Context& context) {
   require_closed_or_fixed(surface, mesh.seeds, "collapse");
-  backend_for(context).collapse_edges(surface, options.target, mesh.seeds, mesh.mesh, context, options.keep_apart);
+  backend_for(context).collapse_edges(surface, options, mesh.seeds, mesh.mesh, context);
   return std::move(mesh);
 }
 
