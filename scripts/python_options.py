@@ -27,7 +27,7 @@ class Options(TypedDict, total=False):
     """The options of the command vdb_isomesh, with underscores. None is as if a keyword were not there; what holds then
     is in brackets.
 '''
-LEFT_OUT = {"help", "version", "dry-run"}
+LEFT_OUT = {"help", "version", "dry-run", "frames", "velocity", "no-coherence", "keep-going", "resume"}
 SPECIAL = {
     "features": "Union[float, str]",
     "close-gaps": "Union[float, str]",

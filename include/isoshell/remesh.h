@@ -11,6 +11,7 @@
 #include "isoshell/boolean_union.h"
 #include "isoshell/gaps.h"
 #include "isoshell/polylines.h"
+#include "isoshell/previous_frame.h"
 #include "isoshell/repair.h"
 #include "isoshell/sizing.h"
 #include "isoshell/stages.h"
@@ -67,6 +68,10 @@ struct RemeshOptions {
   /// Names of the attributes that a run keeps; without a value all. Where texture coordinates, materials or groups that
   /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;
+  /// The frame before this one of a sequence: vertices keep their numbers; null: there is none. Needs the method sheet.
+  /// Where the surface is cut along curves, or cannot be meshed from there, the run begins as without it, and vertices
+  /// get the numbers of those that lie nearest.
+  std::shared_ptr<const PreviousFrame> previous = {};
   bool color_features = false;  ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
   bool outer_only = false;      ///< drop what lies inside of a closed surface
   bool want_shell = false;      ///< build the shell even when the method does not need it, to keep it
@@ -134,7 +139,8 @@ struct RemeshReport {
   SizingReport sizing;
   GapReport gaps;
   FeatureReport features;
-  bool post_done = false;  ///< false when cells failed: nothing is improved then, nor tested for intersections
+  CoherenceReport coherence;  ///< of a run with a frame before
+  bool post_done = false;     ///< false when cells failed: nothing is improved then, nor tested for intersections
   int64_t memory_estimate_bytes = 0;  ///< of the finest grid that was begun; see memory_estimate.h
   std::vector<StageTime> times;       ///< in order; a stage that ran more than once has one entry
   std::map<std::string, std::string> digests;

@@ -16,6 +16,10 @@ LEFT_OUT = {
     "help": "see help(isoshell.Options)",
     "version": "see isoshell.__version__",
     "dry_run": "call isoshell.estimate",
+    **{
+        name: "frames are meshed by the command: python -m isoshell INPUT OUTPUT --frames A-B"
+        for name in ("frames", "velocity", "no_coherence", "keep_going", "resume")
+    },
 }
 
 _flags: dict[str, bool] = {}

@@ -12,7 +12,8 @@ from conftest import SOURCE
 from isoshell import ErrorCode, _isoshell
 
 TABLE = {option.name.replace("-", "_"): option for option in _isoshell.option_table()}
-NO_KEYWORDS = {"help", "version", "dry_run"}
+SEQUENCES = {"frames", "velocity", "no_coherence", "keep_going", "resume"}
+NO_KEYWORDS = {"help", "version", "dry_run"} | SEQUENCES
 
 
 def test_there_is_a_keyword_for_every_option():
@@ -67,6 +68,7 @@ def test_an_unknown_keyword_is_refused_with_the_nearest(mistyped, meant):
     ({"stop_after": "shell", "output": "out.ply"}, ["stop_after"]),
     ({"method": "shell", "adaptivity": 0.5}, ["adaptivity"]),
     ({"dry_run": True}, ["dry_run", "isoshell.estimate"]),
+    ({"frames": "1-9"}, ["frames", "by the command"]),
     ({"help": True}, ["help(isoshell.Options)"]),
 ])
 def test_a_value_that_cannot_be_is_refused_by_the_name_of_its_keyword(options, words):

@@ -62,6 +62,9 @@ RemeshOptions checked(RemeshOptions o) {
   if (o.method == Method::shell && o.boundary == Boundary::keep)
     throw Error(ErrorCode::usage, "options",
                 "borders are kept by the method sheet: the paper's loop on the shell knows none");
+  if (o.method == Method::shell && o.previous)
+    throw Error(ErrorCode::usage, "options",
+                "frames follow one another by the method sheet: the paper's loop on the shell places its seeds anew");
   if (o.method == Method::shell && (o.sizing || o.adaptivity > 0))
     throw Error(ErrorCode::usage, "options",
                 "a sizing field and adaptivity need the method sheet: the paper's loop on the shell has even cells");

@@ -12,8 +12,8 @@ constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relax
 
 }  // namespace
 
-void make_dual_of_seeds(const SurfaceMesh& surface, SeededMesh& made, RemeshReport& report, Context& context) {
-  const int64_t asked = made.seeds.size();
+void make_dual_of_seeds(const SurfaceMesh& surface, const CollapseOptions& count, SeededMesh& made,
+                        RemeshReport& report, Context& context) {
   report.dual = {};
   for (int round = 0;; ++round) {
     Triangulation dual =
@@ -25,8 +25,8 @@ void make_dual_of_seeds(const SurfaceMesh& surface, SeededMesh& made, RemeshRepo
     report.dual.failed_cells = found.failed_cells;
     made = std::move(dual);
     if (found.failed_cells == 0)
-      made = timed(report, "dual", context, [&] { return collapse_edges(surface, std::move(made), {asked}, context); });
-    if (found.inserted_seeds <= asked * kFewRepairPerMille / 1000 || round == kMostTimesAgain) return;
+      made = timed(report, "dual", context, [&] { return collapse_edges(surface, std::move(made), count, context); });
+    if (found.inserted_seeds <= count.target * kFewRepairPerMille / 1000 || round == kMostTimesAgain) return;
     const RelaxOptions again{kPassesAgain, 0, 0};
     made.seeds = timed(report, "relax", context,
                        [&] { return relax_on_sheet(surface, std::move(made.seeds), again, context).seeds; });

@@ -102,7 +102,7 @@ std::string mesh_patches(const Prepared& p, const CutSurface& cut, SeededMesh& m
                          RemeshReport& report, Context& context) {
   const int64_t asked = made.seeds.size();
   report.post = {};
-  make_dual_of_seeds(cut.surface, made, report, context);
+  make_dual_of_seeds(cut.surface, {asked}, made, report, context);
   if (report.dual.failed_cells > 0) return std::to_string(report.dual.failed_cells) + " cells beside them are no disks";
   if (made.seeds.size() != asked)
     return "the patches take " + std::to_string(made.seeds.size() - asked) + " vertices more";

@@ -20,6 +20,7 @@
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_start.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -69,15 +70,31 @@ PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, cons
   return {{p.cut->seeds, options.seed}, relax_options(options), options.tolerance.has_value(), optimize};
 }
 
+/// Whether the frame begins with the vertices of the frame before; the report says why one that has one does not.
+bool begins_warm(const Prepared& p, const RemeshOptions& options, bool in_patches, RemeshReport& report) {
+  CoherenceReport& coherence = report.coherence;
+  coherence.began_warm = false;
+  if (!options.previous) return false;
+  coherence.why_cold = in_patches ? "the surface is cut along curves"
+                                  : reason_to_begin_cold(*options.previous, vertex_target(options, p));
+  return coherence.began_warm = coherence.why_cold.empty();
+}
+
 /// On the patches of a cut surface, or on the sheet.
 SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patches, RemeshReport& report,
                     Context& context) {
   const RemeshOptions options = checked(asked);
   const SeedOptions seed_options{in_patches ? p.cut->seeds : vertex_target(options, p), options.seed};
+  const bool is_warm = begins_warm(p, options, in_patches, report);
   RelaxedSeeds relaxed;
   if (in_patches) {
     relaxed = timed(report, "relax", context,
                     [&] { return relax_in_patches(*p.cut, patch_options(p, options, {}), context); });
+  } else if (is_warm) {
+    relaxed = timed(report, "relax", context, [&] {
+      return relax_from_previous(p.sheet, *options.previous, seed_options.count, relax_options(options),
+                                 options.tolerance.has_value(), context);
+    });
   } else if (options.method == Method::sheet) {
     relaxed = timed(report, "relax", context, [&] {
       return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), context);
@@ -99,18 +116,21 @@ SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patch
 }
 
 /// Dual, repair and the final mesh on the sheet.
-void mesh_on_sheet(const Prepared& p, const OptimizeOptions& options, SeededMesh& made, RemeshReport& report,
-                   Context& context) {
+void mesh_on_sheet(const Prepared& p, const RemeshOptions& asked, OptimizeOptions options, SeededMesh& made,
+                   RemeshReport& report, Context& context) {
   report.post = {};
   report.post_done = false;
-  make_dual_of_seeds(p.sheet, made, report, context);
+  const bool is_warm = report.coherence.began_warm;
+  if (is_warm) options = for_warm_frame(options);
+  const int64_t count = is_warm ? vertex_target(asked, p) : made.seeds.size();
+  make_dual_of_seeds(p.sheet, {count, false, is_warm}, made, report, context);
   if (report.dual.failed_cells > 0) return;
   OptimizedMesh optimized =
       timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), options, context); });
   report.post = optimized.report;
   made = std::move(optimized);
   if (report.post.self_intersections > 0)
-    timed(report, "untangle", context, [&] { resolve_intersections(p, options, made, report, context); });
+    timed(report, "untangle", context, [&] { resolve_intersections(p, options, is_warm, made, report, context); });
   report.post_done = true;
 }
 
@@ -133,7 +153,7 @@ std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptio
     SeededMesh again;
     try {
       again.seeds = relax_seeds(merged->prepared, options, false, tried, context);
-      mesh_on_sheet(merged->prepared, optimize, again, tried, context);
+      mesh_on_sheet(merged->prepared, options, optimize, again, tried, context);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::usage && error.code() != ErrorCode::out_of_memory) throw;
       continue;  // the mesh that there is stays
@@ -148,6 +168,35 @@ std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptio
   }
   if (best) report_merge(*best, points, report);
   return best;
+}
+
+/// A frame that cannot be meshed from the one before begins cold, where that gives a better mesh.
+void begin_again_cold(const Prepared& p, RemeshOptions options, const OptimizeOptions& optimize, SeededMesh& made,
+                      RemeshReport& report, Context& context) {
+  const int64_t failed = report.dual.failed_cells, crossing = report.post.self_intersections;
+  if (!report.coherence.began_warm || (failed == 0 && crossing == 0)) return;
+  options.previous.reset();
+  RemeshReport tried = report;
+  SeededMesh again;
+  again.seeds = relax_seeds(p, options, false, tried, context);
+  mesh_on_sheet(p, options, optimize, again, tried, context);
+  const bool is_better =
+      tried.dual.failed_cells < failed || (failed == 0 && tried.post_done && tried.post.self_intersections < crossing);
+  if (!is_better) {
+    report.times = std::move(tried.times);
+    return;
+  }
+  tried.coherence.why_cold =
+      failed > 0 ? "cells of the carried vertices are no disks" : "triangles of the carried vertices intersect";
+  report = std::move(tried);
+  made = std::move(again);
+}
+
+/// Numbers as in the frame before, and how steady the frame is.
+void follow_previous(const RemeshOptions& options, TriangleMesh& mesh, RemeshReport& report) {
+  if (!options.previous) return;
+  if (!report.coherence.began_warm) number_as_before(*options.previous, mesh);
+  measure_coherence(*options.previous, mesh, report.coherence);
 }
 
 /// Where the grid is too coarse for that, too, the error says why it is tried.
@@ -186,8 +235,9 @@ SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& rep
   return relax_seeds(p, options, p.cut != nullptr, report, context);
 }
 
-TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& options, RemeshReport& report,
+TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& as_asked, RemeshReport& report,
                          Context& context) {
+  const RemeshOptions options = checked(as_asked);
   OptimizeOptions optimize;
   optimize.fit = options.fit;
   optimize.uniform_area = options.uniform_area;
@@ -196,7 +246,8 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   made.seeds = std::move(seeds);
   if (p.cut && made.seeds.fixed.count > 0) {
     if (std::optional<TriangleMesh> mesh =
-            triangulate_patches(p, made, patch_options(p, checked(options), optimize), report, context)) {
+            triangulate_patches(p, made, patch_options(p, options, optimize), report, context)) {
+      follow_previous(options, *mesh, report);
       note_digest(options, report, context, "mesh", *mesh);
       return std::move(*mesh);
     }
@@ -204,14 +255,16 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
     if (!p.surface.topology.closed) warn_of_topology(p, p.surface.topology, options, report);
     made.seeds = relax_without_creases(p, options, report, context);
   }
-  const int64_t asked = made.seeds.size();
-  mesh_on_sheet(p, optimize, made, report, context);
+  const int64_t asked = report.coherence.began_warm ? vertex_target(options, p) : made.seeds.size();
+  mesh_on_sheet(p, options, optimize, made, report, context);
+  begin_again_cold(p, options, optimize, made, report, context);
   const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, options, optimize, made, report, context);
   const Prepared& meshed = merged ? merged->prepared : p;
   warn_of_mesh(meshed, made, asked, report);
   measure_edges(meshed.sheet, made.seeds, made.mesh, report.sizing, context);
   TriangleMesh mesh = to_world(made.mesh, meshed.surface.frame);
   flag_gaps(meshed, made.seeds, mesh, report.gaps);
+  follow_previous(options, mesh, report);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;
 }

@@ -23,14 +23,15 @@ Triangulation split_where_crossing(const SurfaceMesh& surface, const SeedSet& se
 }
 
 /// From `seeds` as many as `mesh` has.
-void make_again(const SurfaceMesh& surface, const SeedSet& seeds, const OptimizeOptions& options, SeededMesh& mesh,
-                RemeshReport& report, Context& context) {
+void make_again(const SurfaceMesh& surface, const SeedSet& seeds, const OptimizeOptions& options, bool keep_ids,
+                SeededMesh& mesh, RemeshReport& report, Context& context) {
   const int64_t asked = mesh.seeds.size();
   Triangulation dual = split_where_crossing(surface, seeds, context);
   const DualReport found = dual.report;
   if (found.failed_cells > 0) return;
-  SeededMesh again = collapse_edges(surface, std::move(dual), {asked, true}, context);
-  again = collapse_edges(surface, std::move(again), {asked}, context);  // the count goes before what is left
+  SeededMesh again = collapse_edges(surface, std::move(dual), {asked, true, keep_ids}, context);
+  again = collapse_edges(surface, std::move(again), {asked, false, keep_ids},
+                         context);  // the count goes before what is left
   if (again.seeds.size() != asked) return;
   OptimizeOptions careful = options;
   careful.keep_apart = true;
@@ -43,15 +44,15 @@ void make_again(const SurfaceMesh& surface, const SeedSet& seeds, const Optimize
 
 }  // namespace
 
-void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, SeededMesh& mesh,
+void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, bool keep_ids, SeededMesh& mesh,
                            RemeshReport& report, Context& context) {
   UntangledSheet start = untangle_sheet(host_copy(prepared.sheet), host_copy(mesh.seeds), context);
-  make_again(start.sheet, start.seeds, options, mesh, report, context);
+  make_again(start.sheet, start.seeds, options, keep_ids, mesh, report, context);
 }
 
 void resolve_intersections(const SurfaceMesh& surface, const OptimizeOptions& options, SeededMesh& mesh,
                            RemeshReport& report, Context& context) {
-  make_again(surface, mesh.seeds, options, mesh, report, context);
+  make_again(surface, mesh.seeds, options, false, mesh, report, context);
 }
 
 }  // namespace isoshell

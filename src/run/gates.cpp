@@ -38,10 +38,16 @@ void set_gate(const std::string& gate, Gates& gates) {
   } else if (name == "normal-deviation" && has_value) {
     gates.normal_deviation_deg = parse_number("--require normal-deviation", value);
     check_range("--require normal-deviation", *gates.normal_deviation_deg, {0, 90});
+  } else if (name == "kept-edges" && has_value) {
+    gates.kept_edges_pct = parse_number("--require kept-edges", value);
+    check_range("--require kept-edges", *gates.kept_edges_pct, {0, 100});
+  } else if (name == "born" && has_value) {
+    gates.born = parse_count("--require born", value);
   } else {
-    refuse("--require has '" + gate +
-           "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, "
-           "boundary-loops=N, min-angle=DEG, max-deviation=W, normal-deviation=DEG, features");
+    refuse(
+        "--require has '" + gate +
+        "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, "
+        "boundary-loops=N, min-angle=DEG, max-deviation=W, normal-deviation=DEG, features, kept-edges=PERCENT, born=N");
   }
 }
 
@@ -142,6 +148,16 @@ std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
     gate(distance.normal_deviation_deg() <= *g.normal_deviation_deg, normals_text(*g.normal_deviation_deg, distance));
   }
   if (g.features) gate(report.features.lost.empty() && report.features.given_up.empty(), lost_text(report.features));
+  if (record.options.previous) {
+    const CoherenceReport& coherence = report.coherence;
+    std::ostringstream kept;
+    kept << "kept-edges=" << g.kept_edges_pct.value_or(0) << ": the frame before has " << coherence.kept_edges_pct
+         << " % of the edges";
+    gate(coherence.kept_edges_pct >= g.kept_edges_pct.value_or(0), kept.str());
+    gate(coherence.born <= g.born.value_or(INT64_MAX), "born=" + std::to_string(g.born.value_or(0)) + ": " +
+                                                           counted(coherence.born, "vertex is", "vertices are") +
+                                                           " not where those of the frame before went");
+  }
   return missed;
 }
 

@@ -12,6 +12,8 @@ namespace {
 
 void check_gates(const Gates& gates, bool has_reference) {
   if (gates.features) refuse("--require features is for a run that keeps curves; leave it out");
+  if (gates.kept_edges_pct || gates.born)
+    refuse("--require kept-edges and born are for the frames of a sequence; leave them out");
   if (gates.needs_distance() && !has_reference)
     refuse("--require max-deviation and normal-deviation compare with a reference; give one by --ref");
 }

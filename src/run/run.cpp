@@ -16,6 +16,7 @@
 #include "isoshell/transfer_attributes.h"
 #include "run/choose_attributes.h"
 #include "run/color_features.h"
+#include "run/motion_attributes.h"
 #include "run/outputs.h"
 #include "run/process_memory.h"
 #include "run/resume.h"
@@ -106,6 +107,7 @@ class Run {
     if (!attributes.empty())
       mesh.attributes = step("attributes", [&] { return transfer_attributes(input.soup, attributes, mesh, context_); });
     mesh.files = std::move(input.soup.files);
+    if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
     if (options_.values.color_features) show_features(mesh);
     const OutputRequest& output = record_.output;
     if (!output.path.empty())

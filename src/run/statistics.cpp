@@ -258,6 +258,17 @@ Json device_json(const DeviceInfo& d) {
           {"memory_bytes", d.memory_bytes}};
 }
 
+/// Of a frame that follows another.
+Json coherence_json(const RunRecord& r) {
+  if (!r.options.previous) return nullptr;
+  const CoherenceReport& c = r.report.coherence;
+  return {{"began_warm", c.began_warm},
+          {"why_cold", known(c.why_cold)},
+          {"born", c.born},
+          {"kept_edges_pct", c.kept_edges_pct},
+          {"excess", c.excess}};
+}
+
 }  // namespace
 
 std::string statistics_json(const RunRecord& r) {
@@ -274,6 +285,7 @@ std::string statistics_json(const RunRecord& r) {
   j["topology"] = topology_json(r);
   j["quality"] = quality_json(r);
   j["features"] = features_json(r.report.features);
+  j["coherence"] = coherence_json(r);
   j["borders"] = borders_json(r.borders);
   j["sizing"] = sizing_json(r.report.sizing);
   j["distance"] = distance_json(r.distance);

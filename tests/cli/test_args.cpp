@@ -203,6 +203,17 @@ TEST_CASE("args: an option by a name that does not exist is refused with the nea
   CHECK(contains(given_refusal("vertices", "x"), "--vertices is 'x'"));
 }
 
+TEST_CASE("args: what is for sequences needs frames", "[cli][args]") {
+  const Arguments a = *parse({"in.####.obj", "out.####.ply", "--frames", "3-9x2", "--velocity", "v", "--resume"}).run;
+  REQUIRE(a.frames);
+  CHECK((a.frames->first == 3 && a.frames->last == 9 && a.frames->step == 2));
+  CHECK(a.velocity == "v");
+  CHECK((a.is_coherent && a.resume && !a.keep_going));
+  for (const char* flag : {"--no-coherence", "--keep-going", "--resume"})
+    CHECK(contains(refusal({"a.obj", "b.ply", flag}), std::string(flag) + " needs --frames"));
+  CHECK(contains(refusal({"a.obj", "b.ply", "--frames", "9-3"}), "the last frame comes before the first"));
+}
+
 TEST_CASE("args: the table of options has them all, with what stands for their values", "[cli][args]") {
   const std::vector<OptionEntry> table = option_table();
   const auto entry = [&](const std::string& name) {
@@ -210,7 +221,7 @@ TEST_CASE("args: the table of options has them all, with what stands for their v
       if (option.name == name) return option;
     return OptionEntry{};
   };
-  CHECK(table.size() == 41);
+  CHECK(table.size() == 46);
   CHECK(entry("vertices").value == "K");
   CHECK(entry("vertices").fallback == "10000");
   CHECK_FALSE(entry("vertices").real);

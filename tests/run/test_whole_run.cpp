@@ -78,7 +78,7 @@ TEST_CASE("whole run: statistics have the keys of schema 1, whether written or a
                                          "grid",           "counts",  "gaps",       "attributes",   "topology",
                                          "features",       "quality", "sizing",     "borders",      "distance",
                                          "normals",        "energy",  "timings_ms", "memory_bytes", "device",
-                                         "device_details", "digests", "warnings"});
+                                         "device_details", "digests", "warnings",   "coherence"});
   CHECK(j["schema"] == 1);
   CHECK(keys(j["options"]) == std::set<std::string>{"vertices", "edge-length", "band", "outer-only", "method",
                                                     "iterations", "tolerance", "step", "seed", "fit", "uniform-area",

@@ -32,9 +32,9 @@ struct Raw {
   double edge_length = 0, voxel_size = 0, tolerance = 0, step = 0, iso = 0, adaptivity = 0, gradation = 0;
   int64_t resolution = 0, band = 0, iterations = 0, threads = 0;
   std::string input, input_format, output, output_format;
-  bool allow_intersections = false, verbose = false, quiet = false, help = false, version = false;
+  bool no_coherence = false, allow_intersections = false, verbose = false, quiet = false, help = false, version = false;
   std::string seed, close_gaps, method, fit, features, boundary, attributes, device, stop_after, require, max_memory,
-      progress;
+      progress, frames;
   std::vector<std::string> reals;  ///< options that take any number, not only whole ones
 };
 
@@ -122,12 +122,25 @@ void describe(CLI::App& app, Arguments& a, Raw& raw) {
          "alone: pip install isoshell[report]");
   flag(files, "--force", run.overwrite, "overwrite existing files");
 
+  const char* sequence = "Sequences";
+  option(sequence, "--frames", raw.frames, "A-B[xSTEP]",
+         "mesh the frames from A to B, every STEP-th, each beginning with the one before, so that vertices keep their "
+         "numbers; INPUT, OUTPUT and --stats have #### or %04d where the number is");
+  option(
+      sequence, "--velocity", a.velocity, "GRID",
+      "grid of velocities in the .vdb file of a frame, in world units a frame: where its surface goes until the next");
+  flag(sequence, "--no-coherence", raw.no_coherence, "begin every frame anew");
+  flag(sequence, "--keep-going", a.keep_going, "go on after a frame that cannot be read or meshed, or misses a gate");
+  flag(sequence, "--resume", a.resume, "leave out the frames whose OUTPUT is there, and go on after them; in PLY");
+
   const char* process = "Run";
   option(process, "--require", raw.require, "LIST",
          "exit with status 6 unless the result meets every requirement of this comma-separated list: closed, manifold, "
          "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG (smallest angle in degrees), "
          "max-deviation=W (distance between result and input in world units), normal-deviation=DEG (mean angle between "
-         "normals of result and input), features (no curve of the input is lost)");
+         "normals of result and input), features (no curve of the input is lost), kept-edges=PERCENT and born=N (of a "
+         "frame "
+         "that follows another: edges that it keeps, at least, and vertices that are new, at most)");
   flag(process, "--allow-intersections", raw.allow_intersections,
        "exit with status 0, not 6, where the result intersects itself");
   option(process, "--device", raw.device, "auto|cpu|cuda[:N]", "device to run on", "auto");
@@ -192,6 +205,13 @@ void settle_options(const Raw& raw, AskedOptions& asked) {
   if (!raw.fit.empty()) o.fit = parse_fit("--fit", raw.fit);
 }
 
+void settle_sequence(const Raw& raw, Arguments& a) {
+  if (!raw.frames.empty()) a.frames = parse_frames(raw.frames);
+  a.is_coherent = !raw.no_coherence;
+  for (const char* name : {"velocity", "no-coherence", "keep-going", "resume"})
+    if (!a.frames && a.run.options.was_given(name)) refuse(std::string("--") + name + " needs --frames");
+}
+
 /// All but where the run reads from, which a front may have in memory.
 void settle(const CLI::App& app, Arguments& a, const Raw& raw) {
   RunRequest& run = a.run;
@@ -216,6 +236,7 @@ void settle(const CLI::App& app, Arguments& a, const Raw& raw) {
   if (!raw.max_memory.empty()) a.max_memory_bytes = parse_size_bytes(raw.max_memory);
   run.gates = parse_gates(raw.require);
   run.gates.allow_intersections = raw.allow_intersections;
+  settle_sequence(raw, a);
   if (raw.verbose && raw.quiet) refuse("--verbose and --quiet exclude each other");
   a.verbosity = raw.quiet ? 0 : raw.verbose ? 2 : 1;
   if (a.verbosity == 0) run.measures = Measures::none;

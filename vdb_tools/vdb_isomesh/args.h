@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "isoshell/backend.h"
-#include "isoshell/run/run.h"
+#include "isoshell/run/sequence.h"
 
 namespace isoshell::tool {
 
@@ -20,6 +20,9 @@ struct Arguments {
   int threads = 0;
   int64_t max_memory_bytes = 0;  ///< 0 means by what is free
   bool dry_run = false;
+  std::optional<FrameRange> frames;  ///< of a sequence, whose paths are patterns
+  std::string velocity;
+  bool is_coherent = true, keep_going = false, resume = false;
   ProgressMode progress = ProgressMode::automatic;
   int verbosity = 1;  ///< 0 quiet, 1 warnings and results, 2 every stage
 };

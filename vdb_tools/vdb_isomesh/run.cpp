@@ -79,6 +79,48 @@ void tell_result(const RunRecord& record, Console& console) {
   console.result(text.str());
 }
 
+void tell_frame(int64_t frame, const RunResult& result, Console& console) {
+  tell_times(result.record, console);
+  tell_result(result.record, console);
+  const RunRecord& record = result.record;
+  if (!record.options.previous) return;
+  const CoherenceReport& coherence = record.report.coherence;
+  std::ostringstream text;
+  text.precision(2);
+  text << std::fixed << "frame " << frame << ": " << coherence.kept_edges_pct << " % of the edges kept, "
+       << counted(coherence.born, "vertex", "vertices") << " born"
+       << (coherence.began_warm ? "" : ", began cold: " + coherence.why_cold);
+  console.detail(text.str());
+}
+
+void tell_sequence(const SequenceResult& result, Console& console) {
+  std::ostringstream text;
+  text.precision(2);
+  text << std::fixed << counted(result.made, "frame") << " made";
+  if (result.found > 0) text << ", " << result.found << " there already";
+  if (result.followed > 0)
+    text << "; " << result.warm << " began with the vertices of the frame before; edges kept "
+         << result.kept_edges_mean_pct << " % on average, " << result.kept_edges_worst_pct << " % at worst; "
+         << counted(result.born, "vertex", "vertices") << " born";
+  console.result(text.str());
+}
+
+/// The exit status of a sequence that kept going is that of its first bad frame.
+int run_frames(const Arguments& arguments, const RunRequest& frame, Context& context, Console& console) {
+  SequenceRequest request;
+  request.frame = frame;
+  request.frames = *arguments.frames;
+  request.velocity = arguments.velocity;
+  request.is_coherent = arguments.is_coherent;
+  request.keep_going = arguments.keep_going;
+  request.resume = arguments.resume;
+  request.after_frame = [&](int64_t number, const RunResult& result) { tell_frame(number, result, console); };
+  const SequenceResult result = run_sequence(request, context);
+  tell_sequence(result, console);
+  for (const BadFrame& bad : result.bad) console.error("frame " + std::to_string(bad.frame) + ": " + bad.message);
+  return result.bad.empty() ? 0 : int(result.bad.front().code);
+}
+
 }  // namespace
 
 int run(const Arguments& arguments, Context& context, Console& console, const WriteReport& write_report) {
@@ -88,6 +130,9 @@ int run(const Arguments& arguments, Context& context, Console& console, const Wr
     kind == MessageKind::warning ? console.warn(text) : console.detail(text);
   };
   request.around_write = write_undisturbed;
+  if (arguments.frames && arguments.dry_run)
+    throw Error(ErrorCode::usage, "command line", "--dry-run estimates one frame; leave out --frames and name it");
+  if (arguments.frames) return run_frames(arguments, request, context, console);
   if (arguments.dry_run) {
     tell_estimate(request, dry_run(request, context), context.memory_limit_bytes, console);
     return 0;

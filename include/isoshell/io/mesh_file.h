@@ -32,4 +32,7 @@ struct MeshWriteOptions {
 /// for names that PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
 
+/// Puts the vertices where a PLY file of the mesh has them.
+void round_as_in_ply(TriangleMesh& mesh);
+
 }  // namespace isoshell

@@ -18,16 +18,18 @@ struct Gates {
   std::optional<int64_t> genus, components, boundary_loops;
   bool features = false;  ///< no curve was lost
   std::optional<double> min_angle_deg, max_deviation_world, normal_deviation_deg;
+  std::optional<double> kept_edges_pct;  ///< of a frame that follows another; others meet them
+  std::optional<int64_t> born;
 
   bool any() const {
     return closed || manifold || no_self_intersections || features || genus || components || boundary_loops ||
-           min_angle_deg || needs_distance();
+           min_angle_deg || kept_edges_pct || born || needs_distance();
   }
   bool needs_distance() const { return max_deviation_world || normal_deviation_deg; }
 };
 
 /// From a list as --require takes it: "closed,manifold,no-self-intersections,genus=3,components=2,boundary-loops=1,
-/// min-angle=20.5,max-deviation=0.1,normal-deviation=1.5,features", any of them. Throws: usage.
+/// min-angle=20.5,max-deviation=0.1,normal-deviation=1.5,features,kept-edges=99,born=10", any of them. Throws: usage.
 Gates parse_gates(const std::string& list);
 
 /// A sentence for each gate that the record does not meet, in the order of Gates. That the result is known to intersect

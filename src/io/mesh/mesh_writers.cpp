@@ -93,4 +93,9 @@ void write_stl(OutputFile& file, const TriangleMesh& mesh) {
   });
 }
 
+void round_as_in_ply(TriangleMesh& mesh) {
+  if (needs_double(mesh)) return;
+  for (WorldPoint& p : mesh.vertices) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
+}
+
 }  // namespace isoshell

@@ -3,6 +3,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/io/velocity_vdb.h"
 
 namespace isoshell {
 namespace {
@@ -37,6 +38,9 @@ std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_
 }
 std::shared_ptr<const SizingField> sizing_of(const DenseVolume&, const std::string& name) {
   throw_without_openvdb(ErrorCode::unreadable_input, name);
+}
+std::shared_ptr<const VelocityField> read_velocity(const std::string& path, const std::string&, int64_t) {
+  throw_without_openvdb(ErrorCode::unreadable_input, path);
 }
 StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
 

@@ -1,0 +1,69 @@
+// Frames of a sequence: one begins with the mesh of the frame before, so that vertex i stays vertex i.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isoshell/backend.h"
+#include "isoshell/surface_source.h"
+#include "isoshell/triangle_mesh.h"
+
+namespace isoshell {
+
+/// The result of the frame before, and where its vertices have gone.
+struct PreviousFrame {
+  std::vector<WorldPoint> vertices;
+  std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<WorldPoint> carried;  ///< per vertex where it is in this frame, on its surface or near it
+};
+
+/// How steady a frame is beside the one before.
+struct CoherenceReport {
+  bool began_warm = false;  ///< from the vertices of the frame before; else they were only given their numbers
+  std::string why_cold;     ///< empty when it began warm
+  int64_t born = 0;  ///< vertices that are not where those of their number went, by nine tenths of an edge or more
+  double kept_edges_pct = 0;  ///< of the edges of this frame: the frame before has one between the same two vertices
+  double excess =
+      0;  ///< motion beside the carried vertices, without those born: root mean square over mean edge length
+};
+
+/// Where points near the surface `before` are when its triangles have moved to where they are in `now`, which has the
+/// same: a point keeps its place in its nearest triangle, and its offset along the normal. In the order of the points.
+/// Cost: a search for each. Throws: usage when the triangles are not the same, or there are none; interrupted.
+std::vector<WorldPoint> carry_with_triangles(const std::vector<WorldPoint>& points, const TriangleSoup& before,
+                                             const TriangleSoup& now, Context& context);
+
+/// Where a surface goes until the next frame, as a function of the place. Result: a function of each point alone.
+class VelocityField {
+ public:
+  virtual ~VelocityField() = default;
+  /// In world units a frame; not numbers where the field says nothing.
+  virtual std::vector<WorldPoint> velocities_at(const std::vector<WorldPoint>& points) const = 0;
+};
+
+/// Where points are a frame later: by the velocity at the middle of their way, or, where fields in a narrow band say
+/// nothing there, by that where they are; where it says nothing there either, they stay.
+std::vector<WorldPoint> carry_with_velocity(const std::vector<WorldPoint>& points, const VelocityField& field);
+
+/// Where vertices of a mesh are on a surface that lies near it: each at the nearest place that faces as its normal
+/// does, up to an edge's length away, or else where it was. Throws: usage without triangles; interrupted.
+std::vector<WorldPoint> carry_onto(const TriangleMesh& mesh, const TriangleSoup& now, Context& context);
+
+/// Whether both have the same triangles, corner by corner.
+bool have_same_triangles(const TriangleSoup& a, const TriangleSoup& b);
+
+/// Gives the vertices of a mesh that began cold the numbers of those of the frame before that lie nearest, each to one
+/// at most and no farther than half an edge's length; the others take the numbers that are free. Cost: a sort of the
+/// near pairs.
+void number_as_before(const PreviousFrame& previous, TriangleMesh& mesh);
+
+/// Per vertex 1 where it is not the one of its number in the frame before: nine tenths of the mean edge's length or
+/// more from where that went, or beyond its vertices.
+std::vector<uint8_t> born_vertices(const PreviousFrame& previous, const TriangleMesh& mesh);
+
+/// The measures of a frame; began_warm and why_cold stay as they are.
+void measure_coherence(const PreviousFrame& previous, const TriangleMesh& mesh, CoherenceReport& report);
+
+}  // namespace isoshell

@@ -1,0 +1,60 @@
+// Runs over the frames of a sequence: what run() does, frame by frame, each beginning with the one before.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/error.h"
+#include "isoshell/run/run.h"
+
+namespace isoshell {
+
+/// Numbers first, first + step, ... up to last.
+struct FrameRange {
+  int64_t first = 0, last = 0, step = 1;
+};
+
+/// From "1-240", "1-240x2" or "7". Throws: usage.
+FrameRange parse_frames(const std::string& text);
+
+/// The path of a frame: "cache.####.obj" and "cache.%04d.obj" are cache.0007.obj in frame 7; longer numbers take more
+/// digits. Throws: usage when there is no place for a number, or more than one.
+std::string path_of_frame(const std::string& pattern, int64_t frame);
+
+/// A frame that is not as it should be.
+struct BadFrame {
+  int64_t frame = 0;
+  ErrorCode code = ErrorCode::internal;
+  std::string message;
+};
+
+struct SequenceRequest {
+  RunRequest frame;  ///< of every frame; its paths are patterns, but for the sizing field and lines
+  FrameRange frames;
+  std::string velocity;     ///< grid of a volume's file, world units a frame; empty: none
+  bool is_coherent = true;  ///< else every frame begins cold
+  bool keep_going = false;  ///< past frames that cannot be read or meshed, or miss a gate
+  bool resume = false;      ///< frames whose output is there are not made again; needs PLY
+  /// Called after each frame that was made.
+  std::function<void(int64_t frame, const RunResult& result)> after_frame;
+};
+
+struct SequenceResult {
+  int64_t made = 0, found = 0;  ///< frames; found: that a sequence which resumes had already
+  int64_t warm = 0;             ///< of those made: began with the vertices of the frame before
+  double kept_edges_mean_pct = 0, kept_edges_worst_pct = 100;  ///< over the frames that had one before
+  int64_t followed = 0;                                        ///< frames that had one before
+  int64_t born = 0;
+  std::vector<BadFrame> bad;
+};
+
+/// Names every missing frame before anything starts. The vertices of a frame go to where they are in the next: with
+/// their triangles where both frames have the same, else along the velocities, if there are any, and to the nearest
+/// place that faces their way. A frame has the vertex properties `born`, and vx, vy, vz, world units a frame, when it
+/// follows another. Result: the same files whether it was done in one go or resumed. Throws: as run() does for the
+/// first frame that is not as it should be, named, unless it is to keep going.
+SequenceResult run_sequence(const SequenceRequest& request, Context& context);
+
+}  // namespace isoshell

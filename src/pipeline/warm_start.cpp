@@ -1,0 +1,64 @@
+// See warm_start.h.
+#include "pipeline/warm_start.h"
+
+#include <algorithm>
+
+namespace isoshell {
+namespace {
+
+constexpr int32_t kWarmPasses = 16;
+constexpr int32_t kWarmTolerancePpb = 500000;
+constexpr int32_t kWarmSmoothingSteps = 24;
+constexpr int64_t kMostGrowth = 2;  ///< or shrinking of the number of vertices from frame to frame
+
+SeedSet seeds_at(const std::vector<WorldPoint>& points, const LatticeFrame& frame) {
+  const auto count = int64_t(points.size());
+  SeedSet seeds;
+  seeds.position = Buffer<PointQ8>(count);
+  seeds.normal = Buffer<Normal8>(count);
+  seeds.home = Buffer<uint32_t>(count);
+  std::fill(seeds.normal.begin(), seeds.normal.end(), Normal8{0, 0, 0});
+  std::fill(seeds.home.begin(), seeds.home.end(), uint32_t(0));
+  for (int64_t i = 0; i < count; ++i) seeds.position[i] = frame.snap(points[size_t(i)]);
+  return seeds;
+}
+
+/// What edges are the longest is told by where the vertices are now.
+SeedSet with_more(const Sheet& sheet, const PreviousFrame& previous, SeedSet seeds, int64_t wanted, Context& context) {
+  DualMesh mesh;
+  mesh.position = seeds.position.to_host();
+  mesh.triangles = Buffer<TriangleIndices>(int64_t(previous.triangles.size()));
+  for (size_t t = 0; t < previous.triangles.size(); ++t) {
+    const auto& corners = previous.triangles[t];
+    mesh.triangles[int64_t(t)] = {corners[0], corners[1], corners[2]};
+  }
+  return subdivide_seeds(sheet, mesh, seeds, wanted, context);
+}
+
+}  // namespace
+
+std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) {
+  const auto before = int64_t(previous.vertices.size());
+  if (before == 0 || previous.carried.size() != previous.vertices.size()) return "there are no vertices before it";
+  if (before > kMostGrowth * wanted || wanted > kMostGrowth * before)
+    return "the frame before has " + std::to_string(before) + " vertices, and this one is to have " +
+           std::to_string(wanted);
+  return "";
+}
+
+RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,
+                                 RelaxOptions options, bool tolerance_asked, Context& context) {
+  SeedSet seeds = attach_to_sheet(sheet, seeds_at(previous.carried, sheet.frame), 0, context);
+  if (seeds.size() < wanted) seeds = with_more(sheet, previous, std::move(seeds), wanted, context);
+  options.max_passes = std::min(options.max_passes, kWarmPasses);
+  if (!tolerance_asked) options.tolerance_ppb = kWarmTolerancePpb;
+  return relax_on_sheet(sheet, std::move(seeds), options, context);
+}
+
+OptimizeOptions for_warm_frame(OptimizeOptions options) {
+  options.smoothing_steps = kWarmSmoothingSteps;
+  options.relocate = false;
+  return options;
+}
+
+}  // namespace isoshell

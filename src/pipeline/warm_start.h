@@ -1,0 +1,23 @@
+// A frame that begins with the vertices of the frame before.
+#pragma once
+
+#include <string>
+
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// Why a frame that wants so many vertices cannot begin with those of the frame before; empty where it can.
+std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted);
+
+/// Seeds where the vertices of the frame before are now, with their numbers, and more in the middles of the longest
+/// edges where more are wanted; relaxed without levels, and in few passes: every pass takes vertices from where they
+/// were, and most of what a frame needs is there already. The passes and the tolerance of `options` stand when they are
+/// less, or asked for.
+RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,
+                                 RelaxOptions options, bool tolerance_asked, Context& context);
+
+/// Much smoothing would wear down tips over many frames, and relocated vertices would be others than before.
+OptimizeOptions for_warm_frame(OptimizeOptions options);
+
+}  // namespace isoshell

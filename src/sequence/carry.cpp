@@ -1,0 +1,102 @@
+// Where vertices go from frame to frame (see previous_frame.h).
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "attributes/facing_place.h"
+#include "core/watched.h"
+#include "core/world_vector.h"
+#include "isoshell/error.h"
+#include "isoshell/previous_frame.h"
+#include "measure/triangle_grid.h"
+#include "sequence/mean_edge_length.h"
+
+namespace isoshell {
+namespace {
+
+using Triangle = std::array<uint32_t, 3>;
+
+constexpr size_t kPointsPerLook = 4096;  ///< between two looks at whether to stop
+
+void require_triangles(const TriangleSoup& soup) {
+  if (soup.triangles.empty())
+    throw Error(ErrorCode::usage, "carry", "the surface has no triangles; vertices need at least one to go with");
+}
+
+WorldPoint unit_normal(const std::vector<WorldPoint>& at, const Triangle& t) {
+  const WorldPoint area = doubled_area(at[t[0]], at[t[1]], at[t[2]]);
+  const double size = length(area);
+  return size > 0 ? (1 / size) * area : WorldPoint{0, 0, 0};
+}
+
+WorldPoint place_in(const std::vector<WorldPoint>& at, const Triangle& t, const MeshPoint& place) {
+  const WorldPoint &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
+  return a + place.b_part * (b - a) + place.c_part * (c - a);
+}
+
+std::vector<WorldPoint> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<WorldPoint> normals(mesh.vertices.size(), WorldPoint{0, 0, 0});
+  for (const Triangle& t : mesh.triangles) {
+    const WorldPoint area = doubled_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    for (const uint32_t v : t) normals[v] = normals[v] + area;
+  }
+  return normals;
+}
+
+/// carried[i] = carry(i), at once for all.
+template <class Carry>
+std::vector<WorldPoint> carry_all(size_t count, Context& context, Carry carry) {
+  std::vector<WorldPoint> carried(count);
+  run_with_threads(context, [&] {
+    for (size_t from = 0; from < count; from += kPointsPerLook) {
+      check_cancel(context, "carry");
+      tbb::parallel_for(from, std::min(count, from + kPointsPerLook), [&](size_t i) { carried[i] = carry(i); });
+    }
+  });
+  return carried;
+}
+
+}  // namespace
+
+bool have_same_triangles(const TriangleSoup& a, const TriangleSoup& b) {
+  return a.vertices.size() == b.vertices.size() && a.triangles == b.triangles;
+}
+
+std::vector<WorldPoint> carry_with_triangles(const std::vector<WorldPoint>& points, const TriangleSoup& before,
+                                             const TriangleSoup& now, Context& context) {
+  require_triangles(before);
+  if (!have_same_triangles(before, now))
+    throw Error(ErrorCode::usage, "carry", "the surface of this frame has other triangles than that of the one before");
+  const TriangleGrid grid(before.vertices, before.triangles);
+  return carry_all(points.size(), context, [&](size_t i) {
+    const MeshPoint place = grid.nearest(points[i]);
+    const Triangle& t = before.triangles[place.triangle];
+    const double offset = dot(points[i] - place_in(before.vertices, t, place), unit_normal(before.vertices, t));
+    return place_in(now.vertices, t, place) + offset * unit_normal(now.vertices, t);
+  });
+}
+
+std::vector<WorldPoint> carry_with_velocity(const std::vector<WorldPoint>& points, const VelocityField& field) {
+  std::vector<WorldPoint> velocity = field.velocities_at(points);
+  std::vector<WorldPoint> middle(points.size()), carried(points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (std::isnan(velocity[i].x)) velocity[i] = {0, 0, 0};
+    middle[i] = points[i] + 0.5 * velocity[i];
+  }
+  const std::vector<WorldPoint> there = field.velocities_at(middle);
+  for (size_t i = 0; i < points.size(); ++i) carried[i] = points[i] + (std::isnan(there[i].x) ? velocity[i] : there[i]);
+  return carried;
+}
+
+std::vector<WorldPoint> carry_onto(const TriangleMesh& mesh, const TriangleSoup& now, Context& context) {
+  require_triangles(now);
+  const TriangleGrid grid(now.vertices, now.triangles);
+  const std::vector<WorldPoint> normals = vertex_normals(mesh);
+  const double farther = 2 * mean_edge_length(mesh);
+  return carry_all(mesh.vertices.size(), context, [&](size_t i) {
+    const MeshPoint place = facing_place(grid, mesh.vertices[i], normals[i], farther);
+    return place_in(now.vertices, now.triangles[place.triangle], place);
+  });
+}
+
+}  // namespace isoshell

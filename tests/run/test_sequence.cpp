@@ -1,0 +1,236 @@
+// Sequences: vertices keep their numbers, and the files do not depend on how the sequence was run.
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "isoshell/digest.h"
+#include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/mesh_topology.h"
+#include "isoshell/run/sequence.h"
+#include "support/catch.h"
+#include "support/mesh_files.h"
+#include "support/shapes.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+/// A torus that is twisted about its axis, more from frame to frame.
+TriangleSoup twisted(int frame) {
+  TriangleSoup soup = shapes::torus(2, 0.7, 96, 48);
+  for (WorldPoint& p : soup.vertices) {
+    const double angle = 0.06 * frame * p.x;
+    p = {p.x, p.y * std::cos(angle) - p.z * std::sin(angle), p.y * std::sin(angle) + p.z * std::cos(angle)};
+  }
+  return soup;
+}
+
+void write_frames(const TemporaryFolder& folder, int frames, TriangleSoup (*frame)(int)) {
+  for (int f = 0; f < frames; ++f) {
+    const TriangleSoup soup = frame(f);
+    write_mesh(path_of_frame(folder / "in.##.ply", f), {soup.vertices, soup.triangles});
+  }
+}
+
+SequenceRequest request_in(const TemporaryFolder& folder, int frames, const std::string& output) {
+  SequenceRequest request;
+  RemeshOptions options;
+  options.vertices = 600;
+  request.frame.options = asked_options(options);
+  request.frame.input = named_input(folder / "in.##.ply");
+  request.frame.output = named_output(folder / output, "", StopAfter::mesh);
+  request.frames = {0, frames - 1, 1};
+  return request;
+}
+
+std::vector<std::string> files_of(const SequenceRequest& request) {
+  std::vector<std::string> bytes;
+  for (int64_t f = request.frames.first; f <= request.frames.last; ++f)
+    bytes.push_back(get_file(path_of_frame(request.frame.output.path, f)));
+  return bytes;
+}
+
+std::string refusal(const SequenceRequest& request, ErrorCode code) {
+  TestContext context;
+  try {
+    run_sequence(request, context);
+  } catch (const Error& e) {
+    CHECK(e.code() == code);
+    return e.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("sequence: vertices keep their numbers and most edges, and every frame is a mesh of its own", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 5, twisted);
+  SequenceRequest request = request_in(folder, 5, "out.##.ply");
+  std::vector<TriangleMesh> meshes;
+  request.after_frame = [&](int64_t, const RunResult& r) {
+    meshes.push_back(r.mesh);
+    CHECK(r.record.quality->theta_min_deg > 30);
+    CHECK(check_mesh(r.mesh).is_closed_manifold());
+    CHECK(r.record.report.post.self_intersections == 0);
+    CHECK(r.mesh.vertices.size() == 600);
+  };
+  const SequenceResult result = run_sequence(request, context);
+  CHECK(result.made == 5);
+  CHECK(result.followed == 4);
+  CHECK(result.warm == 4);
+  CHECK(result.kept_edges_worst_pct > 97);
+  CHECK(result.born < 12);
+  // The oracle: where the twist takes a vertex.
+  for (int f = 1; f < 5; ++f) {
+    int far = 0;
+    for (size_t v = 0; v < 600; ++v) {
+      const WorldPoint p = meshes[size_t(f) - 1].vertices[v], q = meshes[size_t(f)].vertices[v];
+      const double c = std::cos(0.06 * p.x), s = std::sin(0.06 * p.x);
+      far += std::hypot(q.x - p.x, q.y - (c * p.y - s * p.z), q.z - (s * p.y + c * p.z)) > 0.2;  // edges are .4 long
+    }
+    CHECK(far < 30);
+  }
+}
+
+TEST_CASE("sequence: resumed, or with other threads, it writes the same files", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 4, twisted);
+  const SequenceRequest whole = request_in(folder, 4, "out.##.ply");
+  run_sequence(whole, context);
+  SequenceRequest part = request_in(folder, 2, "again.##.ply");
+  context.threads = 1;
+  run_sequence(part, context);
+  part.frames.last = 3;
+  CHECK(contains(refusal(part, ErrorCode::unwritable_output), "again.00.ply"));
+  part.resume = true;
+  const SequenceResult rest = run_sequence(part, context);
+  CHECK(rest.found == 2);
+  CHECK(rest.made == 2);
+  CHECK(rest.warm == 2);
+  CHECK(files_of(part) == files_of(whole));
+  part.frame.output = named_output(folder / "out.##.stl", "", StopAfter::mesh);
+  CHECK(contains(refusal(part, ErrorCode::usage), "PLY"));
+}
+
+TEST_CASE("sequence: a surface that stands still keeps every edge, and one whose faces change most of them",
+          "[sequence]") {
+  TestContext context;
+  const TemporaryFolder still, other;
+  write_frames(still, 4, [](int) { return twisted(0); });
+  const SequenceResult same = run_sequence(request_in(still, 4, "out.##.ply"), context);
+  CHECK(same.kept_edges_worst_pct > 98.5);
+  CHECK(same.born <= 2);
+  write_frames(other, 3, [](int f) { return shapes::torus(2 + 0.02 * f, 0.7, uint32_t(90 + 6 * f), 48); });
+  const SequenceResult changing = run_sequence(request_in(other, 3, "out.##.ply"), context);
+  CHECK(changing.warm == 2);
+  CHECK(changing.kept_edges_worst_pct > 97);
+}
+
+TEST_CASE("sequence: parts that become one mesh on with the right topology", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 3, [](int f) {
+    const double gap = 0.5 - 0.7 * f;
+    return shapes::together(shapes::sphere({-2.0 - gap / 2, 0.1, 0}, 2, 40), shapes::sphere({2.0 + gap / 2, 0, 0.1}, 2, 40));
+  });
+  SequenceRequest request = request_in(folder, 3, "out.##.ply");
+  request.frame.options.values.features = {Features::Creases::off, 0};
+  std::vector<int64_t> components;
+  request.after_frame = [&](int64_t, const RunResult& r) {
+    CHECK(check_mesh(r.mesh).is_closed_manifold());
+    CHECK(r.record.report.post.self_intersections == 0);
+    components.push_back(r.record.topology->components);
+  };
+  run_sequence(request, context);
+  CHECK(components == std::vector<int64_t>{2, 1, 1});
+}
+
+TEST_CASE("sequence: crisp parts keep their creases, and the numbers of near vertices", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 2, [](int f) {
+    TriangleSoup box = shapes::box({0, 0, 0}, {3, 2, 1});
+    for (WorldPoint& p : box.vertices) p.x += 0.25 * f;
+    return box;
+  });
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  request.frame.statistics = folder / "s.##.json";
+  request.after_frame = [&](int64_t f, const RunResult& r) {
+    CHECK(r.record.report.features.kept);
+    CHECK(r.record.report.coherence.why_cold == (f == 0 ? "" : "the surface is cut along curves"));
+  };
+  const SequenceResult result = run_sequence(request, context);
+  CHECK(result.warm == 0);
+  CHECK(result.followed == 1);
+  CHECK(result.kept_edges_worst_pct > 95);
+  CHECK(contains(get_file(folder / "s.01.json"), "\"why_cold\": \"the surface is cut along curves\""));
+  CHECK(contains(get_file(folder / "s.00.json"), "\"coherence\": null"));
+}
+
+TEST_CASE("sequence: without coherence every frame is a run of its own", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 2, twisted);
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  request.is_coherent = false;
+  CHECK(run_sequence(request, context).followed == 0);
+  const TriangleMesh alone = remesh(read_mesh(folder / "in.01.ply"), request.frame.options.values, context).mesh;
+  const TriangleSoup made = read_mesh(folder / "out.01.ply");
+  CHECK(made.triangles == alone.triangles);
+}
+
+TEST_CASE("sequence: missing frames are named before anything starts", "[sequence]") {
+  const TemporaryFolder folder;
+  write_frames(folder, 4, twisted);
+  std::filesystem::remove(folder / "in.02.ply");
+  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  CHECK(contains(refusal(request, ErrorCode::unreadable_input), "frame 2, "));
+  CHECK_FALSE(std::filesystem::exists(folder / "out.00.ply"));
+}
+
+TEST_CASE("sequence: a bad frame stops it by name, or is left out", "[sequence]") {
+  const TemporaryFolder folder;
+  write_frames(folder, 4, twisted);
+  put_file(folder / "in.01.ply", "ply\nnonsense\n");
+  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  CHECK(contains(refusal(request, ErrorCode::unreadable_input), "frame 1: "));
+  CHECK(std::filesystem::exists(folder / "out.00.ply"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out.02.ply"));
+  request.keep_going = request.frame.overwrite = true;
+  TestContext context;
+  const SequenceResult result = run_sequence(request, context);
+  REQUIRE(result.bad.size() == 1);
+  CHECK(result.bad[0].frame == 1);
+  CHECK(result.bad[0].code == ErrorCode::unreadable_input);
+  CHECK(result.made == 3);
+  CHECK(result.warm == 2);
+}
+
+TEST_CASE("sequence: gates hold for every frame, and those of coherence for frames that follow", "[sequence]") {
+  const TemporaryFolder folder;
+  write_frames(folder, 2, [](int f) { return twisted(8 * f); });
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  request.frame.gates = parse_gates("closed,kept-edges=100,born=0");
+  CHECK(contains(refusal(request, ErrorCode::gate_failed), "frame 1: gate failed: kept-edges=100"));
+  CHECK(std::filesystem::exists(folder / "out.01.ply"));
+}
+
+TEST_CASE("sequence: what has no place for a number, or no file, is refused", "[sequence]") {
+  const TemporaryFolder folder;
+  write_frames(folder, 2, twisted);
+  SequenceRequest request = request_in(folder, 2, "out.ply");
+  CHECK(contains(refusal(request, ErrorCode::usage), "no place for the number"));
+  request = request_in(folder, 2, "out.##.ply");
+  request.frame.report = folder / "r.html";
+  CHECK(contains(refusal(request, ErrorCode::usage), "--report"));
+  request = request_in(folder, 2, "out.##.ply");
+  request.frame.options.values.method = Method::shell;
+  CHECK(contains(refusal(request, ErrorCode::usage), "method sheet"));
+}

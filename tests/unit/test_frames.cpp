@@ -1,0 +1,125 @@
+// Names of frames, where vertices go from frame to frame, and how steady they are.
+#include <algorithm>
+#include <cmath>
+
+#include "isoshell/error.h"
+#include "isoshell/previous_frame.h"
+#include "isoshell/run/sequence.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+
+using namespace isoshell;
+
+namespace {
+
+struct CpuContext : Context {
+  CpuContext() { backend = Backend::cpu; }
+};
+
+double apart(WorldPoint a, WorldPoint b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
+
+/// Turns by a quarter around z, stretches and shifts: exact in doubles.
+WorldPoint moved(WorldPoint p) { return {3 - p.y, 2 * p.x, p.z + 7}; }
+
+TriangleSoup moved(TriangleSoup soup) {
+  for (WorldPoint& p : soup.vertices) p = moved(p);
+  return soup;
+}
+
+TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
+
+std::string refusal(const std::string& pattern) {
+  try {
+    path_of_frame(pattern, 1);
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::usage);
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("frames: a pattern has one place for the number, in either form", "[frames]") {
+  CHECK(path_of_frame("a.####.obj", 7) == "a.0007.obj");
+  CHECK(path_of_frame("a.#.obj", 1234) == "a.1234.obj");
+  CHECK(path_of_frame("d/a%04d.ply", 12345) == "d/a12345.ply");
+  CHECK(path_of_frame("%d/a.ply", 3) == "3/a.ply");
+  CHECK(path_of_frame("50%/a.##.ply", 3) == "50%/a.03.ply");
+  CHECK(refusal("a.obj").find("no place") != std::string::npos);
+  CHECK(refusal("##/a.##.obj").find("more than one place") != std::string::npos);
+}
+
+TEST_CASE("frames: ranges are read whole, and refused with what they may be", "[frames]") {
+  const FrameRange every = parse_frames("1-240"), second = parse_frames("10-20x2"), one = parse_frames("7");
+  CHECK((every.first == 1 && every.last == 240 && every.step == 1));
+  CHECK((second.first == 10 && second.last == 20 && second.step == 2));
+  CHECK((one.first == 7 && one.last == 7));
+  for (const char* text : {"", "a", "5-", "-5", "9-5", "1-5x0", "1-5x", "1 - 5", "1-5y2", "99999999999999999999"})
+    CHECK_THROWS_AS(parse_frames(text), Error);
+}
+
+TEST_CASE("frames: points go along with the triangles under them", "[frames]") {
+  CpuContext context;
+  const TriangleSoup before = shapes::sphere({1, 2, 3}, 5, 24), now = moved(before);
+  std::vector<WorldPoint> points = before.vertices;
+  for (const auto& t : before.triangles) {
+    const WorldPoint &a = before.vertices[t[0]], &b = before.vertices[t[1]], &c = before.vertices[t[2]];
+    points.push_back({(a.x + b.x + 2 * c.x) / 4, (a.y + b.y + 2 * c.y) / 4, (a.z + b.z + 2 * c.z) / 4});
+  }
+  const std::vector<WorldPoint> carried = carry_with_triangles(points, before, now, context);
+  double farthest = 0;
+  for (size_t i = 0; i < points.size(); ++i) farthest = std::max(farthest, apart(carried[i], moved(points[i])));
+  CHECK(farthest < 1e-12);
+  TriangleSoup other = now;
+  std::swap(other.triangles[0][0], other.triangles[0][1]);
+  CHECK_FALSE(have_same_triangles(before, other));
+  CHECK_THROWS_AS(carry_with_triangles(points, before, other, context), Error);
+}
+
+TEST_CASE("frames: on another surface vertices stay on their side of a thin wall", "[frames]") {
+  CpuContext context;
+  const TriangleSoup now = shapes::box({0, 0, 0.15}, {10, 10, 0.35});
+  const TriangleMesh mesh = mesh_of(shapes::box({4, 4, 0}, {6, 6, 0.2}));  // whose upper side is nearer to the lower one
+  TriangleMesh sides{mesh.vertices, {}};
+  for (const auto& t : mesh.triangles)
+    if (mesh.vertices[t[0]].z == mesh.vertices[t[1]].z && mesh.vertices[t[0]].z == mesh.vertices[t[2]].z)
+      sides.triangles.push_back(t);
+  const std::vector<WorldPoint> carried = carry_onto(sides, now, context);
+  for (size_t v = 0; v < carried.size(); ++v)
+    CHECK(std::abs(carried[v].z - (mesh.vertices[v].z < 0.1 ? 0.15 : 0.35)) < 1e-12);
+}
+
+TEST_CASE("frames: a mesh whose vertices were shuffled gets its numbers back", "[frames]") {
+  const TriangleMesh mesh = mesh_of(shapes::torus(2, 0.7, 40, 20));
+  PreviousFrame previous{mesh.vertices, mesh.triangles, mesh.vertices};
+  TriangleMesh shuffled = mesh;
+  const size_t n = mesh.vertices.size();
+  const auto to = [&](uint32_t v) { return uint32_t((v * size_t(331) + 17) % n); };  // 331 and n have no common divisor
+  for (uint32_t v = 0; v < n; ++v) shuffled.vertices[to(v)] = mesh.vertices[v];
+  for (auto& t : shuffled.triangles) t = {to(t[0]), to(t[1]), to(t[2])};
+  shuffled.gap.assign(n, 0);
+  shuffled.gap[to(5)] = 1;
+  shuffled.features.corners = {to(9)};
+  number_as_before(previous, shuffled);
+  CoherenceReport report;
+  measure_coherence(previous, shuffled, report);
+  CHECK(report.born == 0);
+  CHECK(report.kept_edges_pct == 100);
+  CHECK(report.excess == 0);
+  CHECK(shuffled.gap[5] == 1);
+  CHECK(shuffled.features.corners == std::vector<uint32_t>{9});
+  CHECK(std::is_sorted(shuffled.triangles.begin(), shuffled.triangles.end()));
+}
+
+TEST_CASE("frames: vertices that are elsewhere, or have no number before, are born", "[frames]") {
+  TriangleMesh mesh = mesh_of(shapes::sphere({0, 0, 0}, 1, 24));
+  PreviousFrame previous{mesh.vertices, mesh.triangles, mesh.vertices};
+  previous.vertices.pop_back();
+  previous.carried.pop_back();
+  previous.carried[3] = {5, 5, 5};
+  const std::vector<uint8_t> born = born_vertices(previous, mesh);
+  CHECK(std::count(born.begin(), born.end(), uint8_t(1)) == 2);
+  CHECK(born[3] == 1);
+  CHECK(born.back() == 1);
+}
