@@ -138,7 +138,8 @@ TEST_CASE("sequence: parts that become one mesh on with the right topology", "[s
   const TemporaryFolder folder;
   write_frames(folder, 3, [](int f) {
     const double gap = 0.5 - 0.7 * f;
-    return shapes::together(shapes::sphere({-2.0 - gap / 2, 0.1, 0}, 2, 40), shapes::sphere({2.0 + gap / 2, 0, 0.1}, 2, 40));
+    return shapes::together(shapes::sphere({-2.0 - gap / 2, 0.1, 0}, 2, 40),
+                            shapes::sphere({2.0 + gap / 2, 0, 0.1}, 2, 40));
   });
   SequenceRequest request = request_in(folder, 3, "out.##.ply");
   request.frame.options.values.features = {Features::Creases::off, 0};

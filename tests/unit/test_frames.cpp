@@ -80,7 +80,8 @@ TEST_CASE("frames: points go along with the triangles under them", "[frames]") {
 TEST_CASE("frames: on another surface vertices stay on their side of a thin wall", "[frames]") {
   CpuContext context;
   const TriangleSoup now = shapes::box({0, 0, 0.15}, {10, 10, 0.35});
-  const TriangleMesh mesh = mesh_of(shapes::box({4, 4, 0}, {6, 6, 0.2}));  // whose upper side is nearer to the lower one
+  const TriangleMesh mesh =
+      mesh_of(shapes::box({4, 4, 0}, {6, 6, 0.2}));  // whose upper side is nearer to the lower one
   TriangleMesh sides{mesh.vertices, {}};
   for (const auto& t : mesh.triangles)
     if (mesh.vertices[t[0]].z == mesh.vertices[t[1]].z && mesh.vertices[t[0]].z == mesh.vertices[t[2]].z)
