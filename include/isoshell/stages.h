@@ -240,7 +240,6 @@ struct OptimizeOptions {
   int32_t search_rounds = 10;    ///< independent sets of vertices of poor triangles
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
-  bool relocate = true;       ///< takes vertices from flat places to those that are far from the mesh
   bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
   bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began, and no relocation
 };

@@ -57,7 +57,6 @@ RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previo
 
 OptimizeOptions for_warm_frame(OptimizeOptions options) {
   options.smoothing_steps = kWarmSmoothingSteps;
-  options.relocate = false;
   return options;
 }
 

@@ -17,7 +17,7 @@ std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted);
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,
                                  RelaxOptions options, bool tolerance_asked, Context& context);
 
-/// Much smoothing would wear down tips over many frames, and relocated vertices would be others than before.
+/// Much smoothing would wear down tips over many frames.
 OptimizeOptions for_warm_frame(OptimizeOptions options);
 
 }  // namespace isoshell

@@ -79,8 +79,7 @@ OptimizeReport optimize_mesh_body(Exec& exec, const SurfaceMesh& surface, const 
     work.search(kFreeSearches * options.search_rounds, free_hold, !balanced);
     if (balanced) {
       work.fit(kLastFitSteps, kDamping, kGoodQuality);
-      if (options.relocate && !options.uniform_area && !options.keep_apart)
-        relocate_to_far_places(work, options, free_hold);
+      if (!options.uniform_area && !options.keep_apart) relocate_to_far_places(work, options, free_hold);
       work.drop_samples();
     }
     work.undo_intersections(report);
