@@ -154,8 +154,7 @@ TEST_CASE("census: triangles may meet in the corners that they share, and nowher
 
 TEST_CASE("census: two tetrahedra that share a vertex are one component with a bow tie", "[census][unit]") {
   const ComplexCounts c =
-      census(complex_of(
-                 7, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}}))
+      census(complex_of(7, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}}))
           .counts;
   CHECK(c.edges == 12);
   CHECK(c.components == 1);
