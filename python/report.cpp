@@ -32,6 +32,7 @@ Source source_of(const RunRequest& request) {
   return {"",
           [file = request.input, features = request.options.values.features](
               const RunRequest& again, const Context& c) { return read_file(file, features, again.tell, c); },
+          {},
           {}};
 }
 
