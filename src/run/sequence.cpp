@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/file_format.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "isoshell/readable.h"
-#include "isoshell/stages.h"
 
 namespace isoshell {
 namespace {
@@ -17,28 +15,26 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostNamed = 5;  ///< frames in one message
 
-/// What a surface needs to carry vertices.
-TriangleSoup triangles_alone(std::vector<WorldPoint> vertices, std::vector<std::array<uint32_t, 3>> triangles) {
-  TriangleSoup soup;
-  soup.vertices = std::move(vertices);
-  soup.triangles = std::move(triangles);
-  return soup;
-}
-
 std::string name_of(int64_t frame, const std::string& path) { return "frame " + std::to_string(frame) + ", " + path; }
+
+std::string some_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) text += (i > 0 ? "; " : "") + names[i];
+  return names.size() > kMostNamed ? text + "; ..." : text;
+}
 
 class Sequence {
  public:
-  Sequence(const SequenceRequest& request, Context& context) : request_(request), context_(context) {
-    for (int64_t f = request.frames.first; f <= request.frames.last; f += request.frames.step) frames_.push_back(f);
+  Sequence(const SequenceRequest& request, Context& context)
+      : request_(request), context_(context), chain_(request.is_coherent) {
     check_request(request_.frame);
-    check_paths();
+    check_sequence(request_);
   }
 
   SequenceResult result() {
     double kept_sum = 0;
-    for (const int64_t frame : frames_) {
-      const RunRequest one = request_of(frame);
+    for (const int64_t frame : frame_numbers(request_.frames)) {
+      const RunRequest one = request_of_frame(request_, frame);
       if (request_.resume && fs::exists(one.output.path)) {
         found_ = frame;
         ++result_.found;
@@ -56,59 +52,12 @@ class Sequence {
   }
 
  private:
-  /// What a frame hands to the next one.
-  struct State {
-    TriangleSoup input;  ///< positions and triangles alone
-    TriangleMesh mesh;   ///< as its file has it
-    std::shared_ptr<const VelocityField> velocity;
-  };
-
-  bool is_coherent() const { return request_.is_coherent && request_.frame.stop_after == StopAfter::mesh; }
-
-  RunRequest request_of(int64_t frame) const {
-    RunRequest one = request_.frame;
-    for (std::string* path : {&one.input.path, &one.output.path, &one.save_shell, &one.save_voronoi, &one.statistics})
-      if (!path->empty() && *path != "-") *path = path_of_frame(*path, frame);
-    return one;
-  }
-
-  void check_paths() const {
-    const auto refuse = [](const std::string& text) { throw Error(ErrorCode::usage, "frames", text); };
-    if (request_.frame.input.path == "-" || request_.frame.output.path == "-" || request_.frame.statistics == "-")
-      refuse("a sequence is read from and written to files; name them by a pattern, as mesh.####.ply");
-    if (!request_.frame.report.empty()) refuse("--report shows one frame; leave out --frames, or make it of a frame");
-    if (request_.resume && request_.frame.output.format != "ply")
-      refuse("--resume needs PLY files, which keep the numbers of vertices and their positions exactly");
-    std::vector<std::string> missing, there;
-    for (const int64_t frame : frames_) {
-      const RunRequest one = request_of(frame);
-      if (!fs::exists(one.input.path)) missing.push_back(name_of(frame, one.input.path));
-      if (!request_.resume && !one.overwrite && fs::exists(one.output.path))
-        there.push_back(name_of(frame, one.output.path));
-    }
-    if (!missing.empty() && !request_.keep_going)
-      throw Error(ErrorCode::unreadable_input, "frames",
-                  counted(int64_t(missing.size()), "frame is", "frames are") + " missing: " + some_of(missing));
-    if (!there.empty())
-      throw Error(ErrorCode::unwritable_output, "frames",
-                  counted(int64_t(there.size()), "frame exists", "frames exist") + " already: " + some_of(there) +
-                      "; --force replaces them, --resume goes on after them");
-  }
-
-  static std::string some_of(const std::vector<std::string>& names) {
-    std::string text;
-    for (size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) text += (i > 0 ? "; " : "") + names[i];
-    return names.size() > kMostNamed ? text + "; ..." : text;
-  }
-
-  void make(int64_t frame, RunRequest one, double& kept_sum) {
+  void make(int64_t frame, const RunRequest& one, double& kept_sum) {
     Input input = read(one);
-    TriangleSoup surface = triangles_alone(input.soup.vertices, input.soup.triangles);
-    if (is_coherent() && found_) begin_with_found();
-    if (is_coherent() && before_) one.options.values.previous = previous_for(surface);
-    RunResult made = run(std::move(input), one, context_);
+    if (found_) begin_with_found();
+    const RunResult made = chain_.run(std::move(input), one, context_);
     ++result_.made;
-    if (one.options.values.previous) {
+    if (made.record.options.previous) {
       const CoherenceReport& coherence = made.record.report.coherence;
       ++result_.followed;
       result_.warm += coherence.began_warm;
@@ -117,11 +66,7 @@ class Sequence {
       result_.kept_edges_worst_pct = std::min(result_.kept_edges_worst_pct, coherence.kept_edges_pct);
     }
     if (request_.after_frame) request_.after_frame(frame, made);
-    if (is_coherent()) {
-      round_as_in_ply(made.mesh);
-      before_ =
-          State{std::move(surface), {std::move(made.mesh.vertices), std::move(made.mesh.triangles)}, velocity_of(one)};
-    }
+    set_velocity(one);
     if (!made.missed_gates.empty()) note_bad(frame, ErrorCode::gate_failed, "gate failed: " + made.missed_gates[0]);
   }
 
@@ -134,52 +79,69 @@ class Sequence {
   Input read(const RunRequest& one) const {
     InputRequest request = one.input;
     request.creases = volume_creases(one.options.values.features);
-    Input input = read_input(request, context_.memory_limit_bytes, one.tell);
-    if (input.stage && is_coherent())
-      throw Error(ErrorCode::usage, "frames",
-                  request.path + " is a stage file, which has no surface that vertices could go with");
-    return input;
+    return read_input(request, context_.memory_limit_bytes, one.tell);
   }
 
-  std::shared_ptr<const VelocityField> velocity_of(const RunRequest& one) const {
-    if (request_.velocity.empty()) return nullptr;
-    return read_velocity(one.input.path, request_.velocity, context_.memory_limit_bytes);
+  void set_velocity(const RunRequest& one) {
+    if (!request_.velocity.empty() && request_.is_coherent)
+      chain_.set_velocity(read_velocity(one.input.path, request_.velocity, context_.memory_limit_bytes));
   }
 
   /// The frame that is there already, as if it had been made.
   void begin_with_found() {
-    const RunRequest one = request_of(*found_);
+    const RunRequest one = request_of_frame(request_, *found_);
     found_.reset();
+    if (!request_.is_coherent) return;
     Input input = read(one);
-    TriangleSoup mesh = read_mesh(one.output.path);
-    before_ = State{triangles_alone(std::move(input.soup.vertices), std::move(input.soup.triangles)),
-                    {std::move(mesh.vertices), std::move(mesh.triangles)},
-                    velocity_of(one)};
-  }
-
-  std::shared_ptr<const PreviousFrame> previous_for(const TriangleSoup& now) {
-    auto previous = std::make_shared<PreviousFrame>();
-    previous->vertices = before_->mesh.vertices;
-    previous->triangles = before_->mesh.triangles;
-    if (have_same_triangles(before_->input, now)) {
-      previous->carried = carry_with_triangles(previous->vertices, before_->input, now, context_);
-      return previous;
-    }
-    TriangleMesh moved = before_->mesh;
-    if (before_->velocity) moved.vertices = carry_with_velocity(moved.vertices, *before_->velocity);
-    previous->carried = carry_onto(moved, now, context_);
-    return previous;
+    chain_.go_on_from(std::move(input.soup), read_mesh(one.output.path));
+    set_velocity(one);
   }
 
   const SequenceRequest& request_;
   Context& context_;
-  std::vector<int64_t> frames_;
-  std::optional<State> before_;
+  FrameChain chain_;
   std::optional<int64_t> found_;  ///< the last frame that was there, and is not read yet
   SequenceResult result_;
 };
 
 }  // namespace
+
+std::vector<int64_t> frame_numbers(const FrameRange& frames) {
+  std::vector<int64_t> numbers;
+  for (int64_t f = frames.first; f <= frames.last; f += frames.step) numbers.push_back(f);
+  return numbers;
+}
+
+RunRequest request_of_frame(const SequenceRequest& request, int64_t frame) {
+  RunRequest one = request.frame;
+  for (std::string* path : {&one.input.path, &one.output.path, &one.save_shell, &one.save_voronoi, &one.statistics})
+    if (!path->empty() && *path != "-") *path = path_of_frame(*path, frame);
+  return one;
+}
+
+void check_sequence(const SequenceRequest& request) {
+  const auto refuse = [](const std::string& text) { throw Error(ErrorCode::usage, "frames", text); };
+  const RunRequest& every = request.frame;
+  if (every.input.path == "-" || every.output.path == "-" || every.statistics == "-")
+    refuse("a sequence is read from and written to files; name them by a pattern, as mesh.####.ply");
+  if (!every.report.empty()) refuse("--report shows one frame; leave out --frames, or make it of a frame");
+  if (request.resume && every.output.format != "ply")
+    refuse("--resume needs PLY files, which keep the numbers of vertices and their positions exactly");
+  std::vector<std::string> missing, there;
+  for (const int64_t frame : frame_numbers(request.frames)) {
+    const RunRequest one = request_of_frame(request, frame);
+    const std::string &from = one.input.path, &to = one.output.path;
+    if (!from.empty() && !fs::exists(from)) missing.push_back(name_of(frame, from));
+    if (!request.resume && !one.overwrite && fs::exists(to)) there.push_back(name_of(frame, to));
+  }
+  if (!missing.empty() && !request.keep_going)
+    throw Error(ErrorCode::unreadable_input, "frames",
+                counted(int64_t(missing.size()), "frame is", "frames are") + " missing: " + some_of(missing));
+  if (!there.empty())
+    throw Error(ErrorCode::unwritable_output, "frames",
+                counted(int64_t(there.size()), "frame exists", "frames exist") + " already: " + some_of(there) +
+                    "; --force replaces them, --resume goes on after them");
+}
 
 SequenceResult run_sequence(const SequenceRequest& request, Context& context) {
   return Sequence(request, context).result();

@@ -119,6 +119,24 @@ TEST_CASE("sequence: resumed, or with other threads, it writes the same files", 
   CHECK(contains(refusal(part, ErrorCode::usage), "PLY"));
 }
 
+TEST_CASE("sequence: a chain of frames in memory makes the meshes that files make", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 3, twisted);
+  SequenceRequest request = request_in(folder, 3, "out.##.ply");
+  std::vector<uint64_t> digests;
+  request.after_frame = [&](int64_t, const RunResult& r) { digests.push_back(digest(r.mesh)); };
+  run_sequence(request, context);
+  RunRequest in_memory;
+  in_memory.options = request.frame.options;
+  FrameChain chain;
+  for (int f = 0; f < 3; ++f) {
+    const auto soup = [&] { return read_mesh(folder / ("in.0" + std::to_string(f) + ".ply")); };
+    CHECK_THROWS_AS(chain.run(input_of(soup(), "frame"), request_of_frame(request, f), context), Error);  // they exist
+    CHECK(digest(chain.run(input_of(soup(), "frame"), in_memory, context).mesh) == digests[size_t(f)]);
+  }
+}
+
 TEST_CASE("sequence: a surface that stands still keeps every edge, and one whose faces change most of them",
           "[sequence]") {
   TestContext context;

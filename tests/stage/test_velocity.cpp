@@ -75,6 +75,40 @@ TEST_CASE("velocity: points go by the velocity of the middle of their way, or st
   CHECK((carried[1].x == 9 && carried[1].y == 0 && carried[1].z == 0));
 }
 
+TEST_CASE("velocity: from memory it is what it is from a file that holds the same", "[velocity][vdb]") {
+  constexpr int kSide = 17;
+  std::vector<float> values;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      for (int k = 0; k < kSide; ++k) {
+        const WorldPoint v = spin({i * 0.5 - 4, j * 0.5 - 4, k * 0.5 - 4});
+        for (const double part : {v.x, v.y, v.z}) values.push_back(float(part));
+      }
+  auto grid = spinning_block();
+  grid->getAccessor().setValueOff({-8, -8, -7});
+  values[3 + 1] = std::numeric_limits<float>::quiet_NaN();
+  std::array<DenseVolume, 3> parts;
+  for (size_t axis = 0; axis < 3; ++axis)
+    parts[axis] = {
+        values.data() + axis, {kSide, kSide, kSide}, {3 * kSide * kSide, 3 * kSide, 3}, {0.5, 0.5, 0.5}, {-4, -4, -4}};
+  const TemporaryFile file = written({grid});
+  std::vector<WorldPoint> points = {{-4, -4, -3.5}, {-4.6, 0, 0}};
+  for (int i = 0; i < 300; ++i) points.push_back({-4.2 + 0.027 * i, 4.1 - 0.023 * i, -3.9 + 0.021 * i});
+  const auto there = read_velocity(file.path, "v")->velocities_at(points);
+  const auto here = velocity_of(parts, "velocities")->velocities_at(points);
+  for (size_t i = 0; i < points.size(); ++i) {
+    REQUIRE(std::isnan(here[i].x) == std::isnan(there[i].x));
+    if (std::isnan(here[i].x)) continue;
+    CHECK(std::abs(here[i].x - there[i].x) + std::abs(here[i].y - there[i].y) + std::abs(here[i].z - there[i].z) <
+          1e-12);
+  }
+  CHECK(std::isnan(here[0].x));
+  values[0] = std::numeric_limits<float>::infinity();
+  CHECK_THROWS_AS(velocity_of(parts, "velocities"), Error);
+  parts[0].spacing_world.y = 0;
+  CHECK_THROWS_AS(velocity_of(parts, "velocities"), Error);
+}
+
 TEST_CASE("velocity: what is no field of vectors is refused with what there is", "[velocity][vdb]") {
   auto broken = spinning_block();
   broken->setName("broken");

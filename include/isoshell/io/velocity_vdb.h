@@ -1,9 +1,11 @@
-// Velocity fields from .vdb files.
+// Velocity fields from .vdb files and from memory.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
+#include "isoshell/io/memory_input.h"
 #include "isoshell/previous_frame.h"
 
 namespace isoshell {
@@ -13,5 +15,10 @@ namespace isoshell {
 /// file larger than `max_bytes` (0: no limit).
 std::shared_ptr<const VelocityField> read_velocity(const std::string& path, const std::string& grid,
                                                    int64_t max_bytes = 0);
+
+/// The same from values in memory, which are copied: a volume for each component, all on the lattice of the first. A
+/// place where one is NaN is what an inactive voxel is in a file. `name` is what messages call the field. Throws: usage
+/// for a spacing that is not above 0; unreadable_input for a value that is infinite.
+std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>& components, const std::string& name);
 
 }  // namespace isoshell

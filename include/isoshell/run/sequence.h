@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,32 @@ FrameRange parse_frames(const std::string& text);
 /// The path of a frame: "cache.####.obj" and "cache.%04d.obj" are cache.0007.obj in frame 7; longer numbers take more
 /// digits. Throws: usage when there is no place for a number, or more than one.
 std::string path_of_frame(const std::string& pattern, int64_t frame);
+
+/// Frames one after the other, each beginning with the last that was made.
+class FrameChain {
+ public:
+  explicit FrameChain(bool is_coherent = true);  ///< else every frame begins cold
+  FrameChain(FrameChain&&) noexcept;
+  FrameChain& operator=(FrameChain&&) noexcept;
+  ~FrameChain();
+
+  /// run() of the next frame. The vertices of the one before go to where they are in this one: with their triangles
+  /// where both have the same, else along the velocities, if there are any, and to the nearest place that faces their
+  /// way. Throws: as run() does, and then the next frame begins with what this one would have begun with; usage for a
+  /// stage file, which has no surface.
+  RunResult run(Input input, RunRequest request, Context& context);
+  /// The surface of the last frame goes along these until the next.
+  void set_velocity(std::shared_ptr<const VelocityField> velocity);
+  /// The last frame is one that was made before, from this surface and with that mesh as its PLY file has it.
+  void go_on_from(TriangleSoup surface, TriangleSoup mesh);
+
+ private:
+  struct Frame;
+  std::shared_ptr<const PreviousFrame> previous_for(const TriangleSoup& surface, Context& context) const;
+
+  bool is_coherent_;
+  std::unique_ptr<Frame> last_;
+};
 
 /// A frame that is not as it should be.
 struct BadFrame {
@@ -50,11 +77,21 @@ struct SequenceResult {
   std::vector<BadFrame> bad;
 };
 
-/// Names every missing frame before anything starts. The vertices of a frame go to where they are in the next: with
-/// their triangles where both frames have the same, else along the velocities, if there are any, and to the nearest
-/// place that faces their way. A frame has the vertex properties `born`, and vx, vy, vz, world units a frame, when it
-/// follows another. Result: the same files whether it was done in one go or resumed. Throws: as run() does for the
-/// first frame that is not as it should be, named, unless it is to keep going.
+/// The numbers of the frames, in their order.
+std::vector<int64_t> frame_numbers(const FrameRange& frames);
+
+/// The request of one frame, with its number in the paths.
+RunRequest request_of_frame(const SequenceRequest& request, int64_t frame);
+
+/// What can be told before anything starts; an input without a path is in memory. Throws: usage for files that cannot
+/// be those of a sequence; unreadable_input with every missing frame, unless it is to keep going; unwritable_output
+/// with every frame that is there and may neither be replaced nor left out.
+void check_sequence(const SequenceRequest& request);
+
+/// A chain of frames that are files, checked before it starts. A frame has the vertex properties `born`, and vx, vy,
+/// vz, world units a frame, when it follows another. Result: the same files whether it was done in one go or resumed.
+/// Throws: as check_sequence() does, and as run() does for the first frame that is not as it should be, named, unless
+/// it is to keep going.
 SequenceResult run_sequence(const SequenceRequest& request, Context& context);
 
 }  // namespace isoshell

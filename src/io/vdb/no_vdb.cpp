@@ -42,6 +42,9 @@ std::shared_ptr<const SizingField> sizing_of(const DenseVolume&, const std::stri
 std::shared_ptr<const VelocityField> read_velocity(const std::string& path, const std::string&, int64_t) {
   throw_without_openvdb(ErrorCode::unreadable_input, path);
 }
+std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>&, const std::string& name) {
+  throw_without_openvdb(ErrorCode::unreadable_input, name);
+}
 StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
 
 }  // namespace isoshell

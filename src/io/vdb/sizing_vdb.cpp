@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "io/vdb/dense_lattice.h"
 #include "io/vdb/grid_names.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_grids.h"
@@ -85,17 +86,10 @@ VdbFloatGrid::ConstPtr load(const Source& source, int64_t max_bytes) {
 bool is_length(double value) { return value > 0 && std::isfinite(value); }
 
 VdbFloatGrid::Ptr grid_of(const DenseVolume& lengths, const std::string& name) {
-  const WorldPoint &spacing = lengths.spacing_world, &origin = lengths.origin_world;
-  for (const double s : {spacing.x, spacing.y, spacing.z})
-    if (!(s > 0) || !std::isfinite(s))
-      throw Error(ErrorCode::usage, "arguments", name + ": its spacing must be above 0 along every axis");
   initialize_openvdb();
   auto grid = VdbFloatGrid::create(0);
   grid->setName(name);
-  auto transform = openvdb::math::Transform::createLinearTransform(1);
-  transform->postScale({spacing.x, spacing.y, spacing.z});
-  transform->postTranslate({origin.x, origin.y, origin.z});
-  grid->setTransform(transform);
+  grid->setTransform(transform_of(lengths, name));
   auto voxels = grid->getAccessor();
   for (int64_t i = 0; i < lengths.size[0]; ++i)
     for (int64_t j = 0; j < lengths.size[1]; ++j)

@@ -1,14 +1,16 @@
-// Velocity fields: a grid of vectors of a .vdb file, checked once, then sampled.
+// Velocity fields: a grid of vectors of a .vdb file or from memory, checked once, then sampled.
 #include "isoshell/io/velocity_vdb.h"
 
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <sstream>
 
 #include "core/world_vector.h"
+#include "io/vdb/dense_lattice.h"
 #include "io/vdb/grid_names.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_grids.h"
@@ -52,6 +54,27 @@ VdbVec3fGrid::ConstPtr load(const std::string& path, const std::string& name, in
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::out_of_memory, "read", path + ": out of memory; coarsen the velocities");
   }
+}
+
+VdbVec3fGrid::Ptr grid_of(const std::array<DenseVolume, 3>& components, const std::string& name) {
+  const DenseVolume& lattice = components[0];
+  initialize_openvdb();
+  auto grid = VdbVec3fGrid::create(openvdb::Vec3f(0));
+  grid->setName(name);
+  grid->setTransform(transform_of(lattice, name));
+  auto voxels = grid->getAccessor();
+  for (int64_t i = 0; i < lattice.size[0]; ++i)
+    for (int64_t j = 0; j < lattice.size[1]; ++j)
+      for (int64_t k = 0; k < lattice.size[2]; ++k) {
+        openvdb::Vec3f value;
+        for (int axis = 0; axis < 3; ++axis) {
+          const DenseVolume& part = components[size_t(axis)];
+          value[axis] = part.values[i * part.stride[0] + j * part.stride[1] + k * part.stride[2]];
+        }
+        const bool says_nothing = std::isnan(value.x()) || std::isnan(value.y()) || std::isnan(value.z());
+        if (!says_nothing) voxels.setValueOn(openvdb::Coord(int(i), int(j), int(k)), value);
+      }
+  return grid;
 }
 
 void check_values(const std::string& path, const VdbVec3fGrid& grid) {
@@ -110,6 +133,13 @@ std::shared_ptr<const VelocityField> read_velocity(const std::string& path, cons
                                                    int64_t max_bytes) {
   auto grid = load(path, name, max_bytes);
   check_values(path, *grid);
+  return std::make_shared<VdbVelocity>(std::move(grid));
+}
+
+std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>& components,
+                                                 const std::string& name) {
+  auto grid = grid_of(components, name);
+  check_values(name, *grid);
   return std::make_shared<VdbVelocity>(std::move(grid));
 }
 

@@ -1,0 +1,71 @@
+// What a frame hands to the next one (see run/sequence.h).
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/run/sequence.h"
+
+namespace isoshell {
+namespace {
+
+/// What a surface needs to carry vertices.
+TriangleSoup triangles_alone(std::vector<WorldPoint> vertices, std::vector<std::array<uint32_t, 3>> triangles) {
+  TriangleSoup soup;
+  soup.vertices = std::move(vertices);
+  soup.triangles = std::move(triangles);
+  return soup;
+}
+
+}  // namespace
+
+struct FrameChain::Frame {
+  TriangleSoup surface;  ///< positions and triangles alone
+  TriangleMesh mesh;     ///< as its file has it
+  std::shared_ptr<const VelocityField> velocity;
+};
+
+FrameChain::FrameChain(bool is_coherent) : is_coherent_(is_coherent) {}
+FrameChain::FrameChain(FrameChain&&) noexcept = default;
+FrameChain& FrameChain::operator=(FrameChain&&) noexcept = default;
+FrameChain::~FrameChain() = default;
+
+RunResult FrameChain::run(Input input, RunRequest request, Context& context) {
+  if (!is_coherent_ || request.stop_after != StopAfter::mesh) return isoshell::run(std::move(input), request, context);
+  if (input.stage)
+    throw Error(ErrorCode::usage, "frames",
+                input.facts.path + " is a stage file, which has no surface that vertices could go with");
+  TriangleSoup surface = triangles_alone(input.soup.vertices, input.soup.triangles);
+  if (last_) request.options.values.previous = previous_for(surface, context);
+  RunResult made = isoshell::run(std::move(input), request, context);
+  TriangleMesh mesh;
+  mesh.vertices = made.mesh.vertices;
+  mesh.triangles = made.mesh.triangles;
+  round_as_in_ply(mesh);
+  last_ = std::make_unique<Frame>(Frame{std::move(surface), std::move(mesh), nullptr});
+  return made;
+}
+
+void FrameChain::set_velocity(std::shared_ptr<const VelocityField> velocity) {
+  if (last_) last_->velocity = std::move(velocity);
+}
+
+void FrameChain::go_on_from(TriangleSoup surface, TriangleSoup mesh) {
+  if (!is_coherent_) return;
+  last_ = std::make_unique<Frame>();
+  last_->surface = triangles_alone(std::move(surface.vertices), std::move(surface.triangles));
+  last_->mesh.vertices = std::move(mesh.vertices);
+  last_->mesh.triangles = std::move(mesh.triangles);
+}
+
+std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const TriangleSoup& surface, Context& context) const {
+  auto previous = std::make_shared<PreviousFrame>();
+  previous->vertices = last_->mesh.vertices;
+  previous->triangles = last_->mesh.triangles;
+  if (have_same_triangles(last_->surface, surface)) {
+    previous->carried = carry_with_triangles(previous->vertices, last_->surface, surface, context);
+    return previous;
+  }
+  TriangleMesh moved = last_->mesh;
+  if (last_->velocity) moved.vertices = carry_with_velocity(moved.vertices, *last_->velocity);
+  previous->carried = carry_onto(moved, surface, context);
+  return previous;
+}
+
+}  // namespace isoshell
