@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from typing import TYPE_CHECKING, Any
 
 from ._isoshell import ErrorCode
@@ -36,3 +38,11 @@ class Error(Exception):
 
 class RunWarning(UserWarning):
     """What a person should look at: the command writes the same behind "warning:"."""
+
+
+def warn(text: str) -> None:
+    """A warning at the line that called this package."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, RunWarning, stacklevel=level)

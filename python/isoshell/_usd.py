@@ -12,7 +12,7 @@ from ._isoshell import ErrorCode
 
 ENDINGS = (".usd", ".usda", ".usdc", ".usdz")
 NAMED = re.compile(r"(?P<file>.*\.usd[acz]?)(?::(?P<prim>[^:\\]*))?", re.IGNORECASE | re.DOTALL)
-MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "UsdVol", "Vt")
+MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdSkel", "UsdUtils", "UsdVol", "Vt")
 
 
 class Origin:
@@ -27,10 +27,11 @@ class Origin:
         vectors: by name the USD type of attributes that come apart into name.0, name.1 and so on.
         constants: names of attributes that have one value for all.
         materials: a layer of USD, as text, with the materials by their labels below /Materials.
+        time_codes_per_second: how long a time code is; of a sequence a frame is one.
     """
 
-    def __init__(self, up_axis: str = "Y", meters_per_unit: float = 1.0, name: str = "mesh",
-                 root: str = "World") -> None:
+    def __init__(self, up_axis: str = "Y", meters_per_unit: float = 1.0, name: str = "mesh", root: str = "World",
+                 time_codes_per_second: float = 24.0) -> None:
         self.up_axis = up_axis
         self.meters_per_unit = meters_per_unit
         self.name = name
@@ -39,6 +40,7 @@ class Origin:
         self.vectors: dict[str, str] = {}
         self.constants: set[str] = set()
         self.materials = ""
+        self.time_codes_per_second = time_codes_per_second
 
 
 def is_usd(path: Any) -> bool:

@@ -5,12 +5,10 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import sys
-import warnings
 from collections import Counter
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._errors import Error, RunWarning
+from ._errors import Error, warn
 from ._isoshell import ErrorCode
 from ._usd import reason_of, unreadable
 
@@ -21,14 +19,6 @@ MAX_DEPTH = 32  # of instancers in instancers, which may go round
 def note(text: str) -> None:
     """What is good to know: to the logger "isoshell"."""
     logging.getLogger("isoshell").info("%s", text)
-
-
-def warn(text: str) -> None:
-    """What a person should look at: a warning at the line that asked for the run."""
-    level, frame = 1, sys._getframe()
-    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
-        level, frame = level + 1, frame.f_back
-    warnings.warn(text, RunWarning, stacklevel=level)
 
 
 @contextlib.contextmanager
@@ -118,6 +108,44 @@ def meshes_of(pxr: Any, file: str, root: Any, time: Any, purposes: Sequence[str]
     if hidden:
         note(f"{file}: meshes left out: {left_out}")
     return found
+
+
+def is_skinned(pxr: Any, mesh: Any) -> bool:
+    """Whether a mesh is bound to joints, or has blend shapes."""
+    binding = pxr.UsdSkel.BindingAPI(mesh)
+    joints = pxr.UsdGeom.PrimvarsAPI(mesh).FindPrimvarWithInheritance("skel:jointIndices")
+    is_bound = bool(binding.GetInheritedSkeleton()) and joints and joints.HasValue()
+    return bool(is_bound or binding.GetBlendShapeTargetsRel().GetTargets())
+
+
+def sampled_times(pxr: Any, root: Any) -> list[float]:
+    """When something changes of the meshes from the root on, of their places, or of whether they are seen."""
+    times: set[float] = set()
+    seen: set[Any] = set()
+
+    def look_at_place(prim: Any) -> None:
+        if not prim or prim.IsPseudoRoot() or prim.GetPath() in seen:
+            return
+        seen.add(prim.GetPath())
+        times.update(pxr.UsdGeom.Xformable(prim).GetTimeSamples() if prim.IsA(pxr.UsdGeom.Xformable) else [])
+        times.update(pxr.UsdGeom.Imageable(prim).GetVisibilityAttr().GetTimeSamples())
+        look_at_place(prim.GetParent())
+
+    def look(top: Any) -> None:
+        for prim in _all(pxr, top):
+            is_instancer = prim.IsA(pxr.UsdGeom.PointInstancer)
+            if prim.GetPath() in seen or not is_instancer and not prim.IsA(pxr.UsdGeom.Mesh):
+                continue
+            look_at_place(prim)
+            for attribute in prim.GetAuthoredAttributes():
+                times.update(attribute.GetTimeSamples())
+            if is_instancer:
+                for target in pxr.UsdGeom.PointInstancer(prim).GetPrototypesRel().GetForwardedTargets():
+                    if prim.GetStage().GetPrimAtPath(target):
+                        look(prim.GetStage().GetPrimAtPath(target))
+
+    look(root)
+    return sorted(times)
 
 
 def _all(pxr: Any, root: Any) -> Any:

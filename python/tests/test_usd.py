@@ -11,7 +11,7 @@ import pytest
 from isoshell import ErrorCode
 
 pytest.importorskip("pxr", reason="needs usd-core: pip install usd-core")
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdValidation, UsdVol, Vt  # noqa: E402
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, UsdVol, Vt  # noqa: E402
 
 SMALL = {"vertices": 100, "resolution": 32}
 
@@ -176,6 +176,32 @@ def test_time_codes_choose_points_and_transforms(stage_of, box):
     path = stage_of(box, change)
     for time, at in ((None, 1), (5, 5), (3, 3)):
         assert np.allclose(isoshell.usd.read(path, time=time).vertices, box[0] * (1 + at) + [at, 0, 0])
+
+
+def skinned(stage, mesh):
+    skeleton = UsdSkel.Skeleton.Define(stage, "/World/Skeleton")
+    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    binding.CreateSkeletonRel().AddTarget(skeleton.GetPath())
+    count = len(mesh.GetPointsAttr().Get())
+    binding.CreateJointIndicesPrimvar(False, 1).Set([0] * count)
+    binding.CreateJointWeightsPrimvar(False, 1).Set([1.0] * count)
+
+
+def blended(stage, mesh):
+    shape = UsdSkel.BlendShape.Define(stage, "/World/Shape/Smile")
+    UsdSkel.BindingAPI.Apply(mesh.GetPrim()).CreateBlendShapeTargetsRel().AddTarget(shape.GetPath())
+
+
+@pytest.mark.parametrize("change", [skinned, blended])
+def test_a_mesh_that_moves_with_a_skeleton_is_read_as_it_rests_with_a_warning(stage_of, ball, change):
+    with pytest.warns(isoshell.RunWarning, match="/World/Shape moves with a skeleton or blend shapes") as told:
+        isoshell.remesh(stage_of(ball, change), **SMALL)
+    assert told[0].filename == __file__
+
+
+def test_a_skeleton_that_binds_no_mesh_is_no_reason_to_warn(stage_of, ball, recwarn):
+    isoshell.usd.read(stage_of(ball, lambda stage, mesh: UsdSkel.Skeleton.Define(stage, "/World/Skeleton")))
+    assert not recwarn.list
 
 
 def colored(stage, mesh):
