@@ -7,6 +7,7 @@
 #include "report.h"
 #include "result.h"
 #include "run.h"
+#include "sequence.h"
 #include "source.h"
 #include "stages.h"
 
@@ -21,6 +22,7 @@ NB_MODULE(_isoshell, m) {
   bind_context(m);
   bind_result(m);
   bind_run(m);
+  bind_sequence(m);
   bind_stages(m);
   bind_report(m);
 }

@@ -18,6 +18,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/io/sizing_vdb.h"
+#include "isoshell/io/velocity_vdb.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace nb = nanobind;
@@ -91,9 +92,10 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
           {}};
 }
 
-DenseVolume dense_volume(const char* argument, const AnyArray& values, const Triple& spacing, const Triple& origin) {
+/// The lattice of the first three dimensions of an array.
+DenseVolume lattice(const float* first, const AnyArray& values, const Triple& spacing, const Triple& origin) {
   DenseVolume v;
-  v.values = floats_of(argument, values, 3);
+  v.values = first;
   for (size_t i = 0; i < 3; ++i) {
     v.size[i] = int64_t(values.shape(i));
     v.stride[i] = values.stride(i);
@@ -101,6 +103,10 @@ DenseVolume dense_volume(const char* argument, const AnyArray& values, const Tri
   v.spacing_world = {spacing[0], spacing[1], spacing[2]};
   v.origin_world = {origin[0], origin[1], origin[2]};
   return v;
+}
+
+DenseVolume dense_volume(const char* argument, const AnyArray& values, const Triple& spacing, const Triple& origin) {
+  return lattice(floats_of(argument, values, 3), values, spacing, origin);
 }
 
 Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin) {
@@ -115,11 +121,24 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
           {}};
 }
 
+void set_velocities(Source& source, const AnyArray& vectors, const Triple& spacing, const Triple& origin) {
+  const float* first = floats_of("velocities", vectors, 4);
+  const auto part = [&](int64_t axis) { return lattice(first + axis * vectors.stride(3), vectors, spacing, origin); };
+  source.velocity = velocity_of({part(0), part(1), part(2)}, "velocities");
+}
+
 void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, const Triple& origin) {
   source.sizing = sizing_of(dense_volume("sizing", lengths, spacing, origin), "sizing");
 }
 
 }  // namespace
+
+Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context) {
+  if (read) return read(request, context);
+  InputRequest file = request.input;
+  file.creases = volume_creases(request.options.values.features);
+  return read_input(file, context.memory_limit_bytes, request.tell);
+}
 
 void bind_source(nb::module_& m) {
   nb::class_<Source>(m, "Source", "What one run starts from.")
@@ -138,6 +157,9 @@ void bind_source(nb::module_& m) {
                           "float, float]) -> Source"))
       .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
            nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
+                   "tuple[float, float, float]) -> None"))
+      .def("set_velocities", set_velocities, nb::arg("vectors"), nb::arg("spacing"), nb::arg("origin"),
+           nb::sig("def set_velocities(self, vectors: typing.Any, spacing: tuple[float, float, float], origin: "
                    "tuple[float, float, float]) -> None"));
   m.def(
       "split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),

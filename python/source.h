@@ -7,19 +7,26 @@
 #include <memory>
 #include <string>
 
+#include "isoshell/previous_frame.h"
 #include "isoshell/run/run.h"
 
 namespace isoshell::python {
 
+/// Makes the input of what is in memory.
+using ReadMemory = std::function<Input(const RunRequest&, const Context&)>;
+
 struct Source {
-  std::string path;  ///< of a file; empty: of memory
-  /// Of memory: makes the input, once, on the thread of the run.
-  std::function<Input(const RunRequest&, const Context&)> read;
+  std::string path;                           ///< of a file; empty: of memory
+  ReadMemory read;                            ///< of memory: once, on the thread of the run; empty: of a file
   nanobind::object kept;                      ///< whose memory is borrowed meanwhile
   std::shared_ptr<const SizingField> sizing;  ///< edge lengths that were given as an array; null: none were
+  std::shared_ptr<const VelocityField> velocity = nullptr;  ///< of a frame; null: none was given as an array
 
   bool is_file() const { return !read; }
 };
+
+/// By `read`, or the file of the request where it is empty.
+Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context);
 
 /// Source, with a way to make one of each kind.
 void bind_source(nanobind::module_& m);

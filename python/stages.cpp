@@ -50,11 +50,6 @@ RemeshOptions settled_options(const AskedOptions& asked, const Context& context)
   return options;
 }
 
-Input input_of_request(RunRequest request, const Context& context) {
-  request.input.creases = volume_creases(request.options.values.features);
-  return read_input(request.input, context.memory_limit_bytes, request.tell);
-}
-
 class StageRun {
  public:
   StageRun(Place& place, const Source& source, const Keywords& keywords, nb::object progress, nb::object tell)
@@ -66,7 +61,7 @@ class StageRun {
   void prepare() {
     if (products().prepared) return;
     add("prepare", [products = products_, read = source_.read](const RunRequest& request, Context& context) {
-      const Input input = read ? read(request, context) : input_of_request(request, context);
+      const Input input = input_of_run(read, request, context);
       if (input.stage) refuse(input.facts.name() + " is a stage file; isoshell.remesh resumes from it");
       products->facts = input.facts;
       products->options = settled_options(request.options, context);

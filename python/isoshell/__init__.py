@@ -19,17 +19,18 @@ from ._options import Options
 from ._remesh import estimate, remesh
 from ._report import report
 from ._result import Result
+from ._sequence import Frames, remesh_sequence
 from ._sources import Mesh, Points, Volume
 from ._stages import Stages
 
 if _TYPE_CHECKING:
     from . import usd as usd
 
-__all__ = ["Context", "Error", "ErrorCode", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages", "Volume",
-           "__version__", "estimate", "remesh", "report"]
+__all__ = ["Context", "Error", "ErrorCode", "Frames", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages",
+           "Volume", "__version__", "estimate", "remesh", "remesh_sequence", "report"]
 
-for _name in ("Context", "Error", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate", "remesh",
-              "report"):
+for _name in ("Context", "Error", "Frames", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate",
+              "remesh", "remesh_sequence", "report"):
     globals()[_name].__module__ = __name__
 
 

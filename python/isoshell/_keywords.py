@@ -17,7 +17,7 @@ LEFT_OUT = {
     "version": "see isoshell.__version__",
     "dry_run": "call isoshell.estimate",
     **{
-        name: "sequences are meshed by the command, python -m isoshell, which has options of their own for them"
+        name: "sequences are meshed by isoshell.remesh_sequence"
         for name in ("frames", "velocity", "no_coherence", "keep_going", "resume")
     },
 }

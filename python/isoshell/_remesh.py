@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import warnings
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 from . import _isoshell, _report
 from ._context import Context
-from ._errors import Error, RunWarning
+from ._errors import Error, warn
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._result import Result, checked
 from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from ._options import Options
 
 OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
-CALLERS = 3  # frames between a warning and the line that asked for the run
 
 
 def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]] = None,
@@ -50,14 +48,12 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
         KeyboardInterrupt: within .3 s of the key; nothing half-written is left.
     """
     given: dict[str, Any] = dict(options)
-    stats = given.pop("stats", None)
-    measure_all = stats is True
-    if stats is not False and stats is not True:
-        given["stats"] = stats
+    measure_all = takes_stats(given)
     sizing = sizing_of(given)
-    place, progress, keywords = settle(context, given, source)
+    place, progress = settle(context, given)
+    keywords = keywords_for(source, given)
     target = "" if output is None else os.fsdecode(output)
-    volumes = [os.fsdecode(given[name]) for name in ("save_shell", "save_voronoi") if given.get(name)]
+    volumes = stage_files(given)
     is_stage = is_usd(target)
     if is_stage:
         check_stage(target, given, volumes)
@@ -66,8 +62,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     source = opened(source)
     start = source_of(source, sizing)
     made = _isoshell.remesh(place, start, keywords, "" if is_stage else target, measure_all, progress, listener(given))
-    result = Result(made, start if start.is_file else None, [word for word in keywords if word[0] in READING],
-                    getattr(source, "origin", None), volumes)
+    result = result_of(made, start, keywords, source, volumes)
     if is_stage:
         result.save(target, overwrite=given.get("force") is True)
     if options.get("report"):
@@ -84,8 +79,28 @@ def estimate(source: SourceLike, *, context: Optional[Context] = None, **options
     """
     given: dict[str, Any] = dict(options)
     sizing = sizing_of(given)
-    place, _, keywords = settle(context, given, source)
+    place, _ = settle(context, given)
+    keywords = keywords_for(source, given)
     return _isoshell.estimate(place, source_of(source, sizing), keywords, listener(given))
+
+
+def takes_stats(options: dict[str, Any]) -> bool:
+    """Whether to measure everything without a file of statistics; True and False are no name of one."""
+    if not isinstance(options.get("stats"), bool):
+        return False
+    return bool(options.pop("stats"))
+
+
+def stage_files(options: dict[str, Any]) -> list[str]:
+    """The stage files that a run is to save."""
+    return [os.fsdecode(options[name]) for name in ("save_shell", "save_voronoi") if options.get(name)]
+
+
+def result_of(made: _isoshell.RunResult, start: _isoshell.Source, keywords: Keywords, source: Any,
+              volumes: list[str]) -> Result:
+    """What a run made of a source, with what a report would need of it."""
+    return Result(made, start if start.is_file else None, [word for word in keywords if word[0] in READING],
+                  getattr(source, "origin", None), volumes)
 
 
 def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> None:
@@ -98,8 +113,8 @@ def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> Non
     check_target(target, options.get("force") is True, volumes)
 
 
-def settle(context: Optional[Context], options: dict[str, Any], source: Any) -> tuple[Any, Any, Keywords]:
-    """Where to run, who hears of progress, and the other options."""
+def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:
+    """Where to run and who hears of progress, taken out of the options."""
     named = {name: options.pop(name) for name in PLACE if options.get(name) is not None}
     if context is None:
         context = Context(**named)
@@ -108,9 +123,13 @@ def settle(context: Optional[Context], options: dict[str, Any], source: Any) -> 
     progress = context.progress
     if callable(options.get("progress")):
         progress = options.pop("progress")
-    if is_true_or_false(source) and options.get("iso") is None:
-        options["iso"] = 0.5
-    return context._place, progress, keywords_of(options)
+    return context._place, progress
+
+
+def keywords_for(source: Any, options: dict[str, Any]) -> Keywords:
+    """The options as the parser takes them, with the isovalue that a source has by itself."""
+    has_own = is_true_or_false(source) and options.get("iso") is None
+    return keywords_of({**options, "iso": 0.5} if has_own else options)
 
 
 def listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
@@ -119,7 +138,7 @@ def listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
 
     def tell(is_warning: bool, text: str) -> None:
         if is_warning and not quiet:
-            warnings.warn(text, RunWarning, stacklevel=CALLERS)
+            warn(text)
         else:
             import logging
 

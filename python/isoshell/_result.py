@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 from . import _isoshell
 from ._errors import Error
@@ -27,9 +27,11 @@ class Result:
 
     Attributes:
         origin: what the scene that it comes from says of axes, units and materials, otherwise None: see isoshell.usd.
+        frame: the number of its frame, or of a stage its time code; None where it is no frame of a sequence.
     """
 
     origin: Optional[Origin]
+    frame: Optional[Union[int, float]]
 
     def __init__(self, made: _isoshell.RunResult, source: Optional[_isoshell.Source] = None,
                  reading: Optional[Keywords] = None, origin: Optional[Origin] = None,
@@ -38,6 +40,7 @@ class Result:
         self._source = source  # of a file; what memory has is not kept
         self._reading = reading or []  # the options that decide how it is read
         self.origin = origin
+        self.frame = None
         self._volumes = list(volumes)
         self._report: Optional[dict[str, Any]] = None
         self._attributes: Optional[list[tuple[str, str, Array, list[str]]]] = None
@@ -57,7 +60,8 @@ class Result:
         """What the source has beside its positions, found for the result; by name, of the type that it had there.
 
         (K, ...) of vertices, (M, ...) of faces, (M, 3, ...) of the corners of faces: see domains. "gap" is 1 where the
-        source has no surface. A name that attributes of two domains have is, for the second, "name:domain".
+        source has no surface. A frame that follows another has "born", 1 where a vertex is not the one that had its
+        number, and "vx", "vy" and "vz", its motion since then in world units. A name that attributes of two domains have is, for the second, "name:domain".
         """
         return {name: values for name, _, values, _ in self._named_attributes()}
 

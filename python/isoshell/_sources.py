@@ -95,12 +95,15 @@ class Volume:
             array begins with z, give values.transpose(2, 1, 0): that takes no copy.
         spacing: world units from a value to the next, one number or one an axis.
         origin: where values[0, 0, 0] stands, world units.
+        velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
+            remesh_sequence(); NaN where nothing is known. They are copied.
     """
 
-    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0) -> None:
+    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None) -> None:
         self.values = values
         self.spacing = spacing
         self.origin = origin
+        self.velocities = velocities
 
 
 SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
@@ -121,6 +124,26 @@ def source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
     if sizing is not None:
         source.set_sizing(*_lattice_of("sizing", sizing))
     return source
+
+
+def frame_source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
+    """The same for a frame of a sequence, with the velocities that are in memory."""
+    source = source_of(given, sizing)
+    if isinstance(given, Volume) and given.velocities is not None:
+        _set_velocities(source, given)
+    return source
+
+
+def _set_velocities(source: Source, volume: Volume) -> None:
+    import numpy as np
+
+    shape = array_of("volume", volume.values).shape
+    vectors = array_of("velocities", volume.velocities)
+    if vectors.shape != (*shape, 3):
+        raise Error(f"velocities must have the shape {(*shape, 3)}, three numbers for each of the volume's, and has "
+                    f"{vectors.shape}")
+    source.set_velocities(vectors.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
+                          _triple("origin", volume.origin))
 
 
 def _source_of(given: Any) -> Source:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 from . import _isoshell
 from ._context import Context
 from ._errors import Error
-from ._remesh import listener, settle
+from ._remesh import keywords_for, listener, settle
 from ._result import Result
 from ._sources import SourceLike, sizing_of, source_of
 
@@ -41,8 +41,9 @@ class Stages:
         if refused:
             raise Error(f"{', '.join(refused)}: only remesh() takes that", stage="options")
         sizing = sizing_of(given)
-        place, progress, keywords = settle(context, given, source)
-        self._run = _isoshell.StageRun(place, source_of(source, sizing), keywords, progress, listener(given))
+        place, progress = settle(context, given)
+        self._run = _isoshell.StageRun(place, source_of(source, sizing), keywords_for(source, given),
+                                      progress, listener(given))
 
     def prepare(self) -> Stages:
         """Repair the surface, choose the grid, voxelise: surface, sites, shell and sheet."""

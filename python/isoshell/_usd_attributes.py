@@ -1,9 +1,10 @@
-"""Attributes of a result as primvars of USD."""
+"""Attributes of results as primvars of USD, of one time or of many."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
+from ._errors import warn
 from ._result import Result
 from ._usd import Origin
 from ._usd_primvars import base_of, is_of_corners
@@ -16,124 +17,160 @@ if TYPE_CHECKING:
 INTERPOLATIONS = {"vertex": "vertex", "face": "uniform", "corner": "faceVarying"}
 
 
-def add_primvars(pxr: Any, mesh: Any, result: Result, origin: Origin) -> None:
-    """Everything that the result has beside its positions, but for materials."""
-    api = pxr.UsdGeom.PrimvarsAPI(mesh.GetPrim())
-    vectors: dict[tuple[str, str], list[Array]] = {}
-    for key, domain, values, labels in result._named_attributes():
-        name = key.removesuffix(f":{domain}")
-        base, component = base_of(name)
-        if key != name:  # the second attribute of that name
-            if values.ndim == 1:
-                _add_numbers(pxr, api, f"{name}_{domain}", domain, values, origin)
-        elif name == "color":
-            _add_color(pxr, api, domain, values, origin)
-        elif name == "normal":
-            _add_normals(pxr, mesh, result, values)
-        elif is_of_corners(name):
-            _add_uv(pxr, api, values, _uv_set_of(name, origin))
-        elif name == "material" and labels:
-            continue
-        elif component >= 0 and base in origin.vectors:
-            vectors.setdefault((base, domain), []).append(values)
-        elif labels:
-            _add_texts(pxr, api, name, domain, values, labels)
-        else:
-            _add_numbers(pxr, api, name, domain, values, origin)
-    for (name, domain), columns in vectors.items():
-        _add_vectors(pxr, api, name, domain, columns, origin)
+class PrimvarWriter:
+    """Everything that results have beside their positions, but for materials.
 
+    Of a mesh with time samples, each result is one of them, and what it lacks has no value at its time.
+    """
 
-def _create(pxr: Any, api: Any, name: str, type_name: Any, interpolation: str) -> Any:
-    return api.CreatePrimvar(":".join(map(pxr.Tf.MakeValidIdentifier, name.split(":"))), type_name, interpolation)
+    def __init__(self, pxr: Any, mesh: Any, origin: Origin, is_sampled: bool = False) -> None:
+        self._pxr = pxr
+        self._mesh = mesh
+        self._api = pxr.UsdGeom.PrimvarsAPI(mesh.GetPrim())
+        self._origin = origin
+        self._is_sampled = is_sampled
+        self._first: Any = None  # time of the first sample
+        self._time = pxr.Usd.TimeCode.Default()
+        self._made: dict[str, tuple[Any, str, Any]] = {}  # by name an attribute, its interpolation and type
+        self._set: set[str] = set()
 
+    def write(self, result: Result, left_out: tuple[str, ...] = (), time: Optional[float] = None) -> None:
+        """The attributes of a result, of a mesh with samples at its time."""
+        if self._is_sampled:
+            self._time = self._pxr.Usd.TimeCode(time)
+            self._first = self._time if self._first is None else self._first
+        self._set = set()
+        vectors: dict[tuple[str, str], list[Array]] = {}
+        for key, domain, values, labels in result._named_attributes():
+            name = key.removesuffix(f":{domain}")
+            base, component = base_of(name)
+            if key != name:  # the second attribute of that name
+                if values.ndim == 1:
+                    self._add_numbers(f"{name}_{domain}", domain, values)
+            elif name in left_out or name == "material" and labels:
+                continue
+            elif name == "color":
+                self._add_color(domain, values)
+            elif name == "normal":
+                self._add_normals(result, values)
+            elif is_of_corners(name):
+                self._add_uv(values, self._uv_set_of(name))
+            elif component >= 0 and base in self._origin.vectors:
+                vectors.setdefault((base, domain), []).append(values)
+            elif labels:
+                self._add_texts(name, domain, values, labels)
+            else:
+                self._add_numbers(name, domain, values)
+        for (name, domain), columns in vectors.items():
+            self._add_vectors(name, domain, columns)
+        for name in set(self._made) - self._set:
+            self._made[name][0].Set(self._pxr.Sdf.ValueBlock(), self._time)
 
-def _of_all(name: str, domain: str, values: Array, origin: Origin) -> tuple[str, Array]:
-    """The interpolation; one value where the source has one and all are the same."""
-    if name in origin.constants and len(values) > 0 and bool((values == values[:1]).all()):
-        return "constant", values[:1]
-    return INTERPOLATIONS[domain], values
+    def _put(self, name: str, type_name: Any, interpolation: str, values: Any, indices: Optional[Array] = None) -> None:
+        """A primvar at this time; it keeps the type and interpolation of its first."""
+        pxr = self._pxr
+        name = ":".join(map(pxr.Tf.MakeValidIdentifier, name.split(":")))
+        primvar = self._api.GetPrimvar(name)
+        if name not in self._made:
+            primvar = self._api.CreatePrimvar(name, type_name, interpolation)
+            self._keep(name, primvar.GetAttr(), interpolation, type_name)
+        elif self._made[name][1:] != (interpolation, type_name):
+            warn(f"frame {self._time}: the primvar {name} is left out: its type or domain is not that of the frames "
+                 "before")
+            return
+        self._set.add(name)
+        primvar.Set(values, self._time)
+        if indices is not None:
+            primvar.SetIndices(pxr.Vt.IntArray.FromNumpy(indices), self._time)
 
+    def _keep(self, name: str, attribute: Any, interpolation: str, type_name: Any) -> None:
+        self._made[name] = attribute, interpolation, type_name
+        if self._is_sampled and self._first != self._time:
+            attribute.Set(self._pxr.Sdf.ValueBlock(), self._first)
 
-def _add_color(pxr: Any, api: Any, domain: str, values: Array, origin: Origin) -> None:
-    import numpy as np
+    def _of_all(self, name: str, domain: str, values: Array) -> tuple[str, Array]:
+        """The interpolation; one value where the source has one and all are the same, which samples may cease to be."""
+        is_constant = name in self._origin.constants and not self._is_sampled
+        if is_constant and len(values) > 0 and bool((values == values[:1]).all()):
+            return "constant", values[:1]
+        return INTERPOLATIONS[domain], values
 
-    colors = values.astype(np.float32)
-    if values.dtype.kind in "iu":
-        colors = colors / np.float32(np.iinfo(values.dtype).max)
-    interpolation, colors = _of_all("color", domain, colors, origin)
-    names = pxr.Sdf.ValueTypeNames
-    _create(pxr, api, "displayColor", names.Color3fArray, interpolation).Set(
-        pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(colors[:, :3])))
-    if colors.shape[1] == 4:
-        _create(pxr, api, "displayOpacity", names.FloatArray, interpolation).Set(
-            pxr.Vt.FloatArray.FromNumpy(np.ascontiguousarray(colors[:, 3])))
+    def _add_color(self, domain: str, values: Array) -> None:
+        import numpy as np
 
+        pxr = self._pxr
+        colors = values.astype(np.float32)
+        if values.dtype.kind in "iu":
+            colors = colors / np.float32(np.iinfo(values.dtype).max)
+        interpolation, colors = self._of_all("color", domain, colors)
+        names = pxr.Sdf.ValueTypeNames
+        self._put("displayColor", names.Color3fArray, interpolation,
+                  pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(colors[:, :3])))
+        if colors.shape[1] == 4:
+            self._put("displayOpacity", names.FloatArray, interpolation,
+                      pxr.Vt.FloatArray.FromNumpy(np.ascontiguousarray(colors[:, 3])))
 
-def _uv_set_of(name: str, origin: Origin) -> str:
-    number = int(name.removeprefix("uv") or 0)
-    return origin.uv_sets[number] if number < len(origin.uv_sets) else f"st{number or ''}"
+    def _uv_set_of(self, name: str) -> str:
+        number, sets = int(name.removeprefix("uv") or 0), self._origin.uv_sets
+        return sets[number] if number < len(sets) else f"st{number or ''}"
 
+    def _add_uv(self, values: Array, name: str) -> None:
+        """One value for all corners that share it, so that the seams of a map are those of its indices."""
+        import numpy as np
 
-def _add_uv(pxr: Any, api: Any, values: Array, name: str) -> None:
-    """One value for all corners that share it, so that the seams of a map are those of its indices."""
-    import numpy as np
+        rows = np.nan_to_num(values.reshape(-1, 2).astype(np.float32))
+        kept, indices = np.unique(rows, axis=0, return_inverse=True)
+        self._put(name, self._pxr.Sdf.ValueTypeNames.TexCoord2fArray, "faceVarying",
+                  self._pxr.Vt.Vec2fArray.FromNumpy(np.ascontiguousarray(kept)), indices.reshape(-1).astype(np.int32))
 
-    rows = np.nan_to_num(values.reshape(-1, 2).astype(np.float32))
-    kept, indices = np.unique(rows, axis=0, return_inverse=True)
-    primvar = _create(pxr, api, name, pxr.Sdf.ValueTypeNames.TexCoord2fArray, "faceVarying")
-    primvar.Set(pxr.Vt.Vec2fArray.FromNumpy(np.ascontiguousarray(kept)))
-    primvar.SetIndices(pxr.Vt.IntArray.FromNumpy(indices.reshape(-1).astype(np.int32)))
+    def _add_normals(self, result: Result, values: Array) -> None:
+        """Where the source has none, those of the faces."""
+        import numpy as np
 
+        normals = values.astype(np.float32)
+        missing = np.asarray(~np.isfinite(normals).all(axis=2))
+        if missing.any():
+            a, b, c = (result.vertices[result.faces[:, i]] for i in range(3))
+            across = np.cross(b - a, c - a)
+            across /= np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)[:, None]
+            normals = np.where(missing[:, :, None], across[:, None, :], normals).astype(np.float32)
+        attribute = self._mesh.CreateNormalsAttr()
+        if "normals" not in self._made:
+            self._keep("normals", attribute, "faceVarying", None)
+            self._mesh.SetNormalsInterpolation(self._pxr.UsdGeom.Tokens.faceVarying)
+        self._set.add("normals")
+        attribute.Set(self._pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(normals.reshape(-1, 3))), self._time)
 
-def _add_normals(pxr: Any, mesh: Any, result: Result, values: Array) -> None:
-    """Where the source has none, those of the faces."""
-    import numpy as np
+    def _add_texts(self, name: str, domain: str, values: Array, labels: list[str]) -> None:
+        import numpy as np
 
-    normals = values.astype(np.float32)
-    missing = np.asarray(~np.isfinite(normals).all(axis=2))
-    if missing.any():
-        a, b, c = (result.vertices[result.faces[:, i]] for i in range(3))
-        across = np.cross(b - a, c - a)
-        across /= np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)[:, None]
-        normals = np.where(missing[:, :, None], across[:, None, :], normals).astype(np.float32)
-    mesh.CreateNormalsAttr(pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(normals.reshape(-1, 3))))
-    mesh.SetNormalsInterpolation(pxr.UsdGeom.Tokens.faceVarying)
+        indices = np.where((values >= 0) & (values < len(labels)), values, len(labels)).astype(np.int32)
+        texts = labels + [""] if np.any(indices == len(labels)) else labels
+        self._put(name, self._pxr.Sdf.ValueTypeNames.StringArray, INTERPOLATIONS[domain],
+                  self._pxr.Vt.StringArray(texts), indices)
 
+    def _add_numbers(self, name: str, domain: str, values: Array) -> None:
+        import numpy as np
 
-def _add_texts(pxr: Any, api: Any, name: str, domain: str, values: Array, labels: list[str]) -> None:
-    import numpy as np
+        names, arrays = self._pxr.Sdf.ValueTypeNames, self._pxr.Vt
+        kinds = {"f4": (names.FloatArray, arrays.FloatArray, np.float32),
+                 "f8": (names.DoubleArray, arrays.DoubleArray, np.float64),
+                 "u1": (names.UCharArray, arrays.UCharArray, np.uint8),
+                 "u4": (names.UIntArray, arrays.UIntArray, np.uint32)}
+        type_name, array, dtype = kinds.get(values.dtype.str[1:], (names.IntArray, arrays.IntArray, np.int32))
+        interpolation, values = self._of_all(name, domain, values)
+        self._put(name, type_name, interpolation, array.FromNumpy(np.ascontiguousarray(values, dtype)))
 
-    indices = np.where((values >= 0) & (values < len(labels)), values, len(labels)).astype(np.int32)
-    texts = labels + [""] if np.any(indices == len(labels)) else labels
-    primvar = _create(pxr, api, name, pxr.Sdf.ValueTypeNames.StringArray, INTERPOLATIONS[domain])
-    primvar.Set(pxr.Vt.StringArray(texts))
-    primvar.SetIndices(pxr.Vt.IntArray.FromNumpy(indices))
+    def _add_vectors(self, name: str, domain: str, columns: list[Array]) -> None:
+        """In the source's type; where a run kept some of the numbers only, each by itself."""
+        import numpy as np
 
-
-def _add_numbers(pxr: Any, api: Any, name: str, domain: str, values: Array, origin: Origin) -> None:
-    import numpy as np
-
-    names, arrays = pxr.Sdf.ValueTypeNames, pxr.Vt
-    kinds = {"f4": (names.FloatArray, arrays.FloatArray, np.float32),
-             "f8": (names.DoubleArray, arrays.DoubleArray, np.float64),
-             "u1": (names.UCharArray, arrays.UCharArray, np.uint8),
-             "u4": (names.UIntArray, arrays.UIntArray, np.uint32)}
-    type_name, array, dtype = kinds.get(values.dtype.str[1:], (names.IntArray, arrays.IntArray, np.int32))
-    interpolation, values = _of_all(name, domain, values, origin)
-    _create(pxr, api, name, type_name, interpolation).Set(array.FromNumpy(np.ascontiguousarray(values, dtype)))
-
-
-def _add_vectors(pxr: Any, api: Any, name: str, domain: str, columns: list[Array], origin: Origin) -> None:
-    """In the source's type; where a run kept some of the numbers only, each by itself."""
-    import numpy as np
-
-    type_name = pxr.Sdf.ValueTypeNames.Find(origin.vectors[name].removesuffix("[]") + "[]")
-    array = type_name.type.pythonClass
-    row = np.array(array(1))
-    if row.shape[1] != len(columns):
-        for i, column in enumerate(columns):
-            _add_numbers(pxr, api, f"{name}_{i}", domain, column, origin)
-        return
-    interpolation, values = _of_all(name, domain, np.column_stack(columns), origin)
-    _create(pxr, api, name, type_name, interpolation).Set(array.FromNumpy(np.ascontiguousarray(values, row.dtype)))
+        type_name = self._pxr.Sdf.ValueTypeNames.Find(self._origin.vectors[name].removesuffix("[]") + "[]")
+        array = type_name.type.pythonClass
+        row = np.array(array(1))
+        if row.shape[1] != len(columns):
+            for i, column in enumerate(columns):
+                self._add_numbers(f"{name}_{i}", domain, column)
+            return
+        interpolation, values = self._of_all(name, domain, np.column_stack(columns))
+        self._put(name, type_name, interpolation, array.FromNumpy(np.ascontiguousarray(values, row.dtype)))

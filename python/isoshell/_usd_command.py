@@ -13,8 +13,10 @@ from ._isoshell import ErrorCode
 from ._keywords import flags
 from ._remesh import estimate, remesh
 from ._result import Result
+from ._sequence import Frames, remesh_sequence
 from ._usd import is_usd
 
+OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
 SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help"}
 
 
@@ -56,6 +58,9 @@ def run(words: list[str]) -> int:
         try:
             if len(places) != 2 and not (options.get("dry_run") and len(places) == 1):
                 raise Error(f"{len(places)} names of files; give INPUT and OUTPUT", stage="command line")
+            _check(options)
+            if "frames" in options:
+                return _run_frames(places, options)
             _run(places, options)
         except Error as error:
             if error.result is not None:
@@ -69,10 +74,18 @@ def run(words: list[str]) -> int:
     return 0
 
 
-def _run(places: list[str], options: dict[str, Any]) -> None:
+def _check(options: dict[str, Any]) -> None:
     missing = [name for name, value in options.items() if value == ""]
     if missing:
         raise Error(f"--{missing[0].replace('_', '-')} needs a value", stage="command line")
+    if "frames" in options and options.get("dry_run"):
+        raise Error("--dry-run estimates one frame; leave out --frames and name it", stage="command line")
+    alone = [name for name in OF_FRAMES if name in options and "frames" not in options]
+    if alone:
+        raise Error(f"--{alone[0].replace('_', '-')} needs --frames", stage="command line")
+
+
+def _run(places: list[str], options: dict[str, Any]) -> None:
     start = time.perf_counter()
     options.setdefault("progress", "auto")
     if options.pop("dry_run", False):
@@ -87,6 +100,35 @@ def _run(places: list[str], options: dict[str, Any]) -> None:
     finally:
         if result is not None and not options.get("quiet"):
             _tell(f"{places[1]}: {_summary(result)}, {time.perf_counter() - start:.1f} s")
+
+
+def _run_frames(places: list[str], options: dict[str, Any]) -> int:
+    """The exit status of a sequence that kept going is that of its first bad frame."""
+    options.setdefault("progress", "auto")
+    is_quiet = bool(options.get("quiet"))
+    kept_pct, born, made = [], 0, 0
+    with remesh_sequence(places[0], output=places[1], **options) as frames:
+        for result in frames:
+            made += 1
+            if not is_quiet:
+                _tell(f"{places[1]}: frame {result.frame}: {_summary(result)}")
+            coherence = result.report["coherence"]
+            if coherence:
+                kept_pct.append(coherence["kept_edges_pct"])
+                born += coherence["born"]
+    if is_quiet:  # else each was told as a warning
+        for error in frames.errors.values():
+            _tell(f"error: {error}")
+        return _status(frames)
+    there = f", {len(frames.found)} there already" if frames.found else ""
+    kept = (f"; edges kept {sum(kept_pct) / len(kept_pct):.2f} % on average, {min(kept_pct):.2f} % at worst; "
+            f"{born} vert{'ex' if born == 1 else 'ices'} born") if kept_pct else ""
+    _tell(f"{made} frame{'' if made == 1 else 's'} made{there}{kept}")
+    return _status(frames)
+
+
+def _status(frames: Frames) -> int:
+    return next((int(error.code) for error in frames.errors.values()), 0)
 
 
 def _summary(result: Result) -> str:

@@ -113,8 +113,7 @@ def write_materials(pxr: Any, stage: Any, scope: Any, labels: list[str], kept: s
     if kept and not source.ImportFromString(kept):
         raise ValueError("the materials of an origin are no layer of USD")
     made = {}
-    taken: set[str] = set()
-    pxr.UsdGeom.Scope.Define(stage, scope)
+    taken = {prim.GetName() for prim in pxr.UsdGeom.Scope.Define(stage, scope).GetPrim().GetChildren()}
     for label in labels:
         name = base = pxr.Tf.MakeValidIdentifier(label) if label else "material"
         while name in taken:

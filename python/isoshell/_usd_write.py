@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any, Iterable, Optional
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional
 
 from ._errors import Error
 from ._isoshell import VERSION, ErrorCode
 from ._result import Result
 from ._usd import Origin, library, reason_of, split_name
-from ._usd_attributes import add_primvars
+from ._usd_attributes import PrimvarWriter
 from ._usd_materials import relative_asset, write_materials
 from ._vdb_header import Box, Grid, grids_of
 
@@ -23,6 +24,7 @@ FIELD_TYPES = {"float": "float", "double": "double", "int32": "int", "int64": "i
                "vec3s": "float3", "vec3d": "double3", "vec3i": "int3"}
 CLASSES = {"level set": "levelSet", "fog volume": "fogVolume", "staggered": "staggered"}
 VECTOR_ROLES = {"closest_offset": "Vector", "color": "Color"}
+MATERIALS = "Materials"  # below the root
 FAR = 64  # sizes of itself from the origin: beyond, single precision takes more than a millionth of the size
 
 
@@ -78,19 +80,26 @@ def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str
     grids = [grids_of(file) for file in files]
 
     stage = pxr.Usd.Stage.CreateInMemory()
-    pxr.UsdGeom.SetStageUpAxis(stage, axis)
-    pxr.UsdGeom.SetStageMetersPerUnit(stage, unit)
-    stage.GetRootLayer().comment = f"isoshell {VERSION}"
-    root = pxr.UsdGeom.Xform.Define(stage, f"/{pxr.Tf.MakeValidIdentifier(origin.root)}")
-    stage.SetDefaultPrim(root.GetPrim())
-    names: set[str] = {"Materials"}
-    mesh = _write_mesh(pxr, stage, _free(pxr, root, origin.name, names), result)
-    add_primvars(pxr, mesh, result, origin)
-    _write_materials(pxr, stage, root.GetPath().AppendChild("Materials"), mesh, result, origin, folder)
+    root = begin_stage(pxr, stage, origin, axis, unit)
+    names: set[str] = {MATERIALS}
+    mesh = define_mesh(pxr, stage, _free(pxr, root, origin.name, names), result)
+    write_shape(pxr, mesh, result, offset_of(result.vertices), pxr.Usd.TimeCode.Default())
+    PrimvarWriter(pxr, mesh, origin).write(result)
+    _write_materials(pxr, stage, root.GetPath().AppendChild(MATERIALS), mesh, result, origin, folder)
     for file, of_file in zip(files, grids):
         name = os.path.basename(file).removesuffix(".vdb").split(".")[-1]
         _write_volume(pxr, stage, _free(pxr, root, name, names), file, of_file, folder)
-    _save(pxr, stage, target)
+    save_stage(pxr, stage, target)
+
+
+def begin_stage(pxr: Any, stage: Any, origin: Origin, up_axis: str, meters_per_unit: float) -> Any:
+    """Says what a stage says of itself. Returns the prim that holds everything."""
+    pxr.UsdGeom.SetStageUpAxis(stage, up_axis)
+    pxr.UsdGeom.SetStageMetersPerUnit(stage, meters_per_unit)
+    stage.GetRootLayer().comment = f"isoshell {VERSION}"
+    root = pxr.UsdGeom.Xform.Define(stage, f"/{pxr.Tf.MakeValidIdentifier(origin.root)}")
+    stage.SetDefaultPrim(root.GetPrim())
+    return root
 
 
 def _free(pxr: Any, root: Any, name: str, names: set[str]) -> Any:
@@ -102,24 +111,31 @@ def _free(pxr: Any, root: Any, name: str, names: set[str]) -> Any:
     return root.GetPath().AppendChild(free)
 
 
-def _write_mesh(pxr: Any, stage: Any, path: Any, result: Result) -> Any:
+def define_mesh(pxr: Any, stage: Any, path: Any, result: Result) -> Any:
+    """A mesh without a shape yet, at a place where single precision has room for that of the result."""
     import numpy as np
 
     mesh = pxr.UsdGeom.Mesh.Define(stage, path)
-    points = result.vertices
-    offset = _offset_of(points)
+    offset = offset_of(result.vertices)
     if np.any(offset):
         mesh.AddTranslateOp(pxr.UsdGeom.XformOp.PrecisionDouble).Set(pxr.Gf.Vec3d(*map(float, offset)))
-    stored = pxr.Vt.Vec3fArray.FromNumpy((points - offset).astype(np.float32))
-    mesh.CreatePointsAttr(stored)
-    mesh.CreateFaceVertexCountsAttr(pxr.Vt.IntArray.FromNumpy(np.full(len(result.faces), 3, np.int32)))
-    mesh.CreateFaceVertexIndicesAttr(pxr.Vt.IntArray.FromNumpy(np.ascontiguousarray(result.faces.reshape(-1))))
     mesh.CreateSubdivisionSchemeAttr(pxr.UsdGeom.Tokens.none)
-    mesh.CreateExtentAttr(pxr.UsdGeom.PointBased.ComputeExtent(stored))
     return mesh
 
 
-def _offset_of(points: Array) -> Array:
+def write_shape(pxr: Any, mesh: Any, result: Result, offset: Array, time: Any) -> None:
+    """Points, faces and extent at a time; `offset` is where the mesh stands."""
+    import numpy as np
+
+    stored = pxr.Vt.Vec3fArray.FromNumpy((result.vertices - offset).astype(np.float32))
+    mesh.CreatePointsAttr().Set(stored, time)
+    mesh.CreateFaceVertexCountsAttr().Set(pxr.Vt.IntArray.FromNumpy(np.full(len(result.faces), 3, np.int32)), time)
+    mesh.CreateFaceVertexIndicesAttr().Set(
+        pxr.Vt.IntArray.FromNumpy(np.ascontiguousarray(result.faces.reshape(-1))), time)
+    mesh.CreateExtentAttr().Set(pxr.UsdGeom.PointBased.ComputeExtent(stored), time)
+
+
+def offset_of(points: Array) -> Array:
     """What to take from the points, so that single precision has room for their shape; 0 near the origin."""
     import numpy as np
 
@@ -195,25 +211,31 @@ def _extent_of(boxes: list[Box]) -> Array:
     return np.array([np.where(ends[0] > low, down, ends[0]), np.where(ends[1] < high, up, ends[1])], np.float32)
 
 
-def _save(pxr: Any, stage: Any, target: str) -> None:
+def save_stage(pxr: Any, stage: Any, target: str) -> None:
     """Under another name first, so that nothing half-written is left."""
     folder = os.path.dirname(os.path.abspath(target))
     package = target.lower().endswith(".usdz")
+    with writing(pxr, target), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=folder) as work:
+        name, ending = os.path.splitext(os.path.basename(target))
+        made = os.path.join(work, name + (".usdc" if package else ending.lower()))
+        if package:
+            for attribute in (a for prim in stage.Traverse() for a in prim.GetAttributes()):
+                _up_a_folder(pxr, attribute)
+        if not stage.GetRootLayer().Export(made):
+            raise _unwritable(target, "USD could not write it")
+        if package:
+            packed = os.path.join(work, "packed.usdz")
+            if not pxr.UsdUtils.CreateNewUsdzPackage(pxr.Sdf.AssetPath(made), packed):
+                raise _unwritable(target, "USD could not pack it")
+            made = packed
+        os.replace(made, target)
+
+
+@contextlib.contextmanager
+def writing(pxr: Any, target: str) -> Iterator[None]:
+    """What fails meanwhile is an Error of code UNWRITABLE_OUTPUT."""
     try:
-        with tempfile.TemporaryDirectory(prefix=".isoshell-", dir=folder) as work:
-            name, ending = os.path.splitext(os.path.basename(target))
-            made = os.path.join(work, name + (".usdc" if package else ending.lower()))
-            if package:
-                for attribute in (a for prim in stage.Traverse() for a in prim.GetAttributes()):
-                    _up_a_folder(pxr, attribute)
-            if not stage.GetRootLayer().Export(made):
-                raise _unwritable(target, "USD could not write it")
-            if package:
-                packed = os.path.join(work, "packed.usdz")
-                if not pxr.UsdUtils.CreateNewUsdzPackage(pxr.Sdf.AssetPath(made), packed):
-                    raise _unwritable(target, "USD could not pack it")
-                made = packed
-            os.replace(made, target)
+        yield
     except OSError as error:
         raise _unwritable(target, os.strerror(error.errno or 0)) from error
     except pxr.Tf.ErrorException as error:

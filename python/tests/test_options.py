@@ -68,7 +68,7 @@ def test_an_unknown_keyword_is_refused_with_the_nearest(mistyped, meant):
     ({"stop_after": "shell", "output": "out.ply"}, ["stop_after"]),
     ({"method": "shell", "adaptivity": 0.5}, ["adaptivity"]),
     ({"dry_run": True}, ["dry_run", "isoshell.estimate"]),
-    ({"frames": "1-9"}, ["frames", "by the command"]),
+    ({"frames": "1-9"}, ["frames", "remesh_sequence"]),
     ({"help": True}, ["help(isoshell.Options)"]),
 ])
 def test_a_value_that_cannot_be_is_refused_by_the_name_of_its_keyword(options, words):
