@@ -27,6 +27,14 @@ def of_a_stage(path: str) -> float:
     return result.origin.meters_per_unit if result.origin else 1.0
 
 
+def of_a_sequence(array: "np.ndarray[Any, Any]") -> int:
+    with isoshell.remesh_sequence([(array, array), "a.ply"], frames=range(1, 3), keep_going=True, vertices=9) as frames:
+        for result in frames:
+            print(result.frame, result.attributes["born"])
+    files = isoshell.remesh_sequence("in.####.vdb", frames="1-9", output=Path("out.####.ply"), velocity="v")
+    return len(frames.errors) + len(next(files).vertices)
+
+
 def code_of_failure(path: str) -> int:
     try:
         isoshell.remesh(path, output="out.ply", force=True).save("other.obj", overwrite=True)
