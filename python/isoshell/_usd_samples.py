@@ -76,7 +76,8 @@ class SampledStage:
         pxr = self._pxr
         folder = os.path.dirname(os.path.abspath(self._target))
         self._folder = tempfile.mkdtemp(prefix=".isoshell-", dir=folder)
-        self._stage = stage = pxr.Usd.Stage.CreateNew(os.path.join(self._folder, "samples.usdc"))
+        name = os.path.splitext(os.path.basename(self._target))[0]
+        self._stage = stage = pxr.Usd.Stage.CreateNew(os.path.join(self._folder, f"{name}.usdc"))
         stage.SetStartTimeCode(result.frame)
         stage.SetTimeCodesPerSecond(origin.time_codes_per_second)
         stage.SetFramesPerSecond(origin.time_codes_per_second)

@@ -212,7 +212,8 @@ def _extent_of(boxes: list[Box]) -> Array:
 
 
 def save_stage(pxr: Any, stage: Any, target: str) -> None:
-    """Under another name first, so that nothing half-written is left."""
+    """Under another name first, so that nothing half-written is left. A stage that lies in a binary file gives it away
+    where the target is one, too."""
     folder = os.path.dirname(os.path.abspath(target))
     package = target.lower().endswith(".usdz")
     with writing(pxr, target), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=folder) as work:
@@ -221,7 +222,11 @@ def save_stage(pxr: Any, stage: Any, target: str) -> None:
         if package:
             for attribute in (a for prim in stage.Traverse() for a in prim.GetAttributes()):
                 _up_a_folder(pxr, attribute)
-        if not stage.GetRootLayer().Export(made):
+        layer = stage.GetRootLayer()
+        if layer.realPath and not made.endswith(".usda"):
+            layer.Save()
+            made = layer.realPath
+        elif not layer.Export(made):
             raise _unwritable(target, "USD could not write it")
         if package:
             packed = os.path.join(work, "packed.usdz")
