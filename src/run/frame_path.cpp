@@ -8,6 +8,8 @@
 namespace isoshell {
 namespace {
 
+constexpr int64_t kMostFrames = 10'000'000;
+
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "frames", message); }
 
 std::string padded(int64_t number, size_t digits) {
@@ -28,6 +30,10 @@ FrameRange parse_frames(const std::string& text) {
   if (part[5].matched) frames.step = std::stoll(part[5]);
   if (frames.last < frames.first) refuse("--frames is '" + text + "'; the last frame comes before the first");
   if (frames.step < 1) refuse("--frames is '" + text + "'; the step must be 1 or more");
+  const int64_t count = (frames.last - frames.first) / frames.step + 1;
+  if (count > kMostFrames)
+    refuse("--frames is '" + text + "', which are " + std::to_string(count) + " frames; at most " +
+           std::to_string(kMostFrames) + " go into one sequence");
   return frames;
 }
 

@@ -17,7 +17,7 @@ struct FrameRange {
   int64_t first = 0, last = 0, step = 1;
 };
 
-/// From "1-240", "1-240x2" or "7". Throws: usage.
+/// From "1-240", "1-240x2" or "7", at most ten million. Throws: usage.
 FrameRange parse_frames(const std::string& text);
 
 /// The path of a frame: "cache.####.obj" and "cache.%04d.obj" are cache.0007.obj in frame 7; longer numbers take more
