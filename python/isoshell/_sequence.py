@@ -157,6 +157,7 @@ class _Sequence:
                 if self._stage is not None:
                     self._stage.add(result)
                 yield result
+                del source, result  # not to be kept while the next is made
             if self._stage is not None:
                 self._stage.finish()
         finally:
