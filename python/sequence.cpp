@@ -30,7 +30,7 @@ ReadVelocity velocity_reader(const Source& source, const std::string& grid) {
     return [grid](const RunRequest& request, const Context& context) {
       return read_velocity(request.input.path, grid, context.memory_limit_bytes);
     };
-  return [field = source.velocity](const RunRequest&, const Context&) { return field; };
+  return [field = source.velocity](const RunRequest&, const Context&) { return field ? field() : nullptr; };
 }
 
 /// The chain is shared with the thread that works on it.

@@ -124,7 +124,20 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
 void set_velocities(Source& source, const AnyArray& vectors, const Triple& spacing, const Triple& origin) {
   const float* first = floats_of("velocities", vectors, 4);
   const auto part = [&](int64_t axis) { return lattice(first + axis * vectors.stride(3), vectors, spacing, origin); };
-  source.velocity = velocity_of({part(0), part(1), part(2)}, "velocities");
+  source.velocity = [parts = std::array<DenseVolume, 3>{part(0), part(1), part(2)}] {
+    return velocity_of(parts, "velocities");
+  };
+  source.kept = nb::make_tuple(source.kept, vectors);
+}
+
+void set_velocities_of_vertices(Source& source, const AnyArray& velocities, const AnyArray& vertices,
+                                const AnyArray& faces) {
+  TriangleSoup soup;
+  soup.vertices = points_of("vertices", vertices);
+  soup.triangles = triangles_of("faces", faces, soup.vertices.size());
+  source.velocity = [soup = std::move(soup), given = points_of("velocities", velocities)] {
+    return velocity_on(soup, given);
+  };
 }
 
 void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, const Triple& origin) {
@@ -155,6 +168,10 @@ void bind_source(nb::module_& m) {
       .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
                   nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
                           "float, float]) -> Source"))
+      .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),
+           nb::arg("faces"),
+           nb::sig("def set_velocities_of_vertices(self, velocities: typing.Any, vertices: typing.Any, faces: "
+                   "typing.Any) -> None"))
       .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
            nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
                    "tuple[float, float, float]) -> None"))

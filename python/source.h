@@ -20,7 +20,8 @@ struct Source {
   ReadMemory read;                            ///< of memory: once, on the thread of the run; empty: of a file
   nanobind::object kept;                      ///< whose memory is borrowed meanwhile
   std::shared_ptr<const SizingField> sizing;  ///< edge lengths that were given as an array; null: none were
-  std::shared_ptr<const VelocityField> velocity = nullptr;  ///< of a frame; null: none was given as an array
+  /// Where the surface goes until the next frame, once that has been read; empty: no array says it.
+  std::function<std::shared_ptr<const VelocityField>()> velocity = {};
 
   bool is_file() const { return !read; }
 };

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,11 @@ class VelocityField {
   /// In world units a frame; not numbers where the field says nothing.
   virtual std::vector<WorldPoint> velocities_at(const std::vector<WorldPoint>& points) const = 0;
 };
+
+/// The velocity of the nearest place of a surface, from those of its vertices. A triangle with one that is not a number
+/// says nothing. Throws: usage without triangles, or for another number of velocities than of vertices;
+/// unreadable_input for an infinite one.
+std::shared_ptr<const VelocityField> velocity_on(TriangleSoup surface, std::vector<WorldPoint> velocities);
 
 /// Where points are a frame later: by the velocity at the middle of their way, or, where fields in a narrow band say
 /// nothing there, by that where they are; where it says nothing there either, they stay.

@@ -52,7 +52,7 @@ def remesh_sequence(source: Union[Path, Iterable[SourceLike]], *, frames: Option
         output: also write the frames there: a name with #### or %04d; or a stage of USD without, which holds all of
             them as time samples and is there after the last.
         velocity: the grid of .vdb files that has the velocities, world units a frame, along which vertices go to the
-            next frame. An isoshell.Volume has them by itself.
+            next frame. An isoshell.Volume or Mesh has them by itself, and a stage of USD as `velocities`.
         no_coherence: begin every frame anew.
         keep_going: go on after a frame that cannot be read or meshed, or misses a requirement: see Frames.errors.
         resume: leave out the frames whose output is there, and go on after them, to the same bytes; in PLY.
@@ -223,7 +223,8 @@ class _Sequence:
                         "isoshell.remesh", stage="frames")
         if not frames:
             self._checked_numbers("", "1")
-        return ((t, lambda t=t: scene.mesh_at(t)) for t in times)  # type: ignore[misc]
+        return ((t, lambda t=t, until=until: scene.mesh_at(t, until))  # type: ignore[misc]
+                for t, until in zip(times, [*times[1:], None]))
 
     def _frames_of_iterable(self, source: Any, frames: Optional[str]) -> Iterator[Frame]:
         try:

@@ -51,6 +51,8 @@ class Mesh:
         of_faces: by name (M,) numbers, and "color" (M, 3) or (M, 4).
         of_corners: "uv" (M, 3, 2), further sets of them "uv1", "uv2", and "normal" (M, 3, 3).
         labels: by name the names that an attribute's values are the numbers of, -1 being none: "material", for one.
+        velocities: (K, 3) world units a frame, used as float32: where the vertices go until the next frame of
+            remesh_sequence(), which uses them where that has other faces; NaN where nothing is known.
 
     Attributes:
         name: what messages call it.
@@ -59,13 +61,14 @@ class Mesh:
 
     def __init__(self, vertices: Any, faces: Any, *, of_vertices: Optional[Mapping[str, Any]] = None,
                  of_faces: Optional[Mapping[str, Any]] = None, of_corners: Optional[Mapping[str, Any]] = None,
-                 labels: Optional[Mapping[str, Sequence[str]]] = None) -> None:
+                 labels: Optional[Mapping[str, Sequence[str]]] = None, velocities: Any = None) -> None:
         self.vertices = vertices
         self.faces = faces
         self.of_vertices = dict(of_vertices or {})
         self.of_faces = dict(of_faces or {})
         self.of_corners = dict(of_corners or {})
         self.labels = dict(labels or {})
+        self.velocities = velocities
         self.name = "mesh"
         self.origin: Optional[Origin] = None
 
@@ -96,7 +99,7 @@ class Volume:
         spacing: world units from a value to the next, one number or one an axis.
         origin: where values[0, 0, 0] stands, world units.
         velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
-            remesh_sequence(); NaN where nothing is known. They are copied.
+            remesh_sequence(); NaN where nothing is known.
     """
 
     def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None) -> None:
@@ -130,20 +133,23 @@ def frame_source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
     """The same for a frame of a sequence, with the velocities that are in memory."""
     source = source_of(given, sizing)
     if isinstance(given, Volume) and given.velocities is not None:
-        _set_velocities(source, given)
+        vectors = _vectors_of(given.velocities, array_of("volume", given.values).shape)
+        source.set_velocities(vectors, _triple("spacing", given.spacing), _triple("origin", given.origin))
+    elif isinstance(given, Mesh) and given.velocities is not None:
+        vertices = array_of("vertices", given.vertices)
+        source.set_velocities_of_vertices(_vectors_of(given.velocities, vertices.shape[:1]), vertices,
+                                          array_of("faces", given.faces))
     return source
 
 
-def _set_velocities(source: Source, volume: Volume) -> None:
+def _vectors_of(velocities: Any, of_shape: Tuple[int, ...]) -> np.ndarray[Any, Any]:
     import numpy as np
 
-    shape = array_of("volume", volume.values).shape
-    vectors = array_of("velocities", volume.velocities)
-    if vectors.shape != (*shape, 3):
-        raise Error(f"velocities must have the shape {(*shape, 3)}, three numbers for each of the volume's, and has "
+    vectors = array_of("velocities", velocities)
+    if vectors.shape != (*of_shape, 3):
+        raise Error(f"velocities must have the shape {(*of_shape, 3)}, three numbers for each place, and has "
                     f"{vectors.shape}")
-    source.set_velocities(vectors.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
-                          _triple("origin", volume.origin))
+    return vectors.astype(np.float32, copy=False)
 
 
 def _source_of(given: Any) -> Source:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 from . import _isoshell
 from ._errors import Error
@@ -35,6 +35,7 @@ class Triangles:
     corner_of: Array  # (M, 3): the place in faceVertexIndices
     face_count: int
     corner_count: int
+    velocities: Optional[Array] = None  # (K, 3), world units a second
     columns: dict[str, Column] = field(default_factory=dict)
 
 
@@ -63,7 +64,9 @@ def triangles_of(pxr: Any, prim: Any, matrix: Any, time: Any) -> Triangles:
     is_left_handed = mesh.GetOrientationAttr().Get(time) == pxr.UsdGeom.Tokens.leftHanded
     if is_left_handed != (determinant(rows) < 0):
         corner_of = corner_of[:, [0, 2, 1]]
-    return Triangles(path, points, corners[corner_of], face_of, corner_of, len(sizes), len(corners))
+    velocities = values_of(mesh.GetVelocitiesAttr(), time, "f", 3)
+    return Triangles(path, points, corners[corner_of], face_of, corner_of, len(sizes), len(corners),
+                     turned(velocities.astype(np.float64), rows) if len(velocities) == len(points) else None)
 
 
 def rows_of(path: str, matrix: Any) -> Array:
@@ -77,11 +80,18 @@ def rows_of(path: str, matrix: Any) -> Array:
 
 
 def placed(points: Array, rows: Array) -> Array:
-    """Points in the world. Sums are written out, so that they are the same on every machine."""
+    """Points in the world."""
     import numpy as np
 
-    x, y, z = points[:, 0:1], points[:, 1:2], points[:, 2:3]
-    return np.asarray(x * rows[0] + y * rows[1] + z * rows[2] + rows[3])
+    return np.asarray(turned(points, rows) + rows[3])
+
+
+def turned(vectors: Array, rows: Array) -> Array:
+    """Vectors in the world. Sums are written out, so that they are the same on every machine."""
+    import numpy as np
+
+    x, y, z = vectors[:, 0:1], vectors[:, 1:2], vectors[:, 2:3]
+    return np.asarray(x * rows[0] + y * rows[1] + z * rows[2])
 
 
 def turned_normals(normals: Array, rows: Array) -> Array:

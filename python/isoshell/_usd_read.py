@@ -37,18 +37,21 @@ class Scene:
             times = sampled_times(self._pxr, self._root)
         return [int(time) if time == int(time) else time for time in times]
 
-    def mesh_at(self, time: Optional[float]) -> Mesh:
-        """The meshes at a time code; at that which the stage starts with where it is None.
+    def mesh_at(self, time: Optional[float], until: Optional[float] = None) -> Mesh:
+        """The meshes at a time code; at that which the stage starts with where it is None. With velocities, where they
+        have some, until another.
 
         Raises:
             Error: as isoshell.usd.read does.
         """
         with reading(self._pxr, self._file):
-            made = self._mesh_at(time_of(self._pxr, self._stage, time))
+            made, meshes = self._mesh_at(time_of(self._pxr, self._stage, time))
+            if time is not None and until is not None:
+                made.velocities = _velocities_of(meshes, (until - time) / self._stage.GetTimeCodesPerSecond())
         made.name = self._name
         return made
 
-    def _mesh_at(self, code: Any) -> Mesh:
+    def _mesh_at(self, code: Any) -> tuple[Mesh, list[Triangles]]:
         import numpy as np
 
         pxr, file = self._pxr, self._file
@@ -77,7 +80,7 @@ class Scene:
             if labels:
                 made.labels[name] = labels
         made.origin = origin
-        return made
+        return made, meshes
 
     def _warn_of_skins(self, meshes: list[Any]) -> None:
         """Once, however many times are read."""
@@ -100,6 +103,16 @@ class Scene:
 
 def _flat(values: Any) -> Any:
     return values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+
+
+def _velocities_of(meshes: list[Triangles], seconds: float) -> Any:
+    """Over so long a time; NaN of meshes that have none, and None where no mesh has."""
+    import numpy as np
+
+    if all(mesh.velocities is None for mesh in meshes):
+        return None
+    parts = [np.full((len(mesh.points), 3), np.nan) if mesh.velocities is None else mesh.velocities for mesh in meshes]
+    return np.concatenate(parts) * seconds
 
 
 def _joined_faces(meshes: list[Triangles]) -> Any:

@@ -111,17 +111,42 @@ def spinning(angle, with_velocities):
     return isoshell.Volume(values, spacing, -(n - 1) / 2 * spacing, velocities)
 
 
+def spin_between(first, second):
+    """By how much most vertices turn about z."""
+    a, b = first.vertices, second.vertices
+    kept = (second.attributes["born"] == 0) & (np.hypot(a[:, 0], a[:, 1]) > 0.6)
+    turn = np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])
+    return np.median(np.angle(np.exp(1j * turn))[kept])
+
+
 def test_vertices_of_volumes_go_along_their_velocities():
     def spin_of(with_velocities):
         sources = [spinning(0.1 * frame, with_velocities) for frame in range(2)]
-        first, second = isoshell.remesh_sequence(sources, iso=0, **SMALL)
-        a, b = first.vertices, second.vertices
-        kept = (second.attributes["born"] == 0) & (np.hypot(a[:, 0], a[:, 1]) > 0.6)
-        turn = np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])
-        return np.median(np.angle(np.exp(1j * turn))[kept])
+        return spin_between(*isoshell.remesh_sequence(sources, iso=0, **SMALL))
 
     assert abs(spin_of(True) - 0.1) < 0.01
     assert abs(spin_of(False)) < 0.05
+
+
+def test_vertices_of_meshes_with_other_faces_go_along_their_velocities():
+    def spin_of(with_velocities):
+        sources = []
+        for frame in range(2):
+            vertices, faces = make_ball(16 + 2 * frame)
+            velocities = np.cross([0, 0, 0.1], vertices) if with_velocities else None
+            sources.append(isoshell.Mesh(vertices, faces, velocities=velocities))
+        first, second = isoshell.remesh_sequence(sources, **SMALL)
+        return spin_between(first, second)
+
+    assert abs(spin_of(True) - 0.1) < 0.01
+    assert abs(spin_of(False)) < 0.01
+    vertices, faces = make_ball()
+    broken = isoshell.Mesh(vertices * [1, 1, np.nan], faces, velocities=np.zeros_like(vertices))
+    with pytest.raises(isoshell.Error, match="frame 1: .*must be finite"):
+        next(isoshell.remesh_sequence([broken], **SMALL))
+    wrong = isoshell.Mesh(vertices, faces, velocities=np.zeros((7, 3)))
+    with pytest.raises(isoshell.Error, match=r"frame 1: velocities must have the shape \(266, 3\)"):
+        next(isoshell.remesh_sequence([wrong], **SMALL))
 
 
 def test_velocities_that_fit_no_volume_are_refused_by_their_frame():

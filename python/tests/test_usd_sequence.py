@@ -12,7 +12,7 @@ from isoshell import ErrorCode
 
 pytest.importorskip("pxr", reason="needs usd-core: pip install usd-core")
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt  # noqa: E402
-from test_sequence import MOTION, twisted  # noqa: E402
+from test_sequence import MOTION, spin_between, twisted  # noqa: E402
 from test_usd import add_materials, add_mesh, complaints, new_stage, primvar, skinned, written  # noqa: E402
 
 SMALL = {"vertices": 200, "features": "off"}
@@ -79,6 +79,25 @@ def test_transforms_and_visibility_and_topology_have_samples_too(tmp_path):
     assert made[3].report["input"]["faces"] == len(make_ball(14)[1])
     with pytest.raises(isoshell.Error, match="frame 2.5: the time code 2.5 is no number"):
         list(isoshell.remesh_sequence(tmp_path / "in.usda", output=tmp_path / "out.#.ply", **SMALL))
+
+
+def test_velocities_of_a_stage_take_vertices_along_where_faces_change(tmp_path):
+    def made(with_velocities):
+        stage = new_stage(tmp_path / f"in{with_velocities}.usda")
+        UsdGeom.Xformable(stage.GetPrimAtPath("/World")).AddRotateZOp().Set(90)
+        mesh = add_mesh(stage, "/World/Shape", *make_ball(16))
+        for time in (0, 2):
+            vertices, faces = make_ball(16 + time)
+            mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(vertices.astype(np.float32)), time)
+            mesh.GetFaceVertexCountsAttr().Set([3] * len(faces), time)
+            mesh.GetFaceVertexIndicesAttr().Set(Vt.IntArray.FromNumpy(faces.astype(np.int32).reshape(-1)), time)
+            if with_velocities:
+                spin = np.cross([0, 0, 0.1 * 24 / 2], vertices).astype(np.float32)  # .1 in two time codes
+                mesh.GetVelocitiesAttr().Set(Vt.Vec3fArray.FromNumpy(spin), time)
+        return spin_between(*isoshell.remesh_sequence(written(stage), **SMALL))
+
+    assert abs(made(True) - 0.1) < 0.01
+    assert abs(made(False)) < 0.01
 
 
 def test_a_stage_without_samples_and_what_is_no_frame_of_it_are_refused(moving, tmp_path):

@@ -1,7 +1,9 @@
 // Names of frames, where vertices go from frame to frame, and how steady they are.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
 #include "isoshell/run/sequence.h"
@@ -58,6 +60,23 @@ TEST_CASE("frames: ranges are read whole, and refused with what they may be", "[
   for (const char* text :
        {"", "a", "5-", "-5", "9-5", "1-5x0", "1-5x", "1 - 5", "1-5y2", "1-10000001", "99999999999999999999"})
     CHECK_THROWS_AS(parse_frames(text), Error);
+}
+
+TEST_CASE("frames: a surface whose vertices have velocities takes points along", "[frames]") {
+  const TriangleSoup ball = shapes::sphere({1, 2, 3}, 5, 24);
+  const auto spin = [](WorldPoint p) { return WorldPoint{-0.1 * (p.y - 2), 0.1 * (p.x - 1), 0.02}; };
+  std::vector<WorldPoint> velocities;
+  for (const WorldPoint& p : ball.vertices) velocities.push_back(spin(p));
+  const std::vector<WorldPoint> found = velocity_on(ball, velocities)->velocities_at(ball.vertices);
+  for (size_t v = 0; v < found.size(); ++v) CHECK(std::sqrt(distance_sq(found[v], velocities[v])) < 1e-12);
+  const WorldPoint off{1 + 3.3, 2, 3 + 3.3}, there = velocity_on(ball, velocities)->velocities_at({off})[0];
+  CHECK(std::sqrt(distance_sq(there, spin({1 + 5 / std::sqrt(2), 2, 3}))) < 0.02);
+  velocities[0].y = std::numeric_limits<double>::quiet_NaN();
+  CHECK(carry_with_velocity({ball.vertices[0]}, *velocity_on(ball, velocities))[0].z == ball.vertices[0].z);
+  velocities[0].y = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_AS(velocity_on(ball, velocities), Error);
+  velocities.pop_back();
+  CHECK_THROWS_AS(velocity_on(ball, velocities), Error);
 }
 
 TEST_CASE("frames: points go along with the triangles under them", "[frames]") {
