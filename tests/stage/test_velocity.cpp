@@ -119,6 +119,6 @@ TEST_CASE("velocity: what is no field of vectors is refused with what there is",
   const TemporaryFile file = written({broken, distance});
   CHECK(contains(refusal(file.path, "v"), "no grid \"v\""));
   CHECK(contains(refusal(file.path, "v"), "\"surface\" (Tree_float_5_4_3)"));
-  CHECK(contains(refusal(file.path, "surface"), "no grid \"surface\" of three floats"));
+  CHECK(contains(refusal(file.path, "surface"), "has type Tree_float_5_4_3; velocities are a Vec3SGrid"));
   CHECK(contains(refusal(file.path, "broken"), "voxel [1, 2, 3]"));
 }

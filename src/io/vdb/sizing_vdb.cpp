@@ -5,22 +5,20 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <filesystem>
-#include <limits>
 #include <sstream>
 
 #include "io/vdb/dense_lattice.h"
-#include "io/vdb/grid_names.h"
+#include "io/vdb/field_grid.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_grids.h"
-#include "io/vdb/vdb_layout.h"
 #include "io/vdb/vdb_stream.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
 
-constexpr char kFloatType[] = "Tree_float_5_4_3";
+constexpr FieldKind kEdgeLengths{"Tree_float_5_4_3", "floats", "a sizing field is a FloatGrid of edge lengths",
+                                 "the field"};
 
 struct Source {
   std::string path, grid;  ///< grid empty: the only float grid
@@ -31,56 +29,6 @@ Source parse_source(const std::string& text) {
   const size_t at = text.rfind(".vdb:");
   if (at == std::string::npos) return {text, ""};
   return {text.substr(0, at + 4), text.substr(at + 5)};
-}
-
-bool holds_floats(const VdbGridSpan& span) {
-  return span.type == kFloatType || span.type == std::string(kFloatType) + "_HalfFloat";
-}
-
-std::string list_of(const std::vector<VdbGridSpan>& grids) {
-  std::string text;
-  for (const VdbGridSpan& span : grids) text += (text.empty() ? "\"" : ", \"") + span.name + "\" (" + span.type + ")";
-  return text.empty() ? "none" : text;
-}
-
-const VdbGridSpan& choose_grid(const Source& source, const std::vector<VdbGridSpan>& grids) {
-  const VdbGridSpan* found = nullptr;
-  int floats = 0;
-  for (const VdbGridSpan& span : grids) {
-    if (source.grid.empty() ? !holds_floats(span) : span.name != source.grid) continue;
-    if (!found) found = &span;
-    ++floats;
-  }
-  if (!found)
-    throw_unreadable_vdb(source.path,
-                         (source.grid.empty() ? std::string("no grid of floats") : "no grid \"" + source.grid + "\"") +
-                             "; a sizing field is a FloatGrid of edge lengths. Its grids are: " + list_of(grids));
-  if (!holds_floats(*found) || found->instance)
-    throw_unreadable_vdb(source.path, "grid \"" + found->name + "\" has type " + found->type +
-                                          "; a sizing field is a FloatGrid of its own, of edge lengths");
-  if (source.grid.empty() && floats > 1)
-    throw_unreadable_vdb(
-        source.path, "there are several grids of floats; say which by FILE.vdb:NAME. Its grids are: " + list_of(grids));
-  return *found;
-}
-
-VdbFloatGrid::ConstPtr load(const Source& source, int64_t max_bytes) {
-  std::error_code failed;
-  const auto size = std::filesystem::file_size(source.path, failed);
-  if (!failed && max_bytes > 0 && size > uint64_t(max_bytes))
-    throw Error(ErrorCode::out_of_memory, "read",
-                source.path + ": has " + std::to_string(size >> 20) + " MiB, more than the limit of " +
-                    std::to_string(max_bytes >> 20) + " MiB; coarsen the field or raise --max-memory");
-  try {
-    initialize_openvdb();
-    const Buffer<char> bytes = read_file_start(source.path, std::numeric_limits<int64_t>::max());
-    const VdbLayout layout = read_vdb_layout(source.path, bytes.view());
-    const std::vector<VdbGridSpan> grids = with_names_apart(layout.grids);
-    return std::static_pointer_cast<const VdbFloatGrid>(
-        read_vdb_grid(source.path, bytes.view(), choose_grid(source, grids)));
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::out_of_memory, "read", source.path + ": out of memory; coarsen the field");
-  }
 }
 
 bool is_length(double value) { return value > 0 && std::isfinite(value); }
@@ -134,22 +82,13 @@ class VdbSizing final : public SizingField {
   /// The mean of the eight voxels around the point, by nearness; those that say nothing do not count.
   template <class Reader>
   double length_at(Reader& reader, WorldPoint p) const {
-    const openvdb::Vec3d at = grid_->worldToIndex({p.x, p.y, p.z});
-    const openvdb::Coord low = openvdb::Coord::floor(at);
     double sum = 0, weights = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const openvdb::Coord c = low.offsetBy(corner >> 2, corner >> 1 & 1, corner & 1);
-      float value = 0;
-      const double length = reader.probeValue(c, value) ? double(value) : background_;
-      double weight = 1;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double t = at[axis] - low[axis];
-        weight *= c[axis] > low[axis] ? t : 1 - t;
-      }
-      if (!(length > 0)) continue;
+    for_each_voxel_around(*grid_, reader, {p.x, p.y, p.z}, [&](double weight, bool is_active, float value) {
+      const double length = is_active ? double(value) : background_;
+      if (!(length > 0)) return;
       sum += weight * length;
       weights += weight;
-    }
+    });
     return weights > 0 ? sum / weights : 0;
   }
 
@@ -162,9 +101,10 @@ class VdbSizing final : public SizingField {
 
 std::shared_ptr<const SizingField> read_sizing(const std::string& text, int64_t max_bytes) {
   const Source source = parse_source(text);
-  auto grid = load(source, max_bytes);
+  const auto grid =
+      std::static_pointer_cast<const VdbFloatGrid>(read_field_grid(source.path, source.grid, kEdgeLengths, max_bytes));
   check_values(source.path, *grid);
-  return std::make_shared<VdbSizing>(text, std::move(grid));
+  return std::make_shared<VdbSizing>(text, grid);
 }
 
 std::shared_ptr<const SizingField> sizing_of(const DenseVolume& lengths, const std::string& name) {

@@ -5,56 +5,23 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <sstream>
 
 #include "core/world_vector.h"
 #include "io/vdb/dense_lattice.h"
-#include "io/vdb/grid_names.h"
+#include "io/vdb/field_grid.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_grids.h"
-#include "io/vdb/vdb_layout.h"
 #include "io/vdb/vdb_stream.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
 
-constexpr char kVectorType[] = "Tree_vec3s_5_4_3";
-
-bool holds_vectors(const VdbGridSpan& span) {
-  return span.type == kVectorType || span.type == std::string(kVectorType) + "_HalfFloat";
-}
-
-const VdbGridSpan& grid_named(const std::string& path, const std::string& name, const std::vector<VdbGridSpan>& grids) {
-  std::string others;
-  for (const VdbGridSpan& span : grids) {
-    if (span.name == name && holds_vectors(span) && !span.instance) return span;
-    others += (others.empty() ? "\"" : ", \"") + span.name + "\" (" + span.type + ")";
-  }
-  throw_unreadable_vdb(
-      path, "no grid \"" + name + "\" of three floats a voxel; its grids are: " + (others.empty() ? "none" : others));
-}
-
-VdbVec3fGrid::ConstPtr load(const std::string& path, const std::string& name, int64_t max_bytes) {
-  std::error_code failed;
-  const auto size = std::filesystem::file_size(path, failed);
-  if (!failed && max_bytes > 0 && size > uint64_t(max_bytes))
-    throw Error(ErrorCode::out_of_memory, "read",
-                path + ": has " + std::to_string(size >> 20) + " MiB, more than the limit of " +
-                    std::to_string(max_bytes >> 20) + " MiB; coarsen the velocities or raise --max-memory");
-  try {
-    initialize_openvdb();
-    const Buffer<char> bytes = read_file_start(path, std::numeric_limits<int64_t>::max());
-    const VdbLayout layout = read_vdb_layout(path, bytes.view());
-    const std::vector<VdbGridSpan> grids = with_names_apart(layout.grids);
-    return std::static_pointer_cast<const VdbVec3fGrid>(
-        read_vdb_grid(path, bytes.view(), grid_named(path, name, grids)));
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::out_of_memory, "read", path + ": out of memory; coarsen the velocities");
-  }
-}
+constexpr FieldKind kVelocities{"Tree_vec3s_5_4_3", "vectors",
+                                "velocities are a Vec3SGrid, of three floats a voxel in world units a frame",
+                                "the velocities"};
 
 VdbVec3fGrid::Ptr grid_of(const std::array<DenseVolume, 3>& components, const std::string& name) {
   const DenseVolume& lattice = components[0];
@@ -104,22 +71,13 @@ class VdbVelocity final : public VelocityField {
   /// The mean of the active voxels among the eight around the point, by nearness.
   template <class Reader>
   WorldPoint velocity_at(Reader& reader, WorldPoint p) const {
-    const openvdb::Vec3d at = grid_->worldToIndex({p.x, p.y, p.z});
-    const openvdb::Coord low = openvdb::Coord::floor(at);
     WorldPoint sum{0, 0, 0};
     double weights = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const openvdb::Coord c = low.offsetBy(corner >> 2, corner >> 1 & 1, corner & 1);
-      openvdb::Vec3f value;
-      if (!reader.probeValue(c, value)) continue;
-      double weight = 1;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double t = at[axis] - low[axis];
-        weight *= c[axis] > low[axis] ? t : 1 - t;
-      }
+    for_each_voxel_around(*grid_, reader, {p.x, p.y, p.z}, [&](double weight, bool is_active, openvdb::Vec3f value) {
+      if (!is_active) return;
       sum = sum + weight * WorldPoint{value.x(), value.y(), value.z()};
       weights += weight;
-    }
+    });
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
     return weights > 0 ? (1 / weights) * sum : WorldPoint{kNothing, kNothing, kNothing};
   }
@@ -131,9 +89,9 @@ class VdbVelocity final : public VelocityField {
 
 std::shared_ptr<const VelocityField> read_velocity(const std::string& path, const std::string& name,
                                                    int64_t max_bytes) {
-  auto grid = load(path, name, max_bytes);
+  const auto grid = std::static_pointer_cast<const VdbVec3fGrid>(read_field_grid(path, name, kVelocities, max_bytes));
   check_values(path, *grid);
-  return std::make_shared<VdbVelocity>(std::move(grid));
+  return std::make_shared<VdbVelocity>(grid);
 }
 
 std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>& components,
