@@ -31,7 +31,10 @@ constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no poi
 void check_exists(const std::string& path) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) refuse(path + ": no such file");
+  if (!std::filesystem::exists(status)) {
+    const bool is_pattern = path.find('#') != std::string::npos || path.find('%') != std::string::npos;
+    refuse(path + ": no such file" + (is_pattern ? "; which frames a pattern stands for is said by frames" : ""));
+  }
   if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
   if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once
 }

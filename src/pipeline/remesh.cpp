@@ -178,8 +178,13 @@ void begin_again_cold(const Prepared& p, RemeshOptions options, const OptimizeOp
   options.previous.reset();
   RemeshReport tried = report;
   SeededMesh again;
-  again.seeds = relax_seeds(p, options, false, tried, context);
-  mesh_on_sheet(p, options, optimize, again, tried, context);
+  try {
+    again.seeds = relax_seeds(p, options, false, tried, context);
+    mesh_on_sheet(p, options, optimize, again, tried, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage && error.code() != ErrorCode::out_of_memory) throw;
+    return;  // the mesh that there is stays
+  }
   const bool is_better =
       tried.dual.failed_cells < failed || (failed == 0 && tried.post_done && tried.post.self_intersections < crossing);
   if (!is_better) {
