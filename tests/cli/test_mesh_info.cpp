@@ -60,6 +60,38 @@ TEST_CASE("mesh info: a gate that is missed ends with 6", "[cli][mesh_info]") {
   CHECK(folder.run("t.off --require max-deviation=0.001").status == 2);
 }
 
+TEST_CASE("mesh info: the bytes of the table and of the JSON are the same for 1 and 4 threads", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write_off("mesh.off", shapes::together(shapes::torus(2, .7, 180, 90), shapes::sphere({2, 0, 0}, 1, 60)));
+  folder.write_off("reference.off", shapes::torus(2, .71, 120, 60));
+  for (const std::string form : {"", " --json"}) {
+    const std::string arguments = "mesh.off --ref reference.off --require max-deviation=.1" + form;
+    const auto one = folder.run(arguments + " --threads 1"), four = folder.run(arguments + " --threads 4");
+    CHECK(one.status == 6);
+    CHECK(four.status == 6);
+    CHECK(one.out.size() > 1000);
+    CHECK(one.out == four.out);
+    CHECK(one.err == four.err);
+  }
+}
+
+TEST_CASE("mesh info: a glTF mesh is measured where its nodes put it", "[cli][mesh_info]") {
+  cli::Folder folder;
+  const TriangleSoup box = shapes::box({0, 0, 0}, {1, 1, 1});
+  write_mesh(folder / "box.gltf", {box.vertices, box.triangles});
+  nlohmann::json scene = nlohmann::json::parse(folder.content("box.gltf"));
+  scene["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}}, {{"mesh", 0}, {"scale", {-2, 3, 4}}}};
+  scene["scenes"] = {{{"nodes", {0}}}};
+  folder.write("placed.gltf", scene.dump());
+  folder.write_off("expected.off", shapes::box({8, 0, 0}, {10, 3, 4}));
+  const auto info = info_of(folder, "placed.gltf --ref expected.off");
+  CHECK(info["topology"]["closed_manifold"] == true);
+  CHECK(info["topology"]["inverted_components"] == 0);
+  CHECK(info["topology"]["volume"].get<double>() == Approx(24));
+  CHECK(info["quality"]["area"].get<double>() == Approx(52));
+  CHECK(info["distance"]["hausdorff"].get<double>() == Approx(0).margin(1e-6));
+}
+
 TEST_CASE("mesh info: files that cannot be measured are refused", "[cli][mesh_info]") {
   cli::Folder folder;
   folder.write("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
