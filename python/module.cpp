@@ -4,6 +4,7 @@
 #include "context.h"
 #include "errors.h"
 #include "keywords.h"
+#include "mesh_info.h"
 #include "report.h"
 #include "result.h"
 #include "run.h"
@@ -25,4 +26,5 @@ NB_MODULE(_isoshell, m) {
   bind_sequence(m);
   bind_stages(m);
   bind_report(m);
+  bind_mesh_info(m);
 }

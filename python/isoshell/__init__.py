@@ -5,6 +5,7 @@
     result = isoshell.remesh((vertices, faces), vertices=20_000, features="auto")
     result.vertices, result.faces, result.report
     result.save("mesh.ply")
+    isoshell.mesh_info("mesh.ply", ref="scan.ply", require="closed,manifold")
 """
 
 import atexit as _atexit
@@ -15,6 +16,7 @@ from ._context import Context
 from ._errors import Error, RunWarning
 from ._isoshell import VERSION as __version__
 from ._isoshell import ErrorCode
+from ._mesh_info import mesh_info
 from ._options import Options
 from ._remesh import estimate, remesh
 from ._report import report
@@ -27,10 +29,10 @@ if _TYPE_CHECKING:
     from . import usd as usd
 
 __all__ = ["Context", "Error", "ErrorCode", "Frames", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages",
-           "Volume", "__version__", "estimate", "remesh", "remesh_sequence", "report"]
+           "Volume", "__version__", "estimate", "mesh_info", "remesh", "remesh_sequence", "report"]
 
 for _name in ("Context", "Error", "Frames", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate",
-              "remesh", "remesh_sequence", "report"):
+              "mesh_info", "remesh", "remesh_sequence", "report"):
     globals()[_name].__module__ = __name__
 
 

@@ -18,19 +18,22 @@ class Error(Exception):
     Attributes:
         code: what went wrong, an ErrorCode: the exit status that the command has then.
         stage: where, such as "arguments", "read" or "relax".
-        result: of code GATE_FAILED the mesh that does not meet its requirements, otherwise None.
+        result: of code GATE_FAILED the mesh that a run made and that does not meet its requirements, otherwise None.
+        info: of code GATE_FAILED what mesh_info() has measured of the mesh that does not, otherwise None.
     """
 
     code: ErrorCode
     stage: str
     result: Result | None
+    info: dict[str, Any] | None
 
     def __init__(self, message: str, code: ErrorCode = ErrorCode.USAGE, stage: str = "arguments",
-                 result: Result | None = None) -> None:
+                 result: Result | None = None, info: dict[str, Any] | None = None) -> None:
         super().__init__(message)
         self.code = code
         self.stage = stage
         self.result = result
+        self.info = info
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (str(self), self.code, self.stage)

@@ -43,3 +43,11 @@ def code_of_failure(path: str) -> int:
         stage: str = error.stage
         return int(code) if stage and code is not isoshell.ErrorCode.USAGE else len(str(error))
     return 0
+
+
+def of_a_certificate(path: str, vertices: "np.ndarray[Any, Any]", faces: "np.ndarray[Any, Any]") -> int:
+    try:
+        info: dict[str, Any] = isoshell.mesh_info((vertices, faces), ref=Path(path), require=["closed", "genus=0"])
+        return int(info["topology"]["edges"])
+    except isoshell.Error as error:
+        return len(error.info["missed_gates"]) if error.info else -1
