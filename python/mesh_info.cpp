@@ -31,9 +31,8 @@ nb::object kept_of(const Source& a, const Source& b) {
 }
 
 /// The certificate as JSON, and the gates that it misses.
-nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywords,
-                       const Source* reference, const Keywords& reference_keywords, nb::object progress,
-                       nb::object tell) {
+nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywords, const Source* reference,
+                       const Keywords& reference_keywords, nb::object progress, nb::object tell) {
   const Asked asked = asked_of(source, keywords, "", std::move(progress), std::move(tell));
   Source both = source;
   std::optional<RunRequest> of_reference;
@@ -41,21 +40,21 @@ nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywo
     of_reference = asked_of(*reference, reference_keywords, "", nb::none(), nb::none()).arguments.run;
     both.kept = kept_of(source, *reference);
   }
-  const MeshInfo info = watched(
-      place, both, asked,
-      [read = source.read, of_reference, read_reference = reference ? reference->read : Read()](
-          const RunRequest& request, Context& context) {
-        if (context.progress) context.progress("read", 0);
-        Input mesh = read_with(read, request, context);
-        std::optional<Input> other;
-        if (of_reference) {
-          RunRequest again = *of_reference;
-          again.tell = request.tell;
-          other = read_with(read_reference, again, context);
-        }
-        if (context.progress) context.progress("read", 1);
-        return mesh_info(std::move(mesh), std::move(other), request.gates, context);
-      });
+  const MeshInfo info =
+      watched(place, both, asked,
+              [read = source.read, of_reference, read_reference = reference ? reference->read : Read()](
+                  const RunRequest& request, Context& context) {
+                if (context.progress) context.progress("read", 0);
+                Input mesh = read_with(read, request, context);
+                std::optional<Input> other;
+                if (of_reference) {
+                  RunRequest again = *of_reference;
+                  again.tell = request.tell;
+                  other = read_with(read_reference, again, context);
+                }
+                if (context.progress) context.progress("read", 1);
+                return mesh_info(std::move(mesh), std::move(other), request.gates, context);
+              });
   return nb::make_tuple(mesh_info_json(info), info.missed_gates);
 }
 

@@ -1,6 +1,7 @@
 // How far a mesh is from another one, both ways.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "isoshell/backend.h"
@@ -13,6 +14,7 @@ namespace isoshell {
 struct OneSidedDistance {
   double mean = 0, rms = 0;  ///< of the area samples
   double max = 0;            ///< of the area samples and the vertices: a lower bound, the true one may lie between them
+  std::optional<double> at_most;  ///< of all points, where it was asked for: the true largest one is not above
 };
 /// Between the normals at area samples of one mesh and those of the other one there, in degrees; 0 to 90, since it does
 /// not matter which way triangles face.
@@ -36,13 +38,25 @@ struct MeshDistance {
 constexpr int64_t kDistanceSamples = 50000;   ///< of each mesh
 constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh that are looked at
 
-/// Result: each mesh has one sample in each of kDistanceSamples strata of equal area, along its triangles, and every
-/// n-th vertex, n the smallest that leaves at most kDistanceVertices; the distances are exact up to rounding, sums run
-/// in one fixed shape. Normals of a sample are compared with the nearest triangle; where they turn, with those that lie
-/// within a ten-thousandth of the diagonal beyond it, too: beside a crease either side of it may be the nearest. Cost:
-/// about 200,000 searches in grids of triangles; 50 bytes a triangle, at most 160. Throws: usage when a mesh has no
-/// triangle or names a vertex that it does not have.
-MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context);
+/// How closely it is looked at.
+struct DistanceOptions {
+  int64_t samples = kDistanceSamples;  ///< of each mesh
+  /// All triangles are searched for the largest distance, not samples alone: OneSidedDistance::at_most bounds what may
+  /// be missing, which is two thousandths unless surfaces run side by side over many triangles, much closer than edges
+  /// are long. Normals are compared with the best aligned of the triangles that are equally near, up to the rounding of
+  /// files in single precision, a ten-millionth of the diagonal.
+  bool exact = false;
+};
+
+/// Result: each mesh has one sample in each of its strata of equal area, along its triangles, and every n-th vertex, n
+/// the smallest that leaves at most kDistanceVertices; the distances are exact up to rounding, sums run in one fixed
+/// shape. Unless `exact`, normals of a sample are compared with the nearest triangle; where they turn, with those that
+/// lie within a ten-thousandth of the diagonal beyond it, too: beside a crease either side of it may be the nearest.
+/// Cost: about four searches in grids of triangles a sample; 50 bytes a triangle, at most 160; if exact, also a search
+/// for each vertex and triangle, at most some million more, and 500 bytes a triangle. Throws: usage when a mesh has no
+/// triangle or names a vertex that it does not have, or for no samples.
+MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context,
+                              const DistanceOptions& options = {});
 
 /// Of each point to the nearest one of the mesh, exact up to rounding, world units. Throws: usage as measure_distance.
 std::vector<double> distances(const std::vector<WorldPoint>& points, const TriangleMesh& mesh, Context& context);

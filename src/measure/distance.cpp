@@ -11,6 +11,7 @@
 #include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
+#include "measure/largest_distance.h"
 #include "measure/triangle_grid.h"
 #include "voxel/random.h"
 
@@ -22,23 +23,24 @@ constexpr double kDegrees = 57.29577951308232;
 constexpr double kOtherSideDeg = 30;  ///< normals that turn by more may be of the other side of a crease,
 constexpr double kAlignedCosine = .984807753012208;  ///< if those of this side turn by 10 degrees or less
 constexpr double kBeyondNearest = 1e-4;              ///< of the diagonal: how far beyond it others are looked for
+constexpr double kAsNear = 1e-7;                     ///< of the diagonal: what rounding may part
 
 void check(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::usage, "distance", "a mesh has no triangle to measure from");
   require_indices(mesh.triangles, mesh.vertices.size(), "distance");
 }
 
-/// One point in each of kDistanceSamples strata of equal area, along the triangles.
+/// One point in each of `count` strata of equal area, along the triangles.
 class AreaSamples {
  public:
-  explicit AreaSamples(const TriangleMesh& mesh) : mesh_(mesh) {
+  AreaSamples(const TriangleMesh& mesh, int64_t count) : mesh_(mesh), count_(double(count)) {
     area_until_.reserve(mesh.triangles.size());
     double sum = 0;
     for (const auto& t : mesh.triangles)
       area_until_.push_back(sum += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
   }
   size_t triangle_of(int64_t number) const {
-    const double at = area_until_.back() * ((double(number) + part(number, 0)) / double(kDistanceSamples));
+    const double at = area_until_.back() * ((double(number) + part(number, 0)) / count_);
     return size_t(std::upper_bound(area_until_.begin(), area_until_.end() - 1, at) - area_until_.begin());
   }
   WorldPoint operator[](int64_t number) const {
@@ -57,6 +59,7 @@ class AreaSamples {
   }
 
   const TriangleMesh& mesh_;
+  double count_;
   std::vector<double> area_until_;
 };
 
@@ -77,15 +80,16 @@ double angle_between_deg(const WorldPoint& a, const WorldPoint& b) {
 /// Turns of normals between a mesh and the one of the grid.
 class NormalTurns {
  public:
-  NormalTurns(const TriangleMesh& from, const TriangleMesh& to, const TriangleGrid& grid, double diagonal)
-      : from_(from), to_(to), grid_(grid), beyond_(kBeyondNearest * diagonal) {}
+  NormalTurns(const TriangleMesh& from, const TriangleMesh& to, const TriangleGrid& grid, double diagonal, bool exact)
+      : from_(from), to_(to), grid_(grid), beyond_((exact ? kAsNear : kBeyondNearest) * diagonal), exact_(exact) {}
 
   double at(const WorldPoint& p, size_t triangle, const MeshPoint& nearest) const {
     const WorldPoint normal = normal_of(from_, triangle);
     const double size = length(normal), turn = angle_between_deg(normal, normal_of(to_, nearest.triangle));
-    if (!(size > 0) || turn < kOtherSideDeg) return turn;
-    const MeshPoint aligned =
-        grid_.nearest_aligned(p, 1 / size * normal, kAlignedCosine, std::sqrt(nearest.distance_sq) + beyond_);
+    if (!(size > 0) || (!exact_ && turn < kOtherSideDeg)) return turn;
+    const double farthest = std::sqrt(nearest.distance_sq) + beyond_;
+    const MeshPoint aligned = exact_ ? grid_.most_aligned(p, 1 / size * normal, farthest)
+                                     : grid_.nearest_aligned(p, 1 / size * normal, kAlignedCosine, farthest);
     return aligned.triangle == MeshPoint::kNoTriangle ? turn
                                                       : angle_between_deg(normal, normal_of(to_, aligned.triangle));
   }
@@ -94,6 +98,7 @@ class NormalTurns {
   const TriangleMesh &from_, &to_;
   const TriangleGrid& grid_;
   double beyond_;
+  bool exact_;
 };
 
 /// A search may be long where triangles are, so each point asks whether to go on.
@@ -130,22 +135,30 @@ struct OneSide {
   OneSidedDistance distance;
   NormalDeviation normals;
 };
-OneSide one_sided(const TriangleMesh& from, const TriangleMesh& to, double diagonal, const Context& context) {
+OneSide one_sided(const TriangleMesh& from, const TriangleMesh& to, double diagonal, const DistanceOptions& options,
+                  const Context& context) {
   check_cancel(context, "distance");
   const TriangleGrid grid(to);
-  const AreaSamples samples(from);
+  const AreaSamples samples(from, options.samples);
   const auto vertices = int64_t(from.vertices.size());
   const int64_t stride = (vertices + kDistanceVertices - 1) / kDistanceVertices;
-  const NormalTurns turns(from, to, grid, diagonal);
+  const NormalTurns turns(from, to, grid, diagonal, options.exact);
   const Sums inside = sum_over(
-      kDistanceSamples, grid, context, [&](int64_t i) { return samples[i]; },
+      options.samples, grid, context, [&](int64_t i) { return samples[i]; },
       [&](int64_t i, const WorldPoint& p, const MeshPoint& near) { return turns.at(p, samples.triangle_of(i), near); });
   const Sums corners = sum_over((vertices + stride - 1) / stride, grid, context,
                                 [&](int64_t i) { return from.vertices[size_t(i * stride)]; },
                                 [](int64_t, const WorldPoint&, const MeshPoint&) { return 0.; });
-  const double count = double(kDistanceSamples);
-  return {{inside.sum / count, std::sqrt(inside.sum_sq / count), std::sqrt(std::max(inside.max_sq, corners.max_sq))},
-          {inside.turn_sum_deg / count, inside.turn_max_deg}};
+  const double count = double(options.samples);
+  OneSide side{{inside.sum / count, std::sqrt(inside.sum_sq / count),
+                std::sqrt(std::max(inside.max_sq, corners.max_sq)), std::nullopt},
+               {inside.turn_sum_deg / count, inside.turn_max_deg}};
+  if (options.exact) {
+    const LargestDistance largest = largest_distance(from, grid, diagonal, context);
+    side.distance.max = std::max(side.distance.max, largest.found);
+    side.distance.at_most = std::max(side.distance.max, largest.at_most);
+  }
+  return side;
 }
 
 double diagonal(const TriangleMesh& mesh) {
@@ -162,12 +175,15 @@ double diagonal(const TriangleMesh& mesh) {
 
 }  // namespace
 
-MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context) {
+MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context,
+                              const DistanceOptions& options) {
   check(mesh);
   check(reference);
+  if (options.samples < 1) throw Error(ErrorCode::usage, "distance", "there must be a sample of each mesh");
   return run_with_threads(context, [&] {
     const double size = diagonal(reference);
-    const OneSide to = one_sided(mesh, reference, size, context), from = one_sided(reference, mesh, size, context);
+    const OneSide to = one_sided(mesh, reference, size, options, context),
+                  from = one_sided(reference, mesh, size, options, context);
     return MeshDistance{to.distance, from.distance, size, to.normals, from.normals};
   });
 }

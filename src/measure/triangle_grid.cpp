@@ -176,4 +176,25 @@ MeshPoint TriangleGrid::nearest_aligned(WorldPoint p, WorldPoint normal, double 
   });
 }
 
+MeshPoint TriangleGrid::most_aligned(WorldPoint p, WorldPoint normal, double farthest) const {
+  MeshPoint best;
+  double best_cosine = -1;
+  search(p, farthest * farthest, [&](uint32_t triangle) {
+    const auto& t = list_[triangle];
+    const WorldPoint along = doubled_area(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]);
+    const double size = length(along), cosine = size > 0 ? std::abs(dot(along, normal)) / size : -1;
+    if (cosine > best_cosine || (cosine == best_cosine && triangle < best.triangle)) {
+      best_cosine = cosine;
+      best.triangle = triangle;
+    }
+    return false;  // the search goes on to all of them
+  });
+  return best;
+}
+
+double TriangleGrid::distance_to(size_t triangle, WorldPoint p) const {
+  const auto& t = list_[triangle];
+  return std::sqrt(nearest_of_triangle(p, vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]).distance_sq);
+}
+
 }  // namespace isoshell

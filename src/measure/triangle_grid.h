@@ -38,6 +38,9 @@ class TriangleGrid {
   /// The same among triangles whose normals are nearly along the line of `normal`, which has length 1: the cosine of
   /// the angle between them is so large or larger.
   MeshPoint nearest_aligned(WorldPoint p, WorldPoint normal, double least_cosine, double farthest) const;
+  /// Of the triangles at most so far from p that whose normal is most nearly along the line of `normal`, of length 1.
+  MeshPoint most_aligned(WorldPoint p, WorldPoint normal, double farthest) const;
+  double distance_to(size_t triangle, WorldPoint p) const;
   bool is_facing(size_t triangle, WorldPoint direction) const;
   double distance_sq(WorldPoint p) const { return nearest(p).distance_sq; }
 

@@ -8,6 +8,8 @@
 namespace isoshell {
 namespace {
 
+constexpr int64_t kSamples = 200000;
+
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "mesh_info", message); }
 
 void check_gates(const Gates& gates, bool has_reference) {
@@ -56,7 +58,7 @@ MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gate
   if (reference) {
     info.reference = reference->facts;
     const TriangleMesh other = mesh_of(std::move(reference->soup));
-    step("distance", context, [&] { info.distance = measure_distance(measured, other, context); });
+    step("distance", context, [&] { info.distance = measure_distance(measured, other, context, {kSamples, true}); });
   }
   if (gates.any()) {
     Gates asked = gates;

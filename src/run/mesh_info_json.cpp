@@ -89,6 +89,7 @@ Json side_json(const OneSidedDistance& d, const NormalDeviation& normals, double
   return {{"mean", d.mean},
           {"rms", d.rms},
           {"max", d.max},
+          {"max_at_most", d.at_most ? Json(*d.at_most) : Json()},
           {"mean_pct", pct(d.mean)},
           {"rms_pct", pct(d.rms)},
           {"max_pct", pct(d.max)},

@@ -20,11 +20,14 @@ TriangleMesh square(double size, double z) {
   return {{{0, 0, z}, {size, 0, z}, {size, size, z}, {0, size, z}}, {{{0, 1, 2}}, {{0, 2, 3}}}};
 }
 
-MeshDistance distance(const TriangleMesh& mesh, const TriangleMesh& reference, int threads = 0) {
+MeshDistance distance(const TriangleMesh& mesh, const TriangleMesh& reference, int threads = 0,
+                      const DistanceOptions& options = {}) {
   Context context;
   context.threads = threads;
-  return measure_distance(mesh, reference, context);
+  return measure_distance(mesh, reference, context, options);
 }
+
+constexpr DistanceOptions kExact{20000, true};
 
 }  // namespace
 
@@ -152,4 +155,68 @@ TEST_CASE("distance: a rounded crease shows in the normals", "[distance][unit]")
   const MeshDistance one = distance(cut, box, 1);
   CHECK(one.normal_to_reference.mean_deg == d.normal_to_reference.mean_deg);
   CHECK(one.normal_from_reference.mean_deg == d.normal_from_reference.mean_deg);
+}
+
+TEST_CASE("distance: the largest one is found inside of a triangle, where it is asked for exactly",
+          "[distance][unit]") {
+  TriangleMesh posts;  // a point at each corner of the square, nearly
+  for (const WorldPoint& p : square(2, 0).vertices) {
+    const auto first = uint32_t(posts.vertices.size());
+    posts.vertices.insert(posts.vertices.end(), {p, {p.x, p.y, 1e-9}, {p.x + 1e-9, p.y, 0}});
+    posts.triangles.push_back({first, first + 1, first + 2});
+  }
+  for (const int threads : {1, 4}) {
+    const OneSidedDistance d = distance(square(2, 0), posts, threads, kExact).to_reference;
+    REQUIRE(d.at_most);
+    CHECK(d.max == Approx(std::sqrt(2)).epsilon(2e-3));
+    CHECK(d.max <= std::sqrt(2) + 1e-8);
+    CHECK(*d.at_most >= std::sqrt(2) - 1e-8);
+    CHECK(*d.at_most <= 1.003 * d.max);
+  }
+  CHECK_FALSE(distance(square(2, 0), posts).to_reference.at_most);
+}
+
+TEST_CASE("distance: no point of a mesh is farther than the exact bound says", "[distance][unit]") {
+  const TriangleMesh torus = mesh_of(shapes::torus(2, 0.7, 40, 20)), other = mesh_of(shapes::torus(2.1, 0.6, 30, 14));
+  const OneSidedDistance d = distance(torus, other, 1, kExact).to_reference,
+                         same = distance(torus, other, 4, kExact).to_reference;
+  REQUIRE(d.at_most);
+  CHECK(d.max == same.max);
+  CHECK(*d.at_most == *same.at_most);
+  std::vector<WorldPoint> points;
+  for (uint64_t i = 0; i < 200000; ++i) {
+    const auto part = [&](uint64_t of) { return double(random_bits(of, i) >> 40) / double(1 << 24); };
+    const auto& [a, b, c] = torus.triangles[size_t(i) % torus.triangles.size()];
+    const double u = part(1), v = (1 - u) * part(2);
+    const WorldPoint p = torus.vertices[a], q = torus.vertices[b], r = torus.vertices[c];
+    points.push_back({p.x + u * (q.x - p.x) + v * (r.x - p.x), p.y + u * (q.y - p.y) + v * (r.y - p.y),
+                      p.z + u * (q.z - p.z) + v * (r.z - p.z)});
+  }
+  Context context;
+  const std::vector<double> found = distances(points, other, context);
+  const double largest = *std::max_element(found.begin(), found.end());
+  CHECK(largest <= *d.at_most);
+  CHECK(d.max >= .998 * largest);
+  CHECK(*d.at_most <= 1.003 * d.max);
+}
+
+TEST_CASE("distance: a mesh is nowhere away from itself, exactly", "[distance][unit]") {
+  const TriangleMesh torus = mesh_of(shapes::torus(2, 0.7, 60, 30));
+  const MeshDistance d = distance(torus, torus, 0, kExact);
+  CHECK(d.to_reference.at_most.value() < 1e-8);
+  CHECK(d.normal_to_reference.max_deg < 1e-5);
+}
+
+TEST_CASE("distance: beside a crease normals are those of the best aligned side, if it is as near",
+          "[distance][unit]") {
+  const TriangleMesh box = mesh_of(shapes::box({0, 0, 0}, {1, 1, 1})),
+                     larger = mesh_of(shapes::box({-.2, -.2, -.2}, {1.2, 1.2, 1.2}));
+  CHECK(distance(larger, box, 0, kExact).normal_to_reference.max_deg < 1e-5);
+  const MeshDistance self = distance(box, box, 0, kExact);
+  CHECK(self.normal_to_reference.max_deg < 1e-5);
+  CHECK(self.normal_from_reference.max_deg < 1e-5);
+}
+
+TEST_CASE("distance: no samples are refused", "[distance][unit]") {
+  CHECK_THROWS_AS(distance(square(1, 0), square(1, 0), 0, {0, false}), Error);
 }
