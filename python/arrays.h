@@ -12,7 +12,7 @@
 
 namespace isoshell::python {
 
-/// An array of the host, of any type, shape and strides.
+/// An array in the host's memory, of any type, shape and strides.
 using AnyArray = nanobind::ndarray<nanobind::ro, nanobind::device::cpu>;
 
 /// Rows of three numbers. Throws: usage, naming the argument, for another shape or type.

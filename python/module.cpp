@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 
 #include "context.h"
+#include "device_arrays.h"
 #include "errors.h"
 #include "keywords.h"
 #include "mesh_info.h"
@@ -19,6 +20,7 @@ NB_MODULE(_isoshell, m) {
   m.attr("VERSION") = ISOSHELL_VERSION;
   bind_errors(m);
   bind_keywords(m);
+  bind_device_arrays(m);
   bind_source(m);
   bind_context(m);
   bind_result(m);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "cuda/runtime/device_stream.h"
+#include "isoshell/device_memory.h"
+#include "isoshell/error.h"
 #include "stages/cuda_device.h"
 
 namespace isoshell {
@@ -105,6 +107,15 @@ DeviceInfo cuda_device_info(int device) {
   info.memory_bytes = int64_t(bytes);
   info.free_bytes = int64_t(free_bytes);
   return info;
+}
+
+void copy_from_device(void* to, const void* from, int64_t bytes, int device) {
+  if (const std::string why_not = why_not_cuda(device); !why_not.empty())
+    throw Error(ErrorCode::no_device, "device", why_not);
+  require_success(cudaSetDevice(device), "cudaSetDevice");
+  require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, cudaStreamLegacy),
+                  "cudaMemcpyAsync");
+  require_success(cudaStreamSynchronize(cudaStreamLegacy), "cudaStreamSynchronize");
 }
 
 }  // namespace isoshell

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from . import _isoshell
 from ._errors import Error
 
 if TYPE_CHECKING:  # imported where it is used: that takes longer than the rest of this package
     import numpy as np
 
-HOST = 1  # of DLPack's kinds of device
+# DLPack's kinds of device.
+HOST, CUDA, CUDA_PINNED, CUDA_MANAGED = 1, 2, 3, 13
+LEGACY_DEFAULT_STREAM = 1  # DLPack's name of it
+BRING = "bring it to the host (tensor.cpu(), cupy.asnumpy(array))"
 
 
 def array_of(argument: str, value: Any) -> np.ndarray[Any, Any]:
@@ -35,11 +39,20 @@ def _gives_dlpack_only(value: Any) -> bool:
 def _from_dlpack(argument: str, value: Any) -> np.ndarray[Any, Any]:
     import numpy as np
 
-    if value.__dlpack_device__()[0] != HOST:
-        raise Error(f"{argument} lies in the memory of a device, and only arrays of the host are read yet: bring it to "
-                    'the host (tensor.cpu(), cupy.asnumpy(array)); device="cuda" still runs the stages there')
+    kind, number = value.__dlpack_device__()
+    on_cuda = kind in (CUDA, CUDA_MANAGED)
+    if on_cuda and (why := _isoshell.why_not_readable(number)):
+        raise Error(f"{argument} lies in the memory of a device, which cannot be read: {why}; {BRING}")
+    if not on_cuda and kind not in (HOST, CUDA_PINNED):
+        raise Error(f"{argument} lies in the memory of a device of kind {kind} of DLPack, and only those of CUDA are "
+                    f"read: {BRING}")
     try:
+        if on_cuda:  # the producer has that stream wait for its own
+            array: np.ndarray[Any, Any] = _isoshell.copied_from_device(value.__dlpack__(stream=LEGACY_DEFAULT_STREAM))
+            return array
         return np.from_dlpack(value)
+    except Error:
+        raise
     except Exception as error:  # whatever the other library raises
         raise Error(f"{argument} gives no array: {error}") from error
 

@@ -13,6 +13,7 @@ from ._usd import Origin, is_usd
 if TYPE_CHECKING:
     import numpy as np
     import pyvista  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    import torch  # type: ignore[import-not-found, import-untyped, unused-ignore]
     import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     from ._keywords import Keywords
@@ -136,6 +137,20 @@ class Result:
             if domain != "corner":
                 (mesh.point_data if domain == "vertex" else mesh.cell_data)[name] = values
         return mesh
+
+    def to_torch(self, device: Optional[Any] = None) -> tuple[torch.Tensor, torch.Tensor]:
+        """Vertices (K, 3) float64 and faces (M, 3) int64 as tensors of torch, which own their memory. Needs torch.
+
+        Args:
+            device: whatever torch takes; without it the device that the run was on, the host's memory where that was
+                the CPU. The result is in the host's memory, and is copied from there once.
+        """
+        import torch
+
+        if device is None:
+            on_cuda = self.report["device"] == "cuda"
+            device = f"cuda:{self.report['device_details']['number']}" if on_cuda else "cpu"
+        return torch.tensor(self.vertices, device=device), torch.tensor(self.faces, dtype=torch.int64, device=device)
 
     def __repr__(self) -> str:
         return f"<isoshell.Result: {len(self.vertices)} vertices, {len(self.faces)} faces>"

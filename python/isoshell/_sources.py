@@ -182,7 +182,10 @@ def sizing_of(options: dict[str, Any]) -> Optional[Volume]:
 
 def is_true_or_false(volume: Any) -> bool:
     """Whether it is a Volume of booleans, whose surface needs no isovalue."""
-    return isinstance(volume, Volume) and array_of("volume", volume.values).dtype.kind == "b"
+    if not isinstance(volume, Volume):
+        return False
+    kind = getattr(volume.values, "dtype", None)  # "bool", "torch.bool"; arrays of devices are copied once, not here
+    return str(kind).endswith("bool") if kind is not None else array_of("volume", volume.values).dtype.kind == "b"
 
 
 def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:

@@ -19,7 +19,7 @@ class Dlpack:
         return self.array.__dlpack__(**keywords)
 
     def __dlpack_device__(self):
-        return self.device, 0
+        return self.device, 0 if self.device == 1 else 99
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +95,8 @@ FACES = np.array([[0, 1, 2]])
     (np.zeros((3, 3), "datetime64[s]"), FACES, "vertices", ErrorCode.USAGE),
     (Dlpack(VERTICES, device=2), FACES, "vertices lies in the memory of a device", ErrorCode.USAGE),
     (VERTICES, Dlpack(FACES, device=2), "faces lies in the memory of a device", ErrorCode.USAGE),
+    (Dlpack(VERTICES, device=2), FACES, "tensor.cpu()", ErrorCode.USAGE),
+    (Dlpack(VERTICES, device=10), FACES, "kind 10", ErrorCode.USAGE),
     (VERTICES, np.zeros((1, 2), int), "faces", ErrorCode.USAGE),
     (VERTICES, np.zeros((1, 1, 3), int), "faces", ErrorCode.USAGE),
     (VERTICES, FACES.astype(float), "faces", ErrorCode.USAGE),

@@ -134,7 +134,8 @@ class Search {
     for (; begin != end; ++begin) settled_ = std::max(settled_, begin->at_most);
   }
   void settle_near(std::vector<Piece>& pieces) {
-    const auto near = std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.at_most > enough(); });
+    const auto near =
+        std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.at_most > enough(); });
     settle(near, pieces.end());
     pieces.erase(near, pieces.end());
   }
