@@ -1,20 +1,44 @@
-// sorted_half_edges (see half_edge_list.h).
+// sorted_half_edges (see half_edge_list.h): gathered at their smaller end, sorted there.
 #include "core/half_edge_list.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
+
+#include <algorithm>
 
 namespace isoshell {
+namespace {
+
+constexpr size_t kVerticesAtATime = 4096;
+
+}  // namespace
 
 std::vector<ListedHalfEdge> sorted_half_edges(const std::vector<std::array<uint32_t, 3>>& triangles) {
+  uint32_t largest = 0;
+  for (const auto& t : triangles) largest = std::max({largest, t[0], t[1], t[2]});
+  std::vector<uint32_t> first(size_t(largest) + 2);  // of those at each vertex
+  for (const auto& [a, b, c] : triangles)
+    for (const uint32_t smaller_end : {std::min(a, b), std::min(b, c), std::min(c, a)}) ++first[smaller_end];
+  uint32_t end = 0;
+  for (uint32_t& f : first) f = end += f;
   std::vector<ListedHalfEdge> out(3 * triangles.size());
-  tbb::parallel_for(size_t(0), triangles.size(), [&](size_t t) {
-    for (size_t i = 0; i < 3; ++i)
-      out[3 * t + i] = {edge_key(triangles[t][i], triangles[t][(i + 1) % 3]), uint32_t(3 * t + i)};
-  });
-  tbb::parallel_sort(out.begin(), out.end(), [](const ListedHalfEdge& a, const ListedHalfEdge& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.number < b.number;
-  });
+  for (size_t t = triangles.size(); t-- > 0;) {
+    const auto& [a, b, c] = triangles[t];
+    const auto put = [&](uint32_t from, uint32_t to, size_t i) {
+      out[--first[std::min(from, to)]] = {edge_key(from, to), uint32_t(3 * t + i)};
+    };
+    put(c, a, 2);
+    put(b, c, 1);
+    put(a, b, 0);
+  }
+  const auto sort_some = [&](const tbb::blocked_range<size_t>& vertices) {
+    for (size_t v = vertices.begin(); v < vertices.end(); ++v)
+      std::sort(out.begin() + first[v], out.begin() + first[v + 1],
+                [](const ListedHalfEdge& a, const ListedHalfEdge& b) {
+                  return a.edge != b.edge ? a.edge < b.edge : a.number < b.number;
+                });
+  };
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, first.size() - 1, kVerticesAtATime), sort_some);
   return out;
 }
 

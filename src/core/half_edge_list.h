@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,7 +22,18 @@ struct ListedHalfEdge {
   uint32_t larger_end() const { return uint32_t(edge); }
 };
 
-/// All of them, by edge and then by number. There are at most UINT32_MAX / 3 triangles.
+/// All of them, by edge and then by number. There are at most UINT32_MAX / 3 triangles. Cost: linear in triangles for
+/// bounded valence, and in the largest index; 16 bytes a half-edge and 4 a vertex.
 std::vector<ListedHalfEdge> sorted_half_edges(const std::vector<std::array<uint32_t, 3>>& triangles);
+
+/// Calls visit(begin, end) with the range of each edge in such a list, in order.
+template <class Visit>
+void for_each_edge(const std::vector<ListedHalfEdge>& half_edges, Visit visit) {
+  for (size_t begin = 0, end; begin < half_edges.size(); begin = end) {
+    end = begin + 1;
+    while (end < half_edges.size() && half_edges[end].edge == half_edges[begin].edge) ++end;
+    visit(begin, end);
+  }
+}
 
 }  // namespace isoshell

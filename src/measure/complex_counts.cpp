@@ -79,7 +79,7 @@ class Counter {
 
   EdgeCensus run(const WorldPoint& middle) {
     number_components();
-    for_each_edge([&](size_t begin, size_t end) { count_edge(begin, end); });
+    for_each_edge(half_edges_, [&](size_t begin, size_t end) { count_edge(begin, end); });
     if (found_.counts.inconsistent_edges > 0) find_orientable();
     sum_triangles(middle);
     count_vertices();
@@ -103,15 +103,6 @@ class Counter {
   Component& component_of(uint32_t vertex) { return components_[component_[joined_.root(vertex)]]; }
   bool is_inconsistent(size_t begin) const {
     return corner(half_edges_[begin].number) == corner(half_edges_[begin + 1].number);
-  }
-
-  template <class Visit>
-  void for_each_edge(Visit visit) const {
-    for (size_t begin = 0, end; begin < half_edges_.size(); begin = end) {
-      end = begin + 1;
-      while (end < half_edges_.size() && half_edges_[end].edge == half_edges_[begin].edge) ++end;
-      visit(begin, end);
-    }
   }
 
   void number_components() {
@@ -162,7 +153,7 @@ class Counter {
 
   void find_orientable() {
     Turns turns(triangles_.size());
-    for_each_edge([&](size_t begin, size_t end) {
+    for_each_edge(half_edges_, [&](size_t begin, size_t end) {
       if (end - begin != 2) return;
       const uint32_t face = half_edges_[begin].number / 3, other = half_edges_[begin + 1].number / 3;
       if (!turns.relate(face, other, is_inconsistent(begin)))

@@ -60,6 +60,26 @@ TEST_CASE("mesh info: a gate that is missed ends with 6", "[cli][mesh_info]") {
   CHECK(folder.run("t.off --require max-deviation=0.001").status == 2);
 }
 
+TEST_CASE("mesh info: gates see the topology that the certificate shows", "[cli][mesh_info]") {
+  cli::Folder folder;
+  const char* const moebius =
+      "OFF\n5 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 1 2\n3 1 2 3\n3 2 3 4\n3 3 4 0\n3 4 0 1\n";
+  folder.write("moebius.off", moebius);
+  folder.write("pair.off", "OFF\n4 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n3 0 2 1\n");
+  folder.write("repeated.off", "OFF\n4 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n3 1 1 2\n");
+  folder.write("loose.off", "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n9 9 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+  CHECK(info_of(folder, "moebius.off")["topology"]["boundary_loops"] == 1);
+  CHECK(folder.run("moebius.off --require boundary-loops=1,components=1").status == 0);
+  CHECK(folder.run("moebius.off --require manifold").status == 6);
+  CHECK(folder.run("pair.off --require closed").status == 0);
+  CHECK(folder.run("pair.off --require genus=0").status == 6);
+  CHECK(folder.run("repeated.off --require closed").status == 0);
+  CHECK(folder.run("repeated.off --require manifold").status == 6);
+  CHECK(folder.run("repeated.off --require genus=0").status == 6);
+  CHECK(folder.run("loose.off --require closed,genus=0,components=1").status == 0);
+  CHECK(folder.run("loose.off --require manifold").status == 6);
+}
+
 TEST_CASE("mesh info: the bytes of the table and of the JSON are the same for 1 and 4 threads", "[cli][mesh_info]") {
   cli::Folder folder;
   folder.write_off("mesh.off", shapes::together(shapes::torus(2, .7, 180, 90), shapes::sphere({2, 0, 0}, 1, 60)));
