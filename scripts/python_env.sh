@@ -4,9 +4,10 @@
 # (apt install chromium: 400 MB).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-packages=(numpy nanobind pytest mypy trimesh k3d usd-core)
+packages=(numpy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue)
 if command -v chromium >/dev/null; then packages+=(playwright); fi
 modules=("${packages[@]/usd-core/pxr}")
+modules=("${modules[@]//-/_}")
 python=build/python/bin/python
 
 if ! "$python" -c "import ${modules[*]/%/,} sys" 2>/dev/null; then

@@ -1,4 +1,4 @@
-"""The command: python -m isoshell INPUT OUTPUT [options]."""
+"""The command: python -m isoshell INPUT OUTPUT [options], and isoshell farm, which meshes many assets."""
 
 import os
 import sys
@@ -6,10 +6,16 @@ import sys
 from . import _isoshell
 from ._report import has_k3d, write_of_command
 
+FARM = ("run", "status", "report")
+
 
 def main() -> int:
     """Run the command with the arguments of this process. Returns its exit status."""
     words = [*map(os.fspath, sys.argv[1:])]
+    if words[:1] == ["farm"] and words[1:2] and (words[1] in FARM or words[1] in ("-h", "--help")):
+        from ._farm._command import main as farm
+
+        return farm(words[1:])
     if any(".usd" in word.lower() for word in words):
         from ._usd_command import names_usd, run
 

@@ -1,0 +1,122 @@
+"""The manifest: what became of every asset.
+
+Rows are lines of JSON in files that each have one writer; the last row of an asset counts. A line that was torn by the
+end of its writer is passed over.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import time
+import uuid
+from typing import Any, Dict, List, NamedTuple, Optional
+
+from . import _places as places
+
+Row = Dict[str, Any]
+FOLDER = "manifest"
+ROWS_A_FILE = 256  # in object storage, where a file is put whole after each row
+
+
+class Manifest(NamedTuple):
+    """What the manifest says."""
+
+    rows: Dict[str, Row]  # the last of each asset, by its output
+    runs: List[Row]       # what `farm run` said when it began, in order of time
+
+
+class Writer:
+    """Appends rows to a file of its own. A row is on the disk when append() returns."""
+
+    def __init__(self, out: str) -> None:
+        self._folder = places.join(out, FOLDER)
+        self._handle: Optional[int] = None
+        self._name = ""
+        self._lines: List[bytes] = []
+
+    def append(self, row: Row) -> None:
+        """Raises OSError where the row cannot be kept; nothing of it is left then."""
+        row["time"] = time.time()
+        line = json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+        if places.is_remote(self._folder):
+            self._put(line)
+        else:
+            self._write(line)
+
+    def close(self) -> None:
+        if self._handle is not None:
+            os.close(self._handle)
+            self._handle = None
+
+    def _write(self, line: bytes) -> None:
+        if self._handle is None:
+            os.makedirs(self._folder, exist_ok=True)
+            path = places.join(self._folder, _new_name())
+            self._handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+        begin = os.fstat(self._handle).st_size
+        try:
+            written = os.write(self._handle, line)
+            while written < len(line):
+                written += os.write(self._handle, line[written:])
+            os.fsync(self._handle)
+        except OSError:
+            os.ftruncate(self._handle, begin)
+            raise
+
+    def _put(self, line: bytes) -> None:
+        if not self._name or len(self._lines) == ROWS_A_FILE:
+            self._name, self._lines = _new_name(), []
+        system, path = places.file_system(places.join(self._folder, self._name))
+        system.makedirs(system._parent(path), exist_ok=True)
+        system.pipe_file(path, b"".join([*self._lines, line]))
+        self._lines.append(line)
+
+
+def read(out: str) -> Manifest:
+    """Everything that was ever written below OUT; empty where nothing was."""
+    rows: Dict[str, Row] = {}
+    runs: List[Row] = []
+    folder = places.join(out, FOLDER)
+    for name, _ in places.files_below(folder):
+        if name.endswith(".jsonl"):
+            for row in _rows_of(places.read_bytes(places.join(folder, name))):
+                if "began" in row:
+                    runs.append(row)
+                elif row["output"] not in rows or rows[row["output"]]["time"] <= row["time"]:
+                    rows[row["output"]] = row
+    runs.sort(key=lambda run: float(run["time"]))
+    return Manifest(rows, runs)
+
+
+def compact(manifest: Manifest, path: str) -> None:
+    """Write the rows as one table of Parquet. Needs pyarrow."""
+    pyarrow, parquet = places.library("pyarrow"), places.library("pyarrow.parquet")
+    flat = [{**row, "options": json.dumps(row["options"], sort_keys=True), "gates": json.dumps(row["gates"])}
+            for _, row in sorted(manifest.rows.items())]
+    names = list(dict.fromkeys(name for row in flat for name in row))
+    table = pyarrow.table({name: [row.get(name) for row in flat] for name in names})
+    part = f"{path}.{uuid.uuid4().hex[:8]}.part"
+    try:
+        parquet.write_table(table, part)
+        os.replace(part, path)
+    finally:
+        if os.path.exists(part):
+            os.unlink(part)
+
+
+def _rows_of(content: bytes) -> List[Row]:
+    found = []
+    for line in content.split(b"\n"):
+        try:
+            row = json.loads(line) if line else None
+        except ValueError:
+            continue
+        if isinstance(row, dict) and "time" in row and ("output" in row or "began" in row):
+            found.append(row)
+    return found
+
+
+def _new_name() -> str:
+    return f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}.jsonl"

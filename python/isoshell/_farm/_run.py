@@ -1,0 +1,205 @@
+"""isoshell farm run: gives the assets to the workers, largest first, and says how it goes."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+import time
+from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+
+import isoshell
+
+from .._errors import Error
+from .._isoshell import ErrorCode
+from . import _manifest as manifest
+from . import _places as places
+from . import _worker as worker
+from ._assets import Asset
+from ._clusters import Cluster, cluster_of
+from ._plan import Plan, job_of, plan_of
+from ._progress import Progress, tell
+
+SOME_FAILED = 9
+ENGINE_LOST = 10
+DEATHS = 3  # of workers, by Dask's count, after which an asset is given up
+LOOK_SECONDS = 0.5
+SECONDS_TO_STOP = 1.0
+
+
+class EngineLost(Exception):
+    """The scheduler does not answer any more."""
+
+
+def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str]) -> int:
+    """Returns the exit status."""
+    again = "isoshell farm run " + shlex.join(words)
+    try:
+        plan = plan_of(assets, manifest.read(out).rows, out, settings["retry_failed"])
+        writer = manifest.Writer(out)
+        number = worker.new_run()
+        if plan.wanted:
+            writer.append({"began": number, "assets": len(assets), "done": plan.done, "failed": plan.failed,
+                           "command": again, "version": isoshell.__version__})
+    except OSError as error:
+        raise Error(f"{error.filename or out}: {error.strerror or error}", ErrorCode.UNWRITABLE_OUTPUT,
+                    "farm") from error
+    if plan.done or plan.failed:
+        tell(f"{plan.done} of {len(assets)} assets are done already" + (
+            f", and {plan.failed} failed before: --retry-failed tries them again" if plan.failed else ""))
+    failed = plan.failed
+    progress = Progress(len(plan.wanted))
+    try:
+        if plan.wanted:
+            common = {name: settings[name] for name in ("contexts", "asset_memory", "time_limit", "place")}
+            with cluster_of(*(settings[name] for name in ("scheduler", "workers", "slots", "memory"))) as cluster:
+                announce(cluster, len(plan.wanted))
+                failed += over(cluster, plan, {**common, "out": out, "run": number, "memory": cluster.memory}, writer,
+                               progress)
+                cluster.client.run(worker.stop, on_error="ignore")
+    except KeyboardInterrupt:
+        progress.end()
+        tell(f"interrupted; what is done is kept. To go on: {again}")
+        leave(int(ErrorCode.INTERRUPTED), settings)
+    except worker.Unwritable as error:
+        progress.end()
+        tell(f"error: {error}: {out} takes no more files, so the farm has stopped. What is done is kept; make room, "
+             f"and go on with: {again}")
+        leave(int(ErrorCode.UNWRITABLE_OUTPUT), settings)
+    except EngineLost as error:
+        progress.end()
+        tell(f"error: {error}. What is done is kept. To go on: {again}")
+        leave(ENGINE_LOST, settings)
+    finally:
+        writer.close()
+    progress.end()
+    done = len(assets) - failed
+    tell(f"{done} of {len(assets)} assets are done" + (
+        f", {failed} failed: isoshell farm report {shlex.quote(out)} says why" if failed else ""))
+    return SOME_FAILED if failed else 0
+
+
+def announce(cluster: Cluster, count: int) -> None:
+    threads = sum(cluster.client.nthreads().values())
+    place = f", {threads} at a time" if threads else ", when workers are there"
+    tell(f"{count} assets{place}" + (f"; dashboard: {cluster.client.dashboard_link}" if cluster.has_pages else ""))
+
+
+def over(cluster: Cluster, plan: Plan, common: Dict[str, Any], writer: manifest.Writer, progress: Progress) -> int:
+    """Hands out the assets, as many at a time as keep all workers busy. Returns how many failed."""
+    left = iter(plan.wanted)
+    under_way: Dict[Any, Tuple[Dict[str, Any], int]] = {}
+    failed, rank = 0, 0
+    try:
+        while True:
+            for asset, known in some(left, room(cluster) - len(under_way)):
+                rank += 1
+                submit(cluster, job_of(asset, known, common), rank, 0, under_way)
+            if not under_way and rank == len(plan.wanted):
+                return failed
+            for future in finished(cluster, set(under_way)):
+                job, deaths = under_way.pop(future)
+                row = row_of(future, job, deaths, writer)
+                if row is None:
+                    submit(cluster, job, 0, deaths + 1, under_way)
+                    continue
+                failed += row["state"] == "failed"
+                progress.count(row)
+            progress.show()
+    except BaseException:
+        stop(cluster, list(under_way))
+        raise
+
+
+def submit(cluster: Cluster, job: Dict[str, Any], rank: int, deaths: int,
+           under_way: Dict[Any, Tuple[Dict[str, Any], int]]) -> None:
+    key = f"mesh-{job['run']}-{deaths}-{job['output']}"
+    future = cluster.client.submit(worker.mesh, job, key=key, pure=False, priority=-rank)
+    under_way[future] = job, deaths
+
+
+def some(assets: Iterator[Any], count: int) -> Iterator[Any]:
+    for _ in range(count):
+        try:
+            yield next(assets)
+        except StopIteration:
+            return
+
+
+def room(cluster: Cluster) -> int:
+    """One asset waits behind each that a worker has."""
+    return max(2, 2 * sum(threads_of(cluster).values()))
+
+
+def threads_of(cluster: Cluster) -> Dict[str, int]:
+    workers = cluster.client.scheduler_info(n_workers=-1)["workers"]
+    return {name: info["nthreads"] for name, info in workers.items()}
+
+
+def finished(cluster: Cluster, futures: Set[Any]) -> List[Any]:
+    """The futures that are, after a while at most. Raises EngineLost."""
+    distributed = places.library("distributed")
+    if futures:
+        try:
+            distributed.wait(list(futures), timeout=LOOK_SECONDS, return_when="FIRST_COMPLETED")
+        except (TimeoutError, distributed.TimeoutError):
+            pass
+        except Exception:  # cancelled with the connection: looked at below
+            time.sleep(LOOK_SECONDS / 10)
+    else:
+        time.sleep(LOOK_SECONDS)
+    if cluster.client.status != "running":
+        raise EngineLost(f"the scheduler ({cluster.name}) does not answer any more")
+    return [future for future in futures if future.done()]
+
+
+def row_of(future: Any, job: Dict[str, Any], deaths: int, writer: manifest.Writer) -> Optional[manifest.Row]:
+    """The row of a finished asset; None of one that has to be tried again, as its workers ended."""
+    error = future.exception() if future.status == "error" else None
+    if future.status == "cancelled":
+        raise EngineLost("the scheduler has dropped its work")
+    if error is None:
+        row: manifest.Row = future.result()
+        return row
+    if isinstance(error, worker.Unwritable):
+        raise error
+    if isinstance(error, worker.Stopped):
+        return None
+    if type(error).__name__ == "KilledWorker" and deaths < DEATHS:
+        return None
+    row = {"output": job["output"], "asset": job["path"], "options": job["options"], "version": isoshell.__version__,
+           "run": job["run"], "input_size": job["input_size"], "input_changed": job["input_changed"], "gates": {},
+           "state": "failed", "code": "WORKER_LOST" if type(error).__name__ == "KilledWorker" else "INTERNAL",
+           "message": f"{type(error).__name__}: {error}", "attempts": deaths + 1, "transient": True, "seconds": 0.0,
+           "worker": ""}
+    try:
+        writer.append(row)
+    except OSError as full:
+        raise worker.Unwritable(f"{job['out']}: {full.strerror}") from full
+    return row
+
+
+def stop(cluster: Cluster, futures: List[Any]) -> None:
+    """End what is under way, without waiting long."""
+    if cluster.is_own and cluster.name == "local":
+        return  # leave() ends its processes
+    try:
+        cluster.client.cancel(futures, asynchronous=True)
+        cluster.client.run(worker.stop, wait=False, on_error="ignore")
+        time.sleep(SECONDS_TO_STOP / 2)
+    except Exception:
+        pass  # it is going anyhow
+
+
+def leave(status: int, settings: Dict[str, Any]) -> None:
+    """End at once, with the processes of a local scheduler; they keep nothing that could be lost."""
+    if settings["scheduler"] == "local":
+        psutil = places.library("psutil")
+        for process in psutil.Process().children(recursive=True):
+            try:
+                process.kill()
+            except psutil.Error:
+                pass
+    sys.stderr.flush()
+    sys.stdout.flush()
+    os._exit(status)
