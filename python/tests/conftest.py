@@ -73,3 +73,26 @@ def command() -> Callable[..., subprocess.CompletedProcess[str]]:
         return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120)
 
     return run
+
+
+@pytest.fixture(scope="module")
+def assets(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of a few balls."""
+    folder = tmp_path_factory.mktemp("assets")
+    vertices, faces = make_ball()
+    for i in range(4):
+        write_obj(folder / f"ball{i}.obj", vertices * np.array([1, 1 + 0.1 * i, 1]), faces)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def serial(assets: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[str, bytes]]:
+    """What a loop over them makes, with 150 vertices each: digest and file, by name."""
+    import isoshell
+
+    folder, made = tmp_path_factory.mktemp("serial"), {}
+    for path in sorted(assets.glob("*.obj")):
+        name = f"{path.stem}.ply"
+        result = isoshell.remesh(path, vertices=150, resolution=40, threads=1, output=folder / name)
+        made[name] = (result.digest, (folder / name).read_bytes())
+    return made

@@ -130,9 +130,6 @@ def brought_here(path: str, options: Dict[str, Any], fetched: str) -> tuple[str,
     """The path that is read, and the files that it means: of remote ones copies."""
     files = files_of(path, options)
     if not places.is_remote(path):
-        for file in files:
-            with open(file, "rb"):
-                pass  # an OSError here is the place's fault, not the content's
         return path, files
     copies = [os.path.join(fetched, os.path.basename(file)) for file in files]
     for file, copy in zip(files, copies):

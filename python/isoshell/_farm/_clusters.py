@@ -24,8 +24,13 @@ class Cluster(NamedTuple):
     client: Any
     name: str
     memory: Optional[int]  # bytes for the assets of a worker; None: each worker knows its own
-    is_own: bool           # ends with this command
     has_pages: bool        # Dask's dashboard
+    folder: str            # of a local scheduler, its own files
+
+    @property
+    def may_be_left(self) -> bool:
+        """Whether nothing has to be closed but processes of this machine: jobs in a queue would stay there."""
+        return self.name != "slurm"
 
 
 @contextmanager
@@ -38,6 +43,7 @@ def cluster_of(scheduler: str, workers: Optional[int], slots: int, memory: Optio
     with ExitStack() as stack:
         stack.enter_context(places.library("dask").config.set(settings))
         if scheduler == "local":
+            start_tracker()
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="isoshell-farm-",
                                                                      ignore_cleanup_errors=True))
             cluster = stack.enter_context(distributed.LocalCluster(
@@ -45,15 +51,29 @@ def cluster_of(scheduler: str, workers: Optional[int], slots: int, memory: Optio
                 dashboard_address="127.0.0.1:0" if has_dashboard() else None, local_directory=folder,
                 silence_logs=logging.CRITICAL))
             client = stack.enter_context(distributed.Client(cluster, set_as_default=False))
-            yield Cluster(client, "local", memory or memory_of_node(), True, has_dashboard())
+            yield Cluster(client, "local", memory or memory_of_node(), has_dashboard(), folder)
         elif scheduler == "slurm":
             cluster = stack.enter_context(slurm_cluster())
             cluster.scale(jobs=workers or 1)
             client = stack.enter_context(distributed.Client(cluster, set_as_default=False))
-            yield Cluster(client, "slurm", memory, True, has_dashboard())
+            yield Cluster(client, "slurm", memory, has_dashboard(), "")
         else:
             client = stack.enter_context(connected(distributed, scheduler))
-            yield Cluster(client, scheduler, memory, False, True)
+            yield Cluster(client, scheduler, memory, True, "")
+
+
+def start_tracker() -> None:
+    """Python's own process that removes semaphores, without a voice: after an interruption it would warn of them."""
+    from multiprocessing import resource_tracker
+
+    said, silence = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(silence, 2)
+        resource_tracker.ensure_running()
+    finally:
+        os.dup2(said, 2)
+        os.close(said)
+        os.close(silence)
 
 
 def connected(distributed: Any, scheduler: str) -> Any:

@@ -89,7 +89,8 @@ def _reason(code: str, rows: List[manifest.Row], base: str) -> str:
     more = f"<p>and {len(rows) - MOST_FAILED} more, in the manifest</p>" if len(rows) > MOST_FAILED else ""
     opened = " open" if len(rows) <= FEW else ""
     return (f'<details{opened}><summary class="missed">{html.escape(code)}: {len(rows)}</summary>'
-            f'<div class="card"><table><tr><th>asset</th><th>reason</th><th>time</th><th>attempts</th></tr>{lines}</table>{more}</div></details>')
+            f'<div class="card"><table><tr><th>asset</th><th>reason</th><th>time</th><th>attempts</th>'
+            f"</tr>{lines}</table>{more}</div></details>")
 
 
 def _all_done(rows: List[manifest.Row], base: str) -> str:

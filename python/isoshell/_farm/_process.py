@@ -41,8 +41,8 @@ class Watch:
         seconds = time.monotonic() - self._start
         if self._limit is not None and seconds > self._limit:
             self._process.kill()
-            raise Lost("TIME_LIMIT", f"not done after {self._limit:g} s, the time limit of an asset; --time-limit raises "
-                       "it")
+            raise Lost("TIME_LIMIT", f"not done after {self._limit:g} s, the time limit of an asset; --time-limit "
+                       "raises it")
         taken = self.taken()
         if taken > most_bytes:
             self._process.kill()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import shlex
+import shutil
 import sys
 import time
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, NoReturn, Optional, Set, Tuple
 
 import isoshell
 
@@ -24,11 +25,15 @@ SOME_FAILED = 9
 ENGINE_LOST = 10
 DEATHS = 3  # of workers, by Dask's count, after which an asset is given up
 LOOK_SECONDS = 0.5
-SECONDS_TO_STOP = 1.0
+SECONDS_TO_STOP = 0.5
+SECONDS_TO_RECONNECT = 5.0
 
 
 class EngineLost(Exception):
     """The scheduler does not answer any more."""
+
+
+ENDS = (KeyboardInterrupt, worker.Unwritable, EngineLost)
 
 
 def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str]) -> int:
@@ -53,23 +58,17 @@ def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str
         if plan.wanted:
             common = {name: settings[name] for name in ("contexts", "asset_memory", "time_limit", "place")}
             with cluster_of(*(settings[name] for name in ("scheduler", "workers", "slots", "memory"))) as cluster:
+                common.update(out=out, run=number, memory=cluster.memory)
                 announce(cluster, len(plan.wanted))
-                failed += over(cluster, plan, {**common, "out": out, "run": number, "memory": cluster.memory}, writer,
-                               progress)
+                try:
+                    failed += over(cluster, plan, common, writer, progress)
+                except ENDS as error:
+                    if cluster.may_be_left:
+                        leave(cluster, ended(error, out, again, progress))
+                    raise
                 cluster.client.run(worker.stop, on_error="ignore")
-    except KeyboardInterrupt:
-        progress.end()
-        tell(f"interrupted; what is done is kept. To go on: {again}")
-        leave(int(ErrorCode.INTERRUPTED), settings)
-    except worker.Unwritable as error:
-        progress.end()
-        tell(f"error: {error}: {out} takes no more files, so the farm has stopped. What is done is kept; make room, "
-             f"and go on with: {again}")
-        leave(int(ErrorCode.UNWRITABLE_OUTPUT), settings)
-    except EngineLost as error:
-        progress.end()
-        tell(f"error: {error}. What is done is kept. To go on: {again}")
-        leave(ENGINE_LOST, settings)
+    except ENDS as error:
+        return ended(error, out, again, progress)
     finally:
         writer.close()
     progress.end()
@@ -77,6 +76,21 @@ def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str
     tell(f"{done} of {len(assets)} assets are done" + (
         f", {failed} failed: isoshell farm report {shlex.quote(out)} says why" if failed else ""))
     return SOME_FAILED if failed else 0
+
+
+def ended(error: BaseException, out: str, again: str, progress: Progress) -> int:
+    """Says why the farm stops and how it goes on. Returns the exit status."""
+    progress.end()
+    kept = "What is done is kept"
+    if isinstance(error, KeyboardInterrupt):
+        tell(f"interrupted. {kept}. To go on: {again}")
+        return int(ErrorCode.INTERRUPTED)
+    if isinstance(error, worker.Unwritable):
+        tell(f"error: {error}: {out} takes no more files, so the farm has stopped. {kept}; make room, and go on with: "
+             f"{again}")
+        return int(ErrorCode.UNWRITABLE_OUTPUT)
+    tell(f"error: {error}. {kept}. To go on: {again}")
+    return ENGINE_LOST
 
 
 def announce(cluster: Cluster, count: int) -> None:
@@ -148,8 +162,11 @@ def finished(cluster: Cluster, futures: Set[Any]) -> List[Any]:
             time.sleep(LOOK_SECONDS / 10)
     else:
         time.sleep(LOOK_SECONDS)
-    if cluster.client.status != "running":
-        raise EngineLost(f"the scheduler ({cluster.name}) does not answer any more")
+    end = time.monotonic() + SECONDS_TO_RECONNECT
+    while cluster.client.status != "running":
+        if time.monotonic() > end:
+            raise EngineLost(f"the scheduler ({cluster.name}) does not answer any more")
+        time.sleep(LOOK_SECONDS)
     return [future for future in futures if future.done()]
 
 
@@ -180,26 +197,36 @@ def row_of(future: Any, job: Dict[str, Any], deaths: int, writer: manifest.Write
 
 
 def stop(cluster: Cluster, futures: List[Any]) -> None:
-    """End what is under way, without waiting long."""
-    if cluster.is_own and cluster.name == "local":
-        return  # leave() ends its processes
+    """End what is under way on the workers of others, without waiting long."""
+    if cluster.name == "local" or cluster.client.status != "running":
+        return
     try:
         cluster.client.cancel(futures, asynchronous=True)
         cluster.client.run(worker.stop, wait=False, on_error="ignore")
-        time.sleep(SECONDS_TO_STOP / 2)
+        time.sleep(SECONDS_TO_STOP)
     except Exception:
         pass  # it is going anyhow
 
 
-def leave(status: int, settings: Dict[str, Any]) -> None:
-    """End at once, with the processes of a local scheduler; they keep nothing that could be lost."""
-    if settings["scheduler"] == "local":
+def leave(cluster: Cluster, status: int) -> NoReturn:
+    """End at once, with all processes of a local scheduler: what they have not finished is made again."""
+    if cluster.folder:
         psutil = places.library("psutil")
-        for process in psutil.Process().children(recursive=True):
+        own = [process for process in psutil.Process().children(recursive=True) if not is_tracker(process)]
+        for process in own:
             try:
                 process.kill()
             except psutil.Error:
                 pass
+        psutil.wait_procs(own, timeout=SECONDS_TO_STOP)
+        shutil.rmtree(cluster.folder, ignore_errors=True)
     sys.stderr.flush()
-    sys.stdout.flush()
     os._exit(status)
+
+
+def is_tracker(process: Any) -> bool:
+    """The process of Python's own that removes semaphores when this one has ended."""
+    try:
+        return any("resource_tracker" in word for word in process.cmdline())
+    except places.library("psutil").Error:
+        return False

@@ -283,11 +283,19 @@ def new_run() -> str:
 
 def _remove_what_the_dead_left(folder: str) -> None:
     """Scratch folders of workers of this machine that were killed."""
-    psutil, own = places.library("psutil"), socket.gethostname()
+    own = socket.gethostname()
     for name in os.listdir(folder):
         host, _, pid = name.rpartition("-")
-        if host == own and pid.isdigit() and not psutil.pid_exists(int(pid)):
+        if host == own and pid.isdigit() and not _is_alive(int(pid)):
             shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
+
+
+def _is_alive(pid: int) -> bool:
+    psutil = places.library("psutil")
+    try:
+        return bool(psutil.Process(pid).status() != psutil.STATUS_ZOMBIE)
+    except psutil.Error:
+        return False
 
 
 def _slots() -> int:

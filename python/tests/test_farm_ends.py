@@ -1,0 +1,202 @@
+"""A farm that is ended in the middle, in whatever way, loses nothing and goes on where it was."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from conftest import make_ball, write_obj
+from farms import (SMALL, assert_is_serial, digests_of, farm, files_of, make_assets, processes_of, rows_of,
+                   start_farm, wait_for)
+
+from isoshell._farm import _manifest as manifest
+
+ENDLESS = ["--time-limit", "0"]
+
+
+@pytest.fixture
+def held(assets, tmp_path):
+    """The assets, and one beside them that holds whoever reads it."""
+    mixed = tmp_path / "mixed"
+    mixed.mkdir()
+    for path in assets.glob("*.obj"):
+        (mixed / path.name).symlink_to(path)
+    os.mkfifo(mixed / "held.obj")
+    return mixed
+
+
+def end(process, how=signal.SIGKILL):
+    process.send_signal(how)
+    _, said = process.communicate(timeout=30)
+    return said
+
+
+def wait_for_rows(out, count):
+    wait_for(lambda: (out / "manifest").exists() and len(rows_of(out)) >= count)
+
+
+def assert_nothing_is_half_written(out):
+    for name in files_of(out):
+        if name.endswith(".json"):
+            json.loads((out / name).read_text())
+        elif not name.startswith(".farm/"):
+            assert name.endswith(".ply") and (out / name).read_bytes()[:3] == b"ply"
+
+
+def resumed(held, out, *words):
+    (held / "held.obj").unlink()
+    write_obj(held / "held.obj", *make_ball())
+    done = farm("run", held, out, *SMALL, *words)
+    assert done.returncode == 0, done.stderr
+    return done.stderr
+
+
+def without_held(out):
+    (out / "held.ply").unlink()
+    for path in (out / "manifest").glob("*.jsonl"):
+        path.write_text("".join(line for line in path.read_text().splitlines(True) if "held.ply" not in line))
+
+
+def test_an_interrupted_farm_says_how_to_go_on_and_leaves_no_process(held, serial, tmp_path):
+    out = tmp_path / "out"
+    process = start_farm("run", held, out, *SMALL, *ENDLESS)
+    wait_for_rows(out, 4)
+    children = processes_of(process, "isoshell._farm._child")
+    assert children
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 130 and f"isoshell farm run {held} {out}" in said and "Traceback" not in said
+    wait_for(lambda: not any(child.is_running() for child in children))
+    assert_nothing_is_half_written(out)
+    assert "4 of 5 assets are done already" in resumed(held, out)
+    without_held(out)
+    assert_is_serial(out, serial)
+    assert not (out / ".farm").exists()
+
+
+def test_a_farm_whose_processes_are_all_killed_goes_on_where_it_was(held, serial, tmp_path):
+    out = tmp_path / "out"
+    process = start_farm("run", held, out, *SMALL, *ENDLESS)
+    wait_for_rows(out, 4)
+    others = [*processes_of(process, "spawn"), *processes_of(process, "isoshell._farm._child")]
+    end(process)
+    wait_for(lambda: not any(other.is_running() for other in others))
+    assert_nothing_is_half_written(out)
+    assert "4 remaining" not in farm("status", out).stdout
+    assert "4 of 5 assets are done already" in resumed(held, out)
+    without_held(out)
+    assert_is_serial(out, serial)
+
+
+def test_a_killed_worker_is_started_again_and_its_assets_are_meshed(held, serial, tmp_path):
+    out = tmp_path / "out"
+    process = start_farm("run", held, out, *SMALL, "--time-limit", 3)
+    wait_for_rows(out, 1)
+    killed = [worker for worker in processes_of(process, "spawn_main")]
+    assert killed
+    for worker in killed:
+        worker.kill()
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 9, said
+    assert rows_of(out)["held.ply"]["code"] == "TIME_LIMIT"
+    assert_is_serial(out, serial)
+    assert not (out / ".farm").exists()
+
+
+def test_a_farm_on_a_scheduler_that_dies_ends_and_says_how_to_go_on(held, serial, tmp_path):
+    out, address = tmp_path / "out", tmp_path / "scheduler.json"
+    words = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--scheduler-file", address, "--host", "127.0.0.1",
+             "--port", "0", "--no-dashboard"]
+    engine = subprocess.Popen(list(map(str, words)), stderr=subprocess.DEVNULL)
+    words = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", address, "--nthreads", "2",
+             "--no-dashboard", "--local-directory", tmp_path, "--death-timeout", "20"]
+    worker = subprocess.Popen(list(map(str, words)), stderr=subprocess.DEVNULL)
+    try:
+        wait_for(address.exists)
+        process = start_farm("run", held, out, *SMALL[:4], "--scheduler", address, *ENDLESS)
+        wait_for_rows(out, 4)
+        engine.kill()
+        _, said = process.communicate(timeout=60)
+        assert process.returncode == 10 and "does not answer" in said and f"isoshell farm run {held} {out}" in said, said
+        assert_nothing_is_half_written(out)
+    finally:
+        engine.kill()
+        worker.terminate()
+        engine.wait(30)
+        worker.wait(30)
+    assert "4 of 5 assets are done already" in resumed(held, out)
+    without_held(out)
+    assert_is_serial(out, serial)
+
+
+def test_a_full_disk_stops_the_farm_and_room_lets_it_go_on(assets, serial, tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(disk)]
+    if os.geteuid() or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("only root can mount a small disk")
+    try:
+        out, filler = disk / "out", disk / "filler"
+        out.mkdir()
+        (out / "manifest").mkdir()
+        filler.write_bytes(os.urandom(1000 << 10))
+        done = farm("run", assets, out, *SMALL)
+        assert done.returncode == 4 and "make room" in done.stderr and "Traceback" not in done.stderr, done.stderr
+        assert_nothing_is_half_written(out)
+        filler.unlink()
+        done = farm("run", assets, out, *SMALL)
+        assert done.returncode == 0, done.stderr
+        assert_is_serial(out, serial)
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_a_share_that_comes_back_is_read_by_the_next_run(tmp_path):
+    assets, out = make_assets(tmp_path / "assets", 2), tmp_path / "out"
+    table = tmp_path / "assets.csv"
+    table.write_text("path\nassets/ball0.obj\nassets/ball1.obj\n")
+    assets.rename(tmp_path / "away")
+    done = farm("run", table, out, *SMALL)
+    assert done.returncode == 9 and {row["code"] for row in rows_of(out).values()} == {"UNREADABLE_INPUT"}
+    (tmp_path / "away").rename(assets)
+    assert farm("run", table, out, *SMALL).returncode == 0
+    assert len(digests_of(out)) == 2
+
+
+def test_a_line_that_was_torn_is_passed_over_wherever_it_was_torn(tmp_path):
+    writer = manifest.Writer(str(tmp_path))
+    for name in ("a.ply", "b.ply"):
+        writer.append({"output": name, "state": "done", "message": "größer"})
+    writer.close()
+    file = next((tmp_path / "manifest").iterdir())
+    whole = file.read_bytes()
+    first = whole.index(b"\n") + 1
+    for length in random.Random(1).sample(range(first, len(whole) - 1), 40):
+        file.write_bytes(whole[:length])
+        assert set(manifest.read(str(tmp_path)).rows) == {"a.ply"}
+    file.write_bytes(whole)
+    assert set(manifest.read(str(tmp_path)).rows) == {"a.ply", "b.ply"}
+
+
+def test_of_several_rows_of_an_asset_the_last_counts(tmp_path):
+    for state in ("failed", "done"):
+        writer = manifest.Writer(str(tmp_path))
+        writer.append({"output": "a.ply", "state": state})
+        writer.close()
+        time.sleep(0.01)
+    assert len(list((tmp_path / "manifest").iterdir())) == 2
+    assert manifest.read(str(tmp_path)).rows["a.ply"]["state"] == "done"
+
+
+def test_object_storage_keeps_rows_in_files_that_are_put_whole(tmp_path, monkeypatch):
+    monkeypatch.setattr(manifest, "ROWS_A_FILE", 3)
+    place = f"file://{tmp_path}/out"
+    writer = manifest.Writer(place)
+    for i in range(7):
+        writer.append({"output": f"{i}.ply", "state": "done"})
+    assert len(list((tmp_path / "out/manifest").iterdir())) == 3
+    assert len(manifest.read(place).rows) == 7
