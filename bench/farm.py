@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Farms beside plain loops, and farms in trouble.
 
-    bench/farm.py make MESHES ASSETS [--count 100]        scaled and damaged copies of a folder of meshes, 5 % poisoned
-    bench/farm.py beside ASSETS WORK [--repeats 3]        a farm of two workers and two loops, in turn; wall time, digests
-    bench/farm.py chaos ASSETS WORK                       workers killed, the scheduler killed, the disk full; then resumed
-    bench/farm.py rows WORK [--count 100000]              time to read a manifest, and to find that nothing is left to do
+    bench/farm.py make MESHES ASSETS [--count 100]    scaled and damaged copies of a folder of meshes, 5 % poisoned
+    bench/farm.py beside ASSETS WORK [--repeats 3]    a farm of two assets at a time and two loops, in turn
+    bench/farm.py chaos ASSETS WORK                   workers and the scheduler killed, the disk full; then resumed
+    bench/farm.py rows WORK [--count 100000]          time to read a manifest and to find that nothing is left to do
 
-Poisoned are: a named pipe that never ends, a named pipe whose reader this program ends by SIGSEGV, a table row that asks
-for a grid 100 times too large, and a file that is cut off. `chaos` needs root, for a small disk of its own.
+Poisoned are: a named pipe that never ends, a named pipe whose reader this program ends by SIGSEGV, a row of the table
+that asks for a grid 100 times too large, and a file that is cut off. `chaos` needs root, for a small disk of its own.
 """
 import argparse
 import csv
@@ -186,7 +186,7 @@ def chaos(folder, work):
 
 
 def run_in_trouble(folder, disk, how):
-    """Every 20 seconds a worker is killed; after 30 the scheduler with all that is in its process, or no room is left."""
+    """Every 20 seconds a worker is killed; after 30 the process of the scheduler is, or no room is left."""
     filler = disk / "filler"
     farm = subprocess.Popen(farm_words(folder / "assets.csv", disk / "out"), stderr=subprocess.PIPE, text=True)
     start, killed = time.monotonic(), 0

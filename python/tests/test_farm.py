@@ -6,7 +6,6 @@ import os
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 from conftest import make_ball, write_obj
 from farms import SMALL, Crasher, assert_is_serial, digests_of, farm, files_of, make_assets, rows_of
@@ -133,8 +132,8 @@ def test_a_sequence_is_one_asset(tmp_path):
     assert {f"cache.000{i}.{end}" for i in (1, 2, 3) for end in ("ply", "json")} == files_of(out)
     rows = rows_of(out)
     assert rows["cache.####.ply"]["frames"] == 3 and "0004" in rows["cache.####-2.ply"]["message"]
-    subprocess.run([sys.executable, "-m", "isoshell", tmp_path / "cache.####.obj", tmp_path / "own.####.ply", "--frames",
-                    "1-3", *SMALL[:4], "--quiet"], check=True)
+    subprocess.run([sys.executable, "-m", "isoshell", tmp_path / "cache.####.obj", tmp_path / "own.####.ply",
+                    "--frames", "1-3", *SMALL[:4], "--quiet"], check=True)
     for i in (1, 2, 3):
         assert (tmp_path / f"own.000{i}.ply").read_bytes() == (out / f"cache.000{i}.ply").read_bytes()
     assert "1 of 2 assets are done already" in farm("run", table, out, *SMALL).stderr
@@ -151,8 +150,9 @@ def test_inputs_and_outputs_may_be_in_object_storage(assets, tmp_path):
 
 
 @pytest.mark.parametrize("words, says", [
-    (["--verticse", "7"], "verticse"), (["--vertices", "0"], "vertices"), (["--asset-memory", "much"], "--asset-memory"),
-    (["--scheduler", "nowhere.json"], "no such file"), (["--scheduler", "tcp://127.0.0.1:9", "--workers", "2"], "local"),
+    (["--verticse", "7"], "verticse"), (["--vertices", "0"], "vertices"),
+    (["--asset-memory", "much"], "--asset-memory"), (["--scheduler", "nowhere.json"], "no such file"),
+    (["--scheduler", "tcp://127.0.0.1:9", "--workers", "2"], "local"),
 ])
 def test_what_cannot_be_is_refused_before_anything_starts(assets, tmp_path, words, says):
     done = farm("run", assets, tmp_path / "out", *words)

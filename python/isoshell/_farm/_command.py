@@ -92,7 +92,7 @@ def _add_options(run: argparse.ArgumentParser) -> None:
 
 def _run(arguments: argparse.Namespace, words: List[str]) -> int:
     from ._run import run
-    from ._worker import _devices
+    from ._worker import devices_of
 
     given = vars(arguments)
     names = [option.name.replace("-", "_") for option in _isoshell.option_table()]
@@ -106,7 +106,7 @@ def _run(arguments: argparse.Namespace, words: List[str]) -> int:
         raise Error("--workers is for --scheduler local and slurm; others have the workers that were started for them",
                     stage="command line")
     processors = len(os.sched_getaffinity(0))
-    devices = len(_devices(place.get("device")))
+    devices = len(devices_of(place.get("device")))
     contexts = arguments.contexts or (CONTEXTS_OF_DEVICE if devices else 1)
     slots = arguments.workers or (devices * contexts if devices else processors)
     if scheduler == "local":

@@ -66,7 +66,7 @@ def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str
                     if cluster.may_be_left:
                         leave(cluster, ended(error, out, again, progress))
                     raise
-                cluster.client.run(worker.stop, on_error="ignore")
+                cluster.client.run(worker.stop, number, on_error="ignore")
     except ENDS as error:
         return ended(error, out, again, progress)
     finally:
@@ -121,7 +121,7 @@ def over(cluster: Cluster, plan: Plan, common: Dict[str, Any], writer: manifest.
                 progress.count(row)
             progress.show()
     except BaseException:
-        stop(cluster, list(under_way))
+        stop(cluster, common["run"], list(under_way))
         raise
 
 
@@ -196,13 +196,13 @@ def row_of(future: Any, job: Dict[str, Any], deaths: int, writer: manifest.Write
     return row
 
 
-def stop(cluster: Cluster, futures: List[Any]) -> None:
+def stop(cluster: Cluster, run: str, futures: List[Any]) -> None:
     """End what is under way on the workers of others, without waiting long."""
     if cluster.name == "local" or cluster.client.status != "running":
         return
     try:
         cluster.client.cancel(futures, asynchronous=True)
-        cluster.client.run(worker.stop, wait=False, on_error="ignore")
+        cluster.client.run(worker.stop, run, wait=False, on_error="ignore")
         time.sleep(SECONDS_TO_STOP)
     except Exception:
         pass  # it is going anyhow

@@ -44,13 +44,12 @@ def mesh(job: Job) -> Row:
     return crew_of(job).mesh(job)
 
 
-def stop() -> None:
-    """End the assets that are under way here."""
-    global _crew
+def stop(run: str) -> None:
+    """End the assets of a run that are under way here."""
     with _lock:
-        if _crew is not None:
-            _crew.stop()
-            _crew = None
+        crew = _crews.pop(run, None)
+    if crew is not None:
+        crew.stop()
 
 
 class Crew:
@@ -60,7 +59,7 @@ class Crew:
         self.run = job["run"]
         self._out = job["out"]
         slots = _slots()
-        self._devices = _devices(job["place"].get("device"))
+        self._devices = devices_of(job["place"].get("device"))
         self._contexts = job["contexts"] or (8 if self._devices else 1)
         self._most = job["memory"] or _memory_of_worker()
         self._admission = Admission(self._most)
@@ -76,9 +75,13 @@ class Crew:
             self._scratch = os.path.join(tempfile.mkdtemp(prefix="isoshell-farm-"), "work")
             os.mkdir(self._scratch)
         else:
-            self._scratch = os.path.join(self._out, SCRATCH, f"{socket.gethostname()}-{os.getpid()}")
+            self._scratch = os.path.join(self._out, SCRATCH, f"{socket.gethostname()}-{self.run}-{os.getpid()}")
             os.makedirs(self._scratch, exist_ok=True)
             _remove_what_the_dead_left(os.path.join(self._out, SCRATCH))
+
+    @property
+    def is_idle(self) -> bool:
+        return not self._extra and not any(self._busy)
 
     def stop(self) -> None:
         self.is_stopped = True
@@ -259,22 +262,21 @@ class Crew:
         return answer
 
 
-_crew: Optional[Crew] = None
+_crews: Dict[str, Crew] = {}
 _lock = threading.Lock()
 
 
 def crew_of(job: Job) -> Crew:
-    """The crew of a run; that of another run is over."""
-    global _crew
+    """The crew of a run. Crews of others that have nothing to do are sent home: their run may have died."""
     with _lock:
-        if _crew is None or _crew.run != job["run"]:
-            if _crew is not None:
-                _crew.stop()
+        if job["run"] not in _crews:
+            for run in [run for run, crew in _crews.items() if crew.is_idle]:
+                _crews.pop(run).stop()
             try:
-                _crew = Crew(job)
+                _crews[job["run"]] = Crew(job)
             except OSError as error:
                 raise Unwritable(f"{error.filename}: {error.strerror}") from error
-        return _crew
+        return _crews[job["run"]]
 
 
 def new_run() -> str:
@@ -285,8 +287,8 @@ def _remove_what_the_dead_left(folder: str) -> None:
     """Scratch folders of workers of this machine that were killed."""
     own = socket.gethostname()
     for name in os.listdir(folder):
-        host, _, pid = name.rpartition("-")
-        if host == own and pid.isdigit() and not _is_alive(int(pid)):
+        whole, _, pid = name.rpartition("-")
+        if whole.rpartition("-")[0] == own and pid.isdigit() and not _is_alive(int(pid)):
             shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
 
 
@@ -315,7 +317,7 @@ def _memory_of_worker() -> int:
     return int(told) if told else memory_of_node()
 
 
-def _devices(device: Optional[str]) -> List[str]:
+def devices_of(device: Optional[str]) -> List[str]:
     """The CUDA devices that children take turns on; none where all is done by the CPU or on one named device."""
     if device not in (None, "auto", "cuda"):
         return []
