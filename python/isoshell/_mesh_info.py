@@ -9,9 +9,9 @@ from typing import Any, Optional, Sequence, Union
 from . import _isoshell
 from ._context import Context
 from ._errors import Error
-from ._keywords import Keywords, keywords_of
-from ._remesh import listener, settle
-from ._sources import SourceLike, is_true_or_false, source_of
+from ._keywords import Keywords
+from ._remesh import keywords_for, listener, settle
+from ._sources import SourceLike, source_of
 
 AS_IT_IS = ("features", "off")  # creases are for who remeshes
 
@@ -45,9 +45,9 @@ def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
                                "max_memory": max_memory}
     if context is None:
         options["device"] = "cpu"
-    place, progress, keywords = settle(context, options, mesh)
+    place, progress = settle(context, options)
     reference = None if ref is None else source_of(ref)
-    text, missed = _isoshell.mesh_info(place, source_of(mesh), keywords, reference,
+    text, missed = _isoshell.mesh_info(place, source_of(mesh), keywords_for(mesh, options), reference,
                                        _keywords_of_reference(ref, ref_format), progress, listener({}))
     info: dict[str, Any] = json.loads(text)
     if missed:
@@ -59,5 +59,4 @@ def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
 def _keywords_of_reference(ref: Optional[SourceLike], ref_format: Optional[str]) -> Keywords:
     if ref_format is not None and not isinstance(ref, (str, os.PathLike)):
         raise Error("ref_format is for a ref in a file; leave it out")
-    iso = 0.5 if is_true_or_false(ref) else None
-    return [AS_IT_IS, *keywords_of({"input_format": ref_format, "iso": iso})]
+    return [AS_IT_IS, *keywords_for(ref, {"input_format": ref_format})]
