@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python/tests"))
 from device_tensor import DeviceTensor, Driver
 from isoshell._arrays import array_of
 
-REPEATS = 5
+REPEATS = 9
 
 
 def torus(n):
@@ -27,14 +27,15 @@ def torus(n):
     return np.stack([r * np.cos(a), r * np.sin(a), .7 * np.sin(b)], -1).reshape(-1, 3), faces
 
 
-def milliseconds(work):
-    def once():
+def milliseconds(*works):
+    """Of each, done in turn."""
+    def once(work):
         start = time.perf_counter()
         work()
         return 1e3 * (time.perf_counter() - start)
 
-    once()
-    return median(once() for _ in range(REPEATS))
+    rounds = [[once(work) for work in works] for _ in range(REPEATS + 1)][1:]
+    return [median(column) for column in zip(*rounds)]
 
 
 def main(n=500, vertices=100_000):
@@ -43,18 +44,18 @@ def main(n=500, vertices=100_000):
     on_device = [DeviceTensor(driver, np.array(values)) for values in mesh]
     driver.call("cuStreamSynchronize", driver.stream)
     megabytes = sum(values.nbytes for values in mesh) / 1e6
-    copy = milliseconds(lambda: [array_of("values", tensor) for tensor in on_device])
+    [copy] = milliseconds(lambda: [array_of("values", tensor) for tensor in on_device])
     print(f"{len(mesh[1])} triangles, {megabytes:.1f} MB: {copy:.1f} ms to the host, {megabytes / copy:.1f} GB/s")
     with isoshell.Context(device="cuda") as context:
         def run(source):
             return isoshell.remesh(source, vertices=vertices, context=context)
 
         assert run(tuple(on_device)).digest == run(mesh).digest
-        print(f"remesh: {milliseconds(lambda: run(mesh)):.0f} ms from the host, "
-              f"{milliseconds(lambda: run(tuple(on_device))):.0f} ms from the device")
+        host, device = milliseconds(lambda: run(mesh), lambda: run(tuple(on_device)))
+        print(f"remesh: {host:.0f} ms from the host, {device:.0f} ms from the device")
         try:
             result = run(tuple(on_device))
-            print(f"to_torch: {milliseconds(result.to_torch):.1f} ms")
+            print(f"to_torch: {milliseconds(result.to_torch)[0]:.1f} ms")
         except ImportError:
             print("to_torch: there is no torch here")
 

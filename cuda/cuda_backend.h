@@ -40,6 +40,8 @@ class CudaBackend final : public BackendTable {
   int64_t six_volume_vox(const SurfaceMesh&, Context&) const override;
   void collapse_edges(const SurfaceMesh&, const CollapseOptions&, SeedSet&, DualMesh&, Context&) const override;
   int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const override;
+  DistanceSums sum_distances(const TriangleMesh& from, const std::vector<double>& area_until,
+                             const TriangleGridView& to, const DistancePlaces&, Context&) const override;
   void finish_stages(Context&) const override;
 };
 

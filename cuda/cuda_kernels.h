@@ -38,6 +38,9 @@ namespace component_steps {
 struct JoinAcrossLeaves;
 struct JoinInsideLeaf;
 }  // namespace component_steps
+namespace distance_steps {
+struct SumPlaces;
+}
 namespace dual {
 struct DecideDisconnectedPiece;
 struct FoundCell;
@@ -109,6 +112,8 @@ struct CudaKernels {
   using CooperativeSteps = StepList<
       // attach_cooperative.cuh: a warp a seed, a lane a row of the grid's cells.
       attach_seeds::AttachSeed,
+      // distance_cooperative.cuh: a block a chunk of places, whose distances one thread then adds in order.
+      distance_steps::SumPlaces,
       // flood_cooperative.cuh: a warp a leaf; what it reads of its 26 neighbours lies in shared memory.
       flood::FindNeighbours, flood::ListReached, flood::Spread,
       // label_cooperative.cuh: a warp a block of vertices, which gathers the block's candidates together.

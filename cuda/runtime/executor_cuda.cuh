@@ -217,8 +217,13 @@ class CudaExecutor {
       if (owner.device() == stream_.device()) return copy_in_order(from, owner);
       return to_device(from.to_host());
     }
-    Buffer<T> copy = make<T>(from.size());
-    stream_.copy_to_device(copy.data(), from.data(), from.size_bytes());
+    return upload(from.view());
+  }
+  /// Of an array on the host.
+  template <class T>
+  Buffer<T> upload(View<const T> from) {
+    Buffer<T> copy = make<T>(from.size);
+    stream_.copy_to_device(copy.data(), from.data, copy.size_bytes());
     return copy;
   }
 

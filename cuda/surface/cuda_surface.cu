@@ -1,4 +1,5 @@
 // CUDA's measure_topology and snap_surface.
+#include "core/vector_view.h"
 #include "cuda/cuda_backend.h"
 #include "cuda/runtime/executor_cuda.cuh"
 #include "cuda/surface/surface_cooperative.cuh"
@@ -8,19 +9,12 @@
 namespace isoshell {
 namespace {
 
-template <class T>
-Buffer<T> upload(CudaExecutor& exec, const std::vector<T>& values) {
-  Buffer<T> out = exec.make<T>(int64_t(values.size()));
-  exec.device().copy_to_device(out.data(), values.data(), out.size_bytes());
-  return out;
-}
-
 /// A soup in device memory.
 struct DeviceSoup {
   Buffer<WorldPoint> vertices;
   Buffer<std::array<uint32_t, 3>> triangles;
   DeviceSoup(CudaExecutor& exec, const TriangleSoup& soup)
-      : vertices(upload(exec, soup.vertices)), triangles(upload(exec, soup.triangles)) {}
+      : vertices(exec.upload(view_of(soup.vertices))), triangles(exec.upload(view_of(soup.triangles))) {}
   SoupView view() const { return {vertices.view(), triangles.view()}; }
 };
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "measure/triangle_grid.h"
+#include "core/triangle_grid.h"
 
 namespace isoshell {
 

@@ -12,7 +12,7 @@
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "isoshell/buffer.h"
-#include "measure/triangle_grid.h"
+#include "core/triangle_grid.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {

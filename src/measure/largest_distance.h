@@ -3,7 +3,7 @@
 
 #include "isoshell/backend.h"
 #include "isoshell/triangle_mesh.h"
-#include "measure/triangle_grid.h"
+#include "core/triangle_grid.h"
 
 namespace isoshell {
 

@@ -23,7 +23,7 @@
 #include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
 #include "measure/crossings.h"
-#include "measure/triangle_grid.h"
+#include "core/triangle_grid.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/dual_of_seeds.h"

@@ -7,7 +7,7 @@
 #include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
-#include "measure/triangle_grid.h"
+#include "core/triangle_grid.h"
 
 namespace isoshell {
 namespace {

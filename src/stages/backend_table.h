@@ -1,6 +1,7 @@
 // The seam between backends: the few functions each one provides. Everything else in src/ is written once.
 #pragma once
 
+#include "core/distance_sums.h"
 #include "isoshell/stages.h"
 
 namespace isoshell {
@@ -46,6 +47,9 @@ class BackendTable {
   virtual int64_t six_volume_vox(const SurfaceMesh&, Context&) const = 0;
   virtual void collapse_edges(const SurfaceMesh&, const CollapseOptions&, SeedSet&, DualMesh&, Context&) const = 0;
   virtual int64_t untangle_sheet(Sheet&, SeedSet&, Context&) const = 0;
+  /// `area_until`: the sum of the areas of the triangles up to each. What the view names lies on the host.
+  virtual DistanceSums sum_distances(const TriangleMesh& from, const std::vector<double>& area_until,
+                                     const TriangleGridView& to, const DistancePlaces&, Context&) const = 0;
   virtual void finish_stages(Context&) const = 0;
 
  protected:

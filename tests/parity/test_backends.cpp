@@ -2,9 +2,12 @@
 // without the help of TestContext, so that products stay where their backend leaves them.
 #include <cstring>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "golden/golden_cases.h"
 #include "isoshell/digest.h"
+#include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "parity/product_hash.h"
 #include "support/catch.h"
@@ -375,6 +378,31 @@ TEST_CASE("parity: whole runs, three times, with every digest", "[parity][cuda]"
     const std::string expected = run(c, Backend::cpu);
     for (int repeat = 0; repeat < 3; ++repeat) CHECK(run(c, Backend::cuda) == expected);
   }
+}
+
+TEST_CASE("parity: distances and turns of normals, with creases, far away and of many samples", "[parity][cuda]") {
+  REQUIRE(test_backend() == Backend::cuda);
+  const auto mesh_of = [](const TriangleSoup& soup) { return TriangleMesh{soup.vertices, soup.triangles}; };
+  const TriangleMesh torus = mesh_of(shapes::torus(2, .7, 96, 48)), rough = mesh_of(shapes::torus(2, .68, 31, 17)),
+                     box = mesh_of(shapes::box({0, 0, 0}, {1, 2, 3})), far = mesh_of(shapes::sphere({40, 0, 7}, 1, 48)),
+                     one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}};
+  Context cpu, cuda;
+  cpu.backend = Backend::cpu;
+  cuda.backend = Backend::cuda;
+  const auto figures = [](const MeshDistance& d) {
+    std::vector<double> all;
+    for (const OneSidedDistance& side : {d.to_reference, d.from_reference})
+      all.insert(all.end(), {side.mean, side.rms, side.max, side.at_most.value_or(-1)});
+    for (const NormalDeviation& side : {d.normal_to_reference, d.normal_from_reference})
+      all.insert(all.end(), {side.mean_deg, side.max_deg});
+    return all;
+  };
+  const std::pair<const TriangleMesh*, const TriangleMesh*> pairs[] = {
+      {&torus, &rough}, {&rough, &box}, {&box, &box}, {&torus, &far}, {&box, &one}};
+  for (const auto& [mesh, reference] : pairs)
+    for (const DistanceOptions& options : {DistanceOptions{}, DistanceOptions{1}, DistanceOptions{70001, true}})
+      CHECK(figures(measure_distance(*mesh, *reference, cuda, options)) ==
+            figures(measure_distance(*mesh, *reference, cpu, options)));
 }
 
 TEST_CASE("parity: one context serves run after run, and two contexts do not disturb each other", "[parity][cuda]") {

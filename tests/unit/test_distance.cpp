@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/triangle_grid.h"
+#include "core/turn.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
-#include "measure/triangle_grid.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
@@ -105,6 +106,38 @@ TEST_CASE("distance: the grid of triangles finds what looking at each one finds"
     }
     CHECK(grid.distance_sq(p) == best);
   }
+}
+
+TEST_CASE("distance: the grid of triangles finds the nearest one from far away, and from inside of a hollow",
+          "[distance][unit]") {
+  const TriangleMesh ball = mesh_of(shapes::sphere({0, 0, 0}, 1, 120));
+  const TriangleGrid grid(ball);
+  for (uint64_t i = 0; i < 40; ++i) {
+    const auto at = [&](uint64_t of) { return double(random_bits(of, i) >> 40) / double(1 << 23) - 1; };
+    const WorldPoint direction{at(1), at(2), at(3)};
+    const double size = length(direction);
+    for (const double distance : {0., .1, .5, 1.5, 10., 1e6}) {
+      const WorldPoint p = distance / size * direction;
+      double best = 1e30;
+      for (const auto& t : ball.triangles)
+        best = std::min(
+            best, nearest_of_triangle(p, ball.vertices[t[0]], ball.vertices[t[1]], ball.vertices[t[2]]).distance_sq);
+      CHECK(grid.distance_sq(p) == best);
+    }
+  }
+}
+
+TEST_CASE("distance: angles are those of the arc tangent", "[distance][unit]") {
+  for (int i = 0; i <= 100000; ++i) {
+    const double x = i / 100000.;
+    REQUIRE(std::abs(arc_tangent(x) - std::atan(x)) <= 4e-16 * std::max(1e-5, x));
+  }
+  CHECK(angle_between_deg({1, 0, 0}, {5, 0, 0}) == 0);
+  CHECK(angle_between_deg({1, 0, 0}, {-5, 0, 0}) == 0);
+  CHECK(angle_between_deg({1, 0, 0}, {0, 3, 0}) == 90);
+  CHECK(angle_between_deg({1, 0, 0}, {1, 1, 0}) == Approx(45).epsilon(1e-15));
+  CHECK(angle_between_deg({0, 0, 1}, {0, 1, std::sqrt(3)}) == Approx(30).epsilon(1e-15));
+  CHECK(angle_between_deg({0, 0, 0}, {0, 1, 0}) == 0);
 }
 
 TEST_CASE("distance: a mesh without triangles, or of vertices that are not there, is refused", "[distance][unit]") {

@@ -5,7 +5,7 @@
 #include "features/embed_lines.h"
 #include "features/mesh_edges.h"
 #include "features/weld_for_features.h"
-#include "measure/triangle_grid.h"
+#include "core/triangle_grid.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "voxel/random.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/world_vector.h"
 #include "stages/surface/soup_keys.h"
 #include "voxel/random.h"
 #include "voxel/union_find.h"
@@ -109,12 +110,6 @@ WeldedMesh weld(Exec& exec, const SoupView& soup) {
   mesh.faces = exec.template make<TriangleIndices>(kept.size());
   exec.for_each("store faces", kept.size(), StoreFaces{keys.view(), kept.view(), mesh.faces.view()});
   return mesh;
-}
-
-/// Twice the vector area.
-ISOSHELL_HD inline WorldPoint doubled_area(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-  return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
 }
 
 /// Areas of a run of faces, added one after the other.
