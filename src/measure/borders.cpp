@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/half_edge_list.h"
+#include "core/triangle_grid.h"
 #include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "isoshell/buffer.h"
-#include "core/triangle_grid.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {

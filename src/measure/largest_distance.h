@@ -1,9 +1,9 @@
 // How far a mesh is from another one at most.
 #pragma once
 
+#include "core/triangle_grid.h"
 #include "isoshell/backend.h"
 #include "isoshell/triangle_mesh.h"
-#include "core/triangle_grid.h"
 
 namespace isoshell {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/triangle_grid.h"
 #include "core/triangle_list.h"
 #include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
-#include "core/triangle_grid.h"
 
 namespace isoshell {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "attributes/seams.h"
 #include "core/copy_product.h"
+#include "core/triangle_grid.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/cut_surface.h"
@@ -23,7 +24,6 @@
 #include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
 #include "measure/crossings.h"
-#include "core/triangle_grid.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/dual_of_seeds.h"

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "attributes/facing_place.h"
+#include "core/triangle_grid.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
-#include "core/triangle_grid.h"
 #include "sequence/mean_edge_length.h"
 
 namespace isoshell {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/triangle_grid.h"
 #include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
-#include "core/triangle_grid.h"
 
 namespace isoshell {
 namespace {

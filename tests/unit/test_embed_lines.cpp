@@ -1,11 +1,11 @@
 // Lines on a mesh: they become edges, and the surface stays what it was.
 #include <cmath>
 
+#include "core/triangle_grid.h"
 #include "core/world_vector.h"
 #include "features/embed_lines.h"
 #include "features/mesh_edges.h"
 #include "features/weld_for_features.h"
-#include "core/triangle_grid.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
