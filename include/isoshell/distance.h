@@ -50,11 +50,12 @@ struct DistanceOptions {
 
 /// Result: each mesh has one sample in each of its strata of equal area, along its triangles, and every n-th vertex, n
 /// the smallest that leaves at most kDistanceVertices; the distances are exact up to rounding, sums run in one fixed
-/// shape. Unless `exact`, normals of a sample are compared with the nearest triangle; where they turn, with those that
-/// lie within a ten-thousandth of the diagonal beyond it, too: beside a crease either side of it may be the nearest.
-/// Cost: about four searches in grids of triangles a sample; 50 bytes a triangle, at most 160; if exact, also a search
-/// for each vertex and triangle, at most some million more, and 500 bytes a triangle. Throws: usage when a mesh has no
-/// triangle or names a vertex that it does not have, or for no samples.
+/// shape, and every backend finds the same figures. Unless `exact`, normals of a sample are compared with the nearest
+/// triangle; where they turn, with those that lie within a ten-thousandth of the diagonal beyond it, too: beside a
+/// crease either side of it may be the nearest. Cost: about four searches in grids of triangles a sample; 50 bytes a
+/// triangle, at most 160; if exact, also a search for each vertex and triangle, at most some million more, and 500
+/// bytes a triangle. Throws: usage when a mesh has no triangle or names a vertex that it does not have, or for no
+/// samples.
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context,
                               const DistanceOptions& options = {});
 

@@ -44,8 +44,8 @@ class Admission:
 
 def memory_of_node() -> int:
     """Bytes that a farm may use here: four fifths of what is free, or of what a group of processes is allowed."""
-    free = int(places.library("psutil").virtual_memory().available)
-    return int(PART_OF_FREE * min(free, int(places.library("distributed.system").MEMORY_LIMIT)))
+    free = int(places.package("psutil").virtual_memory().available)
+    return int(PART_OF_FREE * min(free, int(places.package("distributed.system").MEMORY_LIMIT)))
 
 
 def bytes_of(option: str, text: str) -> int:

@@ -141,7 +141,7 @@ def _rows_of(place: str) -> Iterable[Dict[str, Any]]:
     content = places.read_bytes(place)
     kind = place.lower().rpartition(".")[2]
     if kind == "parquet":
-        table = places.library("pyarrow.parquet").read_table(io.BytesIO(content))
+        table = places.package("pyarrow.parquet").read_table(io.BytesIO(content))
         return list(table.to_pylist())
     text = content.decode("utf-8-sig")
     if kind == "csv":

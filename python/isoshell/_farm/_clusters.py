@@ -36,12 +36,12 @@ class Cluster(NamedTuple):
 @contextmanager
 def cluster_of(scheduler: str, workers: Optional[int], slots: int, memory: Optional[int]) -> Iterator[Cluster]:
     """local, slurm, the address of a scheduler, or the file that it wrote."""
-    distributed = places.library("distributed")
+    distributed = places.package("distributed")
     settings: Dict[str, Any] = {"distributed.scheduler.allowed-failures": DEATHS_OF_WORKERS}
     for name in ("distributed", "asyncio", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said by the farm, in a line
     with ExitStack() as stack:
-        stack.enter_context(places.library("dask").config.set(settings))
+        stack.enter_context(places.package("dask").config.set(settings))
         if scheduler == "local":
             start_tracker()
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="isoshell-farm-",
@@ -92,7 +92,7 @@ def connected(distributed: Any, scheduler: str) -> Any:
 
 def slurm_cluster() -> Any:
     """Of Slurm jobs as ~/.config/dask/jobqueue.yaml says; nothing is submitted yet."""
-    jobqueue = places.library("dask_jobqueue")
+    jobqueue = places.package("dask_jobqueue")
     try:
         return jobqueue.SLURMCluster(n_workers=0)
     except (ValueError, TypeError) as error:

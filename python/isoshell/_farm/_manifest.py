@@ -92,7 +92,7 @@ def read(out: str) -> Manifest:
 
 def compact(manifest: Manifest, path: str) -> None:
     """Write the rows as one table of Parquet. Needs pyarrow."""
-    pyarrow, parquet = places.library("pyarrow"), places.library("pyarrow.parquet")
+    pyarrow, parquet = places.package("pyarrow"), places.package("pyarrow.parquet")
     flat = [{**row, "options": json.dumps(row["options"], sort_keys=True), "gates": json.dumps(row["gates"])}
             for _, row in sorted(manifest.rows.items())]
     names = list(dict.fromkeys(name for row in flat for name in row))

@@ -21,7 +21,7 @@ class File(NamedTuple):
     changed: float  # seconds since 1970; 0 where the place does not say
 
 
-def library(name: str) -> Any:
+def package(name: str) -> Any:
     """A package that the farm needs and isoshell itself does not."""
     try:
         return importlib.import_module(name)
@@ -48,7 +48,7 @@ def join(place: str, *names: str) -> str:
 def file_system(place: str) -> Tuple[Any, str]:
     """The file system of a remote place, and the place's path in it."""
     try:
-        system, path = library("fsspec").core.url_to_fs(place)
+        system, path = package("fsspec").core.url_to_fs(place)
     except (ImportError, ValueError) as error:
         raise Error(f"{place}: {error}", ErrorCode.UNREADABLE_INPUT, "farm") from error
     return system, str(path)

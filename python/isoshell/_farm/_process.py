@@ -34,7 +34,7 @@ class Watch:
         self._process = process
         self._limit = time_limit
         self._start = time.monotonic()
-        self._memory = places.library("psutil").Process(process.pid)
+        self._memory = places.package("psutil").Process(process.pid)
 
     def look(self, most_bytes: float) -> None:
         """Raises Lost when it has ended the process."""
@@ -53,7 +53,7 @@ class Watch:
         """Bytes of memory, 0 of a process that is gone."""
         try:
             return int(self._memory.memory_info().rss)
-        except places.library("psutil").Error:
+        except places.package("psutil").Error:
             return 0
 
 

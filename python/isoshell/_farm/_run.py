@@ -152,7 +152,7 @@ def threads_of(cluster: Cluster) -> Dict[str, int]:
 
 def finished(cluster: Cluster, futures: Set[Any]) -> List[Any]:
     """The futures that are, after a while at most. Raises EngineLost."""
-    distributed = places.library("distributed")
+    distributed = places.package("distributed")
     if futures:
         try:
             distributed.wait(list(futures), timeout=LOOK_SECONDS, return_when="FIRST_COMPLETED")
@@ -211,7 +211,7 @@ def stop(cluster: Cluster, run: str, futures: List[Any]) -> None:
 def leave(cluster: Cluster, status: int) -> NoReturn:
     """End at once, with all processes of a local scheduler: what they have not finished is made again."""
     if cluster.folder:
-        psutil = places.library("psutil")
+        psutil = places.package("psutil")
         own = [process for process in psutil.Process().children(recursive=True) if not is_tracker(process)]
         for process in own:
             try:
@@ -228,5 +228,5 @@ def is_tracker(process: Any) -> bool:
     """The process of Python's own that removes semaphores when this one has ended."""
     try:
         return any("resource_tracker" in word for word in process.cmdline())
-    except places.library("psutil").Error:
+    except places.package("psutil").Error:
         return False

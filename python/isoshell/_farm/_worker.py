@@ -293,7 +293,7 @@ def _remove_what_the_dead_left(folder: str) -> None:
 
 
 def _is_alive(pid: int) -> bool:
-    psutil = places.library("psutil")
+    psutil = places.package("psutil")
     try:
         return bool(psutil.Process(pid).status() != psutil.STATUS_ZOMBIE)
     except psutil.Error:
@@ -303,7 +303,7 @@ def _is_alive(pid: int) -> bool:
 def _slots() -> int:
     """Assets that this worker has at a time."""
     try:
-        return int(places.library("distributed").get_worker().state.nthreads)
+        return int(places.package("distributed").get_worker().state.nthreads)
     except ValueError:
         return 1  # not in a worker
 
@@ -311,7 +311,7 @@ def _slots() -> int:
 def _memory_of_worker() -> int:
     """What the worker was told that it may have; Dask gives a worker its threads' part of the node."""
     try:
-        told = places.library("distributed").get_worker().memory_manager.memory_limit
+        told = places.package("distributed").get_worker().memory_manager.memory_limit
     except ValueError:
         told = None
     return int(told) if told else memory_of_node()

@@ -5,6 +5,7 @@
 #include "stages/distance/distance_body.h"
 
 namespace isoshell {
+
 DistanceSums CpuBackend::sum_distances(const TriangleMesh& from, const std::vector<double>& area_until,
                                        const TriangleGridView& to, const DistancePlaces& places,
                                        Context& context) const {
