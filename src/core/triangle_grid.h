@@ -11,7 +11,7 @@
 
 namespace isoshell {
 
-/// Cost: 50 bytes a triangle, at most 160. A search looks at some ten triangles where p is near to the mesh, and at
+/// Cost: 50 bytes a triangle, at most 160. A search looks at few cells where p is near to the mesh, and at
 /// each block of 512 cells where it is far.
 class TriangleGrid {
  public:
