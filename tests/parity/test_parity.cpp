@@ -33,7 +33,8 @@ TriangleSoup shuffled(const TriangleSoup& soup, uint64_t seed) {
   return out;
 }
 
-std::string run_with_threads(const golden::Case& c, int threads) {
+template <class Case>
+std::string run_with_threads(const Case& c, int threads) {
   TestContext context;
   context.threads = threads;
   return golden::run(c, context);
@@ -47,6 +48,10 @@ TEST_CASE("parity: one thread and several give the same products", "[parity]") {
     CHECK(run_with_threads(c, 2) == one);
     CHECK(run_with_threads(c, 5) == one);
   }
+}
+
+TEST_CASE("parity: one thread and several give the same files of whole runs with default options", "[parity]") {
+  for (const golden::RunCase& c : golden::run_cases()) CHECK(run_with_threads(c, 1) == run_with_threads(c, 3));
 }
 
 TEST_CASE("parity: the order of faces and vertices in the input does not matter", "[parity]") {
