@@ -2,8 +2,6 @@
 // its way if one is about as near; those of corners and faces by the middle of each face.
 #include "isoshell/transfer_attributes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <deque>
 #include <optional>
@@ -12,6 +10,7 @@
 #include "attributes/transfer_faces.h"
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "core/parallel_ranges.h"
 #include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
@@ -85,9 +84,9 @@ void transfer_to_vertices(const TriangleSoup& source, const std::vector<const At
   for (size_t a = 0; a < from.size(); ++a) to[a]->values.resize(count * size_t(from[a]->components));
   const TriangleGrid grid(source.vertices, source.triangles);
   const std::vector<Surroundings> surroundings = surroundings_of(mesh);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kGrain), [&](const tbb::blocked_range<size_t>& r) {
+  for_ranges(int64_t(count), kGrain, [&](int64_t begin, int64_t end) {
     if (context.cancel.load(std::memory_order_relaxed)) return;
-    for (size_t v = r.begin(); v < r.end(); ++v) {
+    for (size_t v = size_t(begin); v < size_t(end); ++v) {
       const MeshPoint place =
           facing_place(grid, mesh.vertices[v], surroundings[v].normal, surroundings[v].edge_length());
       for (size_t a = 0; a < from.size(); ++a)

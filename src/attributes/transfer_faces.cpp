@@ -1,12 +1,11 @@
 #include "attributes/transfer_faces.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "attributes/facing_place.h"
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 
 namespace isoshell {
@@ -148,9 +147,9 @@ void share_values(const TriangleMesh& mesh, Attribute& a) {
 FaceTransfer::FaceTransfer(const WeldedSource& source, const TriangleMesh& mesh, Context& context)
     : source_(source), mesh_(mesh), context_(context), under_(mesh.triangles.size()) {
   const TriangleGrid grid(source.mesh.vertices, source.mesh.triangles);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, under_.size(), kGrain), [&](const tbb::blocked_range<size_t>& r) {
+  for_ranges(int64_t(under_.size()), kGrain, [&](int64_t begin, int64_t end) {
     if (context_.cancel.load(std::memory_order_relaxed)) return;
-    for (size_t f = r.begin(); f < r.end(); ++f) {
+    for (size_t f = size_t(begin); f < size_t(end); ++f) {
       const FaceShape face = shape_of(mesh_, f);
       under_[f] = facing_place(grid, face.middle, face.normal, face.edge_length()).triangle;
     }
@@ -171,9 +170,9 @@ Attribute FaceTransfer::of_corners(const Attribute& from, const std::vector<Jump
   const size_t size = size_t(from.components);
   Attribute to{from.name, from.type, from.components, std::vector<double>(3 * under_.size() * size),
                AttributeDomain::corner};
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, under_.size(), kGrain), [&](const tbb::blocked_range<size_t>& r) {
+  for_ranges(int64_t(under_.size()), kGrain, [&](int64_t begin, int64_t end) {
     Surroundings of_face(source_, jumps), of_corner(source_, jumps);
-    for (size_t f = r.begin(); f < r.end(); ++f) {
+    for (size_t f = size_t(begin); f < size_t(end); ++f) {
       if (context_.cancel.load(std::memory_order_relaxed)) return;
       const FaceShape face = shape_of(mesh_, f);
       const double reach = face.reach();

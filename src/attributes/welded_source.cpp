@@ -1,8 +1,7 @@
 #include "attributes/welded_source.h"
 
-#include <tbb/parallel_for.h>
-
 #include "core/attribute_values.h"
+#include "core/parallel_ranges.h"
 #include "features/weld_for_features.h"
 
 namespace isoshell {
@@ -23,7 +22,7 @@ WeldedSource weld_source(const TriangleSoup& soup) {
   WeldedSource source{weld_for_features(soup), {}, {}};
   source.edges = find_mesh_edges(source.mesh);
   source.first_corner.resize(source.mesh.triangles.size());
-  tbb::parallel_for(size_t(0), source.first_corner.size(), [&](size_t t) {
+  for_each_index(size_t(0), source.first_corner.size(), [&](size_t t) {
     const auto& face = soup.triangles[source.mesh.source_face[t]];
     const WorldPoint& first = source.mesh.vertices[source.mesh.triangles[t][0]];
     while (!is_at(soup.vertices[face[source.first_corner[t]]], first)) ++source.first_corner[t];
@@ -33,7 +32,7 @@ WeldedSource weld_source(const TriangleSoup& soup) {
 
 std::vector<Jump> find_jumps(const WeldedSource& source, const Attribute& attribute) {
   std::vector<Jump> jumps(source.edges.count(), Jump::none);
-  tbb::parallel_for(size_t(0), jumps.size(), [&](size_t e) {
+  for_each_index(size_t(0), jumps.size(), [&](size_t e) {
     const FeatureEdge& edge = source.edges.edges[e];
     if (edge.use != EdgeUse::inner) return;
     int differing = 0;

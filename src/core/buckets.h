@@ -1,10 +1,9 @@
 // Items by bucket and ascending in each: what one sort of all gives, faster where buckets are small.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "core/parallel_ranges.h"
 #include "isoshell/buffer.h"
 #include "voxel/atomic.h"
 
@@ -36,9 +35,7 @@ Buckets<T> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
   Buckets<T> out;
   out.first = Buffer<int64_t>(buckets + 1);
   std::fill(out.first.begin(), out.first.end(), int64_t(0));
-  const auto for_each_source = [&](auto put) {
-    tbb::parallel_for(int64_t(0), sources, [&](int64_t i) { list(i, put); });
-  };
+  const auto for_each_source = [&](auto put) { for_each_index(int64_t(0), sources, [&](int64_t i) { list(i, put); }); };
   for_each_source([&](int64_t bucket, const T&) { atomic_add(out.first[bucket], int64_t(1)); });
   int64_t total = 0;
   for (int64_t& f : out.first) f = total += f;  // where buckets end, until they are filled from there on
@@ -46,9 +43,8 @@ Buckets<T> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
   for_each_source([&](int64_t bucket, const T& item) {
     out.items[__atomic_sub_fetch(&out.first[bucket], 1, __ATOMIC_RELAXED)] = item;
   });
-  tbb::parallel_for(int64_t(0), buckets, [&](int64_t b) {
-    std::sort(out.items.begin() + out.first[b], out.items.begin() + out.first[b + 1]);
-  });
+  for_each_index(int64_t(0), buckets,
+                 [&](int64_t b) { std::sort(out.items.begin() + out.first[b], out.items.begin() + out.first[b + 1]); });
   return out;
 }
 
@@ -58,7 +54,7 @@ Buckets<T> without_repeats(const Buckets<T>& all) {
   Buckets<T> out;
   out.first = Buffer<int64_t>(all.first.size());
   out.first[all.count()] = 0;
-  tbb::parallel_for(int64_t(0), all.count(), [&](int64_t b) {
+  for_each_index(int64_t(0), all.count(), [&](int64_t b) {
     const View<const T> in = all.in(b);
     int64_t count = 0;
     for (int64_t i = 0; i < in.size; ++i) count += i == 0 || in[i - 1] < in[i] ? 1 : 0;
@@ -66,7 +62,7 @@ Buckets<T> without_repeats(const Buckets<T>& all) {
   });
   offsets_from_counts(out.first.view());
   out.items = Buffer<T>(out.first[all.count()]);
-  tbb::parallel_for(int64_t(0), all.count(), [&](int64_t b) {
+  for_each_index(int64_t(0), all.count(), [&](int64_t b) {
     const View<const T> in = all.in(b);
     std::unique_copy(in.begin(), in.end(), out.items.begin() + out.first[b]);
   });

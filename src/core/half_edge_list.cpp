@@ -1,15 +1,14 @@
 // sorted_half_edges (see half_edge_list.h): gathered at their smaller end, sorted there.
 #include "core/half_edge_list.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
 
-constexpr size_t kVerticesAtATime = 4096;
+constexpr int64_t kVerticesAtATime = 4096;
 
 }  // namespace
 
@@ -31,14 +30,13 @@ std::vector<ListedHalfEdge> sorted_half_edges(const std::vector<std::array<uint3
     put(b, c, 1);
     put(a, b, 0);
   }
-  const auto sort_some = [&](const tbb::blocked_range<size_t>& vertices) {
-    for (size_t v = vertices.begin(); v < vertices.end(); ++v)
+  for_ranges(int64_t(first.size()) - 1, kVerticesAtATime, [&](int64_t from, int64_t to) {
+    for (size_t v = size_t(from); v < size_t(to); ++v)
       std::sort(out.begin() + first[v], out.begin() + first[v + 1],
                 [](const ListedHalfEdge& a, const ListedHalfEdge& b) {
                   return a.edge != b.edge ? a.edge < b.edge : a.number < b.number;
                 });
-  };
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, first.size() - 1, kVerticesAtATime), sort_some);
+  });
   return out;
 }
 

@@ -1,12 +1,11 @@
 // Chunks of 64 KiB are hashed on their own, then their hashes together.
 #include "core/hash_bytes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "voxel/random.h"
 
 namespace isoshell {
@@ -32,7 +31,7 @@ uint64_t hash_bytes(const void* data, int64_t size_bytes) {
   const auto* bytes = static_cast<const unsigned char*>(data);
   const int64_t chunks = (size_bytes + kChunk - 1) / kChunk;
   std::vector<uint64_t> part(size_t(chunks) + 1);
-  tbb::parallel_for(int64_t(0), chunks, [&](int64_t c) {
+  for_each_index(int64_t(0), chunks, [&](int64_t c) {
     part[size_t(c)] = hash_chunk(bytes + c * kChunk, std::min(kChunk, size_bytes - c * kChunk));
   });
   part[size_t(chunks)] = uint64_t(size_bytes);

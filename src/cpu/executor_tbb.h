@@ -1,13 +1,12 @@
 // The CPU executors: exec/executor.h over TBB, and the set of kernels that bodies call.
 #pragma once
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <functional>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "cpu/cpu_kernels.h"
 #include "isoshell/buffer.h"
@@ -45,9 +44,9 @@ class TbbExecutor {
   template <class Step>
   void for_each(const char*, int64_t count, Step step) {
     check_cancel(context_, stage_);
-    tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, grain(count)), [&](const tbb::blocked_range<int64_t>& r) {
+    for_ranges(count, grain(count), [&](int64_t begin, int64_t end) {
       if (context_.cancel.load(std::memory_order_relaxed)) return;
-      for (int64_t i = r.begin(); i < r.end(); ++i) step(i);
+      for (int64_t i = begin; i < end; ++i) step(i);
     });
     check_cancel(context_, stage_);
   }
@@ -80,13 +79,11 @@ class TbbExecutor {
   template <class Term>
   int64_t sum(int64_t count, Term term) {
     check_cancel(context_, stage_);
-    return tbb::parallel_reduce(
-        tbb::blocked_range<int64_t>(0, count, grain(count)), int64_t(0),
-        [&](const tbb::blocked_range<int64_t>& r, int64_t part) {
-          for (int64_t i = r.begin(); i < r.end(); ++i) part += term(i);
-          return part;
-        },
-        std::plus<int64_t>());
+    return sum_over_ranges(count, grain(count), [&](int64_t begin, int64_t end) {
+      int64_t part = 0;
+      for (int64_t i = begin; i < end; ++i) part += term(i);
+      return part;
+    });
   }
 
   template <class Term>

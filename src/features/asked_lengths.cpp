@@ -1,11 +1,10 @@
 // See asked_lengths.h.
 #include "features/asked_lengths.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "features/edge_lengths.h"
 #include "features/length_limits.h"
@@ -30,7 +29,7 @@ std::vector<int64_t> smooth_turns(const FineMesh& mesh, const VertexGraph& graph
   std::vector<int64_t> next = turn;
   for (int round = 0; round <= kSmoothing; ++round) {
     const bool is_last = round == kSmoothing;
-    tbb::parallel_for(size_t(0), turn.size(), [&](size_t v) {
+    for_each_index(size_t(0), turn.size(), [&](size_t v) {
       if (bool(is_on_path[v]) != is_last) return;
       int64_t sum = turn[v], count = 1, most = 0;
       graph.for_each(int64_t(v), [&](uint32_t u, double) {

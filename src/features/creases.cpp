@@ -1,11 +1,11 @@
 #include "features/creases.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel_ranges.h"
 #include "features/face_normals.h"
 #include "features/facet_edges.h"
 #include "features/surface_walk.h"
@@ -23,7 +23,7 @@ constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the f
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
 std::vector<double> turns_at(const MeshEdges& edges, const std::vector<WorldPoint>& normals) {
   std::vector<double> turns(edges.count(), 0);
-  tbb::parallel_for(size_t(0), turns.size(), [&](size_t e) {
+  for_each_index(size_t(0), turns.size(), [&](size_t e) {
     const FeatureEdge& edge = edges.edges[e];
     if (edge.use == EdgeUse::inner) turns[e] = turn_between(normals[edge.face[0]], normals[edge.face[1]]);
   });
@@ -110,7 +110,7 @@ class Judge {
     const WalkGround ground{mesh_, edges_, normals_, is_end};
     const std::vector<uint32_t> component = components_of(mesh_, edges_);
     std::vector<Judged> judged(chains.size());
-    tbb::parallel_for(size_t(0), chains.size(), [&](size_t c) {
+    for_each_index(size_t(0), chains.size(), [&](size_t c) {
       if (chains[c].kind == CurveKind::crease)
         judged[c] = judge(ground, chains[c], component[edges_.edges[chains[c].edge[0]].face[0]]);
     });

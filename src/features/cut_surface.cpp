@@ -1,12 +1,11 @@
 // cut_surface and edge_length_for (see cut_surface.h).
 #include "features/cut_surface.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/edge_lengths.h"
@@ -87,11 +86,11 @@ SurfaceTriangles cut_triangles(const FineMesh& mesh, const MeshFans& fans, const
   out.position.resize(fans.vertex.size());
   out.patch.resize(fans.vertex.size());
   out.triangles.resize(mesh.triangles.size());
-  tbb::parallel_for(size_t(0), fans.vertex.size(),
-                    [&](size_t f) { out.position[f] = rounded(mesh.position[fans.vertex[f]]); });
+  for_each_index(size_t(0), fans.vertex.size(),
+                 [&](size_t f) { out.position[f] = rounded(mesh.position[fans.vertex[f]]); });
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
     for (size_t i = 0; i < 3; ++i) out.patch[fans.of_corner[3 * t + i]] = fans.patch[t];
-  tbb::parallel_for(size_t(0), mesh.triangles.size(), [&](size_t t) {
+  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const uint32_t* fan = &fans.of_corner[3 * t];
     out.triangles[t] = {fan[0], fan[1], fan[2]};
   });

@@ -1,15 +1,12 @@
 // See edge_lengths.h.
 #include "features/edge_lengths.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "features/asked_lengths.h"
 #include "features/length_limits.h"
@@ -34,7 +31,7 @@ struct Limits {
 /// The lengths asked for within the limits, and less where a shorter length is near.
 std::vector<double> graded(const VertexGraph& graph, const Limits& limits, double longest) {
   std::vector<double> own(limits.most.size());
-  tbb::parallel_for(size_t(0), own.size(), [&](size_t v) {
+  for_each_index(size_t(0), own.size(), [&](size_t v) {
     const double asked = limits.asked[v] * longest;
     own[v] = std::clamp(limits.most[v], std::max(kShortest * asked, longest / kMostLengthRatio), asked);
   });
@@ -76,14 +73,12 @@ double vertices_of_lengths(const FineMesh& mesh) {
     const double area = triangle_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
     return int64_t(std::llround(2 / std::sqrt(3.0) * area / (l * l) * (1 << 20)));
   };
-  using Range = tbb::blocked_range<size_t>;
-  const int64_t triangles_q20 = tbb::parallel_reduce(  // no order of triangles shows in a sum of integers
-      Range(0, mesh.triangles.size(), 4096), int64_t(0),
-      [&](const Range& r, int64_t sum) {
-        for (size_t t = r.begin(); t < r.end(); ++t) sum += vertices_q20(mesh.triangles[t]);
-        return sum;
-      },
-      std::plus<>());
+  // No order of triangles shows in a sum of integers.
+  const int64_t triangles_q20 = sum_over_ranges(int64_t(mesh.triangles.size()), 4096, [&](int64_t begin, int64_t end) {
+    int64_t sum = 0;
+    for (int64_t t = begin; t < end; ++t) sum += vertices_q20(mesh.triangles[size_t(t)]);
+    return sum;
+  });
   double sum = double(triangles_q20) / (1 << 20);
   for (const CurvePath& path : mesh.paths) {
     const double each = path.kind == CurveKind::border ? 0.5 : path.kind == CurveKind::non_manifold ? -0.5 : 0;

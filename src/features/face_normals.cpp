@@ -1,10 +1,11 @@
 #include "features/face_normals.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
@@ -85,7 +86,7 @@ std::vector<Links> link_triangles(const FeatureMesh& mesh, const MeshEdges& edge
     return 1. / 3 * (mesh.vertices[c[0]] + mesh.vertices[c[1]] + mesh.vertices[c[2]]);
   };
   std::vector<Links> links(mesh.triangles.size());
-  tbb::parallel_for(uint32_t(0), uint32_t(links.size()), [&](uint32_t t) {
+  for_each_index(uint32_t(0), uint32_t(links.size()), [&](uint32_t t) {
     links[t].own_weight = area(t);
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t e = edges.of_triangle[t][i];
@@ -103,7 +104,7 @@ std::vector<Links> link_triangles(const FeatureMesh& mesh, const MeshEdges& edge
 std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
   const double least_height = std::max(kThinHeight * largest_extent(mesh), kThinRoundings * mesh.rounding_world);
   std::vector<WorldPoint> normals(mesh.triangles.size(), kNoNormal);
-  tbb::parallel_for(size_t(0), normals.size(), [&](size_t t) {
+  for_each_index(size_t(0), normals.size(), [&](size_t t) {
     double longest_sq = 0;
     for (const uint32_t e : edges.of_triangle[t])
       longest_sq = std::max(longest_sq, edge_length_sq(mesh, edges.edges[e]));

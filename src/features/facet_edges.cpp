@@ -1,12 +1,11 @@
 // See facet_edges.h.
 #include "features/facet_edges.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/parallel_ranges.h"
 #include "features/face_normals.h"
 #include "features/surface_walk.h"
 
@@ -23,7 +22,7 @@ std::vector<uint8_t> find_ends(const MeshEdges& edges, const std::vector<WorldPo
                                const std::vector<CurveEdge>& curve_edges) {
   const double least = turn_of_degrees(kLeastDegrees);
   std::vector<uint8_t> is_end(edges.count(), 0);
-  tbb::parallel_for(size_t(0), is_end.size(), [&](size_t e) {
+  for_each_index(size_t(0), is_end.size(), [&](size_t e) {
     const auto& face = edges.edges[e].face;
     is_end[e] = edges.is_inner(uint32_t(e)) && turn_between(normals[face[0]], normals[face[1]]) >= least;
   });
@@ -85,7 +84,7 @@ std::vector<uint32_t> find_facet_edges(const FeatureMesh& mesh, const MeshEdges&
   for (const CurveEdge& c : curve_edges) is_candidate[c.edge] = 0;
   const WalkGround ground{mesh, edges, normals, is_end};
   const double width = kLeastWidth * edge_length_world, flat = turn_of_degrees(kFlatDegrees);
-  tbb::parallel_for(uint32_t(0), edges.count(), [&](uint32_t e) {
+  for_each_index(uint32_t(0), edges.count(), [&](uint32_t e) {
     for (const uint32_t f : edges.edges[e].face) {
       if (!is_candidate[e]) return;
       const BesideEdge seen = look_beside(ground, e, f, width);

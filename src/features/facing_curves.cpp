@@ -1,13 +1,12 @@
 // See facing_curves.h.
 #include "features/facing_curves.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "isoshell/voxel_set.h"
 
@@ -35,7 +34,7 @@ std::vector<uint32_t> nearest_on_paths(const FineMesh& mesh, const VertexGraph& 
     return from.first + way <= reach ? Nearest{from.first + way, from.second} : Nearest{kFar, kNone};
   });
   std::vector<uint32_t> nearest(found.size());
-  tbb::parallel_for(size_t(0), found.size(), [&](size_t v) { nearest[v] = found[v].second; });
+  for_each_index(size_t(0), found.size(), [&](size_t v) { nearest[v] = found[v].second; });
   return nearest;
 }
 
@@ -115,7 +114,7 @@ std::vector<FacingVertices> find_facing_vertices(const FineMesh& mesh, const Ver
   };
   constexpr size_t kTogether = 1024;  // vertices that are looked at by one task
   std::vector<std::vector<FacingVertices>> found((nearest.size() + kTogether - 1) / kTogether);
-  tbb::parallel_for(size_t(0), found.size(), [&](size_t task) {
+  for_each_index(size_t(0), found.size(), [&](size_t task) {
     for (size_t u = task * kTogether; u < std::min(nearest.size(), (task + 1) * kTogether); ++u)
       append_at(uint32_t(u), found[task]);
   });

@@ -1,13 +1,12 @@
 #include "features/find_curves.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
 
+#include "core/parallel_ranges.h"
 #include "features/corners.h"
 #include "features/creases.h"
 #include "features/small_creases.h"
@@ -132,8 +131,8 @@ CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, C
   const std::vector<EdgeChain> chains = find_chains(edges, find_curve_edges(mesh, edges, options, told));
 
   std::vector<std::vector<NumberedCurve>> cut(chains.size());
-  tbb::parallel_for(size_t(0), chains.size(),
-                    [&](size_t c) { cut[c] = cut_at_corners(mesh, chains[c], options.edge_length_world); });
+  for_each_index(size_t(0), chains.size(),
+                 [&](size_t c) { cut[c] = cut_at_corners(mesh, chains[c], options.edge_length_world); });
   std::vector<NumberedCurve> all;
   for (auto& curves : cut) std::move(curves.begin(), curves.end(), std::back_inserter(all));
   std::sort(all.begin(), all.end(),

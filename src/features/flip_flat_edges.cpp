@@ -1,13 +1,13 @@
 // flip_flat_edges (see flip_flat_edges.h).
 #include "features/flip_flat_edges.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "features/edge_sides.h"
 #include "features/split_edges.h"
@@ -36,8 +36,8 @@ class FlatEdges {
 
   void flip_all() {
     std::vector<uint8_t> is_waiting(twin_.size(), 0);
-    tbb::parallel_for(uint32_t(0), uint32_t(twin_.size()),
-                      [&](uint32_t h) { is_waiting[h] = twin_[h] != kNone && h == canonical(h) && should_flip(h); });
+    for_each_index(uint32_t(0), uint32_t(twin_.size()),
+                   [&](uint32_t h) { is_waiting[h] = twin_[h] != kNone && h == canonical(h) && should_flip(h); });
     std::vector<uint32_t> waiting;
     for (uint32_t h = 0; h < is_waiting.size(); ++h)
       if (is_waiting[h]) waiting.push_back(h);
@@ -54,7 +54,7 @@ class FlatEdges {
       if (i == 0 || part[waiting[i] / 3] != part[waiting[i - 1] / 3]) of_part.emplace_back();
       of_part.back().push_back(waiting[i]);
     }
-    tbb::parallel_for(size_t(0), of_part.size(), [&](size_t p) { flip_waiting(std::move(of_part[p])); });
+    for_each_index(size_t(0), of_part.size(), [&](size_t p) { flip_waiting(std::move(of_part[p])); });
   }
 
  private:
@@ -62,11 +62,11 @@ class FlatEdges {
   std::vector<uint32_t> parts() const {
     std::vector<uint32_t> part(mesh_.triangles.size());
     const View<uint32_t> sets{part.data(), int64_t(part.size())};
-    tbb::parallel_for(int64_t(0), sets.size, StartAlone{sets});
-    tbb::parallel_for(uint32_t(0), uint32_t(twin_.size()), [&](uint32_t h) {
+    for_each_index(int64_t(0), sets.size, StartAlone{sets});
+    for_each_index(uint32_t(0), uint32_t(twin_.size()), [&](uint32_t h) {
       if (twin_[h] != kNone) join(sets, h / 3, twin_[h] / 3);
     });
-    tbb::parallel_for(int64_t(0), sets.size, PointAtRoot{sets});
+    for_each_index(int64_t(0), sets.size, PointAtRoot{sets});
     return part;
   }
 
@@ -96,7 +96,7 @@ class FlatEdges {
     for (const CurvePath& path : mesh_.paths)
       for (const uint32_t v : path.vertex) is_on_path[v] = 1;
     const EdgeSides sides = find_edge_sides(mesh_.triangles, mesh_.position.size());
-    tbb::parallel_for(uint32_t(0), uint32_t(mesh_.position.size()), [&](uint32_t u) {
+    for_each_index(uint32_t(0), uint32_t(mesh_.position.size()), [&](uint32_t u) {
       for_each_edge_from(sides, u, [&](uint32_t v, View<const EdgeSide> on_edge) {
         const uint32_t g = on_edge[0].half_edge, h = on_edge[on_edge.size - 1].half_edge;
         if (on_edge.size != 2 || from(g) != to(h)) return;
@@ -170,7 +170,7 @@ class FlatEdges {
 std::vector<uint64_t> crowded_edges(const MeshTriangles& triangles, size_t vertices) {
   const EdgeSides sides = find_edge_sides(triangles, vertices);
   std::vector<uint8_t> begins(vertices, 0);
-  tbb::parallel_for(size_t(0), vertices, [&](size_t u) {
+  for_each_index(size_t(0), vertices, [&](size_t u) {
     for_each_edge_from(sides, int64_t(u),
                        [&](uint32_t, View<const EdgeSide> on_edge) { begins[u] |= on_edge.size > 2; });
   });

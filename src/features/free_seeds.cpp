@@ -1,13 +1,12 @@
 // See free_seeds.h.
 #include "features/free_seeds.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "core/parallel_ranges.h"
 #include "features/curve_seeds.h"
 #include "features/mesh_fans.h"
 #include "isoshell/error.h"
@@ -67,7 +66,7 @@ FreeSeeds::FreeSeeds(const CutSurface& cut) : cut_(cut) {
     patch.euler += is_inside(v) ? 2 : 1;
   }
   std::vector<int64_t> share(size_t(surface.triangles.size()));
-  tbb::parallel_for(size_t(0), share.size(), [&](size_t t) { share[t] = seed_share(surface.triangles[int64_t(t)]); });
+  for_each_index(size_t(0), share.size(), [&](size_t t) { share[t] = seed_share(surface.triangles[int64_t(t)]); });
   for (size_t t = 0; t < share.size(); ++t) {
     const TriangleIndices i = surface.triangles[int64_t(t)];
     Patch& patch = patches_[patch_of(i.a)];

@@ -1,9 +1,8 @@
 #include "features/mesh_edges.h"
 
-#include <tbb/parallel_for.h>
-
 #include <string>
 
+#include "core/parallel_ranges.h"
 #include "features/edge_sides.h"
 #include "isoshell/buffer.h"
 #include "isoshell/error.h"
@@ -20,7 +19,7 @@ MeshEdges find_mesh_edges(const FeatureMesh& mesh) {
   const EdgeSides sides = find_edge_sides(mesh.triangles, mesh.vertices.size());
   Buffer<int64_t> first(sides.first.size());
   first[sides.count()] = 0;
-  tbb::parallel_for(int64_t(0), sides.count(), [&](int64_t v) {
+  for_each_index(int64_t(0), sides.count(), [&](int64_t v) {
     int64_t count = 0;
     for_each_edge_from(sides, v, [&](uint32_t, View<const EdgeSide>) { ++count; });
     first[v] = count;
@@ -29,7 +28,7 @@ MeshEdges find_mesh_edges(const FeatureMesh& mesh) {
   MeshEdges found;
   found.edges.resize(size_t(first[sides.count()]));
   found.of_triangle.resize(mesh.triangles.size());
-  tbb::parallel_for(int64_t(0), sides.count(), [&](int64_t v) {
+  for_each_index(int64_t(0), sides.count(), [&](int64_t v) {
     auto e = uint32_t(first[v]);
     for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {
       for (const EdgeSide& s : on_edge) found.of_triangle[s.half_edge / 3][s.half_edge % 3] = e;
@@ -47,7 +46,7 @@ MeshEdges find_mesh_edges(const FeatureMesh& mesh) {
 std::vector<uint32_t> components_of(const FeatureMesh& mesh, const MeshEdges& edges) {
   std::vector<uint32_t> parent(mesh.triangles.size());
   const View<uint32_t> sets{parent.data(), int64_t(parent.size())};
-  const auto for_all = [&](auto use) { tbb::parallel_for(uint32_t(0), uint32_t(parent.size()), use); };
+  const auto for_all = [&](auto use) { for_each_index(uint32_t(0), uint32_t(parent.size()), use); };
   for_all(StartAlone{sets});
   // A triangle is joined with the first one of each of its edges, which may have many.
   for_all([&](uint32_t t) {

@@ -1,11 +1,10 @@
 // find_fans (see mesh_fans.h).
 #include "features/mesh_fans.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <string>
 
+#include "core/parallel_ranges.h"
 #include "features/edge_sides.h"
 #include "isoshell/error.h"
 #include "isoshell/voxel_set.h"
@@ -31,7 +30,7 @@ bool are_twins(const MeshTriangles& triangles, View<const EdgeSide> sides) {
 
 std::vector<uint32_t> all_alone(size_t count) {
   std::vector<uint32_t> parent(count);
-  tbb::parallel_for(size_t(0), count, [&](size_t i) { parent[i] = uint32_t(i); });
+  for_each_index(size_t(0), count, [&](size_t i) { parent[i] = uint32_t(i); });
   return parent;
 }
 View<uint32_t> view_of(std::vector<uint32_t>& values) { return {values.data(), int64_t(values.size())}; }
@@ -39,7 +38,7 @@ View<uint32_t> view_of(std::vector<uint32_t>& values) { return {values.data(), i
 /// Numbers the sets by their roots, which are their smallest members. Returns how many there are.
 uint32_t number_sets(std::vector<uint32_t>& parent) {
   const View<uint32_t> sets = view_of(parent);
-  tbb::parallel_for(size_t(0), parent.size(), [&](size_t i) { PointAtRoot{sets}(int64_t(i)); });
+  for_each_index(size_t(0), parent.size(), [&](size_t i) { PointAtRoot{sets}(int64_t(i)); });
   uint32_t count = 0;
   for (size_t i = 0; i < parent.size(); ++i) parent[i] = parent[i] == i ? count++ : parent[parent[i]];
   return count;
@@ -68,7 +67,7 @@ MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::
   fans.patch = all_alone(triangles.size());
   std::vector<uint8_t> is_cut_side(3 * triangles.size(), 0);
   uint32_t first_wrong = kNone, cut_found = 0;
-  tbb::parallel_for(uint32_t(0), uint32_t(vertices), [&](uint32_t v) {
+  for_each_index(uint32_t(0), uint32_t(vertices), [&](uint32_t v) {
     for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {
       if (is_cut(v, end)) {
         atomic_add(cut_found, 1u);
@@ -94,8 +93,8 @@ MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::
   fans.cut = flagged(is_cut_side);
   fans.patch_count = number_sets(fans.patch);
   fans.vertex.resize(number_sets(fans.of_corner));
-  tbb::parallel_for(size_t(0), fans.of_corner.size(),
-                    [&](size_t c) { fans.vertex[fans.of_corner[c]] = start_of(triangles, uint32_t(c)); });
+  for_each_index(size_t(0), fans.of_corner.size(),
+                 [&](size_t c) { fans.vertex[fans.of_corner[c]] = start_of(triangles, uint32_t(c)); });
   return fans;
 }
 

@@ -1,13 +1,12 @@
 // PatchMesh (see patch_mesh.h).
 #include "features/patch_mesh.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
 #include "core/copy_product.h"
+#include "core/parallel_ranges.h"
 #include "features/mesh_fans.h"
 #include "isoshell/voxel_set.h"
 
@@ -199,7 +198,7 @@ MeshRegion PatchMesh::changed(MeshRegion region, const Change& change) {
 std::optional<PatchMesh::Change> PatchMesh::best_change(const MeshRegion& start, Reach reach) {
   const std::vector<Change> changes = changes_of(start, reach);
   std::vector<double> cost(changes.size());
-  tbb::parallel_for(size_t(0), changes.size(), [&](size_t i) { cost[i] = cost_after(start, changes[i]); });
+  for_each_index(size_t(0), changes.size(), [&](size_t i) { cost[i] = cost_after(start, changes[i]); });
   const auto least = size_t(std::min_element(cost.begin(), cost.end()) - cost.begin());
   if (cost[least] >= kLess * start.cost()) return {};
   return changes[least];
@@ -233,7 +232,7 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles, Reach reach) {
       cutouts.push_back(cut_out(corners, triangles_around(corners)));
     }
     std::vector<std::optional<Change>> best(apart.size());
-    tbb::parallel_for(size_t(0), apart.size(), [&](size_t i) { best[i] = best_change(cutouts[i].region, reach); });
+    for_each_index(size_t(0), apart.size(), [&](size_t i) { best[i] = best_change(cutouts[i].region, reach); });
     for (size_t i = 0; i < apart.size(); ++i) {
       if (best[i])
         put_back(cutouts[i], changed(cutouts[i].region, *best[i]));

@@ -1,13 +1,12 @@
 // See path_seeds.h.
 #include "features/path_seeds.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "features/seeds_across.h"
 
@@ -158,7 +157,7 @@ std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) 
 void place_path_seeds(FineMesh& mesh, const std::vector<FacingVertices>& facing) {
   const SeedsAcross across(mesh, facing);
   const auto is_alone = [&](size_t p) { return mesh.paths[p].is_jagged || !across.beside(p); };
-  tbb::parallel_for(size_t(0), mesh.paths.size(), [&](size_t p) {
+  for_each_index(size_t(0), mesh.paths.size(), [&](size_t p) {
     if (is_alone(p)) place_seeds(list_candidates(mesh, mesh.paths[p]), mesh.paths[p]);
   });
   const std::vector<size_t> order = across.order();

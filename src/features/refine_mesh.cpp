@@ -1,11 +1,10 @@
 // refine_mesh (see refine_mesh.h).
 #include "features/refine_mesh.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <string>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/split_edges.h"
@@ -116,7 +115,7 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
   mesh.position.resize(first_vertex.back());
   mesh.edge_length.resize(first_vertex.back());
   mesh.triangles.resize(first_triangle.back());
-  tbb::parallel_for(size_t(0), fillings.size(), [&](size_t i) {
+  for_each_index(size_t(0), fillings.size(), [&](size_t i) {
     const Filling& f = fillings[i];
     const auto shift = uint32_t(first_vertex[i]) - outside;
     const auto moved = [&](uint32_t v) { return v < outside ? v : v + shift; };
@@ -135,7 +134,7 @@ FineMesh refine_mesh(FineMesh mesh, Context& context) {
   const SplitEdges edges(mesh, context.memory_limit_bytes);
   const size_t tasks = (mesh.triangles.size() + kTogether - 1) / kTogether;
   std::vector<Filling> fillings(tasks, Filling(mesh));
-  tbb::parallel_for(size_t(0), tasks, [&](size_t task) {
+  for_each_index(size_t(0), tasks, [&](size_t task) {
     Chain chain[3];
     for (size_t t = task * kTogether; t < std::min(mesh.triangles.size(), (task + 1) * kTogether); ++t) {
       if (context.cancel.load(std::memory_order_relaxed)) return;

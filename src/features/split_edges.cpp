@@ -1,14 +1,13 @@
 // SplitEdges (see split_edges.h).
 #include "features/split_edges.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <tuple>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/voxel_set.h"
@@ -25,7 +24,7 @@ double most_points(const FineMesh& mesh, int64_t memory_bytes) {
   constexpr double kTimesTheNeed = 16, kAlways = 1 << 18, kCountable = kNone / 8;
   constexpr int64_t kBytesPerPoint = 420;  // measured, of the whole run
   std::vector<double> needs(mesh.triangles.size());
-  tbb::parallel_for(size_t(0), needs.size(), [&](size_t i) {
+  for_each_index(size_t(0), needs.size(), [&](size_t i) {
     const auto& t = mesh.triangles[i];
     const double longest =
         longest_fine_edge((mesh.edge_length[t[0]] + mesh.edge_length[t[1]] + mesh.edge_length[t[2]]) / 3);
@@ -133,7 +132,7 @@ std::vector<SplitEdges::InnerPoints> SplitEdges::cut_paths(FineMesh& mesh) {
 
 void SplitEdges::count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths, int64_t memory_bytes) {
   std::vector<double> asked(parts_.size());
-  tbb::parallel_for(int64_t(0), larger_end_.count(), [&](int64_t u) {
+  for_each_index(int64_t(0), larger_end_.count(), [&](int64_t u) {
     for (int64_t i = larger_end_.first[u]; i < larger_end_.first[u + 1]; ++i) {
       const uint32_t v = larger_end_.items[i], path = parts_[size_t(i)].on_path;
       asked[size_t(i)] =
@@ -161,7 +160,7 @@ void SplitEdges::place_points(FineMesh& mesh, const std::vector<InnerPoints>& on
   const size_t end = size_t(parts_.back().first) + parts_.back().count;
   mesh.position.resize(end);
   mesh.edge_length.resize(end);
-  tbb::parallel_for(int64_t(0), larger_end_.count(), [&](int64_t u) {
+  for_each_index(int64_t(0), larger_end_.count(), [&](int64_t u) {
     for (int64_t i = larger_end_.first[u]; i < larger_end_.first[u + 1]; ++i) {
       const uint32_t v = larger_end_.items[i];
       const auto& [first, count, path] = parts_[size_t(i)];

@@ -1,13 +1,11 @@
 // surface_turns and limit_by_surface_turns (see length_limits.h).
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "features/length_limits.h"
 
@@ -30,7 +28,7 @@ WorldPoint quotient(const WorldPoint& n, double by) {
 /// Of unit length, off paths; 0 on them.
 std::vector<WorldPoint> vertex_normals(const FineMesh& mesh, const std::vector<char>& is_on_path) {
   std::vector<std::array<int64_t, 3>> sum(mesh.position.size());
-  tbb::parallel_for(size_t(0), mesh.triangles.size(), [&](size_t t) {
+  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const WorldPoint n = doubled_area(mesh.position[a], mesh.position[b], mesh.position[c]);
     const std::array<int64_t, 3> whole = {std::llround(n.x), std::llround(n.y), std::llround(n.z)};
@@ -38,7 +36,7 @@ std::vector<WorldPoint> vertex_normals(const FineMesh& mesh, const std::vector<c
       for (size_t k = 0; k < 3; ++k) atomic_add(sum[v][k], whole[k]);
   });
   std::vector<WorldPoint> normal(sum.size(), WorldPoint{0, 0, 0});
-  tbb::parallel_for(size_t(0), normal.size(), [&](size_t v) {
+  for_each_index(size_t(0), normal.size(), [&](size_t v) {
     if (!is_on_path[v]) normal[v] = with_length({double(sum[v][0]), double(sum[v][1]), double(sum[v][2])}, kUnit);
   });
   return normal;
@@ -46,17 +44,14 @@ std::vector<WorldPoint> vertex_normals(const FineMesh& mesh, const std::vector<c
 
 /// Each round spreads them by half an edge squared.
 int rounds_for(const FineMesh& mesh, const VertexGraph& graph, double e) {
-  using Range = tbb::blocked_range<int64_t>;
-  const int64_t sum = tbb::parallel_reduce(
-      Range(0, int64_t(mesh.position.size()), 1024), int64_t(0),
-      [&](const Range& r, int64_t part) {
-        for (int64_t v = r.begin(); v < r.end(); ++v)
-          graph.for_each(v, [&](uint32_t u, double) {
-            part += std::llround(distance_sq(mesh.position[size_t(v)], mesh.position[u]));
-          });
-        return part;
-      },
-      std::plus<>());
+  const int64_t sum = sum_over_ranges(int64_t(mesh.position.size()), 1024, [&](int64_t begin, int64_t end) {
+    int64_t part = 0;
+    for (int64_t v = begin; v < end; ++v)
+      graph.for_each(v, [&](uint32_t u, double) {
+        part += std::llround(distance_sq(mesh.position[size_t(v)], mesh.position[u]));
+      });
+    return part;
+  });
   const double mean_sq = double(sum) / double(std::max<int64_t>(1, graph.neighbours.items.size()));
   return int(std::clamp(std::ceil(e * e / 2 / std::max(mean_sq, 1.0)), 1.0, double(kMostRounds)));
 }
@@ -70,11 +65,11 @@ std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph
     for (const uint32_t v : path.vertex) is_on_path[v] = 1;
   std::vector<WorldPoint> normal = vertex_normals(mesh, is_on_path), next = normal;
   std::vector<uint32_t> count(normal.size(), 0);  // of neighbours off paths
-  tbb::parallel_for(size_t(0), normal.size(), [&](size_t v) {
+  for_each_index(size_t(0), normal.size(), [&](size_t v) {
     if (!is_on_path[v]) graph.for_each(int64_t(v), [&](uint32_t u, double) { count[v] += is_on_path[u] ? 0 : 1; });
   });
   for (int round = rounds_for(mesh, graph, e); round > 0; --round) {
-    tbb::parallel_for(size_t(0), normal.size(), [&](size_t v) {
+    for_each_index(size_t(0), normal.size(), [&](size_t v) {
       if (count[v] == 0) return;
       WorldPoint sum = double(count[v]) * normal[v];
       graph.for_each(int64_t(v), [&](uint32_t u, double) { sum = sum + normal[u]; });
@@ -82,8 +77,8 @@ std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph
     });
     normal.swap(next);
   }
-  tbb::parallel_for(size_t(0), normal.size(), [&](size_t v) { next[v] = with_length(normal[v], kUnit); });
-  tbb::parallel_for(size_t(0), normal.size(), [&](size_t v) {
+  for_each_index(size_t(0), normal.size(), [&](size_t v) { next[v] = with_length(normal[v], kUnit); });
+  for_each_index(size_t(0), normal.size(), [&](size_t v) {
     if (count[v] == 0) return;
     int64_t sum = 0;
     graph.for_each(int64_t(v), [&](uint32_t u, double) {
@@ -98,7 +93,7 @@ std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph
 
 void limit_by_surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e, std::vector<double>& limit) {
   const std::vector<double> turn = surface_turns(mesh, graph, e);
-  tbb::parallel_for(size_t(0), turn.size(), [&](size_t v) {
+  for_each_index(size_t(0), turn.size(), [&](size_t v) {
     if (turn[v] > kEdgeOfRadius) limit[v] = std::min(limit[v], kEdgeOfRadius * e / turn[v]);
   });
 }

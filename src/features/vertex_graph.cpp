@@ -1,6 +1,7 @@
 // find_vertex_graph (see vertex_graph.h).
 #include "features/vertex_graph.h"
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 
 namespace isoshell {
@@ -14,7 +15,7 @@ VertexGraph find_vertex_graph(const FineMesh& mesh) {
         for (const auto& [u, v] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) put(u, v), put(v, u);
       }));
   graph.way.resize(size_t(graph.neighbours.items.size()));
-  tbb::parallel_for(int64_t(0), vertices, [&](int64_t v) {
+  for_each_index(int64_t(0), vertices, [&](int64_t v) {
     for (int64_t i = graph.neighbours.first[v]; i < graph.neighbours.first[v + 1]; ++i)
       graph.way[size_t(i)] = length(mesh.position[graph.neighbours.items[i]] - mesh.position[size_t(v)]);
   });

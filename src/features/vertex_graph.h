@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/buckets.h"
+#include "core/parallel_ranges.h"
 #include "features/refine_mesh.h"
 
 namespace isoshell {
@@ -33,16 +34,16 @@ std::vector<Value> settled(const VertexGraph& graph, const std::vector<Value>& o
   std::vector<Value> value = own, pulled = own;
   Buffer<uint32_t> looked_at(vertices), next(vertices);
   std::vector<uint32_t> stamp(vertices, 0);
-  tbb::parallel_for(uint32_t(0), vertices, [&](uint32_t v) { looked_at[v] = v; });
+  for_each_index(uint32_t(0), vertices, [&](uint32_t v) { looked_at[v] = v; });
   for (uint32_t count = vertices, round = 1; count > 0; ++round) {
-    tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+    for_each_index(uint32_t(0), count, [&](uint32_t i) {
       const uint32_t v = looked_at[i];
       Value least = own[v];
       graph.for_each(v, [&](uint32_t u, double way) { least = std::min(least, step(value[u], way)); });
       pulled[v] = least;
     });
     uint32_t listed = 0;
-    tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+    for_each_index(uint32_t(0), count, [&](uint32_t i) {
       const uint32_t v = looked_at[i];
       if (pulled[v] == value[v]) return;
       graph.for_each(v, [&](uint32_t u, double way) {

@@ -1,10 +1,11 @@
 #include "features/weld_for_features.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <tuple>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
@@ -54,7 +55,7 @@ FeatureMesh weld_for_features(const TriangleSoup& soup) {
   FeatureMesh mesh;
   const std::vector<uint32_t> welded = weld_vertices(soup, mesh);
   std::vector<WeldedTriangle> all(soup.triangles.size());
-  tbb::parallel_for(size_t(0), all.size(), [&](size_t t) {
+  for_each_index(size_t(0), all.size(), [&](size_t t) {
     std::array<uint32_t, 3> c = soup.triangles[t];
     for (uint32_t& v : c) v = welded[v];
     std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());

@@ -1,12 +1,12 @@
 #include "implicit/crease_intersections.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel_ranges.h"
 #include "implicit/tile_borders.h"
 #include "voxel/intersect.h"
 
@@ -77,7 +77,7 @@ class Intersections {
   template <class WantsTriangle, class WantsCell>
   std::vector<Entry> list(WantsTriangle wants_triangle, WantsCell wants_cell) const {
     tbb::enumerable_thread_specific<std::vector<Entry>> lists;
-    tbb::parallel_for(size_t(0), soup_.triangles.size(), [&](size_t t) {
+    for_each_index(size_t(0), soup_.triangles.size(), [&](size_t t) {
       if (!wants_triangle(uint32_t(t))) return;
       std::vector<Entry>& to = lists.local();
       int32_t low[3], high[3];
@@ -114,7 +114,7 @@ class Intersections {
 
   std::vector<uint32_t> test(const std::vector<Entry>& entries, const std::vector<Voxel>& cells) const {
     std::vector<std::vector<uint32_t>> of_cell(cells.size());
-    tbb::parallel_for(size_t(0), cells.size(), [&](size_t c) {
+    for_each_index(size_t(0), cells.size(), [&](size_t c) {
       auto first = std::lower_bound(entries.begin(), entries.end(), Entry{cells[c], 0}), last = first;
       while (last != entries.end() && last->cell == cells[c]) ++last;
       std::vector<CornersOfTriangle> here;

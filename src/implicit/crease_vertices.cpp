@@ -1,9 +1,8 @@
 #include "implicit/crease_vertices.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "implicit/least_squares_point.h"
 #include "implicit/tile_borders.h"
@@ -97,9 +96,9 @@ WorldPoint from_origin(Voxel from, Voxel to) {
 
 Creases::Creases(const ScalarField& field, Inside inside, double rise, const std::vector<Voxel>& blocks)
     : blocks_(blocks), crossings_(blocks.size()), vertices_(blocks.size()) {
-  tbb::parallel_for(size_t(0), blocks.size(),
-                    [&](size_t b) { crossings_[b] = find_crease_crossings(field, inside, rise, blocks[b]); });
-  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t b) { vertices_[b] = find_vertices(field, inside, b); });
+  for_each_index(size_t(0), blocks.size(),
+                 [&](size_t b) { crossings_[b] = find_crease_crossings(field, inside, rise, blocks[b]); });
+  for_each_index(size_t(0), blocks.size(), [&](size_t b) { vertices_[b] = find_vertices(field, inside, b); });
   even_out();
   settle();
   drop_short();
@@ -263,7 +262,7 @@ bool Creases::turns_over(CreaseVertexId id) const {
 
 template <class Visit>
 void Creases::each_vertex(Visit visit) const {
-  tbb::parallel_for(size_t(0), vertices_.size(), [&](size_t b) {
+  for_each_index(size_t(0), vertices_.size(), [&](size_t b) {
     for (size_t i = 0; i < vertices_[b].size(); ++i)
       if (vertices_[b][i].place != CreaseVertex::none) visit(CreaseVertexId{uint32_t(b), uint32_t(i)});
   });
@@ -274,11 +273,11 @@ void Creases::each_vertex(Visit visit) const {
 void Creases::even_out() {
   std::vector<std::vector<WorldPoint>> to(vertices_.size());
   for (int round = 0; round < kEvenRounds; ++round) {
-    tbb::parallel_for(size_t(0), vertices_.size(), [&](size_t b) {
+    for_each_index(size_t(0), vertices_.size(), [&](size_t b) {
       to[b].resize(vertices_[b].size());
       for (size_t i = 0; i < to[b].size(); ++i) to[b][i] = evened({uint32_t(b), uint32_t(i)});
     });
-    tbb::parallel_for(size_t(0), vertices_.size(), [&](size_t b) {
+    for_each_index(size_t(0), vertices_.size(), [&](size_t b) {
       for (size_t i = 0; i < to[b].size(); ++i) vertices_[b][i].choice[0] = to[b][i];
     });
   }
@@ -325,7 +324,7 @@ Voxel Creases::take_back(CreaseVertexId id) {
 /// Of two that share an edge only the one goes that is farther from where it would be otherwise: the other may do then.
 void Creases::keep_nearer(std::vector<std::vector<uint32_t>>& turned) const {
   std::vector<std::vector<uint32_t>> farther(turned.size());
-  tbb::parallel_for(size_t(0), turned.size(), [&](size_t b) {
+  for_each_index(size_t(0), turned.size(), [&](size_t b) {
     for (const uint32_t i : turned[b])
       if (is_farthest({uint32_t(b), i}, turned)) farther[b].push_back(i);
   });

@@ -1,11 +1,10 @@
 #include "implicit/dense_field.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "core/parallel_ranges.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -57,7 +56,7 @@ void DenseField::split_into_blocks(double& low, double& high) {
     return {int32_t(b / nz / ny) * kFieldBlock, int32_t(b / nz % ny) * kFieldBlock, int32_t(b % nz) * kFieldBlock};
   };
   std::vector<BlockRange> ranges(size_t(int64_t(nx) * ny * nz));
-  tbb::parallel_for(int64_t(0), int64_t(ranges.size()), [&](int64_t b) {
+  for_each_index(int64_t(0), int64_t(ranges.size()), [&](int64_t b) {
     const Voxel o = origin(b);
     const int64_t end[3] = {std::min<int64_t>(o.x + kFieldBlock, volume_.size[0]),
                             std::min<int64_t>(o.y + kFieldBlock, volume_.size[1]),

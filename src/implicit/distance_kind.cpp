@@ -1,10 +1,10 @@
 // What tells unsigned distances from densities and other values: how steep they are.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "core/parallel_ranges.h"
 #include "implicit/unsigned_field.h"
 
 namespace isoshell {
@@ -22,7 +22,7 @@ Steepness steepness(const ScalarField& field, double voxel) {
   const std::vector<Voxel> blocks = field.blocks();
   const double full = field.background > 0 ? kFullPart * field.background : INFINITY;
   std::vector<Steepness> of_block(blocks.size());
-  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t b) {
+  for_each_index(size_t(0), blocks.size(), [&](size_t b) {
     float window[kWindow * kWindow * kWindow];
     const int all[3] = {kFieldBlock, kFieldBlock, kFieldBlock};
     field.copy(blocks[b], all, window);

@@ -1,7 +1,6 @@
 #include "implicit/field_sharpness.h"
 
-#include <tbb/parallel_for.h>
-
+#include "core/parallel_ranges.h"
 #include "implicit/linear_fit.h"
 #include "voxel/random.h"
 
@@ -22,7 +21,7 @@ double take_median(std::vector<double>& values) {
 /// Over one of each `step` blocks, anyone of these: blocks that follow each other lie in layers.
 double rise_of_sample(const ScalarField& field, Inside inside, const std::vector<Voxel>& blocks, size_t step) {
   std::vector<double> of_block(blocks.size() / step, 0);
-  tbb::parallel_for(size_t(0), of_block.size(), [&](size_t i) {
+  for_each_index(size_t(0), of_block.size(), [&](size_t i) {
     float window[kWindow * kWindow * kWindow];
     read_cell_window(field, blocks[i * step + size_t(random_bits(0, i) % step)], window);
     std::vector<double> rises;

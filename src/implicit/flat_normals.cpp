@@ -1,10 +1,9 @@
 #include "implicit/flat_normals.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "implicit/plane_fit.h"
 
@@ -33,7 +32,7 @@ class Neighbourhoods {
   bool is_sharp() {
     const size_t count = points_.position.size(), stride = (count + kTried - 1) / kTried;
     std::vector<double> off((count + stride - 1) / stride);
-    tbb::parallel_for(size_t(0), off.size(), [&](size_t i) { off[i] = plane_of(i * stride, nullptr).off; });
+    for_each_index(size_t(0), off.size(), [&](size_t i) { off[i] = plane_of(i * stride, nullptr).off; });
     std::vector<double> sorted = off;
     const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
@@ -47,10 +46,10 @@ class Neighbourhoods {
     const size_t count = points_.position.size();
     std::vector<PlaneFit> plane(count);
     std::vector<uint32_t> neighbour(count * degree_);
-    tbb::parallel_for(size_t(0), count, [&](size_t i) { plane[i] = plane_of(i, &neighbour[i * degree_]); });
+    for_each_index(size_t(0), count, [&](size_t i) { plane[i] = plane_of(i, &neighbour[i * degree_]); });
     for (int round = 0; round < kRounds; ++round) {
       const std::vector<PlaneFit> before = plane;
-      tbb::parallel_for(size_t(0), count, [&](size_t i) {
+      for_each_index(size_t(0), count, [&](size_t i) {
         if (before[i].off > bent_) plane[i] = flat_plane(i, before, &neighbour[i * degree_]);
       });
     }

@@ -1,10 +1,10 @@
 // The smooth indicator function of oriented points on a regular grid.
 #include "implicit/indicator_grid.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
@@ -66,7 +66,7 @@ std::vector<float> divergence(const OrientedPoints& points, const GridShape& sha
 void relax(const GridShape& shape, const std::vector<float>& source, int sweeps, std::vector<float>& value) {
   const int64_t sx = int64_t(shape.size[1]) * shape.size[2], sy = shape.size[2];
   for (int half = 0; half < 2 * sweeps; ++half)
-    tbb::parallel_for(1, shape.size[0] - 1, [&](int32_t x) {
+    for_each_index(1, shape.size[0] - 1, [&](int32_t x) {
       for (int32_t y = 1; y < shape.size[1] - 1; ++y)
         for (int32_t z = 1 + (x + y + half) % 2; z < shape.size[2] - 1; z += 2) {
           const int64_t i = shape.index(x, y, z);
@@ -101,7 +101,7 @@ GridShape coarser(const GridShape& shape) {
 
 std::vector<float> refined(const GridShape& from, const std::vector<float>& value, const GridShape& to) {
   std::vector<float> out(size_t(to.count()), 0.f);
-  tbb::parallel_for(1, to.size[0] - 1, [&](int32_t x) {
+  for_each_index(1, to.size[0] - 1, [&](int32_t x) {
     for (int32_t y = 1; y < to.size[1] - 1; ++y)
       for (int32_t z = 1; z < to.size[2] - 1; ++z)
         out[size_t(to.index(x, y, z))] = float(interpolated(

@@ -1,7 +1,6 @@
 // Marching cubes block by block: count what each block owns, then write vertices, then triangles to their places.
 #include "implicit/iso_surface.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/parallel_ranges.h"
 #include "implicit/crease_intersections.h"
 #include "implicit/crease_vertices.h"
 #include "implicit/field_sharpness.h"
@@ -70,7 +70,7 @@ class IsoSurface {
       count();
       soup = write();
     }
-    tbb::parallel_for(size_t(0), soup.vertices.size(), [&](size_t v) { soup.vertices[v] = mapped(soup.vertices[v]); });
+    for_each_index(size_t(0), soup.vertices.size(), [&](size_t v) { soup.vertices[v] = mapped(soup.vertices[v]); });
     return soup;
   }
 
@@ -116,7 +116,7 @@ class IsoSurface {
     held.insert(held.end(), beside.begin(), beside.end());
     sort_unique(held);
     origin_.resize(8 * held.size());
-    tbb::parallel_for(size_t(0), held.size(), [&](size_t i) {
+    for_each_index(size_t(0), held.size(), [&](size_t i) {
       for (int n = 0; n < 8; ++n) origin_[8 * i + size_t(n)] = block_beside(held[i], n, -kFieldBlock);
     });
     sort_unique(origin_);
@@ -140,7 +140,7 @@ class IsoSurface {
 
   template <class Work>
   void each_block(Work work) {
-    tbb::parallel_for(size_t(0), origin_.size(), [&](size_t b) {
+    for_each_index(size_t(0), origin_.size(), [&](size_t b) {
       float window[kWindow * kWindow * kWindow];
       read_cell_window(sharpened_ ? *sharpened_ : field_, origin_[b], window);
       work(b, window);

@@ -1,11 +1,10 @@
 #include "implicit/point_distances.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/buckets.h"
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "implicit/cell_window.h"
 #include "implicit/sides_of_points.h"
@@ -100,7 +99,7 @@ PointDistances::PointDistances(const OrientedPoints& points, const Indicator& in
   to_world.at[2][3] = shape.origin.z;
   const PointBlocks blocks(points, shape);
   std::vector<std::vector<float>> value(size_t(blocks.count()));
-  tbb::parallel_for(int64_t(0), blocks.count(), [&](int64_t b) {
+  for_each_index(int64_t(0), blocks.count(), [&](int64_t b) {
     std::vector<float> of_block = values_of(blocks, b, indicator, points.spacing / shape.voxel_size);
     const auto [least, most] = std::minmax_element(of_block.begin(), of_block.end());
     if (*least == *most) of_block.resize(1);

@@ -1,11 +1,10 @@
 // Normals of points: found from neighbours where the file has none, and turned to agree.
 #include "implicit/point_normals.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <queue>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "implicit/plane_fit.h"
 
@@ -32,7 +31,7 @@ constexpr double kMostDisagreeing = 0.05;  // of all pairs of neighbours; beyond
 bool fit_planes(const std::vector<WorldPoint>& position, const std::vector<WorldPoint>& normal, const PointTree& tree) {
   const size_t stride = (position.size() + kTried - 1) / kTried;
   std::vector<double> cosine((position.size() + stride - 1) / stride), off(cosine.size());
-  tbb::parallel_for(size_t(0), cosine.size(), [&](size_t i) {
+  for_each_index(size_t(0), cosine.size(), [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i * stride], std::min(kFitNeighbours + 1, position.size()), near);
     const PlaneFit plane = fit_plane(position, near);
@@ -191,7 +190,7 @@ OrientedPoints orient_points(std::vector<WorldPoint> position, std::vector<World
   const size_t degree = std::min(kGraphNeighbours, count - 1);
   std::vector<uint32_t> neighbours(count * degree);
   std::vector<double> spacing(count);
-  tbb::parallel_for(size_t(0), count, [&](size_t i) {
+  for_each_index(size_t(0), count, [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i], std::min(kFitNeighbours + 1, count), near);
     points.normal[i] = given ? normalised(points.normal[i]) : fit_plane(position, near).normal;

@@ -1,12 +1,11 @@
 // See point_support.h.
 #include "implicit/point_support.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel_ranges.h"
 #include "isoshell/voxel_set.h"
 #include "voxel/union_find.h"
 
@@ -135,7 +134,7 @@ std::vector<uint32_t> supported_vertices(const PointsOfSurface& of, const Triang
   const PointTree vertices(soup.vertices);
   const double reach = kSupportVoxels * of.voxel_size;
   std::vector<uint32_t> supported(of.points.position.size(), kNone);
-  tbb::parallel_for(size_t(0), supported.size(), [&](size_t i) {
+  for_each_index(size_t(0), supported.size(), [&](size_t i) {
     std::vector<PointTree::Near> near;
     vertices.nearest(of.points.position[i], std::min(kSupportedVertices, soup.vertices.size()), near);
     for (const auto& [away_sq, v] : near) {
@@ -218,8 +217,8 @@ void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup) {
 std::vector<uint8_t> find_supported(const PointsOfSurface& of, const TriangleSoup& soup) {
   const std::vector<WorldPoint> normal = vertex_normals(soup);
   std::vector<uint8_t> supported(soup.vertices.size());
-  tbb::parallel_for(size_t(0), supported.size(),
-                    [&](size_t v) { supported[v] = Pull(of, soup.vertices[v], normal[v]).is_supported(); });
+  for_each_index(size_t(0), supported.size(),
+                 [&](size_t v) { supported[v] = Pull(of, soup.vertices[v], normal[v]).is_supported(); });
   return supported;
 }
 
@@ -227,7 +226,7 @@ std::vector<uint8_t> pull_to_points(const PointsOfSurface& of, TriangleSoup& sou
   const std::vector<WorldPoint> normal = vertex_normals(soup);
   std::vector<WorldPoint> moved(soup.vertices.size());
   std::vector<uint8_t> supported(soup.vertices.size());
-  tbb::parallel_for(size_t(0), moved.size(), [&](size_t v) {
+  for_each_index(size_t(0), moved.size(), [&](size_t v) {
     const Pull pull(of, soup.vertices[v], normal[v]);
     supported[v] = pull.is_supported();
     moved[v] = pull.end(soup.vertices[v]);

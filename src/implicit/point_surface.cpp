@@ -1,10 +1,10 @@
 // From points to a closed surface: normals, indicator function, its level, and a step onto the points.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel_ranges.h"
 #include "implicit/flat_normals.h"
 #include "implicit/indicator_grid.h"
 #include "implicit/iso_surface.h"
@@ -49,7 +49,7 @@ void keep_different(std::vector<WorldPoint>& position, std::vector<WorldPoint>& 
 /// Distance of each point from its eighth neighbour.
 std::vector<double> distances_around(const PointTree& tree, const std::vector<WorldPoint>& position) {
   std::vector<double> distance(position.size());
-  tbb::parallel_for(size_t(0), position.size(), [&](size_t i) {
+  for_each_index(size_t(0), position.size(), [&](size_t i) {
     std::vector<PointTree::Near> near;
     tree.nearest(position[i], kOutlierNeighbours + 1, near);
     distance[i] = std::sqrt(near.back().first);

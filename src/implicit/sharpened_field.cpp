@@ -1,7 +1,6 @@
 #include "implicit/sharpened_field.h"
 
-#include <tbb/parallel_for.h>
-
+#include "core/parallel_ranges.h"
 #include "implicit/tile_borders.h"
 
 namespace isoshell {
@@ -11,8 +10,8 @@ SharpenedField::SharpenedField(const ScalarField& field, Inside inside, double r
   file = field.file, name = field.name, grid_class = field.grid_class;
   background = field.background;
   to_world = field.to_world;
-  tbb::parallel_for(size_t(0), blocks.size(),
-                    [&](size_t b) { of_block_[b] = find_filled_points(field, inside, rise, blocks[b]); });
+  for_each_index(size_t(0), blocks.size(),
+                 [&](size_t b) { of_block_[b] = find_filled_points(field, inside, rise, blocks[b]); });
 }
 
 void SharpenedField::copy(Voxel origin, const int size[3], float* to) const {

@@ -1,13 +1,13 @@
 // Sides of an unsigned distance field by a watershed and a vote.
 #include "implicit/unsigned_field.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel_ranges.h"
 #include "implicit/block_lattice.h"
 #include "isoshell/buffer.h"
 #include "isoshell/error.h"
@@ -109,7 +109,7 @@ class Sides {
 
   template <class Work>
   void each_block(Work work) const {
-    tbb::parallel_for(uint32_t(0), lattice_.block_count(), work);
+    for_each_index(uint32_t(0), lattice_.block_count(), work);
   }
 
   /// The other end of a block's edge: along an axis, or against it.

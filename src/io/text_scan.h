@@ -1,13 +1,12 @@
 // Scanning text at speed: numbers, tokens, and a file cut into chunks of whole lines.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <cstring>
 #include <exception>
 #include <string>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "io/mesh/mesh_source.h"
 
 namespace isoshell {
@@ -123,7 +122,7 @@ std::vector<TextChunk> split_at_lines(const char* begin, const char* end);
 template <class Work>
 void for_each_chunk(int64_t count, Work work) {
   std::vector<std::exception_ptr> errors(static_cast<size_t>(count));
-  tbb::parallel_for(int64_t(0), count, [&](int64_t i) {
+  for_each_index(int64_t(0), count, [&](int64_t i) {
     try {
       work(i);
     } catch (...) {

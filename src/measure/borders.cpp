@@ -1,13 +1,12 @@
 #include "isoshell/borders.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/half_edge_list.h"
+#include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/triangle_list.h"
 #include "core/watched.h"
@@ -61,8 +60,8 @@ double farthest(const TriangleMesh& from, const Borders& vertices, const Triangl
   if (vertices.vertices.empty() || segments.segments.empty()) return 0;
   const TriangleGrid grid(to.vertices, segments.segments);
   std::vector<double> distance_sq(vertices.vertices.size());
-  tbb::parallel_for(size_t(0), distance_sq.size(),
-                    [&](size_t i) { distance_sq[i] = grid.distance_sq(from.vertices[vertices.vertices[i]]); });
+  for_each_index(size_t(0), distance_sq.size(),
+                 [&](size_t i) { distance_sq[i] = grid.distance_sq(from.vertices[vertices.vertices[i]]); });
   return std::sqrt(*std::max_element(distance_sq.begin(), distance_sq.end()));
 }
 

@@ -1,9 +1,8 @@
 #include "measure/crossings.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "voxel/intersect.h"
 
@@ -40,7 +39,7 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
   for (uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = box_of(corners(t));
   const BoxTree tree(boxes);
   std::vector<std::vector<std::array<uint32_t, 2>>> parts((boxes.size() + kChunk - 1) / kChunk);
-  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+  for_each_index(size_t(0), parts.size(), [&](size_t c) {
     for (size_t t = c * kChunk; t < std::min(boxes.size(), (c + 1) * kChunk); ++t) {
       if (stop.load(std::memory_order_relaxed)) return;
       const CornersOfTriangle here = corners(uint32_t(t));

@@ -1,14 +1,12 @@
 // Distances between meshes by samples.
 #include "isoshell/distance.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "core/distance_sums.h"
+#include "core/parallel_ranges.h"
 #include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
@@ -78,11 +76,10 @@ std::vector<double> distances(const std::vector<WorldPoint>& points, const Trian
   return run_with_threads(context, [&] {
     const TriangleGrid grid(mesh);
     std::vector<double> found(points.size());
-    const auto part = [&](const tbb::blocked_range<size_t>& range) {
+    for_ranges(int64_t(points.size()), int64_t(kChunk), [&](int64_t begin, int64_t end) {
       if (context.cancel.load(std::memory_order_relaxed)) return;
-      for (size_t i = range.begin(); i < range.end(); ++i) found[i] = std::sqrt(grid.distance_sq(points[i]));
-    };
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), kChunk), part);
+      for (size_t i = size_t(begin); i < size_t(end); ++i) found[i] = std::sqrt(grid.distance_sq(points[i]));
+    });
     check_cancel(context, "distance");
     return found;
   });

@@ -1,7 +1,5 @@
 #include "isoshell/gaps.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "core/copy_product.h"
+#include "core/parallel_ranges.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
 #include "voxel/union_find.h"
@@ -157,7 +156,7 @@ std::vector<uint8_t> find_risks(const LatticeSurface& of, const SiteSamples& see
   const OnHost<SiteSamples> samples(seen);
   if (samples->first.empty()) return {};
   std::vector<uint8_t> risks(size_t(samples->sample.size()), 0);
-  tbb::parallel_for(int64_t(0), samples->sample.size(), [&](int64_t site) {
+  for_each_index(int64_t(0), samples->sample.size(), [&](int64_t site) {
     const TriangleIndices own = surface->triangles[samples->sample[site].triangle];
     const Vec64 normal = doubled_area(*surface, own);
     for (int64_t i = samples->first[site]; i < samples->first[site + 1] && !risks[size_t(site)]; ++i) {

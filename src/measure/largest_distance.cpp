@@ -1,8 +1,6 @@
 // Branch and bound: of all pieces those that may be the farthest are split, so many at a time whatever the threads.
 #include "measure/largest_distance.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 
@@ -90,7 +89,7 @@ class Search {
   template <class Work>
   std::vector<Piece> in_parts(size_t count, Work work) {
     std::vector<Part> parts((count + kChunk - 1) / kChunk);
-    tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+    for_each_index(size_t(0), parts.size(), [&](size_t c) {
       for (size_t i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) {
         if (context_.cancel.load(std::memory_order_relaxed)) return;
         work(i, parts[c]);

@@ -1,13 +1,12 @@
 // The census of a mesh: its complex, the shapes of its triangles, its intersections.
 #include "isoshell/mesh_census.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
@@ -129,7 +128,7 @@ TriangleShape shape_of_repeated() {
 TriangleShapes measure_shapes(const TriangleMesh& mesh, int64_t dropped) {
   const int64_t count = int64_t(mesh.triangles.size());
   std::vector<Part> parts(size_t((count + kChunk - 1) / kChunk));
-  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+  for_each_index(size_t(0), parts.size(), [&](size_t c) {
     for (int64_t i = int64_t(c) * kChunk; i < std::min(count, int64_t(c + 1) * kChunk); ++i) {
       const auto& [p, q, r] = mesh.triangles[size_t(i)];
       const TriangleShape shape = shape_of(mesh.vertices[p], mesh.vertices[q], mesh.vertices[r]);

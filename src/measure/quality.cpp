@@ -1,11 +1,10 @@
 // Quality of a mesh. Chunks of fixed size are summed in parallel and joined in order: one shape, one result.
 #include "isoshell/quality.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel_ranges.h"
 #include "core/triangle_list.h"
 #include "core/world_vector.h"
 #include "measure/triangle_shape.h"
@@ -100,7 +99,7 @@ MeshQuality measure_quality(const TriangleMesh& mesh) {
   if (count == 0) return {};
   require_indices(mesh.triangles, mesh.vertices.size(), "quality");
   std::vector<Part> parts(size_t((count + kChunk - 1) / kChunk));
-  tbb::parallel_for(size_t(0), parts.size(), [&](size_t c) {
+  for_each_index(size_t(0), parts.size(), [&](size_t c) {
     const int64_t end = std::min(count, int64_t(c + 1) * kChunk);
     for (int64_t i = int64_t(c) * kChunk; i < end; ++i) {
       const auto& t = mesh.triangles[size_t(i)];

@@ -1,7 +1,6 @@
 // Self-intersections: pairs of boxes from a tree, and exact tests of their triangles.
 #include "measure/self_intersections.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/parallel_ranges.h"
 #include "core/triangle_list.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
@@ -144,7 +144,7 @@ std::vector<BoxOfPoints> boxes_of(const TriangleMesh& mesh, const std::vector<ui
   const double side = std::max({reach(lo.x, hi.x), reach(lo.y, hi.y), reach(lo.z, hi.z)});
   const auto step = [&](double from, double x) { return int32_t(std::floor(reach(from, x) / side * kBoxSteps)); };
   std::vector<BoxOfPoints> boxes(triangles.size());
-  tbb::parallel_for(size_t(0), triangles.size(), [&](size_t i) {
+  for_each_index(size_t(0), triangles.size(), [&](size_t i) {
     const auto& t = mesh.triangles[triangles[i]];
     BoxOfPoints& box = boxes[i];
     for (size_t c = 0; c < 3; ++c) {
@@ -185,7 +185,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, const std::v
   };
   return run_with_threads(context, [&] {
     std::vector<uint8_t> flat(mesh.triangles.size());
-    tbb::parallel_for(size_t(0), flat.size(), [&](size_t t) { flat[t] = seeing_axis(corners(uint32_t(t)).at) < 0; });
+    for_each_index(size_t(0), flat.size(), [&](size_t t) { flat[t] = seeing_axis(corners(uint32_t(t)).at) < 0; });
     std::vector<uint32_t> tested;
     for (uint32_t t = 0; t < flat.size(); ++t)
       if (!flat[t]) tested.push_back(t);
@@ -194,7 +194,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, const std::v
     const BoxTree tree(boxes);
     std::unique_ptr<std::atomic<uint8_t>[]> meets(new std::atomic<uint8_t>[tested.size()]());
     std::vector<int64_t> pairs((tested.size() + kChunk - 1) / kChunk);
-    tbb::parallel_for(size_t(0), pairs.size(), [&](size_t c) {
+    for_each_index(size_t(0), pairs.size(), [&](size_t c) {
       for (size_t i = c * kChunk; i < std::min(tested.size(), (c + 1) * kChunk); ++i) {
         if (context.cancel.load(std::memory_order_relaxed)) return;
         const Corners here = corners(tested[i]);

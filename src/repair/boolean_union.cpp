@@ -1,12 +1,11 @@
 #include "isoshell/boolean_union.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "repair/repair_mesh.h"
@@ -93,7 +92,7 @@ class Union {
     for (uint32_t begin = 0, end; begin < mesh_.face_count(); begin = end) {
       end = uint32_t(std::min(mesh_.face_count(), int64_t(begin) + kFacesAtOnce));
       parts.assign(end - begin, {});
-      tbb::parallel_for(begin, end, [&](uint32_t f) {
+      for_each_index(begin, end, [&](uint32_t f) {
         if (!is_dropped(components_[component_[f]])) split(f, piece_of(f), 0, cutters_of(f), parts[f - begin]);
       });
       for (uint32_t f = begin; f < end; ++f) take(f, parts[f - begin], keep, keep_piece);

@@ -1,12 +1,11 @@
 // See cut_solids.h.
 #include "repair/cut_solids.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "repair/plane_triangulation.h"
@@ -75,7 +74,7 @@ class Cutter {
     const RayColumns columns(b.point, b.face);
     const uint32_t shift = uint32_t(cut_.faces_of_first);
     std::vector<Meetings> found(shift);
-    tbb::parallel_for(uint32_t(0), shift, [&](uint32_t f) {
+    for_each_index(uint32_t(0), shift, [&](uint32_t f) {
       check_cancel(context, "unite");
       WorldPoint lo, hi;
       box(f, lo, hi);

@@ -1,9 +1,9 @@
 // Where vertices go from frame to frame (see previous_frame.h).
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
 #include "attributes/facing_place.h"
+#include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
@@ -50,7 +50,7 @@ std::vector<WorldPoint> carry_all(size_t count, Context& context, Carry carry) {
   run_with_threads(context, [&] {
     for (size_t from = 0; from < count; from += kPointsPerLook) {
       check_cancel(context, "carry");
-      tbb::parallel_for(from, std::min(count, from + kPointsPerLook), [&](size_t i) { carried[i] = carry(i); });
+      for_each_index(from, std::min(count, from + kPointsPerLook), [&](size_t i) { carried[i] = carry(i); });
     }
   });
   return carried;

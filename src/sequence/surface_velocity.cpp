@@ -1,9 +1,9 @@
 // Velocities of a surface's vertices as a field (see previous_frame.h).
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
 
+#include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/world_vector.h"
 #include "isoshell/error.h"
@@ -22,7 +22,7 @@ class SurfaceVelocity final : public VelocityField {
   std::vector<WorldPoint> velocities_at(const std::vector<WorldPoint>& points) const override {
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
     std::vector<WorldPoint> out(points.size());
-    tbb::parallel_for(size_t(0), points.size(), [&](size_t i) {
+    for_each_index(size_t(0), points.size(), [&](size_t i) {
       const MeshPoint place = grid_.nearest(points[i]);
       const std::array<uint32_t, 3>& t = surface_.triangles[place.triangle];
       const WorldPoint &a = velocities_[t[0]], &b = velocities_[t[1]], &c = velocities_[t[2]];

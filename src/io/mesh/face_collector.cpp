@@ -1,9 +1,6 @@
 // Faces of a file into triangles, one collector a chunk; then all chunks into one soup.
 #include "io/mesh/face_collector.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,28 +8,27 @@
 #include <memory>
 #include <numeric>
 
+#include "core/parallel_ranges.h"
+
 namespace isoshell {
 namespace {
 
-using Range = tbb::blocked_range<int64_t>;
 constexpr int64_t kGrain = 1 << 14;
 
 template <class Test>
 int64_t count_where(int64_t count, Test test) {
-  return tbb::parallel_reduce(
-      Range(0, count, kGrain), int64_t(0),
-      [&](const Range& r, int64_t sum) {
-        for (int64_t i = r.begin(); i < r.end(); ++i) sum += test(i) ? 1 : 0;
-        return sum;
-      },
-      std::plus<int64_t>());
+  return sum_over_ranges(count, kGrain, [&](int64_t begin, int64_t end) {
+    int64_t sum = 0;
+    for (int64_t i = begin; i < end; ++i) sum += test(i) ? 1 : 0;
+    return sum;
+  });
 }
 
 int64_t count_unreferenced(const std::vector<WorldPoint>& points, const std::vector<Triangle>& triangles) {
   const int64_t count = int64_t(points.size());
   std::unique_ptr<std::atomic<uint8_t>[]> used(new std::atomic<uint8_t>[points.size()]());
-  tbb::parallel_for(Range(0, int64_t(triangles.size()), kGrain), [&](const Range& r) {
-    for (int64_t t = r.begin(); t < r.end(); ++t)
+  for_ranges(int64_t(triangles.size()), kGrain, [&](int64_t begin, int64_t end) {
+    for (int64_t t = begin; t < end; ++t)
       for (const uint32_t corner : triangles[size_t(t)]) used[corner].store(1, std::memory_order_relaxed);
   });
   return count_where(count, [&](int64_t i) { return !used[size_t(i)].load(std::memory_order_relaxed); });
@@ -131,7 +127,7 @@ TriangleSoup join_parts(VertexTable vertices, std::vector<FaceCollector>& parts)
     soup.triangles = std::move(parts[0].triangles_);
   } else {
     soup.triangles.resize(start.back());
-    tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
+    for_each_index(size_t(0), parts.size(), [&](size_t i) {
       std::copy(parts[i].triangles_.begin(), parts[i].triangles_.end(), soup.triangles.begin() + int64_t(start[i]));
       std::vector<Triangle>().swap(parts[i].triangles_);
     });

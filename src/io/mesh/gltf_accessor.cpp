@@ -1,10 +1,10 @@
 // The elements of accessors as numbers.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstring>
 
 #include "core/number_type.h"
+#include "core/parallel_ranges.h"
 #include "io/mesh/gltf_document.h"
 
 namespace isoshell {
@@ -33,12 +33,11 @@ void each_value(const GltfElements& e, Take take) {
     constexpr auto kBytes = int64_t(sizeof(T));
     if constexpr (kBytes <= 4) {
       const bool is_packed = e.stride == e.components * kBytes;
-      tbb::parallel_for(tbb::blocked_range<int64_t>(0, e.count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
+      for_ranges(e.count, kGrain, [&](int64_t begin, int64_t end) {
         if (is_packed)
-          for (int64_t v = r.begin() * e.components; v < r.end() * e.components; ++v)
-            take(v, load<T>(e.data + v * kBytes));
+          for (int64_t v = begin * e.components; v < end * e.components; ++v) take(v, load<T>(e.data + v * kBytes));
         else
-          for (int64_t i = r.begin(); i < r.end(); ++i)
+          for (int64_t i = begin; i < end; ++i)
             for (int64_t c = 0; c < e.components; ++c)
               take(i * e.components + c, load<T>(e.data + i * e.stride + c * kBytes));
       });

@@ -1,11 +1,13 @@
 #include "io/mesh/gltf_primitives.h"
 
-#include <tbb/parallel_for.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <functional>
 #include <map>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
@@ -104,8 +106,8 @@ void add_triangles(const GltfDocument& document, const GltfContent& content, con
   if (indices) read_checked_indices(document, *indices, vertices.count, index);
   const bool mirrors = vertices.to_world->mirrors();
   if (is_list && indices && vertices.first == 0 && !mirrors) return;
-  tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
-    for (int64_t t = r.begin(); t < r.end(); ++t) {
+  for_ranges(count, kGrain, [&](int64_t begin, int64_t end) {
+    for (int64_t t = begin; t < end; ++t) {
       Triangle& triangle = out[first + size_t(t)];
       for (int k = 0; k < 3; ++k) {
         const int64_t at = place_of(primitive.mode, t, k);

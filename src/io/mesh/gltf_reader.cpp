@@ -1,10 +1,10 @@
 // glTF: triangles of all meshes where their nodes put them, with colours, texture coordinates, normals, materials and
 // numbers of vertices.
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "core/parallel_ranges.h"
 #include "io/mesh/gltf_materials.h"
 #include "io/mesh/gltf_primitives.h"
 #include "io/mesh/mesh_readers.h"
@@ -19,8 +19,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 template <class Work>
 void for_each_index(int64_t count, Work work) {
-  tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, kGrain), [&](const tbb::blocked_range<int64_t>& r) {
-    for (int64_t i = r.begin(); i < r.end(); ++i) work(i);
+  for_ranges(count, kGrain, [&](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) work(i);
   });
 }
 

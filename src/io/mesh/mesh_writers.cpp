@@ -1,7 +1,7 @@
 // STL and OFF out, and what decides how precise PLY is.
 #include "io/mesh/mesh_writers.h"
 
-#include <tbb/parallel_for.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The body of a binary PLY file: rows found by stride where they are equally long, by hopping from list to list
 // where not, and read in parallel by blocks.
-#include <tbb/parallel_for.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/number_type.h"
+#include "core/parallel_ranges.h"
 #include "io/mesh/ply_body.h"
 #include "io/text_scan.h"
 
@@ -172,7 +173,7 @@ class BinaryRows {
 void read_vertices(const MeshSource& source, const BinaryRows& rows, const PlyMeshLayout& layout, PlyBody& body) {
   static constexpr double WorldPoint::*kAxes[] = {&WorldPoint::x, &WorldPoint::y, &WorldPoint::z};
   std::vector<WorldPoint>& points = body.vertices.points;
-  tbb::parallel_for(int64_t(0), rows.block_count(), [&](int64_t block) {
+  for_each_index(int64_t(0), rows.block_count(), [&](int64_t block) {
     // By columns: the type is looked at once a block, which stays cached.
     const auto read_column = [&](int property, auto value_of_row) {
       with_type(layout.vertices->properties[size_t(property)].type, [&](auto type) {
@@ -211,9 +212,9 @@ bool take_triangles(const MeshSource& source, const BinaryRows& rows, const PlyE
   std::atomic<bool> in_range{true};
   with_type(element.properties[size_t(list)].type, [&](auto type) {
     using T = decltype(type);
-    tbb::parallel_for(tbb::blocked_range<int64_t>(0, element.count, kRowsPerBlock), [&](const auto& range) {
+    for_ranges(element.count, kRowsPerBlock, [&](int64_t first_row, int64_t end_row) {
       bool fits = true;
-      for (int64_t row = range.begin(); row < range.end(); ++row) {
+      for (int64_t row = first_row; row < end_row; ++row) {
         const char* p = source.begin() + first.offset + row * rows.stride();
         for (uint32_t& corner : triangles[size_t(row)]) {
           const uint64_t index = uint64_t(as_index(load<T>(p, rows.big_endian())));

@@ -1,8 +1,6 @@
 // Rows of a file, formatted in parallel, a batch of blocks at a time, and written in order.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "io/output_file.h"
 #include "isoshell/lattice.h"
 
@@ -52,7 +51,7 @@ void write_rows(OutputFile& file, int64_t count, int64_t largest_row, Put put) {
   std::vector<RowBuffer> blocks(size_t(std::min(kBlocksPerBatch, (count + kRowsPerBlock - 1) / kRowsPerBlock)));
   for (int64_t base = 0; base < count; base += kBlocksPerBatch * kRowsPerBlock) {
     const int64_t here = std::min(kBlocksPerBatch, (count - base + kRowsPerBlock - 1) / kRowsPerBlock);
-    tbb::parallel_for(int64_t(0), here, [&](int64_t b) {
+    for_each_index(int64_t(0), here, [&](int64_t b) {
       const int64_t first = base + b * kRowsPerBlock, last = std::min(count, first + kRowsPerBlock);
       blocks[size_t(b)].reserve((last - first) * largest_row);
       for (int64_t row = first; row < last; ++row) put(row, blocks[size_t(b)]);

@@ -2,10 +2,10 @@
 // finds the first corner of every position on its own.
 #include "io/mesh/weld.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
@@ -69,7 +69,7 @@ Parts<typename Corners::Real> deal(int64_t count, Corners corners) {
   const int64_t part_count = int64_t(1) << part_bits, block_count = block_count_of(count);
   const auto part_of = [&](int64_t i) { return size_t(hash(corners[i]) >> 54) >> (10 - part_bits); };
   std::vector<int64_t> at(size_t(part_count * block_count), 0);  // block major
-  tbb::parallel_for(int64_t(0), block_count, [&](int64_t block) {
+  for_each_index(int64_t(0), block_count, [&](int64_t block) {
     int64_t* const counts = at.data() + block * part_count;
     each_in_block(block, count, [&](int64_t i) { ++counts[part_of(i)]; });
   });
@@ -85,7 +85,7 @@ Parts<typename Corners::Real> deal(int64_t count, Corners corners) {
   }
   parts.start.push_back(total);
   parts.entries = Buffer<Entry<typename Corners::Real>>(count);
-  tbb::parallel_for(int64_t(0), block_count, [&](int64_t block) {
+  for_each_index(int64_t(0), block_count, [&](int64_t block) {
     int64_t* const next = at.data() + block * part_count;
     each_in_block(block, count, [&](int64_t i) { parts.entries[next[part_of(i)]++] = {corners[i], uint32_t(i)}; });
   });
@@ -96,7 +96,7 @@ Parts<typename Corners::Real> deal(int64_t count, Corners corners) {
 template <class Real>
 void find_first(const Parts<Real>& parts, Buffer<uint32_t>& first) {
   constexpr uint32_t kNone = 0xffffffff;
-  tbb::parallel_for(size_t(0), parts.start.size() - 1, [&](size_t part) {
+  for_each_index(size_t(0), parts.start.size() - 1, [&](size_t part) {
     const Entry<Real>* const entries = parts.entries.data() + parts.start[part];
     const uint32_t count = uint32_t(parts.start[part + 1] - parts.start[part]);
     size_t slots = 16;
@@ -137,7 +137,7 @@ WeldedCorners weld_corners(const MeshSource& source, int64_t count, Corners corn
 
   const int64_t block_count = block_count_of(count);
   std::vector<int64_t> start(size_t(block_count) + 1, 0);
-  tbb::parallel_for(int64_t(0), block_count, [&](int64_t block) {
+  for_each_index(int64_t(0), block_count, [&](int64_t block) {
     int64_t vertices = 0;
     each_in_block(block, count, [&](int64_t i) { vertices += first[i] == i; });
     start[size_t(block) + 1] = vertices;
@@ -145,7 +145,7 @@ WeldedCorners weld_corners(const MeshSource& source, int64_t count, Corners corn
   for (size_t block = 1; block < start.size(); ++block) start[block] += start[block - 1];
   WeldedCorners welded{VertexTable(source, start.back()), std::vector<Triangle>(size_t((count + 2) / 3))};
   const auto index = [&](int64_t i) -> uint32_t& { return welded.index[size_t(i / 3)][size_t(i % 3)]; };
-  tbb::parallel_for(int64_t(0), block_count, [&](int64_t block) {
+  for_each_index(int64_t(0), block_count, [&](int64_t block) {
     int64_t vertex = start[size_t(block)];
     each_in_block(block, count, [&](int64_t i) {
       if (first[i] != i) return;
@@ -154,7 +154,7 @@ WeldedCorners weld_corners(const MeshSource& source, int64_t count, Corners corn
       index(i) = uint32_t(vertex++);
     });
   });
-  tbb::parallel_for(int64_t(0), block_count, [&](int64_t block) {
+  for_each_index(int64_t(0), block_count, [&](int64_t block) {
     each_in_block(block, count, [&](int64_t i) {
       if (first[i] != i) index(i) = index(first[i]);
     });

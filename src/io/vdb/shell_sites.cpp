@@ -1,9 +1,8 @@
 // The sites that a shell was made of, found again in it.
 #include "io/vdb/shell_sites.h"
 
-#include <tbb/parallel_for.h>
-
 #include "core/copy_product.h"
+#include "core/parallel_ranges.h"
 #include "core/voxel_set.h"
 #include "isoshell/io/vdb_file.h"
 #include "voxel/leaf.h"
@@ -15,7 +14,7 @@ SiteSet sites_of_shell(const Shell& of, const LatticeFrame& frame) {
   const VoxelSetView view = shell->voxels.view();
   const int64_t leaves = shell->voxels.leaf_count();
   Buffer<LeafMask> mask(leaves);
-  tbb::parallel_for(int64_t(0), leaves, [&](int64_t l) {
+  for_each_index(int64_t(0), leaves, [&](int64_t l) {
     LeafMask sites{};
     for_each_active(view, l, [&](int offset, int64_t i) {
       if (shell->distance_sq_vox[i] == 0) sites.word[offset >> 6] |= uint64_t(1) << (offset & 63);
@@ -45,7 +44,7 @@ SiteSet sites_of_shell(const Shell& of, const LatticeFrame& frame) {
 Buffer<Voxel> list_voxels(const VoxelSet& voxels) {
   const VoxelSetView view = voxels.view();
   Buffer<Voxel> list(voxels.voxel_count());
-  tbb::parallel_for(int64_t(0), voxels.leaf_count(), [&](int64_t l) {
+  for_each_index(int64_t(0), voxels.leaf_count(), [&](int64_t l) {
     const Voxel leaf = leaf_of_key(view.leaf_key[l]);
     for_each_active(view, l, [&](int offset, int64_t i) { list[i] = voxel_at(leaf, offset); });
   });

@@ -4,12 +4,12 @@
 
 #include <openvdb/Grid.h>
 #include <openvdb/tree/Tree.h>
-#include <tbb/parallel_for.h>
 
 #include <cstring>
 #include <memory>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "isoshell/voxel_set.h"
 #include "voxel/leaf.h"
 
@@ -40,7 +40,7 @@ void add_vdb_leaves(GridT& grid, int64_t count, LeafAt leaf_at, Fill fill) {
   using Leaf = VdbLeaf<GridT>;
   std::vector<std::unique_ptr<Leaf>> leaves(static_cast<size_t>(count));
   const auto background = grid.background();
-  tbb::parallel_for(int64_t(0), count, [&](int64_t l) {
+  for_each_index(int64_t(0), count, [&](int64_t l) {
     const Voxel at = leaf_at(l);
     auto leaf = std::make_unique<Leaf>(openvdb::Coord(at.x * 8, at.y * 8, at.z * 8), background, false);
     const LeafMask mask = fill(l, leaf->buffer().data());

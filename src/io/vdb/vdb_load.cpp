@@ -1,6 +1,7 @@
 // Reading stage files: layout and checksum first, then each grid, whose values are held to their range and the products
 // to their digests.
-#include <tbb/parallel_for.h>
+
+#include <tbb/parallel_invoke.h>
 
 #include <cmath>
 #include <exception>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "core/voxel_set.h"
 #include "io/vdb/key_values.h"
 #include "io/vdb/shell_sites.h"
@@ -132,7 +134,7 @@ InputTopology read_topology(const StageReader& file) {
 /// of tbb::parallel_invoke throws, the others' loops end early without a word and leave values that were never written.
 void run_all(const std::vector<std::function<void()>>& parts) {
   std::vector<std::exception_ptr> errors(parts.size());
-  tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
+  for_each_index(size_t(0), parts.size(), [&](size_t i) {
     try {
       parts[i]();
     } catch (...) {
@@ -197,7 +199,7 @@ Buffer<T> values_of(const StageReader& file, const char* name, const GridT& grid
                "has other voxels than the shell");
   const VoxelSetView view = set.view();
   Buffer<T> values(set.voxel_count());
-  tbb::parallel_for(int64_t(0), set.leaf_count(), [&](int64_t l) {
+  for_each_index(int64_t(0), set.leaf_count(), [&](int64_t l) {
     const auto& leaf = *leaves[size_t(l)];
     const Voxel at = leaf_of_key(view.leaf_key[l]);
     const LeafMask mask = mask_of(leaf);
@@ -218,7 +220,7 @@ Buffer<T> table_of(const StageReader& file, const char* name) {
   const int64_t count = int64_t(leaves.size());
   const int64_t last = count == 0 ? 0 : int64_t(leaves.back()->getValueMask().countOn());
   Buffer<T> elements(count == 0 ? 0 : (count - 1) * 512 + last);
-  tbb::parallel_for(int64_t(0), count, [&](int64_t l) {
+  for_each_index(int64_t(0), count, [&](int64_t l) {
     const auto& leaf = *leaves[size_t(l)];
     const Voxel at = leaf_of_key(uint64_t(l));
     const int64_t here = l + 1 < count ? 512 : last;
@@ -234,8 +236,8 @@ Buffer<T> table_of(const StageReader& file, const char* name) {
 /// Calls check(i) for every element; check throws.
 template <class Check>
 void check_all(int64_t count, Check check) {
-  tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, 4096), [&](const tbb::blocked_range<int64_t>& range) {
-    for (int64_t i = range.begin(); i < range.end(); ++i) check(i);
+  for_ranges(count, 4096, [&](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) check(i);
   });
 }
 
@@ -269,7 +271,7 @@ void read_surface(const StageReader& file, LatticeSurface& surface) {
 void check_shell(const StageReader& file, const Shell& shell, const SiteSet& sites) {
   const Buffer<Voxel> site = list_voxels(sites.voxels);
   const VoxelSetView view = shell.voxels.view();
-  tbb::parallel_for(int64_t(0), shell.voxels.leaf_count(), [&](int64_t l) {
+  for_each_index(int64_t(0), shell.voxels.leaf_count(), [&](int64_t l) {
     const Voxel leaf = leaf_of_key(view.leaf_key[l]);
     for_each_active(view, l, [&](int offset, int64_t i) {
       const int64_t id = shell.closest_site[i];

@@ -3,10 +3,10 @@
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
-#include <tbb/parallel_for.h>
 
 #include <cstring>
 
+#include "core/parallel_ranges.h"
 #include "io/memory_stream.h"
 #include "io/output_file.h"
 #include "io/vdb/vdb_cursor.h"
@@ -67,7 +67,7 @@ std::vector<char> join_grids(const std::vector<std::function<openvdb::GridBase::
                              const openvdb::MetaMap& meta) {
   const StreamArchive archive;
   std::vector<std::vector<char>> parts(makers.size());
-  tbb::parallel_for(size_t(0), makers.size(), [&](size_t i) { parts[i] = archive.bytes({makers[i]()}, {}); });
+  for_each_index(size_t(0), makers.size(), [&](size_t i) { parts[i] = archive.bytes({makers[i]()}, {}); });
 
   std::vector<char> file = archive.bytes({}, meta);
   const auto count = static_cast<uint32_t>(parts.size());
