@@ -2,12 +2,12 @@
 #include "isoshell/io/velocity_vdb.h"
 
 #include <openvdb/openvdb.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
 #include <sstream>
 
+#include "core/parallel_ranges.h"
 #include "core/world_vector.h"
 #include "io/vdb/dense_lattice.h"
 #include "io/vdb/field_grid.h"
@@ -26,8 +26,7 @@ constexpr FieldKind kVelocities{"Tree_vec3s_5_4_3", "vectors",
 VdbVec3fGrid::Ptr grid_of(const std::array<DenseVolume, 3>& components, const std::string& name) {
   const DenseVolume& lattice = components[0];
   initialize_openvdb();
-  auto grid = VdbVec3fGrid::create(openvdb::Vec3f(0));
-  grid->setName(name);
+  auto grid = new_vdb_grid<VdbVec3fGrid>(name.c_str(), openvdb::Vec3f(0));
   grid->setTransform(transform_of(lattice, name));
   auto voxels = grid->getAccessor();
   for (int64_t i = 0; i < lattice.size[0]; ++i)
@@ -60,9 +59,9 @@ class VdbVelocity final : public VelocityField {
 
   std::vector<WorldPoint> velocities_at(const std::vector<WorldPoint>& points) const override {
     std::vector<WorldPoint> out(points.size());
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+    for_ranges(int64_t(points.size()), 1024, [&](int64_t begin, int64_t end) {
       auto reader = grid_->getConstAccessor();
-      for (size_t i = range.begin(); i < range.end(); ++i) out[i] = velocity_at(reader, points[i]);
+      for (size_t i = size_t(begin); i < size_t(end); ++i) out[i] = velocity_at(reader, points[i]);
     });
     return out;
   }
