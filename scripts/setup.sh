@@ -1,22 +1,27 @@
 #!/usr/bin/env bash
 # Installs what the build needs and this machine lacks. Debian 12 and 13, Ubuntu 24.04 and newer.
 # Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
-# `setup.sh tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write,
-# and the environment of our own Python module; and, where they can be had, shells and readers of man pages for the tests
-# of completions and pages, which leave out what is not there. `setup.sh packages` adds what scripts/packages.sh needs.
+#   scripts/setup.sh [tests|ci|packages]
+# `tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write, and the
+# environment of our own Python module; and, where they can be had, shells and readers of man pages for the tests of
+# completions and pages, which leave out what is not there. `ci` adds what no part of .ci/run may go without, a browser
+# and torch among them, and fails where one of all these cannot be had. `packages` adds what scripts/packages.sh needs.
 set -euo pipefail
+cd "$(dirname "$0")/.."
 
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
           libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2 python3-minimal)
-wished=()
+of_tests=(libopenvdb-tools python3-openvdb python3-dev python3-venv)
+wished=(fish groff-base mandoc man-db pkg-config zsh)
 case "${1:-}" in
-  "") ;;
-  tests)
-    packages+=(libopenvdb-tools python3-openvdb python3-dev python3-venv)
-    wished=(fish groff-base mandoc man-db pkg-config zsh)
+  "") wished=() ;;
+  tests) packages+=("${of_tests[@]}") ;;
+  ci)
+    packages+=("${of_tests[@]}" "${wished[@]}" chromium clang-tidy git python3-torch)
+    wished=()
     ;;
-  packages) packages+=(python3-dev python3-venv dpkg-dev file) ;;
-  *) echo "setup: unknown argument: $1 (tests, packages)" >&2; exit 2 ;;
+  packages) packages+=(python3-dev python3-venv dpkg-dev file) wished=() ;;
+  *) echo "setup: unknown argument: $1 (tests, ci, packages)" >&2; exit 2 ;;
 esac
 
 # CUDA is not installed from here: which toolkit fits is the driver's and the administrator's to say.
@@ -31,6 +36,9 @@ if ! command -v dpkg-query >/dev/null; then
   exit 1
 fi
 
+# Another apt may be at work, as in the first minutes of a new machine: its lock is waited for.
+apt_get() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -o DPkg::Lock::Timeout=300 "$@"; }
+
 install_missing() { # package...
   local package missing=() as_root=()
   for package; do
@@ -42,14 +50,16 @@ install_missing() { # package...
     as_root=(sudo)
   fi
   echo "setup: installing ${missing[*]}" >&2
-  "${as_root[@]}" apt-get update &&
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+  apt_get update -qq || return
+  # Asked for the sizes only, apt says no to itself.
+  apt_get install --no-install-recommends --assume-no "${missing[@]}" 2>/dev/null |
+    sed -nE 's/^(Need to get|After this operation)/setup:   \1/p; s/^([0-9]+ upgraded, )/setup:   \1/p' >&2 || true
+  apt_get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
 install_missing "${packages[@]}"
-if install_missing "${wished[@]}"; then
-  echo "setup: everything is installed" >&2
-else
-  echo "setup: the tests leave out what needs one of these: ${wished[*]}" >&2
+if ! install_missing "${wished[@]}"; then
+  echo "tests of what needs one of these: ${wished[*]}" >>"${ISOSHELL_LEFT_OUT:-/dev/null}"
 fi
-if [ "${1:-}" = tests ]; then "$(dirname "$0")/python_env.sh"; fi
+echo "setup: everything that is needed is installed" >&2
+case "${1:-}" in tests | ci) scripts/python_env.sh "$1" ;; esac

@@ -12,7 +12,7 @@ SMALL = {"vertices": 60, "resolution": 24}
 @pytest.fixture(scope="module")
 def driver():
     if why := _isoshell.why_not_readable(0):
-        pytest.skip(why)
+        pytest.skip(f"no device: {why}")
     return Driver()
 
 
@@ -68,14 +68,3 @@ def test_the_device_of_the_calling_thread_stays_what_it_was(driver, ball):
     finally:
         driver.call("cuCtxSetCurrent", driver.context)
     assert before.value == after.value
-
-
-def test_a_result_becomes_tensors_of_torch(ball):
-    torch = pytest.importorskip("torch")
-    result = isoshell.remesh(ball, **SMALL)
-    vertices, faces = result.to_torch()
-    assert vertices.dtype == torch.float64 and faces.dtype == torch.int64
-    assert vertices.device.type == result.report["device"]
-    assert np.array_equal(vertices.cpu().numpy(), result.vertices) and np.array_equal(faces.cpu().numpy(), result.faces)
-    vertices += 1  # it is the caller's own
-    assert isoshell.remesh((vertices, faces), **SMALL).vertices.shape == (60, 3)

@@ -11,6 +11,11 @@ cd "$folder"
 touch scan.ply scan.vdb scan.txt
 mkdir shells
 
+# Is this program here? What is left out without it is told to scripts/test.sh.
+have() {
+  command -v "$1" >/dev/null || { echo "${name}_docs in $1 (not installed)" >>"${ISOSHELL_LEFT_OUT:-/dev/null}"; false; }
+}
+
 fail() { echo "$name: $*" >&2; exit 1; }
 
 expect() { # what, wanted words, found words
@@ -18,13 +23,13 @@ expect() { # what, wanted words, found words
 }
 
 page=$docs/$name.1
-if command -v man >/dev/null; then
+if have man; then
   said=$(LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings=w -l "$page" 2>&1 >/dev/null) && [ -z "$said" ] || fail "man: $said"
 fi
-if command -v groff >/dev/null; then
+if have groff; then
   said=$(groff -man -ww -z "$page" 2>&1) && [ -z "$said" ] || fail "groff: $said"
 fi
-if command -v mandoc >/dev/null; then
+if have mandoc; then
   said=$(mandoc -Tlint -Wwarning "$page") || fail "mandoc: $said"
 fi
 
@@ -75,13 +80,13 @@ case "$name" in
     expect "bash, a number" "" "$(in_bash --vertices "")"
     expect "bash, options" "--save-shell --save-voronoi" "$(in_bash --save)"
     expect "bash, formats" "gltf glb" "$(in_bash --output-format g)"
-    if command -v fish >/dev/null; then
+    if have fish; then
       expect "fish, a choice" "close keep" "$(in_fish a.ply b.ply --boundary "")"
       expect "fish, a file of an option" "scan.vdb shells/" "$(in_fish --save-shell s)"
       expect "fish, INPUT" "scan.ply scan.vdb shells/" "$(in_fish s)"
       expect "fish, options" "--save-shell --save-voronoi" "$(in_fish --save)"
     fi
-    if command -v zsh >/dev/null; then
+    if have zsh; then
       zsh_shows "zsh, a choice" "^close +keep" "$name a.ply b.ply --boundary "
       zsh_shows "zsh, a file of an option" "$name --save-shell scan.vdb" "$name --save-shell sca"
       zsh_shows "zsh, INPUT" "^scan.ply +scan.vdb$" "$name scan"
@@ -93,11 +98,11 @@ case "$name" in
     expect "bash, the reference" "scan.ply scan.vdb shells" "$(in_bash a.ply --ref s)"
     expect "bash, options" "--ref --ref-format" "$(in_bash --ref)"
     expect "bash, formats of the reference" "pcd ply" "$(in_bash --ref-format p)"
-    if command -v fish >/dev/null; then
+    if have fish; then
       expect "fish, MESH" "scan.ply shells/" "$(in_fish s)"
       expect "fish, the reference" "scan.ply scan.vdb shells/" "$(in_fish a.ply --ref s)"
     fi
-    if command -v zsh >/dev/null; then
+    if have zsh; then
       zsh_shows "zsh, MESH" "$name scan.ply" "$name sca"
       zsh_shows "zsh, the reference" "^scan.ply +scan.vdb$" "$name a.ply --ref scan"
     fi
@@ -105,4 +110,4 @@ case "$name" in
 esac
 # No other option has these letters in this order, which is enough for fish 4.
 expect "bash, a flag" "--version" "$(in_bash --versi)"
-if command -v fish >/dev/null; then expect "fish, a flag" "--version" "$(in_fish --versi)"; fi
+if have fish; then expect "fish, a flag" "--version" "$(in_fish --versi)"; fi

@@ -4,8 +4,13 @@
 set -eu
 writer=$1
 python="${PYTHON:-/usr/bin/python3} -s"  # a user's own NumPy may not fit the system's module
-command -v vdb_print > /dev/null || { echo "skipped: vdb_print is not installed"; exit 77; }
-$python -c 'import pyopenvdb' 2> /dev/null || { echo "skipped: pyopenvdb is not installed"; exit 77; }
+skip() {
+  echo "skipped: $1"
+  echo "vdb_tools ($1)" >> "${ISOSHELL_LEFT_OUT:-/dev/null}"
+  exit 77
+}
+command -v vdb_print > /dev/null || skip "vdb_print is not installed"
+$python -c 'import pyopenvdb' 2> /dev/null || skip "pyopenvdb is not installed"
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
