@@ -18,7 +18,10 @@ done
 preset=${1:-cuda}
 from=$PWD/build/$preset
 folder=${2:-$from/isoshell-bundle}
-[ "$build" -eq 0 ] || scripts/build.sh "$preset"
+if [ "$build" -eq 1 ]; then
+  cmake --preset "$preset" -DISOSHELL_CUDA_FOR_ALL=ON >&2  # not for the devices of this machine alone
+  scripts/build.sh "$preset"
+fi
 for command in vdb_isomesh vdb_meshinfo; do
   [ -x "$from/$command" ] || { echo "bundle: $from/$command is not built" >&2; exit 1; }
 done

@@ -7,7 +7,7 @@
 namespace isoshell {
 
 const BackendTable* cuda_backend() { return nullptr; }
-std::string why_not_cuda(int) { return "no CUDA device: this build has no CUDA backend"; }
+std::string why_not_cuda(int) { return "no CUDA device: this build has no CUDA backend; build with ISOSHELL_CUDA=on"; }
 DeviceInfo cuda_device_info(int) { return {}; }
 int64_t device_memory_peak_bytes(int) { return 0; }
 void copy_from_device(void*, const void*, int64_t, int device) {
