@@ -16,8 +16,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-openvdb::FloatGrid::Ptr constant(const std::string& name, double value, double background = 0) {
-  return sizing_grid(name, 1.2, 0.2, background, [=](const openvdb::Vec3d&) { return value; });
+TestGrid constant(const std::string& name, double value, double background = 0) {
+  return sizing_grid(name, 1.2, 0.2, background, [=](WorldPoint) { return value; });
 }
 
 /// What reading says, or nothing when it is fine.
@@ -40,7 +40,7 @@ const std::string kGrid = " --resolution 96 -q --device cpu --stats ";
 TEST_CASE("sizing: between voxels lengths are interpolated, outside the background counts if it is one", "[sizing]") {
   Folder folder;
   const std::string path = (folder / "f.vdb").string();
-  const auto upper = [](const openvdb::Vec3d& p) { return p.z() > -0.01 ? 2 + p.z() : 0; };
+  const auto upper = [](WorldPoint p) { return p.z > -0.01 ? 2 + p.z : 0; };
   write_grids(path, {sizing_grid("a", 1, 0.25, -3, upper)});
   const std::vector<WorldPoint> points = {{0, 0, 0.5}, {0.1, 0.2, 0.3}, {0, 0, -0.125}, {0, 0, -0.5}, {9, 0, 0}};
   const std::vector<double> at = read_sizing(path)->lengths_at(points);
@@ -60,17 +60,13 @@ TEST_CASE("sizing: lengths in memory are the field that a file of them is, and N
   constexpr int kSide = 4;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto length = [](int i, int j, int k) { return i == 3 ? 0.f : 1 + 0.25f * float(i) + 0.5f * float(j * k); };
-  auto grid = openvdb::FloatGrid::create(0);
-  grid->setName("a");
-  auto transform = openvdb::math::Transform::createLinearTransform(0.5);
-  transform->postTranslate({-1, 2, 3});
-  grid->setTransform(transform);
+  TestGrid grid("a", 0, 0.5, {-1, 2, 3});
   std::vector<float> values;
   for (int i = 0; i < kSide; ++i)
     for (int j = 0; j < kSide; ++j)
       for (int k = 0; k < kSide; ++k) {
         values.push_back(length(i, j, k) > 0 ? length(i, j, k) : nan);
-        if (length(i, j, k) > 0) grid->getAccessor().setValue({i, j, k}, length(i, j, k));
+        if (length(i, j, k) > 0) grid.set(i, j, k, length(i, j, k));
       }
   Folder folder;
   const std::string path = (folder / "lengths.vdb").string();
@@ -89,14 +85,14 @@ TEST_CASE("sizing: lengths in memory are the field that a file of them is, and N
 
 TEST_CASE("sizing: files that are no sizing fields are refused with what is wrong and what to do", "[sizing]") {
   Folder folder;
-  const auto file = [&](const std::string& name, const openvdb::GridPtrVec& grids) {
+  const auto file = [&](const std::string& name, const std::vector<TestGrid>& grids) {
     write_grids((folder / name).string(), grids);
     return (folder / name).string();
   };
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const auto one_bad = [](double bad) {
     auto grid = constant("a", 0.1);
-    grid->tree().setValue(openvdb::Coord(2, -1, 3), float(bad));
+    grid.set(2, -1, 3, bad);
     return grid;
   };
   CHECK(complaint(file("good.vdb", {constant("a", 0.1)})).empty());
@@ -104,14 +100,11 @@ TEST_CASE("sizing: files that are no sizing fields are refused with what is wron
   CHECK(contains(complaint(file("inf.vdb", {one_bad(inf)})), "no edge length"));
   CHECK(contains(complaint(file("zero.vdb", {one_bad(0)})), "more than 0"));
   auto distances = constant("a", -0.5);
-  distances->setGridClass(openvdb::GRID_LEVEL_SET);
+  distances.call_it_a_level_set();
   CHECK(contains(complaint(file("level_set.vdb", {distances})), "level set"));
-  auto empty = openvdb::FloatGrid::create(0.1f);
-  empty->setName("a");
-  CHECK(contains(complaint(file("empty.vdb", {empty})), "no active voxels"));
-  auto whole = openvdb::Int32Grid::create(1);
-  whole->setName("b");
-  whole->tree().setValue(openvdb::Coord(0, 0, 0), 3);
+  CHECK(contains(complaint(file("empty.vdb", {TestGrid("a", 0.1)})), "no active voxels"));
+  TestGrid whole = TestGrid::of_integers("b");
+  whole.set(0, 0, 0, 3);
   CHECK(contains(complaint(file("int.vdb", {whole})), "no grid of floats"));
   const std::string two = file("two.vdb", {constant("a", 0.1), constant("c", 0.2), whole});
   CHECK(contains(complaint(two), "several grids"));

@@ -14,19 +14,19 @@ namespace {
 constexpr double kVoxel = 0.05, kBackground = 3 * kVoxel;
 
 /// A grid of `distance` in a band of three voxels around its zero set; no value of it is exactly 0.
-openvdb::FloatGrid::Ptr unsigned_grid(const std::string& name, const LengthAt& distance, double scale = 1) {
-  return sizing_grid(name, 1.4, kVoxel, kBackground * scale, [=](const openvdb::Vec3d& p) {
+TestGrid unsigned_grid(const std::string& name, const LengthAt& distance, double scale = 1) {
+  return sizing_grid(name, 1.4, kVoxel, kBackground * scale, [=](WorldPoint p) {
     const double d = distance(p);
     return d < kBackground ? d * scale : 0;
   });
 }
 
-double to_ball(const openvdb::Vec3d& p) { return std::abs(p.length() - 1.0123); }
+double to_ball(WorldPoint p) { return std::abs(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) - 1.0123); }
 
-double to_bowl(const openvdb::Vec3d& p) {
-  if (p.z() >= 0.0077) return to_ball(p);
+double to_bowl(WorldPoint p) {
+  if (p.z >= 0.0077) return to_ball(p);
   const double rim = std::sqrt(1.0123 * 1.0123 - 0.0077 * 0.0077);
-  return openvdb::Vec3d(std::sqrt(p.x() * p.x() + p.y() * p.y()) - rim, p.z() - 0.0077, 0).length();
+  return std::hypot(std::hypot(p.x, p.y) - rim, p.z - 0.0077);
 }
 
 const std::string kRun = " out.ply --force --device cpu --vertices 500 ";

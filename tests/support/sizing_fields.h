@@ -1,46 +1,43 @@
-// Sizing fields as .vdb files.
+// Grids of numbers as .vdb files. OpenVDB's headers take seconds, so only sizing_fields.cpp includes them.
 #pragma once
 
-#include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
-
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
+
+#include "isoshell/lattice.h"
 
 namespace isoshell {
 
-using LengthAt = std::function<double(const openvdb::Vec3d&)>;
+/// A grid that a test fills and writes; copies are the same grid.
+class TestGrid {
+ public:
+  struct Data;
 
-/// A float grid over the box from -side to side, lengths in its active voxels.
-inline openvdb::FloatGrid::Ptr sizing_grid(const std::string& name, double side, double voxel, double background,
-                                           const LengthAt& length) {
-  openvdb::initialize();
-  auto grid = openvdb::FloatGrid::create(float(background));
-  grid->setName(name);
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
-  const int n = int(side / voxel) + 1;
-  auto out = grid->getAccessor();
-  for (int x = -n; x <= n; ++x)
-    for (int y = -n; y <= n; ++y)
-      for (int z = -n; z <= n; ++z) {
-        const openvdb::Coord at(x, y, z);
-        const double here = length(grid->indexToWorld(at));
-        if (here != 0) out.setValue(at, float(here));
-      }
-  return grid;
-}
+  /// Of floats, with the origin of its voxel (0, 0, 0) in world units.
+  explicit TestGrid(const std::string& name, double background = 0, double voxel = 1, WorldPoint origin = {0, 0, 0});
+  static TestGrid of_integers(const std::string& name);
 
-inline void write_grids(const std::string& path, const openvdb::GridPtrVec& grids) {
-  openvdb::io::File file(path);
-  file.write(grids);
-  file.close();
-}
+  /// Makes the voxel active.
+  void set(int i, int j, int k, double value);
+  void call_it_a_level_set();
+  const Data& data() const { return *data_; }
+
+ private:
+  explicit TestGrid(std::shared_ptr<Data> data) : data_(std::move(data)) {}
+
+  std::shared_ptr<Data> data_;
+};
+
+void write_grids(const std::string& path, const std::vector<TestGrid>& grids);
+
+using LengthAt = std::function<double(WorldPoint)>;
+
+/// A grid over the box from -side to side, with what `length` says in its active voxels, and none where it says 0.
+TestGrid sizing_grid(const std::string& name, double side, double voxel, double background, const LengthAt& length);
 
 /// Edges on a ball of radius 1 that grow along z, from `shortest` at the bottom to `ratio` times that at the top.
-inline openvdb::FloatGrid::Ptr ball_sizing(double shortest, double ratio) {
-  return sizing_grid("edge_length", 1.2, 0.05, -1, [=](const openvdb::Vec3d& p) {
-    return shortest * (1 + (ratio - 1) * std::max(0., p.z() + 1) / 2);
-  });
-}
+TestGrid ball_sizing(double shortest, double ratio);
 
 }  // namespace isoshell
