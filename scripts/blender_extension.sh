@@ -3,18 +3,31 @@
 # them:
 #   build/blender/isoshell-VERSION.zip               for Blender 4.2 to 5.0, which are Python 3.11
 #   build/blender/isoshell-VERSION-blender-5.1.zip   for Blender 5.1 and later
-# One package cannot hold both wheels: the first Blenders with extensions take the last one, whatever its Python is.
-#   scripts/blender_extension.sh [PYTHON3.11 [PYTHON3.12]]
+# One package cannot hold both wheels: the first Blenders with extensions take the last one, whatever its Python is. Each
+# is packed where its Python is at hand (3.11; 3.12 or 3.13), and what is left out is said.
+#   scripts/blender_extension.sh [PYTHON...]          pythons to build with; those of these versions on the path
+#   ISOSHELL_CUDA=on scripts/blender_extension.sh     the same with the CUDA backend, isoshell-VERSION-cuda...zip
 set -euo pipefail
 cd "$(dirname "$0")/.."
-pythons=("${1:-python3.11}" "${2:-python3.12}")
 version=$(sed -n 's/^project(isoshell VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+kind='' dist=build/dist
+if [ "${ISOSHELL_CUDA:-off}" = on ]; then kind=-cuda dist=build/dist-cuda; fi
+pythons=("$@")
+[ ${#pythons[@]} -gt 0 ] || pythons=(python3.11 python3.12 python3.13 python3)
 
-wheel_of() { ls -t build/dist/isoshell-"$version"-"$1"-*.whl 2>/dev/null | head -n 1; }
-missing=()
-[ -n "$(wheel_of cp311)" ] || missing+=("${pythons[0]}")
-[ -n "$(wheel_of cp312-abi3)" ] || missing+=("${pythons[1]}")
-[ ${#missing[@]} -eq 0 ] || scripts/wheel.sh "${missing[@]}"
+# The first of the pythons that is one of these versions.
+python_of() { # version...
+  local python version
+  for python in "${pythons[@]}"; do
+    for version; do
+      if "$python" -c "import sys; sys.exit('%d.%d' % sys.version_info[:2] != '$version')" 2>/dev/null; then
+        echo "$python"
+        return
+      fi
+    done
+  done
+}
+wheel_of() { find "$dist" -name "isoshell-$version-$1-*.whl" 2>/dev/null | head -n 1; }
 
 pack() { # package, wheel, fields of the manifest in place of blender_version_min
   python3 - "$@" <<'PYTHON'
@@ -38,7 +51,23 @@ PYTHON
 }
 
 mkdir -p build/blender
-pack "build/blender/isoshell-$version.zip" "$(wheel_of cp311)" \
-  'blender_version_min = "4.2.0",blender_version_max = "5.1.0"'
-pack "build/blender/isoshell-$version-blender-5.1.zip" "$(wheel_of cp312-abi3)" 'blender_version_min = "5.1.0"'
+packed=0
+package() { # tag of the wheel, end of the package's name, fields of the manifest, versions of Python...
+  local tag=$1 name=build/blender/isoshell-$version$kind$2.zip fields=$3 python
+  shift 3
+  if [ -z "$(wheel_of "$tag")" ]; then
+    python=$(python_of "$@")
+    if [ -z "$python" ]; then
+      echo "blender: left out $name: there is no Python ${*/%/ or}" | sed 's/ or$//' >&2
+      echo "$name (no Python $*)" >>"${ISOSHELL_LEFT_OUT:-/dev/null}"
+      return
+    fi
+    scripts/wheel.sh "$python"
+  fi
+  pack "$name" "$(wheel_of "$tag")" "$fields"
+  packed=1
+}
+package cp311 '' 'blender_version_min = "4.2.0",blender_version_max = "5.1.0"' 3.11
+package cp312-abi3 -blender-5.1 'blender_version_min = "5.1.0"' 3.12 3.13
+[ "$packed" -eq 1 ] || exit 1
 ls -l build/blender
