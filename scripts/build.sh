@@ -8,8 +8,14 @@ launcher=()
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
 python=()  # the Python module, where setup.sh has made what it needs
 case "$preset" in
-  cpu | cuda)
-    [ -x build/python/bin/python ] && python=(-DISOSHELL_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python") ;;
+  cpu | cuda | cpu-asan)
+    if [ -x build/python/bin/python ]; then
+      python=(-DISOSHELL_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python")
+    fi
+    if [ -x build/python-torch/bin/python ]; then
+      python+=("-DISOSHELL_TORCH_PYTHON=$PWD/build/python-torch/bin/python")
+    fi
+    ;;
 esac
 cmake --preset "$preset" "${launcher[@]}" "${python[@]}" >&2
 targets=()

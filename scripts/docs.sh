@@ -2,7 +2,7 @@
 # Builds the documentation site into build/site, and fails on warnings and on pages that name another server. What it
 # is made with comes from PyPI into build/docs once; then no network is needed. Open build/site/index.html;
 # its search needs a server: python3 -m http.server -d build/site.
-#   scripts/docs.sh [--if-possible]       with that option, PyPI out of reach is no failure
+#   scripts/docs.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 packages=("mkdocs>=1.6,<2" "mkdocs-material>=9.6,<10" "mkdocstrings-python>=1.16,<3" black)
@@ -15,7 +15,6 @@ if ! "$python" -c "import material, mkdocstrings_handlers.python, black" 2>/dev/
   if ! "$python" -m pip install --quiet --disable-pip-version-check "${packages[@]}"; then
     rm -rf build/docs
     echo "docs: PyPI cannot be reached, so the site is not built" >&2
-    [ "${1:-}" = --if-possible ] && exit 0
     exit 1
   fi
 fi

@@ -2,23 +2,35 @@
 # Makes build/python, where the Python module is built and tested: a virtual environment with packages from PyPI. Where
 # they cannot be had, the module and its tests are left out. Pages of --report are tried in a browser where chromium is
 # (apt install chromium: 400 MB).
-#   scripts/python_env.sh [tests|ci]     with `ci` all that any test wants, and without PyPI it fails
+#   scripts/python_env.sh [tests|ci]
+# With `ci` it has all that any test wants, and clang-format; there is build/python-torch beside it, whose torch is that of
+# the system's package, for the processor alone; and where one of all these cannot be had, it fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-packages=(numpy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue)
-if command -v chromium >/dev/null; then packages+=(playwright); fi
-if [ "${1:-}" = ci ]; then packages+=(pyvista); fi
-modules=("${packages[@]/usd-core/pxr}")
-modules=("${modules[@]//-/_}")
-python=build/python/bin/python
 
-if ! "$python" -c "import ${modules[*]/%/,} sys" 2>/dev/null; then
-  echo "setup: installing ${packages[*]} from PyPI into build/python" >&2
-  python3 -m venv build/python
-  if ! "$python" -m pip install --quiet --disable-pip-version-check "${packages[@]}"; then
-    echo "setup: PyPI cannot be reached, so the Python module and its tests are left out" >&2
-    echo "the Python module and its tests (PyPI cannot be reached)" >>"${ISOSHELL_LEFT_OUT:-/dev/null}"
-    rm -rf build/python
-    [ "${1:-}" != ci ] || exit 1
-  fi
+left_out() { # text
+  echo "setup: PyPI cannot be reached, so left out are $1" >&2
+  echo "$1 (PyPI cannot be reached)" >>"${ISOSHELL_LEFT_OUT:-/dev/null}"
+}
+
+# Makes an environment unless it is there and can import these modules.
+environment() { # folder, modules, command that makes it, packages...
+  local folder=$1 modules=$2 make=$3
+  shift 3
+  ! "$folder/bin/python" -c "import $modules" 2>/dev/null || return 0
+  echo "setup: installing $* from PyPI into $folder" >&2
+  $make "$folder" && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@"
+}
+
+packages=(numpy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue)
+if command -v chromium google-chrome >/dev/null; then packages+=(playwright); fi
+if [ "${1:-}" = ci ]; then packages+=(pyvista); fi
+modules=${packages[*]/usd-core/pxr}
+modules=${modules//-/_}
+if [ "${1:-}" = ci ]; then
+  environment build/python-torch torch,pytest "/usr/bin/python3 -m venv --system-site-packages" pytest
+  environment build/python "${modules// /,},clang_format" "python3 -m venv" "${packages[@]}" clang-format==14.0.6
+elif ! environment build/python "${modules// /,}" "python3 -m venv" "${packages[@]}"; then
+  rm -rf build/python
+  left_out "the Python module and its tests"
 fi

@@ -17,7 +17,8 @@ case "${1:-}" in
   "") wished=() ;;
   tests) packages+=("${of_tests[@]}") ;;
   ci)
-    packages+=("${of_tests[@]}" "${wished[@]}" chromium clang-tidy git python3-torch)
+    packages+=("${of_tests[@]}" "${wished[@]}" clang-tidy git python3-torch)
+    command -v google-chrome >/dev/null || packages+=(chromium)
     wished=()
     ;;
   packages) packages+=(python3-dev python3-venv dpkg-dev file) wished=() ;;

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("k3d", reason="a report needs k3d: pip install 'isoshell[report]'")
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 if not CHROMIUM:
     pytest.skip("there is no chromium: apt install chromium", allow_module_level=True)
 

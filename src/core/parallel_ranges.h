@@ -1,5 +1,5 @@
-// Loops over threads whose machinery is compiled once: a loop of TBB that is a template of its body costs a kilobyte and a
-// tenth of a second of the compiler for every body there is. What is paid instead is one indirect call a range.
+// Loops over threads whose machinery is compiled once: a loop of TBB that is a template of its body costs a kilobyte
+// and a tenth of a second of the compiler for every body there is. What is paid instead is one indirect call a range.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ class RangeFunction {
   Result (*call_)(const void*, int64_t, int64_t);
 };
 
-/// Calls `body` for ranges that together are [0, count), each of at most `grain` elements or not much more, in any order
-/// and from several threads. What it throws is thrown here.
+/// Calls `body` for ranges that together are [0, count), each of at most `grain` elements or not much more, in any
+/// order and from several threads. What it throws is thrown here.
 void for_ranges(int64_t count, int64_t grain, RangeFunction<void> body);
 
 /// Calls `body` for every index from `begin` to `end`, which is not one of them, in any order and from several threads.
