@@ -34,7 +34,7 @@ for suite in "${suites[@]}"; do
   mkdir "$root/wheels"
   cp build/dist/*.whl "$root/wheels"
   # Packages of that Python are fetched here: the clean system reaches no index.
-  build/wheel/tools/bin/pip download --quiet --disable-pip-version-check --only-binary=:all: --python-version "$version" \
+  build/wheel-tools/bin/pip download --quiet --disable-pip-version-check --only-binary=:all: --python-version "$version" \
     --dest "$root/wheels" numpy
   inside "$root" python3 -m venv /empty
   inside "$root" /empty/bin/pip install --quiet --no-index --find-links /wheels isoshell

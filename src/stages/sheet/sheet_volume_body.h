@@ -20,7 +20,7 @@ struct SixVolume {
     const Vec64 n = cross(difference(position[t.b], a), difference(position[t.c], a));
     const Wide six = Wide(a.x) * n.x + Wide(a.y) * n.y + Wide(a.z) * n.z;
     const int64_t whole = int64_t(six >> (3 * kFractionBits));
-    return want_rest ? int64_t(six - (Wide(whole) << (3 * kFractionBits))) : whole;
+    return want_rest ? int64_t(six - Wide(whole) * (Wide(1) << (3 * kFractionBits))) : whole;
   }
 };
 
