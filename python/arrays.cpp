@@ -1,5 +1,7 @@
 #include "arrays.h"
 
+#include <cstddef>
+#include <cstring>
 #include <string>
 #include <type_traits>
 
@@ -68,11 +70,15 @@ bool of_number_type(const AnyArray& a, Work work) {
 /// Calls visit(i, value) for every value in order. The array is of one or two dimensions.
 template <class T, class Visit>
 void each_value(const AnyArray& a, Visit visit) {
-  const T* values = static_cast<const T*>(a.data());
+  const auto* const bytes = static_cast<const std::byte*>(a.data());  // which need not be aligned
   const size_t rows = a.shape(0), columns = a.ndim() == 2 ? a.shape(1) : 1;
   const int64_t step = a.stride(0), across = a.ndim() == 2 ? a.stride(1) : 0;
   for (size_t i = 0; i < rows; ++i)
-    for (size_t j = 0; j < columns; ++j) visit(i * columns + j, values[int64_t(i) * step + int64_t(j) * across]);
+    for (size_t j = 0; j < columns; ++j) {
+      T value;
+      std::memcpy(&value, bytes + (int64_t(i) * step + int64_t(j) * across) * int64_t(sizeof(T)), sizeof(T));
+      visit(i * columns + j, value);
+    }
 }
 
 [[noreturn]] void refuse_index(const char* argument, const AnyArray& a, size_t at, const std::string& value,

@@ -146,7 +146,7 @@ std::vector<uint32_t> RepairMesh::first_within_cracks() const {
   std::vector<uint32_t> first(position.size());
   for (uint32_t v = 0; v < first.size(); ++v) {
     first[v] = v;
-    if (!(width[v] > 0)) continue;
+    if (!(width[v] > 0) || std::isinf(width[v])) continue;
     for (const int level : levels) {
       const Cell at = cell_at(position[v], level);
       for (int n = 0; n < 27; ++n) {
