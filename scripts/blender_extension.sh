@@ -5,15 +5,15 @@
 #   build/blender/isoshell-VERSION-blender-5.1.zip   for Blender 5.1 and later
 # One package cannot hold both wheels: the first Blenders with extensions take the last one, whatever its Python is. Each
 # is packed where its Python is at hand (3.11; 3.12 or 3.13), and what is left out is said.
-#   scripts/blender_extension.sh [PYTHON...]          pythons to build with; those of these versions on the path
+#   scripts/blender_extension.sh [PYTHON...]          packs for these; without any, for those of these versions on the path
 #   ISOSHELL_CUDA=on scripts/blender_extension.sh     the same with the CUDA backend, isoshell-VERSION-cuda...zip
 set -euo pipefail
 cd "$(dirname "$0")/.."
 version=$(sed -n 's/^project(isoshell VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 kind='' dist=build/dist
 if [ "${ISOSHELL_CUDA:-off}" = on ]; then kind=-cuda dist=build/dist-cuda; fi
-pythons=("$@")
-[ ${#pythons[@]} -gt 0 ] || pythons=(python3.11 python3.12 python3.13 python3)
+pythons=("$@") all=0
+[ ${#pythons[@]} -gt 0 ] || all=1 pythons=(python3.11 python3.12 python3.13 python3)
 
 # The first of the pythons that is one of these versions.
 python_of() { # version...
@@ -58,6 +58,7 @@ package() { # tag of the wheel, end of the package's name, fields of the manifes
   if [ -z "$(wheel_of "$tag")" ]; then
     python=$(python_of "$@")
     if [ -z "$python" ]; then
+      [ "$all" -eq 1 ] || return 0
       echo "blender: left out $name: there is no Python ${*/%/ or}" | sed 's/ or$//' >&2
       echo "$name (no Python $*)" >>"${ISOSHELL_LEFT_OUT:-/dev/null}"
       return
