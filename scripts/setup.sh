@@ -2,8 +2,8 @@
 # Installs what the build needs and this machine lacks. Debian 12 and 13, Ubuntu 24.04 and newer.
 # Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
 #   scripts/setup.sh [tests|ci|packages]
-# `tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write, and the
-# environment of our own Python module; and, where they can be had, shells and readers of man pages for the tests of
+# `tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write, a fast
+# linker, and the environment of our own Python module; and, where they can be had, shells and readers of man pages for the tests of
 # completions and pages, which leave out what is not there. `ci` adds what no part of .ci/run may go without, a browser
 # and torch among them, and fails where one of all these cannot be had. `packages` adds what scripts/packages.sh needs.
 set -euo pipefail
@@ -11,13 +11,13 @@ cd "$(dirname "$0")/.."
 
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
           libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2 python3-minimal)
-of_tests=(libopenvdb-tools python3-openvdb python3-dev python3-venv)
+of_tests=(libopenvdb-tools python3-openvdb python3-dev python3-venv mold)
 wished=(fish groff-base mandoc man-db pkg-config zsh)
 case "${1:-}" in
   "") wished=() ;;
   tests) packages+=("${of_tests[@]}") ;;
   ci)
-    packages+=("${of_tests[@]}" "${wished[@]}" clang-tidy git python3-torch)
+    packages+=("${of_tests[@]}" "${wished[@]}" ccache clang-tidy git python3-torch)
     command -v google-chrome >/dev/null || packages+=(chromium)
     wished=()
     ;;
