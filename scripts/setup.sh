@@ -3,9 +3,10 @@
 # Nothing is downloaded when everything is there. ccache, clang-format and clang are only used when present.
 #   scripts/setup.sh [tests|ci|packages]
 # `tests` adds what only tests run: OpenVDB's own tools and Python module, which open the files that we write, a fast
-# linker, and the environment of our own Python module; and, where they can be had, shells and readers of man pages for the tests of
-# completions and pages, which leave out what is not there. `ci` adds what no part of .ci/run may go without, a browser
-# and torch among them, and fails where one of all these cannot be had. `packages` adds what scripts/packages.sh needs.
+# linker, and the environment of our own Python module; and, where they can be had, shells and readers of man pages for
+# the tests of completions and pages, which leave out what is not there. `ci` adds what no part of .ci/run may go
+# without, a browser and torch among them, and fails where one of all these cannot be had. `packages` adds what
+# scripts/packages.sh needs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
