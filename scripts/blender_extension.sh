@@ -27,7 +27,7 @@ python_of() { # version...
     done
   done
 }
-wheel_of() { find "$dist" -name "isoshell-$version-$1-*.whl" 2>/dev/null | head -n 1; }
+wheel_of() { ls -t "$dist/isoshell-$version-$1"-*.whl 2>/dev/null | head -n 1; }
 
 pack() { # package, wheel, fields of the manifest in place of blender_version_min
   python3 - "$@" <<'PYTHON'

@@ -1,6 +1,6 @@
-// Compiled once for every source of the library (CMake's target_precompile_headers): the standard
-// library only, which nearly all use. (JSON in here would cost every source .35 s, TBB as much as it gains.) Sources
-// still include what they use: the preset strict compiles each alone.
+// Compiled once for every source of the library (CMake's target_precompile_headers): the standard library only, which
+// nearly all use. (JSON in here would cost every source .35 s, TBB as much as it gains.) Sources still include what
+// they use: ISOSHELL_PRECOMPILE=OFF, as in the presets strict and cpu-asan, compiles each alone.
 #pragma once
 
 #include <algorithm>

@@ -24,8 +24,8 @@ class RangeFunction {
   Result (*call_)(const void*, int64_t, int64_t);
 };
 
-/// Calls `body` for ranges that together are [0, count), each of at most `grain` elements or not much more, in any
-/// order and from several threads. What it throws is thrown here.
+/// Calls `body` for ranges that together are [0, count), in any order and from several threads. No range of `grain`
+/// elements or fewer is cut further. What `body` throws is thrown here.
 void for_ranges(int64_t count, int64_t grain, RangeFunction<void> body);
 
 /// Calls `body` for every index from `begin` to `end`, which is not one of them, in any order and from several threads.
