@@ -113,7 +113,7 @@ def over(cluster: Cluster, plan: Plan, common: Dict[str, Any], writer: manifest.
                 return failed
             for future in finished(cluster, set(under_way)):
                 job, deaths = under_way.pop(future)
-                row = row_of(future, job, deaths, writer)
+                row = row_of(cluster, future, job, deaths, writer)
                 if row is None:
                     submit(cluster, job, 0, deaths + 1, under_way)
                     continue
@@ -165,18 +165,26 @@ def finished(cluster: Cluster, futures: Set[Any]) -> List[Any]:
     end = time.monotonic() + SECONDS_TO_RECONNECT
     while cluster.client.status != "running":
         if time.monotonic() > end:
-            raise EngineLost(f"the scheduler ({cluster.name}) does not answer any more")
+            raise no_answer(cluster)
         time.sleep(LOOK_SECONDS)
     return [future for future in futures if future.done()]
 
 
-def row_of(future: Any, job: Dict[str, Any], deaths: int, writer: manifest.Writer) -> Optional[manifest.Row]:
+def no_answer(cluster: Cluster) -> EngineLost:
+    return EngineLost(f"the scheduler ({cluster.name}) does not answer any more")
+
+
+def row_of(cluster: Cluster, future: Any, job: Dict[str, Any], deaths: int,
+           writer: manifest.Writer) -> Optional[manifest.Row]:
     """The row of a finished asset; None of one that has to be tried again, as its workers ended."""
     error = future.exception() if future.status == "error" else None
     if future.status == "cancelled":
         raise EngineLost("the scheduler has dropped its work")
     if error is None:
-        row: manifest.Row = future.result()
+        try:
+            row: manifest.Row = future.result()
+        except Exception as lost:  # the asset is done, so what fails is the way to its row, through the scheduler
+            raise no_answer(cluster) from lost
         return row
     if isinstance(error, worker.Unwritable):
         raise error
