@@ -9,7 +9,7 @@ namespace isoshell {
 /// Result: the positions that triangles use are the vertices, in the order of x, y, z (-0 is 0); triangles have three
 /// of them, start at their smallest, and are sorted. Of triangles of the same corners the first in the soup stays,
 /// whichever way it faces. So the mesh depends on the order of the soup in source_face only, and where triangles that
-/// face each other have the same corners. Cost: sorts of the corners and the triangles.
+/// face each other have the same corners. Cost: a sort of the vertices, and sorts of the triangles of each.
 FeatureMesh weld_for_features(const TriangleSoup& soup);
 
 }  // namespace isoshell
