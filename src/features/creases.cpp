@@ -21,7 +21,7 @@ constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD
 constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
-std::vector<double> turns_at(const MeshEdges& edges, const std::vector<WorldPoint>& normals) {
+std::vector<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
   std::vector<double> turns(edges.count(), 0);
   for_each_index(size_t(0), turns.size(), [&](size_t e) {
     const FeatureEdge& edge = edges.edges[e];
@@ -159,7 +159,8 @@ std::vector<CurveEdge> find_fixed_curve_edges(const MeshEdges& edges) {
 
 std::vector<CurveEdge> with_creases_above(const FeatureMesh& mesh, const MeshEdges& edges,
                                           const std::vector<CurveEdge>& fixed, double degrees) {
-  const std::vector<double> turns = turns_at(edges, face_normals(mesh, edges));
+  const std::vector<WorldPoint> normals = face_normals(mesh, edges);
+  const std::vector<double> turns = turns_at(edges, {normals.data(), int64_t(normals.size())});
   return with_creases(fixed, edges_above(turns, turn_of_degrees(degrees)), turns);
 }
 
@@ -167,7 +168,7 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
                                                   const std::vector<CurveEdge>& fixed, double edge_length_world,
                                                   CreaseReport& report) {
   const std::vector<WorldPoint> normals = face_normals(mesh, edges);
-  const std::vector<double> turns = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world));
+  const std::vector<double> turns = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world).view());
   const std::vector<EdgeChain> chains =
       find_chains(edges, with_creases(fixed, grow_creases(mesh, edges, turns), turns));
   const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, edge_length_world).judge(chains);

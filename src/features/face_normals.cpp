@@ -1,8 +1,5 @@
 #include "features/face_normals.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 
 #include "core/parallel_ranges.h"
@@ -10,9 +7,6 @@
 namespace isoshell {
 namespace {
 
-constexpr int kRounds = 20;            // of the filter
-constexpr double kStill = 1e-6;        // squared difference of normals that ends it
-constexpr double kMostApartSq = .468;  // of normals of one smooth surface: 40 degrees
 constexpr double kThinHeight = 1e-5;   // of the largest extent: what floats round is 100 times smaller
 constexpr double kThinRoundings = 16;  // a triangle as high turns by 5 degrees where its vertices are rounded
 constexpr int kThinRounds = 8;         // thin triangles in a row that get a normal
@@ -68,46 +62,15 @@ void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector
   }
 }
 
-/// What a neighbour weighs but for its normal; 0 where there is none.
-struct Link {
-  uint32_t face = 0;
-  double weight = 0;
-};
-struct Links {
-  double own_weight;
-  std::array<Link, 3> to;
-};
-
-/// Weights are areas, less with the distance of the triangles' centres.
-std::vector<Links> link_triangles(const FeatureMesh& mesh, const MeshEdges& edges, double reach_world) {
-  const auto area = [&](uint32_t t) { return length(doubled_area_of(mesh, t)) / 2; };
-  const auto centre = [&](uint32_t t) {
-    const auto& c = mesh.triangles[t];
-    return 1. / 3 * (mesh.vertices[c[0]] + mesh.vertices[c[1]] + mesh.vertices[c[2]]);
-  };
-  std::vector<Links> links(mesh.triangles.size());
-  for_each_index(uint32_t(0), uint32_t(links.size()), [&](uint32_t t) {
-    links[t].own_weight = area(t);
-    for (size_t i = 0; i < 3; ++i) {
-      const uint32_t e = edges.of_triangle[t][i];
-      if (!edges.is_inner(e)) continue;
-      const uint32_t other = edges.across(e, t);
-      const double near = 1 / (1 + distance_sq(centre(t), centre(other)) / (reach_world * reach_world));
-      links[t].to[i] = {other, area(other) * near * near};
-    }
-  });
-  return links;
-}
-
 }  // namespace
 
 std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
   const double least_height = std::max(kThinHeight * largest_extent(mesh), kThinRoundings * mesh.rounding_world);
   std::vector<WorldPoint> normals(mesh.triangles.size(), kNoNormal);
   for_each_index(size_t(0), normals.size(), [&](size_t t) {
-    double longest_sq = 0;
-    for (const uint32_t e : edges.of_triangle[t])
-      longest_sq = std::max(longest_sq, edge_length_sq(mesh, edges.edges[e]));
+    const auto& c = mesh.triangles[t];
+    const WorldPoint &a = mesh.vertices[c[0]], &b = mesh.vertices[c[1]], &d = mesh.vertices[c[2]];
+    const double longest_sq = std::max({distance_sq(a, b), distance_sq(b, d), distance_sq(d, a)});
     const WorldPoint across = doubled_area_of(mesh, t);
     const double doubled = length(across);
     if (doubled > least_height * std::sqrt(longest_sq)) normals[t] = (1 / doubled) * across;
@@ -116,36 +79,6 @@ std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& e
   for (uint32_t t = 0; t < normals.size(); ++t)
     if (!has_normal(normals[t])) thin.push_back(t);
   borrow_normals(mesh, edges, std::move(thin), normals);
-  return normals;
-}
-
-std::vector<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<WorldPoint> normals,
-                                       double reach_world) {
-  const std::vector<Links> links = link_triangles(mesh, edges, reach_world);
-  std::vector<WorldPoint> next(normals.size());
-  const auto filter_one = [&](size_t t) {
-    const WorldPoint& own = normals[t];
-    WorldPoint sum = links[t].own_weight * own;
-    for (const Link& link : links[t].to) {
-      const double alike = 1 - (1 / kMostApartSq) * distance_sq(own, normals[link.face]);
-      if (alike > 0) sum = sum + (link.weight * alike * alike) * normals[link.face];
-    }
-    const double size = length(sum);
-    next[t] = size > 0 ? (1 / size) * sum : own;
-    return distance_sq(next[t], own);
-  };
-  using Range = tbb::blocked_range<size_t>;
-  for (int round = 0; round < kRounds; ++round) {
-    const double moved = tbb::parallel_reduce(
-        Range(0, normals.size(), 1024), 0.,
-        [&](const Range& range, double most) {
-          for (size_t t = range.begin(); t != range.end(); ++t) most = std::max(most, filter_one(t));
-          return most;
-        },
-        [](double a, double b) { return std::max(a, b); });
-    normals.swap(next);
-    if (moved < kStill) break;
-  }
   return normals;
 }
 

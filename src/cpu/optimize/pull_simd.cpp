@@ -1,6 +1,6 @@
 #include "cpu/optimize/pull_simd.h"
 
-#include "cpu/vector_versions.h"
+#include "core/vector_versions.h"
 
 namespace isoshell {
 namespace {

@@ -1,7 +1,7 @@
 // What SIMD versions of cut triangles share.
 #pragma once
 
-#include "cpu/vector_versions.h"
+#include "core/vector_versions.h"
 #include "voxel/cell_sum_32.h"
 
 namespace isoshell {

@@ -1,6 +1,6 @@
 #include "cpu/relax/label_simd.h"
 
-#include "cpu/vector_versions.h"
+#include "core/vector_versions.h"
 #include "voxel/cell_sum.h"
 
 namespace isoshell {

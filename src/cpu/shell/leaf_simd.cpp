@@ -6,7 +6,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "cpu/vector_versions.h"
+#include "core/vector_versions.h"
 
 namespace isoshell {
 namespace {
