@@ -3,6 +3,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/parallel_ranges.h"
@@ -18,6 +19,7 @@ constexpr double kStraightOn = .5;       // cosine between an edge and the next 
 constexpr int64_t kMostToGrow = 64;      // edges around a vertex: where more meet, none goes on from another
 constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
+constexpr size_t kParts = 3;             // in which chains are judged
 constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
@@ -87,13 +89,23 @@ std::vector<uint32_t> grow_creases(const FeatureMesh& mesh, const MeshEdges& edg
 
 /// A chain of creases, judged.
 struct Judged {
-  uint32_t component;
-  double length_world;
-  double beside;  ///< how much the surface turns beside the chain over how much at it, in roots of 1 - cosine
-  double unseen;  ///< the same of sides that are a single small triangle, as if that turned like the edge
+  uint32_t component = 0;
+  double length_world = 0;
+  /// How much the surface turns beside the chain over how much at it, in roots of 1 - cosine, or a part of that which
+  /// is too much already, as it is before one has looked.
+  double beside = kMostBeside;
+  double unseen = 0;  ///< the same of sides that are a single small triangle, as if that turned like the edge
   bool is_good() const { return beside < kMostBeside; }
   /// A triangle between creases says nothing of a surface.
   bool is_surely_good() const { return beside + unseen < kMostBeside; }
+};
+
+/// Of the chains of a component.
+struct Lengths {
+  double all = 0, good = 0, bad = 0;
+  bool are_of_creases() const { return good >= kLeastGoodShare * all; }
+  /// Whatever the chains are that are neither good nor bad yet, and however sums are rounded.
+  bool are_surely_of_a_scan() const { return bad > 1.001 * (1 - kLeastGoodShare) * all; }
 };
 
 /// Looks beside creases at the surface as it is: what filtered normals hide tells a scan.
@@ -103,35 +115,52 @@ class Judge {
         const std::vector<double>& filtered_turns, double reach_world)
       : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
 
-  std::vector<Judged> judge(const std::vector<EdgeChain>& chains) const {
+  /// Looks at every third chain, then at the next ones of components that may have creases: few are left on a scan.
+  /// Sums up what all chains of components are long, and those that were found bad.
+  std::vector<Judged> judge(const std::vector<EdgeChain>& chains, std::map<uint32_t, Lengths>& of_component) const {
     std::vector<uint8_t> is_end(edges_.count(), 0);
     for (const EdgeChain& chain : chains)
       for (const uint32_t e : chain.edge) is_end[e] = 1;
     const WalkGround ground{mesh_, edges_, normals_, is_end};
     const std::vector<uint32_t> component = components_of(mesh_, edges_);
     std::vector<Judged> judged(chains.size());
-    for_each_index(size_t(0), chains.size(), [&](size_t c) {
-      if (chains[c].kind == CurveKind::crease)
-        judged[c] = judge(ground, chains[c], component[edges_.edges[chains[c].edge[0]].face[0]]);
-    });
+    for (size_t c = 0; c < chains.size(); ++c) {
+      if (chains[c].kind != CurveKind::crease) continue;
+      judged[c] = {component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
+      of_component[judged[c].component].all += judged[c].length_world;
+    }
+    for (size_t first = 0; first < kParts; ++first) {
+      for_each_index(size_t(0), (chains.size() + kParts - 1 - first) / kParts, [&](size_t i) {
+        const size_t c = first + kParts * i;
+        if (chains[c].kind == CurveKind::crease && !of_component.at(judged[c].component).are_surely_of_a_scan())
+          look_beside_chain(ground, chains[c], judged[c]);
+      });
+      for (size_t c = first; c < chains.size(); c += kParts)
+        if (chains[c].kind == CurveKind::crease && !judged[c].is_surely_good())
+          of_component[judged[c].component].bad += judged[c].length_world;
+    }
     return judged;
   }
 
  private:
-  Judged judge(const WalkGround& ground, const EdgeChain& chain, uint32_t component) const {
+  void look_beside_chain(const WalkGround& ground, const EdgeChain& chain, Judged& judged) const {
     double beside = 0, unseen = 0, at = 0;
-    for (size_t i = 0; i < chain.edge.size(); ++i) {
+    const auto size = [&](size_t i) {
+      return length(mesh_.vertices[chain.vertex[i + 1]] - mesh_.vertices[chain.vertex[i]]);
+    };
+    for (size_t i = 0; i < chain.edge.size(); ++i) at += size(i) * std::sqrt(turns_[chain.edge[i]]);
+    // Sums only grow: what is found to be no good chain on the way needs no more walks.
+    for (size_t i = 0; i < chain.edge.size() && beside / at < kMostBeside; ++i) {
       const uint32_t e = chain.edge[i];
-      const double size = length(mesh_.vertices[chain.vertex[i + 1]] - mesh_.vertices[chain.vertex[i]]);
-      at += size * std::sqrt(turns_[e]);
       for (const uint32_t f : edges_.edges[e].face) {
         const BesideEdge seen = look_beside(ground, e, f, walk_length(f));
-        beside += size / 2 * std::sqrt(seen.turn);
+        beside += size(i) / 2 * std::sqrt(seen.turn);
         const bool is_seen = seen.crossed > 0 || seen.walked_world >= reach_world_;
-        if (!is_seen) unseen += size / 2 * std::sqrt(turns_[e]);
+        if (!is_seen) unseen += size(i) / 2 * std::sqrt(turns_[e]);
       }
     }
-    return {component, length_of(mesh_, chain), beside / at, unseen / at};
+    judged.beside = beside / at;
+    judged.unseen = unseen / at;
   }
 
   double walk_length(uint32_t face) const {
@@ -169,20 +198,18 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
                                                   CreaseReport& report) {
   const std::vector<WorldPoint> normals = face_normals(mesh, edges);
   const std::vector<double> turns = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world).view());
-  const std::vector<EdgeChain> chains =
-      find_chains(edges, with_creases(fixed, grow_creases(mesh, edges, turns), turns));
-  const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, edge_length_world).judge(chains);
-
-  std::vector<double> all(mesh.triangles.size(), 0), good(mesh.triangles.size(), 0);  // lengths, per component
-  for (size_t c = 0; c < chains.size(); ++c) {
-    if (chains[c].kind != CurveKind::crease) continue;
-    all[judged[c].component] += judged[c].length_world;
-    if (judged[c].is_surely_good()) good[judged[c].component] += judged[c].length_world;
-  }
-  const auto has_creases = [&](uint32_t component) { return good[component] >= kLeastGoodShare * all[component]; };
+  const std::vector<uint32_t> candidates = grow_creases(mesh, edges, turns);
+  if (candidates.empty()) return fixed;
+  const std::vector<EdgeChain> chains = find_chains(edges, with_creases(fixed, candidates, turns));
+  std::map<uint32_t, Lengths> of_component;
+  const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, edge_length_world).judge(chains, of_component);
+  for (size_t c = 0; c < chains.size(); ++c)
+    if (chains[c].kind == CurveKind::crease && judged[c].is_surely_good())
+      of_component[judged[c].component].good += judged[c].length_world;
   std::vector<uint32_t> kept;
   for (size_t c = 0; c < chains.size(); ++c)
-    if (chains[c].kind == CurveKind::crease && judged[c].is_good() && has_creases(judged[c].component))
+    if (chains[c].kind == CurveKind::crease && judged[c].is_good() &&
+        of_component[judged[c].component].are_of_creases())
       kept.insert(kept.end(), chains[c].edge.begin(), chains[c].edge.end());
   std::sort(kept.begin(), kept.end());
   if (!kept.empty()) {
@@ -191,10 +218,10 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
     kept.insert(kept.end(), facets.begin(), facets.end());
     std::sort(kept.begin(), kept.end());
   }
-  for (uint32_t t = 0; t < all.size(); ++t) {
-    report.candidate_length_world += all[t];
-    report.components_with_candidates += all[t] > 0;
-    report.components_without_creases += all[t] > 0 && !has_creases(t);
+  for (const auto& [component, lengths] : of_component) {
+    report.candidate_length_world += lengths.all;
+    report.components_with_candidates += lengths.all > 0;
+    report.components_without_creases += lengths.all > 0 && !lengths.are_of_creases();
   }
   return with_creases(fixed, kept, turns);
 }

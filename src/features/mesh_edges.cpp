@@ -50,7 +50,8 @@ std::vector<uint32_t> components_of(const FeatureMesh& mesh, const MeshEdges& ed
   for_all(StartAlone{sets});
   // A triangle is joined with the first one of each of its edges, which may have many.
   for_all([&](uint32_t t) {
-    for (const uint32_t e : edges.of_triangle[t]) join(sets, edges.edges[e].face[0], t);
+    for (const uint32_t e : edges.of_triangle[t])
+      if (const uint32_t first = edges.edges[e].face[0]; first != t) join(sets, first, t);
   });
   for_all(PointAtRoot{sets});
   return parent;

@@ -77,13 +77,17 @@ class Patches {
 std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<CurveEdge> all,
                                    double edge_length_world, double most_turn) {
   constexpr size_t kNoChain = SIZE_MAX;
+  const auto may_go = [=](const EdgeChain& chain) {
+    return chain.kind == CurveKind::crease && chain.turn < most_turn && !chain.is_ring;
+  };
   for (size_t before = all.size() + 1; all.size() < before;) {
     before = all.size();
     const std::vector<EdgeChain> chains = find_chains(edges, all);
+    if (std::none_of(chains.begin(), chains.end(), may_go)) break;  // patches cost a look at every edge
     const Patches patches(mesh, edges, all);
     std::vector<size_t> weakest(mesh.triangles.size(), kNoChain);
     for (size_t c = 0; c < chains.size(); ++c) {
-      if (chains[c].kind != CurveKind::crease || chains[c].turn >= most_turn || chains[c].is_ring) continue;
+      if (!may_go(chains[c])) continue;
       const auto& face = edges.edges[chains[c].edge[0]].face;
       if (patches.of(face[0]) == patches.of(face[1])) continue;
       for (const uint32_t f : face) {
