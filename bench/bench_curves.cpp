@@ -55,7 +55,7 @@ struct SharpEdges {
 };
 SharpEdges sharp_edges(const FeatureMesh& mesh, double degrees) {
   const MeshEdges edges = find_mesh_edges(mesh);
-  const std::vector<WorldPoint> normals = face_normals(mesh, edges);
+  const Buffer<WorldPoint> normals = face_normals(mesh, edges);
   SharpEdges sharp;
   for (const FeatureEdge& e : edges.edges) {
     if (e.use != EdgeUse::inner || turn_between(normals[e.face[0]], normals[e.face[1]]) < turn_of_degrees(degrees))

@@ -23,18 +23,18 @@ constexpr size_t kParts = 3;             // in which chains are judged
 constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
-std::vector<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
-  std::vector<double> turns(edges.count(), 0);
-  for_each_index(size_t(0), turns.size(), [&](size_t e) {
-    const FeatureEdge& edge = edges.edges[e];
-    if (edge.use == EdgeUse::inner) turns[e] = turn_between(normals[edge.face[0]], normals[edge.face[1]]);
+Buffer<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
+  Buffer<double> turns(edges.count());
+  for_each_index(uint32_t(0), edges.count(), [&](uint32_t e) {
+    const auto& face = edges.edges[e].face;
+    turns[e] = edges.is_inner(e) ? turn_between(normals[face[0]], normals[face[1]]) : 0;
   });
   return turns;
 }
 
-std::vector<uint32_t> edges_above(const std::vector<double>& turns, double least) {
+std::vector<uint32_t> edges_above(View<const double> turns, double least) {
   std::vector<uint32_t> found;
-  for (uint32_t e = 0; e < turns.size(); ++e)
+  for (uint32_t e = 0; e < turns.size; ++e)
     if (turns[e] >= least) found.push_back(e);
   return found;
 }
@@ -48,7 +48,7 @@ bool goes_on(const FeatureMesh& mesh, const FeatureEdge& from, const FeatureEdge
 
 /// Fixed curve edges and creases in one list, ascending.
 std::vector<CurveEdge> with_creases(const std::vector<CurveEdge>& fixed, const std::vector<uint32_t>& creases,
-                                    const std::vector<double>& turns) {
+                                    View<const double> turns) {
   std::vector<CurveEdge> both;
   auto next = fixed.begin();
   for (const uint32_t e : creases) {
@@ -60,7 +60,7 @@ std::vector<CurveEdge> with_creases(const std::vector<CurveEdge>& fixed, const s
 }
 
 /// Hysteresis: sharp edges, and less sharp ones that go on from a crease.
-std::vector<uint32_t> grow_creases(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<double>& turns) {
+std::vector<uint32_t> grow_creases(const FeatureMesh& mesh, const MeshEdges& edges, View<const double> turns) {
   const std::vector<uint32_t> weak = edges_above(turns, turn_of_degrees(kGrowthDegrees));
   std::vector<std::pair<uint32_t, uint32_t>> around;  // vertex, edge
   for (const uint32_t e : weak)
@@ -111,8 +111,8 @@ struct Lengths {
 /// Looks beside creases at the surface as it is: what filtered normals hide tells a scan.
 class Judge {
  public:
-  Judge(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<WorldPoint>& normals,
-        const std::vector<double>& filtered_turns, double reach_world)
+  Judge(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
+        View<const double> filtered_turns, double reach_world)
       : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
 
   /// Looks at every third chain, then at the next ones of components that may have creases: few are left on a scan.
@@ -171,8 +171,8 @@ class Judge {
 
   const FeatureMesh& mesh_;
   const MeshEdges& edges_;
-  const std::vector<WorldPoint>& normals_;
-  const std::vector<double>& turns_;
+  View<const WorldPoint> normals_;
+  View<const double> turns_;
   double reach_world_;
 };
 
@@ -188,16 +188,17 @@ std::vector<CurveEdge> find_fixed_curve_edges(const MeshEdges& edges) {
 
 std::vector<CurveEdge> with_creases_above(const FeatureMesh& mesh, const MeshEdges& edges,
                                           const std::vector<CurveEdge>& fixed, double degrees) {
-  const std::vector<WorldPoint> normals = face_normals(mesh, edges);
-  const std::vector<double> turns = turns_at(edges, {normals.data(), int64_t(normals.size())});
-  return with_creases(fixed, edges_above(turns, turn_of_degrees(degrees)), turns);
+  const Buffer<double> turns = turns_at(edges, face_normals(mesh, edges).view());
+  return with_creases(fixed, edges_above(turns.view(), turn_of_degrees(degrees)), turns.view());
 }
 
 std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
                                                   const std::vector<CurveEdge>& fixed, double edge_length_world,
                                                   CreaseReport& report) {
-  const std::vector<WorldPoint> normals = face_normals(mesh, edges);
-  const std::vector<double> turns = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world).view());
+  const Buffer<WorldPoint> face_normal = face_normals(mesh, edges);
+  const View<const WorldPoint> normals = face_normal.view();
+  const Buffer<double> turn = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world).view());
+  const View<const double> turns = turn.view();
   const std::vector<uint32_t> candidates = grow_creases(mesh, edges, turns);
   if (candidates.empty()) return fixed;
   const std::vector<EdgeChain> chains = find_chains(edges, with_creases(fixed, candidates, turns));

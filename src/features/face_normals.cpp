@@ -33,7 +33,7 @@ double edge_length_sq(const FeatureMesh& mesh, const FeatureEdge& e) {
 }
 
 /// The normal on the other side of the longest edge that has one there.
-WorldPoint neighbours_normal(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<WorldPoint>& normals,
+WorldPoint neighbours_normal(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
                              uint32_t face) {
   WorldPoint best = kNoNormal;
   double longest_sq = 0;
@@ -50,7 +50,7 @@ WorldPoint neighbours_normal(const FeatureMesh& mesh, const MeshEdges& edges, co
 
 /// Thin triangles take a neighbour's normal; a round only sees the normals of the rounds before.
 void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<uint32_t> thin,
-                    std::vector<WorldPoint>& normals) {
+                    View<WorldPoint> normals) {
   for (int round = 0; round < kThinRounds && !thin.empty(); ++round) {
     std::vector<std::pair<uint32_t, WorldPoint>> found;
     for (const uint32_t t : thin) found.push_back({t, neighbours_normal(mesh, edges, normals, t)});
@@ -64,21 +64,21 @@ void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector
 
 }  // namespace
 
-std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
+Buffer<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
   const double least_height = std::max(kThinHeight * largest_extent(mesh), kThinRoundings * mesh.rounding_world);
-  std::vector<WorldPoint> normals(mesh.triangles.size(), kNoNormal);
-  for_each_index(size_t(0), normals.size(), [&](size_t t) {
+  Buffer<WorldPoint> normals(int64_t(mesh.triangles.size()));
+  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const auto& c = mesh.triangles[t];
     const WorldPoint &a = mesh.vertices[c[0]], &b = mesh.vertices[c[1]], &d = mesh.vertices[c[2]];
     const double longest_sq = std::max({distance_sq(a, b), distance_sq(b, d), distance_sq(d, a)});
     const WorldPoint across = doubled_area_of(mesh, t);
     const double doubled = length(across);
-    if (doubled > least_height * std::sqrt(longest_sq)) normals[t] = (1 / doubled) * across;
+    normals[int64_t(t)] = doubled > least_height * std::sqrt(longest_sq) ? (1 / doubled) * across : kNoNormal;
   });
   std::vector<uint32_t> thin;
   for (uint32_t t = 0; t < normals.size(); ++t)
     if (!has_normal(normals[t])) thin.push_back(t);
-  borrow_normals(mesh, edges, std::move(thin), normals);
+  borrow_normals(mesh, edges, std::move(thin), normals.view());
   return normals;
 }
 

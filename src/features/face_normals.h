@@ -1,21 +1,18 @@
 // Unit normals of triangles, as given and smoothed for the detection of creases.
 #pragma once
 
-#include <vector>
-
 #include "core/world_vector.h"
 #include "features/mesh_edges.h"
-#include "isoshell/buffer.h"
 
 namespace isoshell {
 
 /// Unit normal of every triangle. One so thin that rounding decides its normal has that of a neighbour, or none: 0.
-std::vector<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges);
+Buffer<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges);
 
 /// The normals after a bilateral filter over neighbours within about `reach_world`: noise goes, creases stay. A few
 /// more without meaning lie behind those of the triangles.
-Buffer<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges,
-                                  const std::vector<WorldPoint>& normals, double reach_world);
+Buffer<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
+                                  double reach_world);
 
 inline bool has_normal(const WorldPoint& n) { return n.x != 0 || n.y != 0 || n.z != 0; }
 

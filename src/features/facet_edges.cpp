@@ -18,7 +18,7 @@ constexpr int64_t kMostAround = 64;   ///< edges around a vertex: more leave les
 constexpr double kLeastWidth = 0.85;  ///< of h
 
 /// Per edge whether facets end there: it turns, or a curve is there.
-std::vector<uint8_t> find_ends(const MeshEdges& edges, const std::vector<WorldPoint>& normals,
+std::vector<uint8_t> find_ends(const MeshEdges& edges, View<const WorldPoint> normals,
                                const std::vector<CurveEdge>& curve_edges) {
   const double least = turn_of_degrees(kLeastDegrees);
   std::vector<uint8_t> is_end(edges.count(), 0);
@@ -76,8 +76,7 @@ class EdgesAround {
 
 }  // namespace
 
-std::vector<uint32_t> find_facet_edges(const FeatureMesh& mesh, const MeshEdges& edges,
-                                       const std::vector<WorldPoint>& normals,
+std::vector<uint32_t> find_facet_edges(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
                                        const std::vector<CurveEdge>& curve_edges, double edge_length_world) {
   const std::vector<uint8_t> is_end = find_ends(edges, normals, curve_edges);
   std::vector<uint8_t> is_candidate = is_end;

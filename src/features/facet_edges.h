@@ -13,8 +13,7 @@ namespace isoshell {
 /// so cylinders and prisms have them, and round shapes of triangles have none. `normals` are those of the triangles,
 /// `turns` per edge 1 - the cosine between them; `curve_edges` are ascending. Result: ascending, none of those. Cost: a
 /// walk of .85 h from the edges that turn.
-std::vector<uint32_t> find_facet_edges(const FeatureMesh& mesh, const MeshEdges& edges,
-                                       const std::vector<WorldPoint>& normals,
+std::vector<uint32_t> find_facet_edges(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
                                        const std::vector<CurveEdge>& curve_edges, double edge_length_world);
 
 }  // namespace isoshell

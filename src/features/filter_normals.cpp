@@ -109,12 +109,12 @@ ISOSHELL_VECTOR_VERSIONS double filter_lanes(View<const Links> links, int64_t be
 
 }  // namespace
 
-Buffer<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges,
-                                  const std::vector<WorldPoint>& normals, double reach_world) {
+Buffer<WorldPoint> filter_normals(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
+                                  double reach_world) {
   const Buffer<Links> links = link_triangles(mesh, edges, reach_world);
   Buffer<WorldPoint> now(links.size() * kLanes), next(now.size());
-  for_each_index(size_t(0), size_t(now.size()), [&](size_t t) {
-    now[int64_t(t)] = t < normals.size() ? normals[t] : WorldPoint{0, 0, 0};
+  for_each_index(int64_t(0), now.size(), [&](int64_t t) {
+    now[t] = t < normals.size ? normals[t] : WorldPoint{0, 0, 0};
   });
   using Range = tbb::blocked_range<int64_t>;
   tbb::affinity_partitioner same_threads;  // a round finds in a core's cache what that core wrote in the one before

@@ -4,7 +4,6 @@
 
 #include "core/parallel_ranges.h"
 #include "features/edge_sides.h"
-#include "isoshell/buffer.h"
 #include "isoshell/error.h"
 #include "voxel/union_find.h"
 
@@ -25,9 +24,8 @@ MeshEdges find_mesh_edges(const FeatureMesh& mesh) {
     first[v] = count;
   });
   offsets_from_counts(first.view());
-  MeshEdges found;
-  found.edges.resize(size_t(first[sides.count()]));
-  found.of_triangle.resize(mesh.triangles.size());
+  MeshEdges found{Buffer<FeatureEdge>(first[sides.count()]),
+                  Buffer<std::array<uint32_t, 3>>(int64_t(mesh.triangles.size()))};
   for_each_index(int64_t(0), sides.count(), [&](int64_t v) {
     auto e = uint32_t(first[v]);
     for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "features/feature_mesh.h"
+#include "isoshell/buffer.h"
 
 namespace isoshell {
 
@@ -19,8 +20,8 @@ struct FeatureEdge {
 };
 
 struct MeshEdges {
-  std::vector<FeatureEdge> edges;                    ///< sorted by their ends
-  std::vector<std::array<uint32_t, 3>> of_triangle;  ///< edge i runs from corner i to the next
+  Buffer<FeatureEdge> edges;                    ///< sorted by their ends
+  Buffer<std::array<uint32_t, 3>> of_triangle;  ///< edge i runs from corner i to the next
 
   uint32_t count() const { return uint32_t(edges.size()); }
   bool is_inner(uint32_t edge) const { return edges[edge].use == EdgeUse::inner; }

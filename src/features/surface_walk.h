@@ -11,8 +11,8 @@ namespace isoshell {
 struct WalkGround {
   const FeatureMesh& mesh;
   const MeshEdges& edges;
-  const std::vector<WorldPoint>& normals;  ///< per triangle
-  const std::vector<uint8_t>& is_end;      ///< per edge: walks end there
+  View<const WorldPoint> normals;      ///< per triangle
+  const std::vector<uint8_t>& is_end;  ///< per edge: walks end there
 };
 
 struct BesideEdge {
