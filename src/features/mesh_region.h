@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "core/world_vector.h"
-#include "features/cut_surface.h"
+#include "features/cut_lookup.h"
 
 namespace isoshell {
 
@@ -26,13 +27,16 @@ struct RegionTriangle {
   std::array<uint32_t, 3> corner;
   std::array<uint32_t, 3> curve;  ///< that the edge from corner i to the next is on; kNone off curves
   uint32_t patch = 0;
+
+  /// Taken out by a collapse; its place stays, so that the others keep theirs.
+  bool is_gone() const { return corner[0] == corner[1]; }
 };
 
 /// Changes keep the topology, the patches and the curves; no edge comes to be there twice. A change that cannot be made
-/// leaves the region as it was. Costs: a look at all triangles each.
+/// leaves the region as it was. Cost: a look at all corners each, and the cost of the triangles that it touches.
 class MeshRegion {
  public:
-  MeshRegion(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles);
+  MeshRegion(const CutLookup& surface, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles);
 
   /// 0 where no angle is below 36 degrees and the triangles follow surface and curves; rises steeply below.
   double cost() const;
@@ -44,11 +48,18 @@ class MeshRegion {
   bool split(uint32_t u, uint32_t v, const WorldPoint& near);
   /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.
   bool collapse(uint32_t gone, uint32_t into);
-  /// Flips edges and moves vertices of triangles that cost something, while that costs less.
-  void relax();
+  /// Flips edges and moves vertices of triangles that cost something, while that costs less. What did not help before
+  /// is tried again only where something around it has changed since. Ends where the cost is `hopeless` after a round.
+  void relax(double hopeless = std::numeric_limits<double>::infinity());
+  /// The flips alone, which cost little and tell much of what is left to relax.
+  void flip_edges();
+  /// Lets relax leave alone what does not change from now on.
+  void settle();
 
   const std::vector<RegionVertex>& vertices() const { return vertices_; }
   const std::vector<RegionTriangle>& triangles() const { return triangles_; }
+  /// Whether a triangle, or one that shares a corner with it, is not as it was put in.
+  bool has_changed(size_t triangle) const;
 
  private:
   /// The edge from corner `edge` of a triangle to the next.
@@ -56,29 +67,35 @@ class MeshRegion {
     size_t triangle, edge;
   };
   double sine_of(const RegionTriangle& t) const;
-  double cost_of(const RegionTriangle& t) const;
+  double cost_of(const RegionTriangle& t, double enough) const;
   double cosine_to_surface(const RegionTriangle& t) const;
-  void find_costs();
-  std::vector<size_t> triangles_of(uint32_t v) const;
   double cost_of_chord(uint32_t u, uint32_t v, uint32_t curve) const;
-  double cosine_at(const RegionVertex& v, uint32_t patch, const WorldPoint& n) const;
-  uint32_t patch_of(uint32_t vertex) const;
-  uint32_t copy_in(uint32_t home, uint32_t patch) const;
   std::array<size_t, 2> span(uint32_t u, uint32_t v, uint32_t curve) const;
   size_t place_on(const RegionVertex& v, uint32_t curve, size_t other) const;
-  double edge_length_at(uint32_t home) const;
+
+  std::vector<size_t> triangles_of(uint32_t v) const;
   std::vector<Side> sides_of(uint32_t u, uint32_t v) const;
   std::vector<uint32_t> neighbours_of(uint32_t v) const;
+  std::vector<uint32_t> next_on_curve(uint32_t v) const;
+  void touch(const std::vector<uint32_t>& vertices);
+  int changed_at(const RegionTriangle& t) const;
+
   RegionVertex vertex_between(uint32_t u, uint32_t v, uint32_t curve, uint32_t patch, const WorldPoint& near) const;
-  std::vector<RegionVertex> places_for(uint32_t v) const;
+  RegionVertex vertex_near(uint32_t start, const WorldPoint& near) const;
+  RegionVertex on_curve_at(uint32_t curve, size_t at) const;
+  std::vector<RegionVertex> places_around(uint32_t v) const;
+  std::vector<RegionVertex> places_along(uint32_t v) const;
   bool flip(size_t triangle, size_t edge);
   bool move(uint32_t v);
 
-  const CutSurface* cut_;
+  const CutLookup* surface_;
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;
-  std::vector<double> costs_;  ///< per triangle
-  double follows_;             ///< cosine between normals of triangles and surface, below which it costs
+  std::vector<double> costs_;         ///< per triangle
+  int clock_ = 0;                     ///< changes so far
+  std::vector<int> changed_, tried_;  ///< per vertex when it or a neighbour changed last, and was to move
+  std::vector<int> looked_at_;        ///< per triangle
+  double follows_;                    ///< cosine between normals of triangles and surface, below which it costs
 };
 
 constexpr double kPoorSine = 0.5;  ///< of 30 degrees

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/copy_product.h"
+#include "core/near_points.h"
 #include "core/parallel_ranges.h"
 #include "features/mesh_fans.h"
 #include "isoshell/voxel_set.h"
@@ -13,11 +14,24 @@
 namespace isoshell {
 namespace {
 
-constexpr int kRings = 2;                  ///< of triangles around what is changed
-constexpr double kLess = 0.97;             ///< of the cost that a change must leave
-constexpr double kMuchLess = 0.8;          ///< where more triangles are poor then
-constexpr double kMostPerCount = 1. / 64;  ///< cost that a change may bring that only keeps the count
+constexpr int kRings = 2;          ///< of triangles around what is changed
+constexpr double kLess = 0.97;     ///< of the cost that a change must leave
+constexpr double kMuchLess = 0.8;  ///< where more triangles are poor then
+constexpr int64_t kFewPoor = 3;    ///< triangles of a region, for which every change is relaxed
+constexpr size_t kMostTries = 6;   ///< changes that are relaxed where more are poor
+constexpr double kHopeless = 1.5;  ///< of the least cost so far: a change that is above after a round is given up
+constexpr double kMostPerCount = 1. / 24;  ///< cost that a change may bring that only keeps the count
+constexpr double kMostAtFirst = 0.25;      ///< beyond that, before vertices move
 constexpr int64_t kMostTriesPerCount = 64;
+constexpr size_t kFewEdges = 11;    ///< of both ends of an edge that is collapsed: 7 are left then
+constexpr size_t kPassesOfFew = 3;  ///< over edges, each with one edge more at the ends, before all count
+constexpr double kKept = 1;         ///< edges around a point near which nothing is to change
+
+/// Whether no angle is smaller than the smallest was, and no more triangles are poor, or all together much better.
+bool is_better(const MeshRegion& region, const MeshRegion& start) {
+  const bool is_mended = region.poor() <= start.poor() || region.cost() < kMuchLess * start.cost();
+  return is_mended && region.worst_sine() >= start.worst_sine();
+}
 
 template <class T>
 void sort_unique(std::vector<T>& values) {
@@ -27,7 +41,8 @@ void sort_unique(std::vector<T>& values) {
 
 }  // namespace
 
-PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made) : cut_(&cut) {
+PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made)
+    : cut_(&cut), lookup_(std::make_shared<CutLookup>(cut)) {
   const OnHost<SeedSet> seeds(made.seeds);
   const OnHost<DualMesh> open(made.mesh);
   const JoinedMesh joined = join_patches(*open, seeds->fixed);
@@ -39,7 +54,7 @@ PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made) : cut_(&cut)
   std::sort(ends_.begin(), ends_.end());
   list_vertices(*seeds, joined);
   list_triangles(*open, *seeds, joined);
-  for (std::vector<char>& is_hopeless : is_hopeless_) is_hopeless.assign(triangles_.size(), 0);
+  is_hopeless_.assign(triangles_.size(), 0);
   first_count_ = count_ = int64_t(vertices_.size());
 }
 
@@ -98,7 +113,7 @@ uint32_t PatchMesh::whole_curve(uint32_t from, uint32_t to) const {
 
 double PatchMesh::sine_of(uint32_t triangle) const {
   const RegionTriangle& t = triangles_[triangle];
-  if (is_gone(t)) return 1;
+  if (t.is_gone()) return 1;
   return smallest_sine(vertices_[t.corner[0]].position, vertices_[t.corner[1]].position,
                        vertices_[t.corner[2]].position);
 }
@@ -147,61 +162,70 @@ PatchMesh::Cutout PatchMesh::cut_out(const std::vector<uint32_t>& vertices,
     region_vertices.push_back(vertices_[v]);
     region_vertices.back().number = v;
     region_vertices.back().is_inner =
-        std::includes(triangles.begin(), triangles.end(), around_[v].begin(), around_[v].end());
+        !is_kept(v) && std::includes(triangles.begin(), triangles.end(), around_[v].begin(), around_[v].end());
   }
   std::vector<RegionTriangle> region_triangles;
   for (const uint32_t t : triangles) {
     region_triangles.push_back(triangles_[t]);
     for (uint32_t& v : region_triangles.back().corner) v = uint32_t(std::find(all.begin(), all.end(), v) - all.begin());
   }
-  return {triangles, MeshRegion(*cut_, std::move(region_vertices), std::move(region_triangles))};
+  return {triangles, MeshRegion(*lookup_, std::move(region_vertices), std::move(region_triangles))};
 }
 
-/// Nothing but moves and flips, or a split or collapse of an edge.
 std::vector<PatchMesh::Change> PatchMesh::changes_of(const MeshRegion& region, Reach reach) {
   std::vector<std::pair<uint32_t, uint32_t>> edges;
   for (const RegionTriangle& t : region.triangles())
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < 3 && !t.is_gone(); ++i) {
       const auto [u, v] = std::minmax(t.corner[i], t.corner[(i + 1) % 3]);
-      if (u < 3 || reach == Reach::rings) edges.push_back({u, v});  // the first three are the corners
+      if ((u < 3) == (reach == Reach::corners)) edges.push_back({u, v});  // the first three are the corners
     }
   sort_unique(edges);
-  std::vector<Change> changes{{Change::relax, 0, 0}};
+  std::vector<Change> changes;
   for (const auto& [u, v] : edges)
     changes.insert(changes.end(), {{Change::collapse, u, v}, {Change::collapse, v, u}, {Change::split, u, v}});
   return changes;
 }
 
-bool PatchMesh::apply(MeshRegion& region, const Change& change) {
+bool PatchMesh::make(MeshRegion& region, const Change& change) {
   const WorldPoint &a = region.vertices()[change.u].position, &b = region.vertices()[change.v].position;
-  if (change.what == Change::split && !region.split(change.u, change.v, 0.5 * (a + b))) return false;
-  if (change.what == Change::collapse && !region.collapse(change.u, change.v)) return false;
-  region.relax();
-  return true;
+  return change.what == Change::split ? region.split(change.u, change.v, 0.5 * (a + b))
+                                      : region.collapse(change.u, change.v);
 }
 
-/// Infinite where the change cannot be made, makes the smallest angle smaller, or leaves more poor triangles that are
-/// not much better.
-double PatchMesh::cost_after(const MeshRegion& start, const Change& change) {
-  MeshRegion region = start;
-  if (!apply(region, change)) return std::numeric_limits<double>::infinity();
-  const double cost = region.cost();
-  const bool is_better = region.poor() <= start.poor() || cost < kMuchLess * start.cost();
-  return is_better && region.worst_sine() >= start.worst_sine() ? cost : std::numeric_limits<double>::infinity();
+/// The region after each change, before anything is moved. Where many triangles are poor, which are searched one by one
+/// and share their changes, those that leave the least cost, at the corners.
+std::vector<MeshRegion> PatchMesh::promising(const MeshRegion& region, Reach reach) {
+  const bool are_few = region.poor() <= kFewPoor;
+  std::vector<MeshRegion> made;
+  if (reach == Reach::beyond && !are_few) return made;
+  for (const Change& change : changes_of(region, reach)) {
+    MeshRegion there = region;
+    if (!make(there, change)) continue;
+    there.flip_edges();
+    made.push_back(std::move(there));
+  }
+  std::stable_sort(made.begin(), made.end(),
+                   [](const MeshRegion& a, const MeshRegion& b) { return a.cost() < b.cost(); });
+  if (!are_few && made.size() > kMostTries) made.erase(made.begin() + kMostTries, made.end());
+  return made;
 }
 
-MeshRegion PatchMesh::changed(MeshRegion region, const Change& change) {
-  apply(region, change);
-  return region;
-}
-
-std::optional<PatchMesh::Change> PatchMesh::best_change(const MeshRegion& start, Reach reach) {
-  const std::vector<Change> changes = changes_of(start, reach);
-  std::vector<double> cost(changes.size());
-  for_each_index(size_t(0), changes.size(), [&](size_t i) { cost[i] = cost_after(start, changes[i]); });
-  const auto least = size_t(std::min_element(cost.begin(), cost.end()) - cost.begin());
-  if (cost[least] >= kLess * start.cost()) return {};
-  return changes[least];
+/// What moves and flips alone leave, where no triangle is poor then, or the best of what a change more leaves, the
+/// nearest ones first. None where that is not enough.
+std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) {
+  MeshRegion relaxed = start;
+  relaxed.relax();
+  if (!is_better(relaxed, start)) relaxed = start;
+  if (relaxed.poor() == 0) return relaxed;
+  MeshRegion best = relaxed;
+  for (const Reach reach : {Reach::corners, Reach::beyond}) {
+    for (MeshRegion& there : promising(relaxed, reach)) {
+      there.relax(kHopeless * best.cost());
+      if (there.cost() < best.cost() && is_better(there, start)) best = std::move(there);
+    }
+    if (best.cost() < kLess * start.cost()) return best;
+  }
+  return {};
 }
 
 /// Takes out those, in their order, around which no triangle is that is around one before.
@@ -210,48 +234,52 @@ std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) co
   std::vector<uint32_t> apart, left;
   for (const uint32_t t : triangles) {
     const auto& corner = triangles_[t].corner;
-    const std::vector<uint32_t> around = triangles_around({corner.begin(), corner.end()});
-    const bool is_free = std::none_of(around.begin(), around.end(), [&](uint32_t u) { return is_taken[u]; });
-    for (const uint32_t u : around) is_taken[u] = 1;
+    std::vector<uint32_t> around;
+    if (!is_taken[t]) around = triangles_around({corner.begin(), corner.end()});
+    const bool is_free =
+        !is_taken[t] && std::none_of(around.begin(), around.end(), [&](uint32_t u) { return is_taken[u]; });
     (is_free ? apart : left).push_back(t);
+    if (!is_free) continue;
+    for (const uint32_t u : around) is_taken[u] = 1;
   }
   triangles = std::move(left);
   return apart;
 }
 
-bool PatchMesh::improve(std::vector<uint32_t> triangles, Reach reach) {
-  std::vector<char>& is_hopeless = is_hopeless_[size_t(reach)];
+bool PatchMesh::improve(std::vector<uint32_t> triangles) {
   bool has_changed = false;
   while (!triangles.empty()) {
-    const auto is_done = [&](uint32_t t) { return sine_of(t) >= kPoorSine || is_hopeless[t]; };
+    const auto is_done = [&](uint32_t t) { return sine_of(t) >= kPoorSine || is_hopeless_[t]; };
     triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_done), triangles.end());
     const std::vector<uint32_t> apart = take_apart(triangles);
-    std::vector<Cutout> cutouts;
-    for (const uint32_t t : apart) {
-      const std::vector<uint32_t> corners(triangles_[t].corner.begin(), triangles_[t].corner.end());
-      cutouts.push_back(cut_out(corners, triangles_around(corners)));
-    }
-    std::vector<std::optional<Change>> best(apart.size());
-    for_each_index(size_t(0), apart.size(), [&](size_t i) { best[i] = best_change(cutouts[i].region, reach); });
+    std::vector<std::optional<Cutout>> cutouts(apart.size());
+    std::vector<std::optional<MeshRegion>> better(apart.size());
+    for_each_index(size_t(0), apart.size(), [&](size_t i) {
+      const auto& corner = triangles_[apart[i]].corner;
+      const std::vector<uint32_t> corners(corner.begin(), corner.end());
+      cutouts[i] = cut_out(corners, triangles_around(corners));
+      better[i] = improved(cutouts[i]->region);
+    });
     for (size_t i = 0; i < apart.size(); ++i) {
-      if (best[i])
-        put_back(cutouts[i], changed(cutouts[i].region, *best[i]));
+      if (better[i])
+        put_back(*cutouts[i], *better[i]);
       else
-        is_hopeless[apart[i]] = 1;
-      has_changed = has_changed || best[i];
+        is_hopeless_[apart[i]] = 1;
+      has_changed = has_changed || better[i];
     }
   }
   return has_changed;
 }
 
-/// Each edge that is on no curve, by its length beside the one aimed at there.
+/// Each edge between vertices off curves, by its length beside the one aimed at there.
 std::vector<std::pair<double, uint64_t>> PatchMesh::edges_by_length() const {
+  using Kind = RegionVertex::Kind;
   const EdgeLengths& lengths = cut_->surface.lengths;
   std::vector<std::pair<double, uint64_t>> out;
   for (const RegionTriangle& t : triangles_)
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
-      if (u >= v || t.curve[i] != kNone) continue;
+      if (u >= v || vertices_[u].kind != Kind::free || vertices_[v].kind != Kind::free) continue;
       const double aimed_at =
           lengths.at.empty() ? 1 : double(lengths.at[vertices_[u].home]) + double(lengths.at[vertices_[v].home]);
       out.push_back(
@@ -261,59 +289,79 @@ std::vector<std::pair<double, uint64_t>> PatchMesh::edges_by_length() const {
   return out;
 }
 
+/// With a vertex more or less in the edge between the first two, where that hardly costs.
+std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
+  const auto what = surplus() > 0 ? Change::collapse : Change::split;
+  for (const Change& change : {Change{what, 0, 1}, Change{what, 1, 0}}) {
+    MeshRegion there = start;
+    there.settle();
+    if (!make(there, change)) continue;
+    there.flip_edges();
+    const double most = start.cost() + kMostPerCount;
+    if (there.cost() > most + kMostAtFirst) continue;
+    there.relax(most + kMostAtFirst);
+    if (there.cost() <= most && is_better(there, start)) return there;
+  }
+  return {};
+}
+
 bool PatchMesh::meet_count() {
-  while (surplus() != 0) {
+  for (size_t pass = 0; surplus() != 0; ++pass) {
     const int64_t before = surplus();
-    const auto what = before > 0 ? Change::collapse : Change::split;
     std::vector<std::pair<double, uint64_t>> edges = edges_by_length();
     if (before < 0) std::reverse(edges.begin(), edges.end());
     int64_t tries = kMostTriesPerCount * std::abs(before);
     for (size_t i = 0; i < edges.size() && surplus() != 0 && tries > 0; ++i) {
       const auto u = uint32_t(edges[i].second >> 32), v = uint32_t(edges[i].second);
-      if (!is_edge(u, v)) continue;
+      const bool has_many = before > 0 && around_[u].size() + around_[v].size() > kFewEdges + pass;
+      if (!is_edge(u, v) || (has_many && pass < kPassesOfFew)) continue;
       --tries;
       const Cutout cutout = cut_out({u, v}, triangles_around({u, v}));
-      const Change there = {what, 0, 1}, back = {what, 1, 0};
-      const double cost = cost_after(cutout.region, there), cost_back = cost_after(cutout.region, back);
-      if (std::min(cost, cost_back) <= cutout.region.cost() + kMostPerCount)
-        put_back(cutout, changed(cutout.region, cost <= cost_back ? there : back));
+      if (const std::optional<MeshRegion> there = recounted(cutout.region)) put_back(cutout, *there);
     }
-    if (surplus() == before) return false;
+    if (surplus() == before && pass >= kPassesOfFew) return false;
   }
   return true;
+}
+
+void PatchMesh::keep_near(const std::vector<PointQ8>& points) {
+  const NearPoints near(points, kKept * cut_->longest_edge_q8);
+  is_kept_.assign(vertices_.size(), 0);
+  for (size_t v = 0; v < vertices_.size(); ++v) {
+    const WorldPoint& p = vertices_[v].position;
+    is_kept_[v] = near.holds({int32_t(p.x), int32_t(p.y), int32_t(p.z)});
+  }
+}
+
+/// A triangle without corners where there is none before, or is none any more.
+void PatchMesh::replace(uint32_t triangle, const RegionTriangle& by) {
+  RegionTriangle& t = triangles_[triangle];
+  if (!t.is_gone())
+    for (const uint32_t v : t.corner)
+      around_[v].erase(std::lower_bound(around_[v].begin(), around_[v].end(), triangle));
+  t = by;
+  if (!t.is_gone())
+    for (const uint32_t v : t.corner)
+      around_[v].insert(std::lower_bound(around_[v].begin(), around_[v].end(), triangle), triangle);
+  is_hopeless_[triangle] = 0;
 }
 
 void PatchMesh::put_back(const Cutout& cutout, const MeshRegion& region) {
   std::vector<uint32_t> number;
   for (const RegionVertex& v : region.vertices()) {
-    if (v.number == RegionVertex::kNoOne) {
-      number.push_back(uint32_t(vertices_.size()));
-      vertices_.push_back(v);
-      around_.emplace_back();
-    } else {
-      number.push_back(v.number);
-      vertices_[v.number] = v;
-    }
-    vertices_[number.back()].number = number.back();
-  }
-  for (const uint32_t t : cutout.triangles) {
-    for (const uint32_t v : triangles_[t].corner) around_[v].erase(std::find(around_[v].begin(), around_[v].end(), t));
-    triangles_[t].corner = {0, 0, 0};
-    for (std::vector<char>& is_hopeless : is_hopeless_) is_hopeless[t] = 0;
+    const bool is_new = v.number == RegionVertex::kNoOne;
+    number.push_back(is_new ? uint32_t(vertices_.size()) : v.number);
+    if (is_new) vertices_.emplace_back(), around_.emplace_back();
+    vertices_[number.back()] = v;
   }
   for (size_t i = 0; i < region.triangles().size(); ++i) {
-    const bool is_new = i >= cutout.triangles.size();
-    const uint32_t t = is_new ? uint32_t(triangles_.size()) : cutout.triangles[i];
-    if (is_new) {
-      triangles_.emplace_back();
-      for (std::vector<char>& is_hopeless : is_hopeless_) is_hopeless.push_back(0);
-    }
-    triangles_[t] = region.triangles()[i];
-    for (uint32_t& v : triangles_[t].corner) v = number[v];
-    for (const uint32_t v : triangles_[t].corner) {
-      auto& around = around_[v];
-      around.insert(std::lower_bound(around.begin(), around.end(), t), t);
-    }
+    if (i >= cutout.triangles.size()) triangles_.push_back({{}, {}, 0}), is_hopeless_.push_back(0);
+    const uint32_t t = i < cutout.triangles.size() ? cutout.triangles[i] : uint32_t(triangles_.size() - 1);
+    if (!region.has_changed(i)) continue;
+    RegionTriangle made = region.triangles()[i];
+    if (!made.is_gone())
+      for (uint32_t& v : made.corner) v = number[v];
+    replace(t, made);
   }
   count_ += int64_t(region.vertices().size()) - int64_t(cutout.region.vertices().size());
   count_ -= std::count_if(number.begin(), number.end(), [&](uint32_t v) { return around_[v].empty(); });
@@ -336,7 +384,7 @@ JoinedPatches PatchMesh::joined() const {
   }
   std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
   for (const RegionTriangle& t : triangles_) {
-    if (is_gone(t)) continue;
+    if (t.is_gone()) continue;
     std::array<uint32_t, 3> i{number[t.corner[0]], number[t.corner[1]], number[t.corner[2]]};
     for (size_t k = 0; k < 3; ++k)
       if (t.curve[k] != kNone)

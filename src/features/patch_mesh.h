@@ -1,6 +1,7 @@
 // The joined mesh of patches, to be changed region by region.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,13 +25,14 @@ class PatchMesh {
 
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
-  /// Which edges are split and collapsed: those at the corners of a triangle, or all that are two rings around it.
-  enum class Reach { corners, rings };
   /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
   /// Result: whether anything was changed. The same for every number of threads.
-  bool improve(std::vector<uint32_t> triangles, Reach reach);
+  bool improve(std::vector<uint32_t> triangles);
   /// Collapses or splits edges until there are as many vertices as at first. False where that spoils triangles.
   bool meet_count();
+
+  /// From now on, vertices within an edge of these points stay.
+  void keep_near(const std::vector<PointQ8>& points);
 
   JoinedPatches joined() const;
 
@@ -41,16 +43,18 @@ class PatchMesh {
     MeshRegion region;
   };
   struct Change {
-    enum { relax, split, collapse } what;
+    enum { split, collapse } what;
     uint32_t u, v;
   };
+  /// Which edges are split and collapsed: those at the corners of a triangle, or the others that are two rings around.
+  enum class Reach { corners, beyond };
 
   void list_vertices(const SeedSet& seeds, const JoinedMesh& joined);
   void list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined);
   uint32_t curve_between(uint32_t u, uint32_t v) const;
   uint32_t whole_curve(uint32_t from, uint32_t to) const;
 
-  bool is_gone(const RegionTriangle& t) const { return t.corner[0] == t.corner[1]; }
+  bool is_kept(uint32_t vertex) const { return vertex < is_kept_.size() && is_kept_[vertex]; }
   double sine_of(uint32_t triangle) const;
   bool is_edge(uint32_t u, uint32_t v) const;
   int64_t surplus() const { return count_ - first_count_; }
@@ -59,18 +63,21 @@ class PatchMesh {
   std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
   Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;
   std::vector<uint32_t> take_apart(std::vector<uint32_t>& triangles) const;
+  void replace(uint32_t triangle, const RegionTriangle& by);
   void put_back(const Cutout& cutout, const MeshRegion& region);
 
   static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
-  static bool apply(MeshRegion& region, const Change& change);
-  static double cost_after(const MeshRegion& start, const Change& change);
-  static MeshRegion changed(MeshRegion region, const Change& change);
-  static std::optional<Change> best_change(const MeshRegion& start, Reach reach);
+  static bool make(MeshRegion& region, const Change& change);
+  static std::vector<MeshRegion> promising(const MeshRegion& region, Reach reach);
+  static std::optional<MeshRegion> improved(const MeshRegion& start);
+  std::optional<MeshRegion> recounted(const MeshRegion& start) const;
 
   const CutSurface* cut_;
+  std::shared_ptr<const CutLookup> lookup_;
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
-  std::vector<char> is_hopeless_[2];                 ///< by reach, per triangle: nothing changed since it was tried
+  std::vector<char> is_kept_;                        ///< per vertex that was there at first; empty: none
+  std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried
   std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
   std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
   int64_t count_ = 0, first_count_ = 0;

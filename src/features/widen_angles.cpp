@@ -6,30 +6,36 @@
 namespace isoshell {
 namespace {
 
-constexpr int kRounds = 4;  ///< over all poor triangles
+constexpr int kAttempts = 4;  ///< each without changes where triangles intersected after those before
+constexpr int kRounds = 8;    ///< over all poor triangles
 
 /// Result: whether anything was changed.
-bool improve(PatchMesh& mesh, PatchMesh::Reach reach, const Context& context) {
+bool improve(PatchMesh& mesh, const Context& context) {
   for (int round = 0; round < kRounds; ++round) {
     check_cancel(context, "features");
-    if (!mesh.improve(mesh.poor_triangles(), reach)) return round > 0;
+    if (!mesh.improve(mesh.poor_triangles())) return round > 0;
   }
   return true;
 }
 
 }  // namespace
 
-JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made,
-                             const std::function<bool(const DualMesh&)>& is_clean, Context& context) {
+JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const Crossings& crossings,
+                             Context& context) {
   return run_with_threads(context, [&] {
     const PatchMesh before(cut, made);
     if (before.poor_triangles().empty()) return before.joined();
-    PatchMesh mesh = before;
-    const bool has_changed =
-        improve(mesh, PatchMesh::Reach::corners, context) | improve(mesh, PatchMesh::Reach::rings, context);
-    if (!has_changed || !mesh.meet_count()) return before.joined();
-    JoinedPatches wide = mesh.joined();
-    return is_clean(wide.mesh) ? std::move(wide) : before.joined();
+    std::vector<PointQ8> wrong;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      PatchMesh mesh = before;
+      if (!wrong.empty()) mesh.keep_near(wrong);
+      if (!improve(mesh, context) || !mesh.meet_count()) break;
+      JoinedPatches wide = mesh.joined();
+      const std::vector<PointQ8> points = crossings(wide.mesh);
+      if (points.empty()) return wide;
+      wrong.insert(wrong.end(), points.begin(), points.end());
+    }
+    return before.joined();
   });
 }
 

@@ -120,10 +120,11 @@ std::string mesh_patches(const Prepared& p, const CutSurface& cut, SeededMesh& m
 JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made,
                                const RemeshReport& report, Context& context) {
   const bool may_cross = report.post.self_intersections > 0;  // where the input does
-  const auto is_clean = [&](const DualMesh& mesh) {
-    return may_cross ? count_new_crossings(p, mesh, context) == 0 : crossing_corners(mesh, {}).empty();
+  const auto crossings = [&](const DualMesh& mesh) {
+    const bool is_clean = may_cross && count_new_crossings(p, mesh, context) == 0;
+    return is_clean ? std::vector<PointQ8>() : crossing_corners(mesh, {});
   };
-  return join_and_widen(cut, made, is_clean, context);
+  return join_and_widen(cut, made, crossings, context);
 }
 
 /// With more seeds on the curves near triangles that intersect; null where there is no curve.
