@@ -22,18 +22,20 @@ struct CutCurve {
   std::vector<uint32_t> place;  ///< along it; an open one begins and ends with corners, which may be the same one
   std::vector<double> at_q8;    ///< per place the arclength from the first one
   double length_q8 = 0;
-  int64_t least_segments = 1;  ///< that keep edges of the result apart
-  std::vector<size_t> seeds;   ///< ascending: which of the places are seeds; both ends of an open curve are
+  int64_t least_segments = 1;     ///< that keep edges of the result apart
+  std::vector<size_t> seeds;      ///< ascending: which of the places are seeds; both ends of an open curve are
+  std::vector<uint32_t> patches;  ///< beside it, ascending
 };
 
 struct CutSource;
+struct FineMesh;
 
 /// A surface cut open along curves. A place is a point of a curve, of which every fan of triangles around it has a
 /// copy: a border vertex of its own. First come the corners, then what is inside of the curves, by curve, then along
 /// it.
 struct CutSurface {
   SurfaceMesh surface;  ///< cut into patches, with triangles that may have no area: they were thinner than a step
-  double voxel_size = 1;
+  LatticeFrame frame;
   double longest_edge_q8 = 0;  ///< aimed at
   bool is_asked = false;       ///< lengths vary as was asked for
   std::vector<CutCurve> curves;
@@ -41,9 +43,15 @@ struct CutSurface {
   std::vector<uint32_t> place;              ///< per vertex of the surface; kNone off borders
   std::vector<int64_t> copies_first;        ///< per place, and one more: offsets into copies
   std::vector<uint32_t> copies;             ///< border vertices, ascending per place
+  std::shared_ptr<const FineMesh> fine;     ///< what it was cut from: curve c is its path c
+  std::vector<uint32_t> corner;             ///< per corner of a triangle of that its vertex
   int64_t seeds = 0;                        ///< that it is cut for, copies at a place counted once; 0: any number
   std::shared_ptr<const CutSource> source;  ///< of who cuts it, to do it again
 };
+
+inline size_t patch_count(const CutSurface& cut) {
+  return size_t(cut.surface.patch[cut.surface.vertex_count() - 1]) + 1;  // vertices are in order of their patches
+}
 
 struct CutOptions {
   double edge_length_world = 0;  ///< aimed at, everywhere the same
@@ -51,7 +59,7 @@ struct CutOptions {
   AskedLengths asked = {};       ///< in proportion to these, or with 0 vertices these
 };
 
-/// Snaps a mesh to the lattice, with edges cut into quarters of the edge length aimed at and a vertex wherever a seed
+/// Snaps a mesh to the lattice, with edges cut into thirds of the edge length aimed at and a vertex wherever a seed
 /// of a curve belongs, and cuts it along every edge of the network: each component of triangles is a patch. Vertices
 /// are snapped last, and what falls together then keeps its triangles, without area: so a patch stays the manifold that
 /// it is in the input. Result: independent of the order of triangles. Cost: sorts of the fine edges. Throws: usage

@@ -58,7 +58,7 @@ std::vector<uint64_t> inner_edges(const Buffer<TriangleIndices>& triangles) {
 
 FreeSeeds::FreeSeeds(const CutSurface& cut) : cut_(cut) {
   const SurfaceMesh& surface = cut.surface;
-  patches_.resize(surface.patch.empty() ? 1 : size_t(surface.patch[surface.vertex_count() - 1]) + 1);
+  patches_.resize(patch_count(cut));
   // In half-edges for the characteristic: 2 E is the corners and the border edges.
   for (uint32_t v = 0; v < surface.vertex_count(); ++v) {
     Patch& patch = patches_[patch_of(v)];
@@ -97,13 +97,16 @@ FreeSeeds::Counts FreeSeeds::fixed_of(const SeedSet& fixed) const {
   return out;
 }
 
+int64_t FreeSeeds::fewest(const SeedSet& fixed) const {
+  const Counts on_border = fixed_of(fixed);
+  return count_places(fixed.fixed) + kFewestOfClosed * std::count(on_border.begin(), on_border.end(), 0);
+}
+
 FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) const {
   const Counts on_border = fixed_of(fixed);
-  const int64_t places = count_places(fixed.fixed);
-  int64_t least = 0;
+  const int64_t places = count_places(fixed.fixed), least = fewest(fixed) - places;
   double shares = 0, taken = 0;
   for (size_t p = 0; p < patches_.size(); ++p) {
-    least += on_border[p] == 0 ? kFewestOfClosed : 0;
     shares += double(patches_[p].share);
     taken += double(on_border[p]) / 2 - double(patches_[p].euler);
   }
@@ -116,23 +119,37 @@ FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) cons
   std::vector<double> demand, area;
   for (size_t p = 0; p < patches_.size(); ++p) {
     const Patch& patch = patches_[p];
-    const bool has_room = patch.inside >= 2;
     const double inner = double(patch.share) * per_share - double(on_border[p]) / 2 + double(patch.euler) -
                          double(on_border[p] == 0 ? kFewestOfClosed : 0);
-    demand.push_back(has_room ? std::max(0.0, inner) : 0);
-    area.push_back(has_room ? double(patch.share) : 0);
+    demand.push_back(std::max(0.0, inner));
+    area.push_back(double(patch.share));
   }
-  const bool is_asked = std::any_of(demand.begin(), demand.end(), [](double d) { return d > 0; });
-  Counts out = shared(vertices - places - least, is_asked ? demand : area);
-  for (size_t p = 0; p < patches_.size(); ++p) {
-    out[p] += on_border[p] == 0 ? kFewestOfClosed : 0;
-    if (2 * out[p] > patches_[p].inside)
-      throw Error(ErrorCode::usage, "features",
-                  std::to_string(out[p]) + " seeds are too many for patch " + std::to_string(p) + ", which has " +
-                      std::to_string(patches_[p].inside) +
-                      " vertices inside; cut the surface for a shorter edge length, or use fewer vertices");
-  }
+  Counts out(patches_.size());
+  for (size_t p = 0; p < patches_.size(); ++p) out[p] = on_border[p] == 0 ? kFewestOfClosed : 0;
+  fill(vertices - places - least, demand, area, out);
   return out;
+}
+
+/// Shares seeds among the patches by demand, and what those have no room for by area.
+void FreeSeeds::fill(int64_t seeds, std::vector<double> demand, std::vector<double> area, Counts& counts) const {
+  while (seeds > 0) {
+    const auto has_room = [&](size_t p) { return 2 * (counts[p] + 1) <= patches_[p].inside; };
+    for (size_t p = 0; p < patches_.size(); ++p)
+      if (!has_room(p)) demand[p] = area[p] = 0;
+    const auto is_wanted = [](double d) { return d > 0; };
+    if (std::none_of(demand.begin(), demand.end(), is_wanted)) demand = area;
+    if (std::none_of(demand.begin(), demand.end(), is_wanted))
+      throw Error(ErrorCode::usage, "features",
+                  std::to_string(seeds) +
+                      " seeds are too many for the patches, whose vertices are too few; cut the surface for a shorter "
+                      "edge length, or use fewer vertices");
+    const std::vector<int64_t> more = shared(seeds, demand);
+    for (size_t p = 0; p < patches_.size(); ++p) {
+      const int64_t room = std::max<int64_t>(0, patches_[p].inside / 2 - counts[p]), takes = std::min(more[p], room);
+      counts[p] += takes;
+      seeds -= takes;
+    }
+  }
 }
 
 FreeSeeds::Counts FreeSeeds::coarser(const SeedSet& fixed, const Counts& finer) const {

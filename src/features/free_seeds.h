@@ -20,14 +20,16 @@ class FreeSeeds {
   /// characteristic x has 2 / sqrt(3) A / e^2 - b / 2 + x inner vertices. Throws: usage when the fixed seeds alone are
   /// more than that, or cells would have fewer than two vertices.
   Counts counts(const SeedSet& fixed, int64_t vertices) const;
+  /// Places that it takes at least.
+  int64_t fewest(const SeedSet& fixed) const;
   /// As many as have the finer counts once there is a seed on each of their dual's edges, where `fixed` are those of
   /// the coarser level.
   Counts coarser(const SeedSet& fixed, const Counts& finer) const;
 
   /// Spread at random, as place_seeds does it: each in a triangle that has a vertex off the border, which is its home.
   SeedSet add(SeedSet fixed, const Counts& counts, uint64_t seed) const;
-  /// Those of a coarser level, and the middles of its inner edges, the longest first; at random where these are too
-  /// few.
+  /// Those of a coarser level, or of another mesh, and the middles of its inner edges, the longest first; at random
+  /// where these are too few.
   SeedSet add_finer(SeedSet fixed, const Counts& counts, const SeededMesh& coarse, uint64_t seed) const;
 
  private:
@@ -44,10 +46,11 @@ class FreeSeeds {
   };
   using Placed = std::vector<std::vector<FreeSeed>>;  ///< per patch
 
-  size_t patch_of(uint32_t vertex) const { return cut_.surface.patch.empty() ? 0 : cut_.surface.patch[vertex]; }
+  size_t patch_of(uint32_t vertex) const { return cut_.surface.patch[vertex]; }
   bool is_inside(uint32_t vertex) const { return cut_.place[vertex] == kNone; }
   int64_t seed_share(TriangleIndices t) const;
   Counts fixed_of(const SeedSet& fixed) const;
+  void fill(int64_t seeds, std::vector<double> demand, std::vector<double> area, Counts& counts) const;
   FreeSeed seed_in(uint32_t triangle, uint64_t random) const;
   void spread(const Patch& patch, int64_t count, uint64_t seed, std::vector<FreeSeed>& out) const;
   uint32_t inside_near(uint32_t from, PointQ8 target) const;

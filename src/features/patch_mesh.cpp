@@ -41,8 +41,8 @@ void sort_unique(std::vector<T>& values) {
 
 }  // namespace
 
-PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made)
-    : cut_(&cut), lookup_(std::make_shared<CutLookup>(cut)) {
+PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, int64_t vertices)
+    : cut_(&cut), lookup_(std::make_shared<CutLookup>(cut)), wanted_(vertices) {
   const OnHost<SeedSet> seeds(made.seeds);
   const OnHost<DualMesh> open(made.mesh);
   const JoinedMesh joined = join_patches(*open, seeds->fixed);
@@ -55,7 +55,7 @@ PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made)
   list_vertices(*seeds, joined);
   list_triangles(*open, *seeds, joined);
   is_hopeless_.assign(triangles_.size(), 0);
-  first_count_ = count_ = int64_t(vertices_.size());
+  count_ = int64_t(vertices_.size());
 }
 
 void PatchMesh::list_vertices(const SeedSet& seeds, const JoinedMesh& joined) {
@@ -305,7 +305,7 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
   return {};
 }
 
-bool PatchMesh::meet_count() {
+void PatchMesh::meet_count() {
   for (size_t pass = 0; surplus() != 0; ++pass) {
     const int64_t before = surplus();
     std::vector<std::pair<double, uint64_t>> edges = edges_by_length();
@@ -319,9 +319,8 @@ bool PatchMesh::meet_count() {
       const Cutout cutout = cut_out({u, v}, triangles_around({u, v}));
       if (const std::optional<MeshRegion> there = recounted(cutout.region)) put_back(cutout, *there);
     }
-    if (surplus() == before && pass >= kPassesOfFew) return false;
+    if (surplus() == before && pass >= kPassesOfFew) return;
   }
-  return true;
 }
 
 void PatchMesh::keep_near(const std::vector<PointQ8>& points) {

@@ -21,15 +21,17 @@ struct JoinedPatches {
 
 class PatchMesh {
  public:
-  PatchMesh(const CutSurface& cut, const SeededMesh& made);
+  /// `vertices`: how many there are to be.
+  PatchMesh(const CutSurface& cut, const SeededMesh& made, int64_t vertices);
 
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
   /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
   /// Result: whether anything was changed. The same for every number of threads.
   bool improve(std::vector<uint32_t> triangles);
-  /// Collapses or splits edges until there are as many vertices as at first. False where that spoils triangles.
-  bool meet_count();
+  int64_t surplus() const { return count_ - wanted_; }
+  /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
+  void meet_count();
 
   /// From now on, vertices within an edge of these points stay.
   void keep_near(const std::vector<PointQ8>& points);
@@ -57,7 +59,6 @@ class PatchMesh {
   bool is_kept(uint32_t vertex) const { return vertex < is_kept_.size() && is_kept_[vertex]; }
   double sine_of(uint32_t triangle) const;
   bool is_edge(uint32_t u, uint32_t v) const;
-  int64_t surplus() const { return count_ - first_count_; }
   std::vector<std::pair<double, uint64_t>> edges_by_length() const;
 
   std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
@@ -80,7 +81,7 @@ class PatchMesh {
   std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried
   std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
   std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
-  int64_t count_ = 0, first_count_ = 0;
+  int64_t count_ = 0, wanted_;
 };
 
 }  // namespace isoshell

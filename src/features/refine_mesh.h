@@ -14,11 +14,12 @@ struct FineMesh {
   std::vector<CurvePath> paths;
 };
 
-/// Cuts every edge into equal parts of at most a quarter of the edge length there, the mean of that at its ends; that
-/// of a path at its seeds first. Then fills each triangle between the parts of its edges. Result: edges are at most 3/8
-/// of the length; seeds of paths are at vertices. What becomes of a triangle depends on its corners only. Cost: a sort
-/// of the edges, then O(fine triangles); of a long thin triangle these are as many as its edges have parts. Throws:
-/// usage when that is far more than the area needs, or than the memory limit allows.
+/// Cuts every edge into equal parts of at most a third of the edge length there, the mean of that at its ends; that of
+/// a path at its seeds first, and into parts of at most a quarter. Then fills each triangle between the parts of its
+/// edges. Result: edges are at most half of the length; seeds of paths are at vertices. What becomes of a triangle
+/// depends on its corners only. Cost: a sort of the edges, then O(fine triangles); of a long thin triangle these are as
+/// many as its edges have parts. Throws: usage when that is far more than the area needs, or than the memory limit
+/// allows.
 FineMesh refine_mesh(FineMesh mesh, Context& context);
 
 }  // namespace isoshell

@@ -15,6 +15,8 @@
 namespace isoshell {
 namespace {
 
+constexpr double kLongestOnPath = .75;  ///< over that elsewhere: vertices of curves can only move between these points
+
 double longest_between(const FineMesh& mesh, uint32_t u, uint32_t v) {
   return longest_fine_edge((mesh.edge_length[u] + mesh.edge_length[v]) / 2);
 }
@@ -49,7 +51,7 @@ WorldPoint point_between(const WorldPoint& a, const WorldPoint& b, int64_t i, in
 }
 
 double longest_fine_edge(double edge_length) {
-  constexpr double kPartsOfEdge = 4, kLongestQ8 = 16 * kOneVoxelQ8;
+  constexpr double kPartsOfEdge = 3, kLongestQ8 = 16 * kOneVoxelQ8;
   return std::min(edge_length / kPartsOfEdge, kLongestQ8);
 }
 
@@ -94,7 +96,7 @@ SplitEdges::InnerPoints SplitEdges::cut_path_edge(const FineMesh& mesh, const Cu
   InnerPoints out;
   for (size_t k = 0; k + 1 < stops.size(); ++k) {
     const WorldPoint a = at(stops[k]), b = at(stops[k + 1]);
-    const int64_t parts = parts_of(a, b, longest_between(mesh, u, v));
+    const int64_t parts = parts_of(a, b, kLongestOnPath * longest_between(mesh, u, v));
     if (k > 0) seed_at.push_back(out.position.size() + 1);
     for (int64_t j = k > 0 ? 0 : 1; j < parts; ++j) {
       out.position.push_back(point_between(a, b, j, parts));

@@ -9,27 +9,26 @@ namespace {
 constexpr int kAttempts = 4;  ///< each without changes where triangles intersected after those before
 constexpr int kRounds = 8;    ///< over all poor triangles
 
-/// Result: whether anything was changed.
-bool improve(PatchMesh& mesh, const Context& context) {
+void improve(PatchMesh& mesh, const Context& context) {
   for (int round = 0; round < kRounds; ++round) {
     check_cancel(context, "features");
-    if (!mesh.improve(mesh.poor_triangles())) return round > 0;
+    if (!mesh.improve(mesh.poor_triangles())) return;
   }
-  return true;
 }
 
 }  // namespace
 
-JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const Crossings& crossings,
-                             Context& context) {
+JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, int64_t vertices,
+                             const Crossings& crossings, Context& context) {
   return run_with_threads(context, [&] {
-    const PatchMesh before(cut, made);
-    if (before.poor_triangles().empty()) return before.joined();
+    const PatchMesh before(cut, made, vertices);
+    if (before.poor_triangles().empty() && before.surplus() == 0) return before.joined();
     std::vector<PointQ8> wrong;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       PatchMesh mesh = before;
       if (!wrong.empty()) mesh.keep_near(wrong);
-      if (!improve(mesh, context) || !mesh.meet_count()) break;
+      improve(mesh, context);
+      mesh.meet_count();
       JoinedPatches wide = mesh.joined();
       const std::vector<PointQ8> points = crossings(wide.mesh);
       if (points.empty()) return wide;

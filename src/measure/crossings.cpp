@@ -20,12 +20,18 @@ BoxOfPoints box_of(const CornersOfTriangle& t) {
   return box;
 }
 
-BoxOfPoints common_of(const BoxOfPoints& a, const BoxOfPoints& b) {
+}  // namespace
+
+BoxOfPoints common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                       const std::array<uint32_t, 2>& pair) {
+  const auto box = [&](uint32_t t) {
+    const TriangleIndices i = triangles[t];
+    return box_of({{i.a, i.b, i.c}, {position[i.a], position[i.b], position[i.c]}});
+  };
+  const BoxOfPoints a = box(pair[0]), b = box(pair[1]);
   return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
           {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
 }
-
-}  // namespace
 
 std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                                     View<const uint32_t> joined, const std::atomic<bool>& stop) {
@@ -57,14 +63,10 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
 
 std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                         Context& context) {
-  const auto box = [&](uint32_t t) {
-    const TriangleIndices i = triangles[t];
-    return box_of({{i.a, i.b, i.c}, {position[i.a], position[i.b], position[i.c]}});
-  };
   return run_with_threads(context, [&] {
     std::vector<BoxOfPoints> found;
-    for (const auto& [a, b] : crossing_pairs(position, triangles, {}, context.cancel))
-      found.push_back(common_of(box(a), box(b)));
+    for (const auto& pair : crossing_pairs(position, triangles, {}, context.cancel))
+      found.push_back(common_box(position, triangles, pair));
     check_cancel(context, "crossings");
     return found;
   });

@@ -17,6 +17,10 @@ namespace isoshell {
 std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                                     View<const uint32_t> joined, const std::atomic<bool>& stop);
 
+/// What the boxes of two triangles have in common.
+BoxOfPoints common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                       const std::array<uint32_t, 2>& pair);
+
 /// Of each of these pairs the box that those of both triangles have in common. Throws: interrupted.
 std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                         Context& context);

@@ -49,12 +49,6 @@ std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetw
   return "";
 }
 
-int64_t patches_of(const CutSurface& cut) {
-  uint32_t last = 0;
-  for (const uint32_t patch : cut.surface.patch) last = std::max(last, patch);
-  return int64_t(last) + 1;
-}
-
 /// The mesh once every fan of triangles has a vertex of its own, as in the result.
 struct SeparatedMesh {
   int64_t more_places = 0;  ///< vertices of the result that are at places of others
@@ -104,26 +98,6 @@ std::vector<uint64_t> edges_of(const CurveNetwork& network) {
   return all;
 }
 
-/// The edges of creases that are within about an edge length of places.
-std::vector<std::array<uint32_t, 2>> creases_near(const FeatureMesh& mesh, const CurveNetwork& network,
-                                                  const std::vector<PointQ8>& places, double reach_world,
-                                                  const LatticeFrame& frame) {
-  const NearPoints near(places, reach_world / frame.voxel_size * kOneVoxelQ8);
-  std::vector<std::array<uint32_t, 2>> found;
-  for (const FeatureCurve& curve : network.curves) {
-    if (curve.kind != CurveKind::crease) continue;
-    for (const uint64_t edge : edges_of(curve)) {
-      const std::array<uint32_t, 2> end{uint32_t(edge >> 32), uint32_t(edge)};
-      const WorldPoint &a = mesh.vertices[end[0]], &b = mesh.vertices[end[1]];
-      const int64_t parts = parts_of(a, b, reach_world);
-      bool is_near = false;
-      for (int64_t i = 0; i <= parts && !is_near; ++i) is_near = near.holds(frame.snap(point_between(a, b, i, parts)));
-      if (is_near) found.push_back(end);
-    }
-  }
-  return found;
-}
-
 /// The curves of a network of which less than half is among some edges.
 std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& network,
                                    const std::vector<uint64_t>& kept) {
@@ -147,10 +121,30 @@ std::shared_ptr<const CutSurface> make_cut(CutSource source, const CurveNetwork&
   const SeedSet fixed = seeds_on_curves(*cut, 0);
   FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
   found.vertices = count_places(fixed.fixed);
-  found.patches = patches_of(*cut);
+  found.patches = int64_t(patch_count(*cut));
   found.given_up.clear();
   cut->source = std::make_shared<const CutSource>(std::move(source));
   return cut;
+}
+
+/// The same without the creases around patches that are too small for the edges of the result. Null where there are
+/// none to leave out. Throws: as cut_surface.
+std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const LatticeFrame& frame,
+                                                  RemeshReport& report, Context& context) {
+  const FeatureMesh& mesh = *source.mesh;
+  CurveOptions without_small = source.curves;
+  without_small.drops_small_patches = true;
+  const CurveNetwork network = find_curves(mesh, without_small), all = find_curves(mesh, source.curves);
+  const std::vector<uint64_t> kept = edges_of(network);
+  if (kept == edges_of(all)) return nullptr;
+  CutSource fewer = source;
+  fewer.curves = without_small;
+  fewer.found = describe(mesh, network);
+  fewer.left_out = left_out_of(mesh, all, kept);
+  const int64_t border_loops = report.features.border_loops;
+  report_found(mesh, network, border_loops > 0, report.features);
+  report.features.border_loops = border_loops;
+  return make_cut(std::move(fewer), network, frame, report.features, context);
 }
 
 }  // namespace
@@ -179,8 +173,7 @@ bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curv
       return against;
     const SeparatedMesh apart = separated(*mesh, network);
     found.border_loops = apart.border_loops;
-    CutSource source{mesh, curves,           {}, vertices_of(options, p, is_open) - apart.more_places, if_lost,
-                     {},   edges_of(network)};
+    CutSource source{mesh, curves, {}, vertices_of(options, p, is_open) - apart.more_places, if_lost, if_lost, {}};
     report.memory_estimate_bytes = bytes_when_cut(source.seeds, report, context);
     CutOptions how{edge_length_for(*mesh, network, source.seeds), 0, asked_lengths(options, p)};
     const bool lengths_decide = how.asked.vary() && field_decides(options);
@@ -190,37 +183,11 @@ bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curv
       p.cut = make_cut(source, network, p.surface.frame, found, context);
       return std::string();
     });
-    if (!refused.empty()) p.cut = cut_along_fewer(source, {}, p.surface.frame, report, context);
+    if (!refused.empty()) p.cut = cut_along_fewer(source, p.surface.frame, report, context);
     return p.cut ? "" : refused;
   });
   if (!why.empty()) give_up(report, if_lost, why);
   return why.empty();
-}
-
-std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const std::vector<PointQ8>& places,
-                                                  const LatticeFrame& frame, RemeshReport& report, Context& context) {
-  const FeatureMesh& mesh = *source.mesh;
-  CutSource fewer = source;
-  CurveNetwork network;
-  const auto leaves_some_out = [&] {
-    network = find_curves(mesh, fewer.curves);
-    fewer.curve_edges = edges_of(network);
-    return fewer.curve_edges != source.curve_edges;
-  };
-  fewer.curves.drops_small_patches = true;
-  if (!leaves_some_out()) {
-    const auto near = creases_near(mesh, network, places, source.curves.edge_length_world, frame);
-    fewer.curves.smooth.insert(fewer.curves.smooth.end(), near.begin(), near.end());
-    if (!leaves_some_out()) return nullptr;
-  }
-  CurveOptions all = source.curves;
-  all.smooth.clear();
-  all.drops_small_patches = false;
-  fewer.left_out = left_out_of(mesh, find_curves(mesh, all), fewer.curve_edges);
-  const int64_t border_loops = report.features.border_loops;
-  report_found(mesh, network, border_loops > 0, report.features);
-  report.features.border_loops = border_loops;
-  return make_cut(std::move(fewer), network, frame, report.features, context);
 }
 
 }  // namespace isoshell

@@ -17,10 +17,10 @@ struct CutSource {
   std::shared_ptr<const FeatureMesh> mesh;
   CurveOptions curves;
   CutOptions how;
-  int64_t seeds = 0;                  ///< of a surface whose lengths do not decide
-  std::vector<LostCurve> if_lost;     ///< all curves that were found, as a report says them
-  std::vector<LostCurve> left_out;    ///< of these
-  std::vector<uint64_t> curve_edges;  ///< ascending
+  int64_t seeds = 0;                ///< of a surface whose lengths do not decide
+  std::vector<LostCurve> if_lost;   ///< all curves of the mesh, as a report says them
+  std::vector<LostCurve> found;     ///< those that it was cut along
+  std::vector<LostCurve> left_out;  ///< those that it was not
 };
 
 /// Of a surface that the options leave open.
@@ -30,12 +30,6 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
 /// curves that could not be kept, as the report says.
 bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curves, const RemeshOptions& options,
                Prepared& p, RemeshReport& report, Context& context);
-
-/// The same without the creases that the edges of the result cannot follow: those around patches that are too small for
-/// the edges, and, once these are out, those within about an edge length of `places`, where it went wrong. Null where
-/// there are none left to leave out. Throws: as cut_surface.
-std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const std::vector<PointQ8>& places,
-                                                  const LatticeFrame& frame, RemeshReport& report, Context& context);
 
 /// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
 /// Result: why it cannot be done, said by the work or by the stage that refuses; empty where it is done.

@@ -5,7 +5,6 @@
 
 #include "core/copy_product.h"
 #include "features/edge_sides.h"
-#include "measure/crossing_corners.h"
 
 namespace isoshell {
 namespace {
@@ -35,15 +34,14 @@ class Defects {
         vertices_(size_t(mesh_->position.size())),
         is_wrong_(vertices_, 0) {}
 
-  std::vector<PointQ8> find() {
+  std::vector<uint32_t> find() {
     look_at_edges();
     look_at_fans();
     look_at_joined_edges();
-    std::vector<PointQ8> places;
-    for (size_t v = 0; v < vertices_; ++v)
-      if (is_wrong_[v]) places.push_back(mesh_->position[int64_t(v)]);
-    sort_places(places);
-    return places;
+    std::vector<uint32_t> wrong;
+    for (uint32_t v = 0; v < vertices_; ++v)
+      if (is_wrong_[v]) wrong.push_back(v);
+    return wrong;
   }
 
  private:
@@ -95,6 +93,6 @@ class Defects {
 
 }  // namespace
 
-std::vector<PointQ8> find_patch_defects(const SeededMesh& made) { return Defects(made).find(); }
+std::vector<uint32_t> find_patch_defects(const SeededMesh& made) { return Defects(made).find(); }
 
 }  // namespace isoshell

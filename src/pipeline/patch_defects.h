@@ -8,7 +8,7 @@
 namespace isoshell {
 
 /// The vertices of a dual whose triangles are no single fan, or have an edge that is there twice, in a patch or once
-/// patches are joined: by x, y and z, each position once. In host memory. Cost: a sort of the half-edges.
-std::vector<PointQ8> find_patch_defects(const SeededMesh& made);
+/// patches are joined; ascending. In host memory. Cost: a sort of the half-edges.
+std::vector<uint32_t> find_patch_defects(const SeededMesh& made);
 
 }  // namespace isoshell

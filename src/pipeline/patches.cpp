@@ -12,7 +12,6 @@
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
 #include "features/free_seeds.h"
-#include "features/halve_segments.h"
 #include "features/separate_fans.h"
 #include "features/split_edges.h"
 #include "features/weld_for_features.h"
@@ -26,13 +25,11 @@
 #include "measure/crossings.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
-#include "pipeline/dual_of_seeds.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/given_lines.h"
 #include "pipeline/part_fans.h"
-#include "pipeline/patch_defects.h"
+#include "pipeline/patch_rounds.h"
 #include "pipeline/relax_level.h"
-#include "pipeline/resolve_intersections.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
 
@@ -47,7 +44,8 @@ CurveOptions curve_options(const RemeshOptions& options, double edge_length_worl
   return {mode, options.features.degrees, edge_length_world};
 }
 
-constexpr int kRoundsOfShorterSegments = 1, kRoundsOfFewerCurves = 4;  ///< each costs a whole relaxation
+constexpr int32_t kPassesOfCoarsePatches = 30;
+constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
 
 /// The snapped surface: what a stage file holds, so that a run that resumes finds the same features.
 TriangleSoup soup_of(const LatticeSurface& surface) {
@@ -63,14 +61,6 @@ SeededMesh fetched(const SeededMesh& made) {
   out.mesh = to_host(made.mesh);
   out.seeds = to_host(made.seeds);
   return out;
-}
-
-/// As many boxes of intersections of the result as are farther than an edge from those of the input.
-int64_t count_new_crossings(const Prepared& p, const DualMesh& mesh, Context& context) {
-  const OnHost<LatticeSurface> input(p.surface);
-  const auto edge_q8 = int32_t(p.cut->longest_edge_q8);
-  return count_apart(find_crossings(mesh.position.view(), mesh.triangles.view(), context),
-                     find_crossings(input->points.view(), input->triangles.view(), context), edge_q8);
 }
 
 /// Flags vertices on faces that close gaps.
@@ -90,104 +80,38 @@ void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
   }
 }
 
-/// Whether triangles intersect nowhere but, with borders that are kept, where the input's do.
-bool has_no_new_crossings(const Prepared& p, const SeededMesh& made, const RemeshReport& report, Context& context) {
-  if (report.post.self_intersections == 0) return true;
-  if (report.features.border_loops == 0) return false;
-  return count_new_crossings(p, join_patches(*OnHost(made.mesh), OnHost(made.seeds)->fixed).mesh, context) == 0;
-}
-
-/// Makes the mesh of relaxed seeds. Result: why it cannot be the run's; empty where it can.
-std::string mesh_patches(const Prepared& p, const CutSurface& cut, SeededMesh& made, const OptimizeOptions& options,
-                         RemeshReport& report, Context& context) {
-  const int64_t asked = made.seeds.size();
-  report.post = {};
-  make_dual_of_seeds(cut.surface, {asked}, made, report, context);
-  if (report.dual.failed_cells > 0) return std::to_string(report.dual.failed_cells) + " cells beside them are no disks";
-  if (made.seeds.size() != asked)
-    return "the patches take " + std::to_string(made.seeds.size() - asked) + " vertices more";
-  OptimizedMesh optimized =
-      timed(report, "post", context, [&] { return optimize_mesh(cut.surface, std::move(made), options, context); });
-  report.post = optimized.report;
-  made = std::move(optimized);
-  if (has_no_new_crossings(p, made, report, context)) return "";
-  timed(report, "untangle", context, [&] { resolve_intersections(cut.surface, options, made, report, context); });
-  if (has_no_new_crossings(p, made, report, context)) return "";
-  return std::to_string(report.post.self_intersections) + " pairs of triangles would intersect";
+/// As many boxes of intersections of the result as are farther than an edge from those of the input.
+int64_t count_new_crossings(const Prepared& p, const DualMesh& mesh, Context& context) {
+  const OnHost<LatticeSurface> input(p.surface);
+  const auto edge_q8 = int32_t(p.cut->longest_edge_q8);
+  return count_apart(find_crossings(mesh.position.view(), mesh.triangles.view(), context),
+                     find_crossings(input->points.view(), input->triangles.view(), context), edge_q8);
 }
 
 /// The patches put together, with better angles beside curves; it intersects itself no more than before.
-JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made,
+JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made, int64_t vertices,
                                const RemeshReport& report, Context& context) {
   const bool may_cross = report.post.self_intersections > 0;  // where the input does
   const auto crossings = [&](const DualMesh& mesh) {
     const bool is_clean = may_cross && count_new_crossings(p, mesh, context) == 0;
     return is_clean ? std::vector<PointQ8>() : crossing_corners(mesh, {});
   };
-  return join_and_widen(cut, made, crossings, context);
+  return join_and_widen(cut, made, vertices, crossings, context);
 }
 
-/// With more seeds on the curves near triangles that intersect; null where there is no curve.
-std::shared_ptr<const CutSurface> with_shorter_segments(const CutSurface& cut, const SeededMesh& made) {
-  const OnHost<SeedSet> seeds(made.seeds);
-  std::optional<CutSurface> shorter =
-      halve_segments(cut, crossing_corners(*OnHost(made.mesh), seeds->fixed.joined.view()), cut.longest_edge_q8);
-  return shorter ? std::make_shared<CutSurface>(std::move(*shorter)) : nullptr;
-}
-
-/// The mesh of relaxed seeds; where triangles intersect, curves get more seeds there, and all seeds relax again.
-/// Result: why it cannot be the run's; empty where it can. `cut` becomes the surface that it is on.
-std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
-                           const PatchOptions& options, RemeshReport& report, Context& context) {
-  return reason_against([&] {
-    std::string why = mesh_patches(p, *cut, made, options.optimize, report, context);
-    const auto intersects = [&] { return !why.empty() && report.post.self_intersections > 0; };
-    for (int rounds = kRoundsOfShorterSegments; intersects() && rounds > 0; --rounds) {
-      const std::shared_ptr<const CutSurface> shorter = with_shorter_segments(*cut, made);
-      if (!shorter) break;
-      cut = shorter;
-      made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
-      why = mesh_patches(p, *cut, made, options.optimize, report, context);
-    }
-    return why;
-  });
-}
-
-/// Where triangles of a mesh that cannot be the run's are wrong.
-std::vector<PointQ8> wrong_places(const SeededMesh& made, const RemeshReport& report) {
-  if (report.dual.failed_cells > 0) return find_patch_defects(made);
-  return crossing_corners(*OnHost(made.mesh), OnHost(made.seeds)->fixed.joined.view());
-}
-
-/// The same once without curves that cannot be followed. Result: `why` where there are none to leave out.
-std::string mesh_without_some_curves(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
-                                     PatchOptions options, const std::string& why, RemeshReport& report,
-                                     Context& context) {
-  const std::string against = reason_against([&] {
-    const std::shared_ptr<const CutSurface> fewer = timed(report, "features", context, [&] {
-      return cut_along_fewer(*cut->source, wrong_places(made, report), p.surface.frame, report, context);
-    });
-    if (!fewer) return why;
-    cut = fewer;
-    options.seeds.count = cut->seeds;
-    made.seeds = timed(report, "relax", context, [&] { return relax_in_patches(*cut, options, context).seeds; });
-    return std::string();
-  });
-  return against.empty() ? mesh_in_rounds(p, cut, made, options, report, context) : against;
-}
-
-/// The mesh with as many curves as can be kept. Result: why there is none; empty where there is.
-std::string mesh_with_curves(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
-                             const PatchOptions& options, RemeshReport& report, Context& context) {
-  const FeatureReport all = report.features;
-  std::string why = mesh_in_rounds(p, cut, made, options, report, context);
-  for (int rounds = kRoundsOfFewerCurves; !why.empty() && rounds > 0; --rounds) {
-    const std::shared_ptr<const CutSurface> before = cut;
-    why = mesh_without_some_curves(p, cut, made, options, why, report, context);
-    if (cut == before) break;
+/// Those that were left out, and those of which less than half is still a curve.
+std::vector<LostCurve> not_kept(const CutSurface& cut) {
+  std::vector<LostCurve> lost = cut.source->left_out;
+  std::vector<double> kept_world(cut.source->found.size(), 0);
+  for (const CutCurve& curve : cut.curves)
+    kept_world[curve.curve] += curve.length_q8 / kOneVoxelQ8 * cut.frame.voxel_size;
+  for (size_t c = 0; c < kept_world.size(); ++c) {
+    const LostCurve& found = cut.source->found[c];
+    if (2 * kept_world[c] >= found.length_world) continue;
+    lost.push_back(found);
+    lost.back().reason = "the edges are too long for it";
   }
-  if (!why.empty()) report.features = all;
-  return why;
+  return lost;
 }
 
 /// Says which attributes have none that could be kept.
@@ -261,6 +185,18 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   });
 }
 
+/// Passes on coarse levels cost as much as those on the finest one, which are the better spent.
+RelaxOptions for_coarse_patches(const PatchOptions& options) {
+  RelaxOptions relax = for_coarse_level(options.relax, options.tolerance_asked);
+  relax.max_passes = kPassesOfCoarsePatches;
+  return relax;
+}
+RelaxOptions for_finest_patches(const PatchOptions& options) {
+  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_asked);
+  if (!options.tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
+  return relax;
+}
+
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
   const FreeSeeds free_seeds(cut);
   std::vector<SeedSet> fixed;  // fine to coarse
@@ -278,22 +214,34 @@ RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options
     SeedSet seeds =
         coarser ? free_seeds.add_finer(std::move(fixed[level]), counts[level], fetched(*coarser), options.seeds.seed)
                 : free_seeds.add(std::move(fixed[level]), counts[level], options.seeds.seed);
-    if (level == 0) return relax_on_sheet(cut.surface, std::move(seeds), options.relax, context);
-    coarser =
-        relax_level(cut.surface, for_coarse_level(options.relax, options.tolerance_asked), std::move(seeds), context);
+    if (level == 0)
+      return relax_on_sheet(cut.surface, std::move(seeds), coarser ? for_finest_patches(options) : options.relax,
+                            context);
+    coarser = relax_level_once(cut.surface, for_coarse_patches(options), std::move(seeds), context);
   }
   return {};
 }
 
+RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& before, const PatchOptions& options,
+                                    Context& context) {
+  const FreeSeeds free_seeds(cut);
+  SeedSet fixed = seeds_on_curves(cut, 0);
+  const FreeSeeds::Counts counts = free_seeds.counts(fixed, options.seeds.count);
+  return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed),
+                        for_finest_patches(options), context);
+}
+
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
                                                 RemeshReport& report, Context& context) {
+  const int64_t vertices = options.seeds.count;
   std::shared_ptr<const CutSurface> cut = p.cut;
-  std::string why = mesh_with_curves(p, cut, made, options, report, context);
+  std::string why = reason_against([&] { return mesh_in_rounds(p, cut, made, options, report, context); });
   std::optional<TriangleMesh> mesh;
   JoinedPatches joined;
   if (why.empty())
     why = reason_against([&]() -> std::string {
-      joined = timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, report, context); });
+      joined =
+          timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, vertices, report, context); });
       mesh = to_world(joined.mesh, p.surface.frame);
       mesh->features = std::move(joined.features);
       part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
@@ -307,6 +255,10 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   if (const int64_t crossings = report.post.self_intersections; crossings > 0)
     report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
                               " where the input's own triangles do");
+  if (joined.mesh.position.size() != vertices)
+    report.warnings.push_back("the result has " + std::to_string(joined.mesh.position.size()) +
+                              " vertices instead of " + std::to_string(vertices) +
+                              ": its curves need them, or leave no room for more");
   report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
   report.sheet.bridged_vertices = 0;
   flag_caps(p, *mesh, report.gaps);
@@ -314,7 +266,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   report.features.vertices = joined.on_curves;
   report.features.segments = int64_t(mesh->features.curve_edges.size());
   report.features.kept = report.post_done = true;
-  report_left_out(cut->source->left_out, report);
+  report_left_out(not_kept(*cut), report);
   return mesh;
 }
 

@@ -31,6 +31,10 @@ struct PatchOptions {
 /// Fixes seeds on the curves, one for each patch there, and relaxes the others between them, coarse to fine.
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context);
 
+/// The same from the seeds of a mesh that is there, in host memory, of another number or with others fixed.
+RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& before, const PatchOptions& options,
+                                    Context& context);
+
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
 /// curve counted once. Where triangles intersect, curves get more seeds there, and all seeds are relaxed again. None
 /// where that does not end it, cells are no disks, or patches touch along edges that are on no curve: report.features

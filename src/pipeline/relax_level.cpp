@@ -20,8 +20,10 @@ constexpr int32_t kPassesAgain = 30;
 constexpr int32_t kFinestPasses = 40;
 constexpr int32_t kFinestTolerancePpb = 500000;
 
-std::optional<SeededMesh> relax_coarse(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
-                                       Context& context) {
+}  // namespace
+
+std::optional<SeededMesh> relax_level_once(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+                                           Context& context) {
   const int64_t asked = seeds.size();
   seeds = relax_on_sheet(surface, std::move(seeds), relax, context).seeds;
   Triangulation dual = triangulate_dual(surface, std::move(seeds), {}, context);
@@ -32,8 +34,6 @@ std::optional<SeededMesh> relax_coarse(const SurfaceMesh& surface, const RelaxOp
   optimize.for_seeds = true;
   return optimize_mesh(surface, std::move(mesh), optimize, context);
 }
-
-}  // namespace
 
 RelaxOptions for_coarse_level(RelaxOptions relax, bool tolerance_asked) {
   relax.max_passes = kCoarsePasses;
@@ -48,10 +48,10 @@ RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_asked) {
 
 std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
                                       Context& context) {
-  std::optional<SeededMesh> first = relax_coarse(surface, relax, std::move(seeds), context);
+  std::optional<SeededMesh> first = relax_level_once(surface, relax, std::move(seeds), context);
   if (!first || first->seeds.size() > kMostSeedsTwice) return first;
   const RelaxOptions again{kPassesAgain, relax.tolerance_ppb, relax.max_step_q8};
-  std::optional<SeededMesh> second = relax_coarse(surface, again, to_host(first->seeds), context);
+  std::optional<SeededMesh> second = relax_level_once(surface, again, to_host(first->seeds), context);
   return second ? std::move(second) : std::move(first);
 }
 

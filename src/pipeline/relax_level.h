@@ -19,5 +19,8 @@ RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_asked);
 /// cells of the seeds that it is split into meet as its triangles do; none when the level is too coarse for the shape.
 std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
                                       Context& context);
+/// The same without a second round.
+std::optional<SeededMesh> relax_level_once(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+                                           Context& context);
 
 }  // namespace isoshell

@@ -220,7 +220,7 @@ void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mes
 
 void measure_edges(const CutSurface& cut, const JoinedPatches& made, SizingReport& report) {
   if (cut.is_asked && !cut.surface.lengths.at.empty())
-    measure_edges(cut.surface, cut.voxel_size, 1, made.home, made.mesh, report);
+    measure_edges(cut.surface, cut.frame.voxel_size, 1, made.home, made.mesh, report);
 }
 
 }  // namespace isoshell

@@ -51,7 +51,7 @@ double area_of(const CutSurface& cut) {
     const Vec64 n = cross(difference(at[t.b], at[t.a]), difference(at[t.c], at[t.a]));
     sum += std::sqrt(double(dot(n, n))) / 2;
   }
-  return sum * cut.voxel_size * cut.voxel_size / (kOneVoxelQ8 * kOneVoxelQ8);
+  return sum * cut.frame.voxel_size * cut.frame.voxel_size / (kOneVoxelQ8 * kOneVoxelQ8);
 }
 double area_of(const FeatureMesh& mesh) {
   Context context;
@@ -98,7 +98,7 @@ TEST_CASE("cut surface: has the patches, borders and area of its mesh, and short
     CHECK(int(patches.size()) == shape.patches);
     CHECK(int(surface.chains.count()) == shape.borders);
     CHECK(std::abs(area_of(cut) / area_of(shape.mesh) - 1) < 1e-3);
-    const double most = 1.5 * kEdge / 4 / cut.voxel_size * kOneVoxelQ8;
+    const double most = 1.5 * kEdge / 3 / cut.frame.voxel_size * kOneVoxelQ8;
     int64_t too_long = 0;
     for (const TriangleIndices& t : surface.triangles)
       for (int i = 0; i < 3; ++i)
@@ -173,7 +173,7 @@ TEST_CASE("fixed seeds: follow every curve about one edge length apart, and each
         for (size_t i = 0; i < curve.place.size(); ++i)
           if (at_place.count(curve.place[i])) at.push_back(curve.at_q8[i]);
         if (curve.is_loop) at.push_back(curve.length_q8);
-        const double edge_q8 = edge / cut.voxel_size * kOneVoxelQ8;
+        const double edge_q8 = edge / cut.frame.voxel_size * kOneVoxelQ8;
         const auto segments = int64_t(at.size()) - 1;
         REQUIRE(segments >= curve.least_segments);
         if (curve.length_q8 > 2 * double(curve.least_segments) * edge_q8) {
@@ -339,7 +339,7 @@ TEST_CASE("edge lengths: are shorter around holes and between close curves, and 
   };
   CHECK(longest_near(10, 10, 0.8) < 0.6 * even);
   CHECK(longest_near(0.25, 5, 0.4) < 1.6 * 0.5 + 0.2);
-  CHECK(surface.lengths.largest * cut.voxel_size / kOneVoxelQ8 > even);
+  CHECK(surface.lengths.largest * cut.frame.voxel_size / kOneVoxelQ8 > even);
   CHECK(4 * (surface.lengths.least + 1) >= surface.lengths.largest);
   double filled = 0;
   int64_t too_steep = 0;

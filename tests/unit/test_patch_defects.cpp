@@ -19,38 +19,32 @@ SeededMesh made_of(uint32_t vertices, const std::vector<TriangleIndices>& triang
   made.seeds.fixed.joined = to_buffer(joined);
   return made;
 }
-std::vector<int32_t> wrong_vertices(const SeededMesh& made) {
-  std::vector<int32_t> wrong;
-  for (const PointQ8 p : find_patch_defects(made)) wrong.push_back(p.x);
-  return wrong;
-}
-
 const std::vector<TriangleIndices> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-using Wrong = std::vector<int32_t>;
+using Wrong = std::vector<uint32_t>;
 
 }  // namespace
 
 TEST_CASE("patch defects: closed meshes and patches that share a border have none", "[features][unit]") {
-  CHECK(wrong_vertices(made_of(4, kTetrahedron)).empty());
+  CHECK(find_patch_defects(made_of(4, kTetrahedron)).empty());
   const std::vector<TriangleIndices> both{{0, 1, 6}, {1, 2, 6}, {0, 6, 2}, {3, 5, 7}, {4, 7, 5}, {3, 7, 4}};
-  CHECK(wrong_vertices(made_of(8, both, {0, 1, 2, 0, 1, 2})).empty());
+  CHECK(find_patch_defects(made_of(8, both, {0, 1, 2, 0, 1, 2})).empty());
 }
 
 TEST_CASE("patch defects: an edge of three triangles, a vertex of two fans and one of none", "[features][unit]") {
   auto with_fin = kTetrahedron;
   with_fin.push_back({0, 1, 4});
-  CHECK(wrong_vertices(made_of(5, with_fin)) == Wrong{0, 1});
+  CHECK(find_patch_defects(made_of(5, with_fin)) == Wrong{0, 1});
   auto touching = kTetrahedron;
   for (const TriangleIndices& t : std::vector<TriangleIndices>{{0, 5, 4}, {0, 4, 6}, {4, 5, 6}, {0, 6, 5}})
     touching.push_back(t);
-  CHECK(wrong_vertices(made_of(7, touching)) == Wrong{0});
-  CHECK(wrong_vertices(made_of(5, kTetrahedron)) == Wrong{4});
+  CHECK(find_patch_defects(made_of(7, touching)) == Wrong{0});
+  CHECK(find_patch_defects(made_of(5, kTetrahedron)) == Wrong{4});
 }
 
 TEST_CASE("patch defects: an edge inside of a patch that another patch has, too", "[features][unit]") {
   // Two squares over the corners 0 to 3 and their copies 4 to 7, both cut from 0 to 2.
   const std::vector<TriangleIndices> squares{{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}};
-  CHECK(wrong_vertices(made_of(8, squares, {0, 1, 2, 3, 0, 1, 2, 3})) == Wrong{0, 2, 4, 6});
+  CHECK(find_patch_defects(made_of(8, squares, {0, 1, 2, 3, 0, 1, 2, 3})) == Wrong{0, 2, 4, 6});
   const std::vector<TriangleIndices> crossed{{0, 1, 2}, {0, 2, 3}, {4, 7, 5}, {5, 7, 6}};
-  CHECK(wrong_vertices(made_of(8, crossed, {0, 1, 2, 3, 0, 1, 2, 3})).empty());
+  CHECK(find_patch_defects(made_of(8, crossed, {0, 1, 2, 3, 0, 1, 2, 3})).empty());
 }
