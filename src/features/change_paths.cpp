@@ -106,14 +106,22 @@ class CreasesAround {
 
 /// Flags all edges between the seeds around a vertex of a path.
 void flag_segments_at(const CurvePath& path, size_t index, std::vector<char>& goes) {
-  for (const Segment& segment : segments_of(path, [](uint32_t) { return false; }))
-    if (segment.begin <= index && index <= segment.end)
-      std::fill(goes.begin() + int64_t(segment.begin), goes.begin() + int64_t(segment.end), char(1));
+  const auto after = std::partition_point(path.seeds.begin(), path.seeds.end(),
+                                          [&](const PathPoint& seed) { return seed.edge <= index; });
+  const auto flag = [&](size_t begin, size_t end) {
+    std::fill(goes.begin() + int64_t(begin), goes.begin() + int64_t(end), char(1));
+  };
+  const size_t end = after == path.seeds.end() ? goes.size() : after->edge;
+  const auto at = after - 1;  // a path has a seed at its first vertex
+  flag(at->edge, end);
+  if (at->edge != index) return;
+  if (index > 0) flag((at - 1)->edge, index);
+  if (index == 0 && path.is_loop) flag(path.seeds.back().edge, goes.size());
 }
 
 /// A path by its beginning, and how it is divided.
-std::array<size_t, 4> key_of(const CurvePath& path) {
-  return {path.vertex[0], path.vertex[1], path.vertex.size(), path.seeds.size()};
+std::array<size_t, 5> key_of(const CurvePath& path) {
+  return {path.is_loop, path.vertex[0], path.vertex[1], path.vertex.size(), path.seeds.size()};
 }
 
 }  // namespace
@@ -174,7 +182,7 @@ std::optional<Paths> mend_tight_borders(const CutSurface& cut) {
 }
 
 std::vector<char> which_changed(const Paths& before, const Paths& after) {
-  std::vector<std::array<size_t, 4>> keys;
+  std::vector<std::array<size_t, 5>> keys;
   for (const CurvePath& path : after) keys.push_back(key_of(path));
   std::sort(keys.begin(), keys.end());
   std::vector<char> changed;

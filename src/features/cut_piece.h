@@ -1,6 +1,7 @@
 // Some patches of a cut surface as a surface of their own, and meshes that go from one to the other.
 #pragma once
 
+#include "core/copy_product.h"
 #include "features/cut_surface.h"
 #include "isoshell/stages.h"
 
@@ -20,6 +21,11 @@ std::vector<uint32_t> vertices_after(const CutSurface& before, const CutSurface&
 
 /// The inverse of where the vertices of a piece are in the whole: kNone off the piece.
 std::vector<uint32_t> in_piece(const CutPiece& piece, const CutSurface& whole);
+
+inline void bring_to_host(SeededMesh& made) {
+  on_host(made.mesh);
+  on_host(made.seeds);
+}
 
 /// A mesh of some patches, in host memory.
 struct PatchesMade {

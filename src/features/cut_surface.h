@@ -46,7 +46,7 @@ struct CutSurface {
   std::shared_ptr<const FineMesh> fine;     ///< what it was cut from: curve c is its path c
   std::vector<uint32_t> corner;             ///< per corner of a triangle of that its vertex
   int64_t seeds = 0;                        ///< that it is cut for, copies at a place counted once; 0: any number
-  std::shared_ptr<const CutSource> source;  ///< of who cuts it, to do it again
+  std::shared_ptr<const CutSource> source;  ///< of who cuts it
 };
 
 inline size_t patch_count(const CutSurface& cut) {

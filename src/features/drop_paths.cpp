@@ -2,8 +2,6 @@
 #include "features/drop_paths.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/world_vector.h"
@@ -11,22 +9,9 @@
 namespace isoshell {
 namespace {
 
-constexpr double kShortestLeft = 2.5;  ///< edges of the result
-constexpr int64_t kFewestSegments = 3;
+constexpr size_t kFewestSegments = 3;
 
-/// How many edges of the result a path is long.
-double edges_along(const FineMesh& mesh, const CurvePath& path) {
-  double sum = 0;
-  for (size_t i = 0; i < path.edge_count(); ++i) {
-    const uint32_t u = path.vertex[i], v = path.edge_end(i);
-    sum += 2 * length(mesh.position[v] - mesh.position[u]) / (mesh.edge_length[u] + mesh.edge_length[v]);
-  }
-  return sum;
-}
-
-bool is_short(const FineMesh& mesh, const CurvePath& path) {
-  return path.seeds.empty() ? edges_along(mesh, path) < kShortestLeft : int64_t(path.seeds.size()) <= kFewestSegments;
-}
+bool is_short(const CurvePath& path) { return path.seeds.size() <= kFewestSegments; }
 
 /// The path over some edges that follow each other, on a loop beyond its end.
 CurvePath part_of(const FineMesh& mesh, const CurvePath& path, size_t first, size_t count) {
@@ -34,13 +19,11 @@ CurvePath part_of(const FineMesh& mesh, const CurvePath& path, size_t first, siz
   part.curve = path.curve;
   part.kind = path.kind;
   part.is_jagged = path.is_jagged;
-  part.least_segments = kFewestSegments;
   const size_t n = path.vertex.size();
+  std::vector<char> is_seed(n, 0);
+  for (const PathPoint& seed : path.seeds) is_seed[seed.edge % n] = 1;
   for (size_t i = first; i <= first + count; ++i) {
-    const bool is_seed = std::any_of(path.seeds.begin(), path.seeds.end(), [&](const PathPoint& s) {
-      return s.edge == i || (path.is_loop && s.edge == i % n);
-    });
-    if (is_seed) part.seeds.push_back({part.vertex.size(), 0});
+    if (is_seed[i % n]) part.seeds.push_back({part.vertex.size(), 0});
     part.vertex.push_back(path.vertex[i % n]);
   }
   measure_path(mesh.position, part);
@@ -70,7 +53,7 @@ std::vector<uint32_t> ends_of(const Paths& paths) {
 }
 
 /// Until there are none.
-void drop_stubs(const FineMesh& mesh, Paths& paths) {
+void drop_stubs(Paths& paths) {
   for (size_t before = paths.size() + 1; paths.size() < before;) {
     before = paths.size();
     const std::vector<uint32_t> ends = ends_of(paths);
@@ -78,11 +61,9 @@ void drop_stubs(const FineMesh& mesh, Paths& paths) {
       const auto [begin, end] = std::equal_range(ends.begin(), ends.end(), v);
       return end - begin == 1;
     };
-    const auto is_stub = [&](CurvePath& path) {
-      if (path.is_loop || !may_go(path) || (!is_free(path.vertex.front()) && !is_free(path.vertex.back())))
-        return false;
-      path.least_segments = std::max<int64_t>(path.least_segments, 2);  // on either side of a slit
-      return is_short(mesh, path);
+    const auto is_stub = [&](const CurvePath& path) {
+      return !path.is_loop && may_go(path) && is_short(path) &&
+             (is_free(path.vertex.front()) || is_free(path.vertex.back()));
     };
     paths.erase(std::remove_if(paths.begin(), paths.end(), is_stub), paths.end());
   }
@@ -127,9 +108,8 @@ std::vector<double> turns_of(const FineMesh& mesh) {
     }
   std::vector<double> sum(mesh.paths.size(), 0), turns(mesh.paths.size());
   for (const Beside& e : edges)
-    sum[e.path] += (e.triangles == 2 ? e.turn : std::numeric_limits<double>::infinity()) *
-                   length(mesh.position[e.edge >> 32] - mesh.position[uint32_t(e.edge)]);
-  for (size_t p = 0; p < turns.size(); ++p) turns[p] = sum[p] / std::max(mesh.paths[p].length, 1e-300);
+    sum[e.path] += e.turn * length(mesh.position[e.edge >> 32] - mesh.position[uint32_t(e.edge)]);
+  for (size_t p = 0; p < turns.size(); ++p) turns[p] = mesh.paths[p].length > 0 ? sum[p] / mesh.paths[p].length : 0;
   return turns;
 }
 
@@ -143,9 +123,9 @@ Paths without_edges(const FineMesh& mesh, const EdgesOfPaths& goes) {
     Paths parts;
     append_parts(mesh, mesh.paths[p], goes[p], parts);
     for (CurvePath& part : parts)
-      if (!is_short(mesh, part)) paths.push_back(std::move(part));
+      if (!is_short(part)) paths.push_back(std::move(part));
   }
-  drop_stubs(mesh, paths);
+  drop_stubs(paths);
   return paths;
 }
 

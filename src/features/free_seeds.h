@@ -17,8 +17,9 @@ class FreeSeeds {
 
   /// As many as it takes for `vertices` places in all, where fixed seeds that are joined are one place. Patches share
   /// them by what Euler's formula leaves for their inside: a patch with area A, a border of b seeds and Euler
-  /// characteristic x has 2 / sqrt(3) A / e^2 - b / 2 + x inner vertices. Throws: usage when the fixed seeds alone are
-  /// more than that, or cells would have fewer than two vertices.
+  /// characteristic x has 2 / sqrt(3) A / e^2 - b / 2 + x inner vertices. A patch has no more than half of its
+  /// vertices; what there is no room for goes to others. Throws: usage when the fixed seeds alone are more than that,
+  /// or no patch has room.
   Counts counts(const SeedSet& fixed, int64_t vertices) const;
   /// Places that it takes at least.
   int64_t fewest(const SeedSet& fixed) const;

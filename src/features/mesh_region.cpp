@@ -376,7 +376,7 @@ bool MeshRegion::move(uint32_t v) {
   const RegionVertex before = vertices_[v];
   RegionVertex best = before;
   std::vector<size_t> around = triangles_of(v);
-  std::sort(around.begin(), around.end(), [&](size_t a, size_t b) { return costs_[a] > costs_[b]; });  // decide soonest
+  std::stable_sort(around.begin(), around.end(), [&](size_t a, size_t b) { return costs_[a] > costs_[b]; });  // soonest
   double least = 0;
   for (const size_t t : around) least += kEnough * costs_[t];
   if (least == 0) return false;

@@ -8,6 +8,7 @@
 #include "core/copy_product.h"
 #include "core/near_points.h"
 #include "core/parallel_ranges.h"
+#include "core/watched.h"
 #include "features/mesh_fans.h"
 #include "isoshell/voxel_set.h"
 
@@ -25,7 +26,8 @@ constexpr double kMostAtFirst = 0.25;      ///< beyond that, before vertices mov
 constexpr int64_t kMostTriesPerCount = 64;
 constexpr size_t kFewEdges = 11;    ///< of both ends of an edge that is collapsed: 7 are left then
 constexpr size_t kPassesOfFew = 3;  ///< over edges, each with one edge more at the ends, before all count
-constexpr double kKept = 1;         ///< edges around a point near which nothing is to change
+constexpr size_t kMostPasses = 12;
+constexpr double kKept = 1;  ///< edges around a point near which nothing is to change
 
 /// Whether no angle is smaller than the smallest was, and no more triangles are poor, or all together much better.
 bool is_better(const MeshRegion& region, const MeshRegion& start) {
@@ -305,8 +307,9 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
   return {};
 }
 
-void PatchMesh::meet_count() {
-  for (size_t pass = 0; surplus() != 0; ++pass) {
+void PatchMesh::meet_count(const Context& context) {
+  for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
+    check_cancel(context, "features");
     const int64_t before = surplus();
     std::vector<std::pair<double, uint64_t>> edges = edges_by_length();
     if (before < 0) std::reverse(edges.begin(), edges.end());

@@ -31,7 +31,7 @@ class PatchMesh {
   bool improve(std::vector<uint32_t> triangles);
   int64_t surplus() const { return count_ - wanted_; }
   /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
-  void meet_count();
+  void meet_count(const Context& context);
 
   /// From now on, vertices within an edge of these points stay.
   void keep_near(const std::vector<PointQ8>& points);

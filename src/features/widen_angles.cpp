@@ -28,7 +28,7 @@ JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, int6
       PatchMesh mesh = before;
       if (!wrong.empty()) mesh.keep_near(wrong);
       improve(mesh, context);
-      mesh.meet_count();
+      mesh.meet_count(context);
       JoinedPatches wide = mesh.joined();
       const std::vector<PointQ8> points = crossings(wide.mesh);
       if (points.empty()) return wide;

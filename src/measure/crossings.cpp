@@ -72,13 +72,17 @@ std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const
   });
 }
 
-int64_t count_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others, int32_t reach_q8) {
+std::vector<size_t> which_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others,
+                                int32_t reach_q8) {
   const BoxTree tree(others);
-  return std::count_if(boxes.begin(), boxes.end(), [&](const BoxOfPoints& b) {
+  std::vector<size_t> apart;
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const BoxOfPoints& b = boxes[i];
     const BoxOfPoints wide{{b.lo.x - reach_q8, b.lo.y - reach_q8, b.lo.z - reach_q8},
                            {b.hi.x + reach_q8, b.hi.y + reach_q8, b.hi.z + reach_q8}};
-    return tree.for_all_meeting(wide, [](uint32_t) { return false; });
-  });
+    if (tree.for_all_meeting(wide, [](uint32_t) { return false; })) apart.push_back(i);
+  }
+  return apart;
 }
 
 }  // namespace isoshell

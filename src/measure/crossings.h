@@ -25,7 +25,8 @@ BoxOfPoints common_box(View<const PointQ8> position, View<const TriangleIndices>
 std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                         Context& context);
 
-/// How many of the boxes are farther than this, along some axis, from each of the others.
-int64_t count_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others, int32_t reach_q8);
+/// Which of the boxes are farther than this, along some axis, from each of the others; ascending.
+std::vector<size_t> which_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others,
+                                int32_t reach_q8);
 
 }  // namespace isoshell

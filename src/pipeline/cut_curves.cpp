@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/half_edge_list.h"
-#include "core/near_points.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/free_seeds.h"

@@ -12,7 +12,7 @@
 
 namespace isoshell {
 
-/// What a surface was cut from, to cut it along fewer curves.
+/// What a surface was cut from, and along which curves.
 struct CutSource {
   std::shared_ptr<const FeatureMesh> mesh;
   CurveOptions curves;

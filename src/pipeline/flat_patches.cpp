@@ -2,6 +2,7 @@
 #include "pipeline/flat_patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -170,6 +171,7 @@ std::vector<char> triangulate_flat(const CutSurface& cut, const std::vector<char
     is_done[patch] = 1;
     for (const auto& [a, b, c] : *flat) triangles.push_back({a, b, c});
   }
+  if (triangles.empty()) return is_done;
   for (const TriangleIndices& t : made.mesh.triangles)
     if (!is_done[cut.surface.patch[made.seeds.home[t.a]]]) triangles.push_back(t);
   made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));

@@ -2,6 +2,8 @@
 #include "pipeline/patch_rounds.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "core/copy_product.h"
 #include "core/watched.h"
@@ -24,13 +26,6 @@ namespace {
 
 constexpr int kMostRounds = 10;
 constexpr size_t kMostWork = 2;  ///< of all rounds after the first one, over that of the whole surface
-
-SeededMesh fetched(const SeededMesh& made) {
-  SeededMesh out;
-  out.mesh = to_host(made.mesh);
-  out.seeds = to_host(made.seeds);
-  return out;
-}
 
 using PerPatch = std::vector<char>;
 
@@ -56,34 +51,52 @@ std::vector<uint32_t> through(std::vector<uint32_t> first, const std::vector<uin
 /// What keeps a mesh from being the run's.
 struct Wrong {
   PerPatch patch;
-  std::vector<PointQ8> places;
-  int64_t failed = 0, crossing = 0;  ///< vertices around which triangles are no surface, pairs that intersect
+  std::vector<std::pair<uint32_t, PointQ8>> where;  ///< patches and places in them
+  int64_t crossing = 0;  ///< pairs of triangles that intersect, whose corners are among these
 
   explicit Wrong(const CutSurface& cut) : patch(none_of(cut)) {}
+  void add(uint32_t in_patch, PointQ8 place) {
+    patch[in_patch] = 1;
+    where.push_back({in_patch, place});
+  }
+  /// Patches that are right now.
+  void forget(const PerPatch& mended) {
+    for (size_t p = 0; p < patch.size(); ++p) patch[p] &= !mended[p];
+    where.erase(std::remove_if(where.begin(), where.end(), [&](const auto& w) { return mended[w.first]; }),
+                where.end());
+  }
   bool is_nowhere() const { return !any(patch); }
+  /// Vertices around which triangles are no surface.
+  int64_t failed() const { return int64_t(where.size()) - 6 * crossing; }
+  std::vector<PointQ8> places() const {
+    std::vector<PointQ8> out;
+    for (const auto& [in_patch, place] : where) out.push_back(place);
+    sort_places(out);
+    return out;
+  }
   std::string said() const {
     if (crossing > 0) return std::to_string(crossing) + " pairs of triangles would intersect";
-    return std::to_string(failed) + " cells beside them are no disks";
+    return std::to_string(failed()) + " cells beside them are no disks";
   }
 };
 
 class PatchRounds {
  public:
   PatchRounds(const Prepared& p, const PatchOptions& options, RemeshReport& report, Context& context)
-      : p_(p), options_(options), report_(report), context_(context) {
-    if (p.surface.topology.closed) return;
-    const OnHost<LatticeSurface> input(p.surface);  // a result that is open may intersect itself where the input does
-    input_crossings_ = find_crossings(input->points.view(), input->triangles.view(), context);
-  }
+      : p_(p), options_(options), report_(report), context_(context) {}
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
     const int64_t vertices = vertices_of(made.seeds);
+    report_.dual = {};
+    report_.post = {};
     Wrong failed = mesh_patches(*cut, made);
     for (int round = 0;; ++round) {
       Wrong wrong = find_wrong(*cut, made, failed);
-      if (!wrong.is_nowhere() && any(triangulate_flat(*cut, wrong.patch, made))) wrong = find_wrong(*cut, made, failed);
+      if (!wrong.is_nowhere()) {
+        failed.forget(triangulate_flat(*cut, wrong.patch, made));
+        wrong = find_wrong(*cut, made, failed);
+      }
       if (wrong.is_nowhere()) return "";
-      check_cancel(context_, "features");
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
       std::optional<Paths> change = change_where(wrong, *cut, round);
       if (!change) return wrong.said();
@@ -100,7 +113,8 @@ class PatchRounds {
   template <class Work>
   void on_patches(const CutSurface& cut, const PerPatch& chosen, bool keeps_others, SeededMesh& made, Work work) {
     if (all(chosen)) return work(cut, made);
-    const SeededMesh whole = fetched(made);
+    bring_to_host(made);
+    const SeededMesh whole = std::move(made);
     const PerPatch others = keeps_others ? inverse(chosen) : none_of(cut);
     const std::vector<uint32_t> kept = vertices_after(cut, cut, others);
     if (!any(chosen)) {
@@ -110,67 +124,83 @@ class PatchRounds {
     const CutPiece piece = piece_of(cut, chosen, context_);
     SeededMesh part = gather_patches(piece.cut, {{whole, in_piece(piece, cut)}});
     work(piece.cut, part);
-    part = fetched(part);
+    bring_to_host(part);
     made = gather_patches(cut, {{whole, kept}, {part, piece.in_whole}});
   }
 
   /// Dual and optimisation of relaxed seeds. Result: the patches that fail, which then have no triangles.
   Wrong mesh_patches(const CutSurface& cut, SeededMesh& made) {
-    make_dual_of_seeds(cut.surface, {made.seeds.size()}, made, report_, context_);
     Wrong failed(cut);
-    if (report_.dual.failed_cells > 0) {
-      made = fetched(made);
+    if (!make_dual(cut, made)) {
+      bring_to_host(made);
       add_defects(cut, made, find_patch_defects(made), failed);
-      const PerPatch flat = triangulate_flat(cut, failed.patch, made);
-      for (size_t patch = 0; patch < flat.size(); ++patch) failed.patch[patch] &= !flat[patch];
-      if (failed.is_nowhere()) failed = Wrong(cut);
+      failed.forget(triangulate_flat(cut, failed.patch, made));
     }
+    int64_t crossing = 0;
     on_patches(cut, inverse(failed.patch), false, made, [&](const CutSurface& part, SeededMesh& mesh) {
       OptimizedMesh optimized = timed(report_, "post", context_, [&] {
         return optimize_mesh(part.surface, std::move(mesh), options_.optimize, context_);
       });
-      report_.post = optimized.report;
+      crossing = optimized.report.self_intersections;
+      report_.post.flips += optimized.report.flips;
+      report_.post.undone_vertices += optimized.report.undone_vertices;
       mesh = std::move(optimized);
     });
-    untangle(cut, made);
+    if (crossing > 0) untangle(cut, made);
     return failed;
+  }
+
+  /// Result: whether all cells are disks.
+  bool make_dual(const CutSurface& cut, SeededMesh& made) {
+    RemeshReport here;
+    make_dual_of_seeds(cut.surface, {made.seeds.size()}, made, here, context_);
+    for (const StageTime& t : here.times) book_time(report_, t.stage.c_str(), t.ms);
+    report_.dual.inserted_seeds += here.dual.inserted_seeds;
+    report_.dual.relabelled_vertices += here.dual.relabelled_vertices;
+    report_.dual.repair_rounds += here.dual.repair_rounds;
+    return here.dual.failed_cells == 0;
   }
 
   static void add_defects(const CutSurface& cut, const SeededMesh& made, const std::vector<uint32_t>& vertices,
                           Wrong& wrong) {
-    for (const uint32_t v : vertices) {
-      ++wrong.failed;
-      wrong.patch[cut.surface.patch[made.seeds.home[v]]] = 1;
-      wrong.places.push_back(made.mesh.position[v]);
-    }
+    for (const uint32_t v : vertices) wrong.add(cut.surface.patch[made.seeds.home[v]], made.mesh.position[v]);
   }
 
-  /// The pairs of triangles that intersect where the result must not. Notes how many there are in all.
-  std::vector<std::array<uint32_t, 2>> crossing(const SeededMesh& made) const {
-    auto pairs = crossing_pairs(made.mesh.position.view(), made.mesh.triangles.view(), made.seeds.fixed.joined.view(),
-                                context_.cancel);
-    report_.post.self_intersections = int64_t(pairs.size());
-    if (pairs.empty() || input_crossings_.empty()) return pairs;
-    const auto reach = int32_t(p_.cut->longest_edge_q8);
-    const auto is_inputs = [&](const std::array<uint32_t, 2>& pair) {
-      return count_apart({common_box(made.mesh.position.view(), made.mesh.triangles.view(), pair)}, input_crossings_,
-                         reach) == 0;
-    };
-    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_inputs), pairs.end());
+  std::vector<std::array<uint32_t, 2>> all_crossing(const SeededMesh& made) const {
+    auto pairs = run_with_threads(context_, [&] {
+      return crossing_pairs(made.mesh.position.view(), made.mesh.triangles.view(), made.seeds.fixed.joined.view(),
+                            context_.cancel);
+    });
+    check_cancel(context_, "features");
     return pairs;
   }
 
+  /// Of pairs of triangles that intersect those that must not: a result that is open may do so where the input does.
+  std::vector<std::array<uint32_t, 2>> not_of_input(const SeededMesh& made,
+                                                    const std::vector<std::array<uint32_t, 2>>& pairs) {
+    if (pairs.empty() || p_.surface.topology.closed) return pairs;
+    if (!input_crossings_) {
+      const OnHost<LatticeSurface> input(p_.surface);
+      input_crossings_ = find_crossings(input->points.view(), input->triangles.view(), context_);
+    }
+    std::vector<BoxOfPoints> boxes;
+    for (const auto& pair : pairs)
+      boxes.push_back(common_box(made.mesh.position.view(), made.mesh.triangles.view(), pair));
+    std::vector<std::array<uint32_t, 2>> out;
+    for (const size_t i : which_apart(boxes, *input_crossings_, int32_t(p_.cut->longest_edge_q8)))
+      out.push_back(pairs[i]);
+    return out;
+  }
+
   void untangle(const CutSurface& cut, SeededMesh& made) {
-    if (report_.post.self_intersections == 0) return;
-    made = fetched(made);
-    const auto pairs = crossing(made);
+    bring_to_host(made);
     Wrong wrong(cut);
-    add_crossing(cut, made, pairs, wrong);
-    if (pairs.empty()) return;
+    add_crossing(cut, made, not_of_input(made, all_crossing(made)), wrong);
+    if (wrong.is_nowhere()) return;
     timed(report_, "untangle", context_, [&] {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
         RemeshReport here;
-        here.post.self_intersections = int64_t(pairs.size());
+        here.post.self_intersections = int64_t(all_crossing(mesh).size());
         resolve_intersections(part.surface, options_.optimize, mesh, here, context_);
         report_.seeds_against_intersections += here.seeds_against_intersections;
       });
@@ -183,30 +213,31 @@ class PatchRounds {
     for (const auto& pair : pairs)
       for (const uint32_t t : pair) {
         const TriangleIndices i = made.mesh.triangles[t];
-        wrong.patch[cut.surface.patch[made.seeds.home[i.a]]] = 1;
-        for (const uint32_t v : {i.a, i.b, i.c}) wrong.places.push_back(made.mesh.position[v]);
+        for (const uint32_t v : {i.a, i.b, i.c})
+          wrong.add(cut.surface.patch[made.seeds.home[i.a]], made.mesh.position[v]);
       }
   }
 
   /// In the whole mesh, beside the patches that have failed.
   Wrong find_wrong(const CutSurface& cut, SeededMesh& made, const Wrong& failed) {
-    made = fetched(made);
+    bring_to_host(made);
     Wrong wrong = failed;
     std::vector<uint32_t> defects = find_patch_defects(made);
     const auto is_known = [&](uint32_t v) { return failed.patch[cut.surface.patch[made.seeds.home[v]]]; };
     defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
     add_defects(cut, made, defects, wrong);
-    const auto pairs = crossing(made);
-    add_crossing(cut, made, pairs, wrong);
-    sort_places(wrong.places);
+    const auto pairs = all_crossing(made);
+    report_.post.self_intersections = int64_t(pairs.size());
+    add_crossing(cut, made, not_of_input(made, pairs), wrong);
     return wrong;
   }
 
   /// Shorter segments are tried first.
-  std::optional<Paths> change_where(const Wrong& wrong, const CutSurface& cut, int round) const {
-    if (round == 0 && wrong.failed == 0)
-      if (auto shorter = halve_segments(*cut.fine, wrong.places, cut.longest_edge_q8)) return shorter;
-    return drop_creases(*cut.fine, wrong.places);
+  static std::optional<Paths> change_where(const Wrong& wrong, const CutSurface& cut, int round) {
+    const std::vector<PointQ8> places = wrong.places();
+    if (round == 0 && wrong.failed() == 0)
+      if (auto shorter = halve_segments(*cut.fine, places, cut.longest_edge_q8)) return shorter;
+    return drop_creases(*cut.fine, places);
   }
 
   std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, Paths paths) const {
@@ -241,21 +272,31 @@ class PatchRounds {
     const CutPiece piece = piece_of(*next, comes, context_);
     work_ += piece.cut.fine->triangles.size();
     PatchOptions options = options_;
-    options.seeds.count = count_for(piece.cut, vertices - vertices_of(kept.seeds));
+    options.seeds.count = count_for(piece.cut, free_of(*next, comes, vertices));
     SeededMesh part = gather_patches(
         piece.cut, {{made, through(vertices_after(*before, *next, all_of(*before)), in_piece(piece, *next))}});
     part.seeds = timed(report_, "relax", context_,
                        [&] { return relax_in_patches_again(piece.cut, part, options, context_).seeds; });
     const Wrong failed_here = mesh_patches(piece.cut, part);
-    part = fetched(part);
+    bring_to_host(part);
     made = gather_patches(*next, {{kept, vertices_after(*next, *next, inverse(comes))}, {part, piece.in_whole}});
-    Wrong failed(*next);
-    failed.places = failed_here.places;
-    failed.failed = failed_here.failed;
+    std::vector<uint32_t> patch_in_whole(patch_count(piece.cut));
     for (size_t v = 0; v < piece.in_whole.size(); ++v)
-      if (failed_here.patch[piece.cut.surface.patch[v]]) failed.patch[next->surface.patch[piece.in_whole[v]]] = 1;
+      patch_in_whole[piece.cut.surface.patch[v]] = next->surface.patch[piece.in_whole[v]];
+    Wrong failed(*next);
+    for (const auto& [patch, place] : failed_here.where) failed.add(patch_in_whole[patch], place);
     cut = next;
     return failed;
+  }
+
+  /// How many free seeds some patches have where the whole surface has so many vertices.
+  static int64_t free_of(const CutSurface& cut, const PerPatch& chosen, int64_t vertices) {
+    const FreeSeeds free_seeds(cut);
+    const SeedSet fixed = seeds_on_curves(cut, 0);
+    const FreeSeeds::Counts counts = free_seeds.counts(fixed, std::max(vertices, free_seeds.fewest(fixed)));
+    int64_t sum = 0;
+    for (size_t p = 0; p < chosen.size(); ++p) sum += chosen[p] ? counts[p] : 0;
+    return sum;
   }
 
   /// Vertices of a piece that has so many free ones, or as few as it takes.
@@ -268,7 +309,7 @@ class PatchRounds {
   const PatchOptions& options_;
   RemeshReport& report_;
   Context& context_;
-  std::vector<BoxOfPoints> input_crossings_;
+  std::optional<std::vector<BoxOfPoints>> input_crossings_;
   size_t work_ = 0;  ///< triangles of the fine mesh on which patches were made again
 };
 

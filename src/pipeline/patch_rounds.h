@@ -10,7 +10,7 @@ namespace isoshell {
 
 /// Makes the mesh of the relaxed seeds of p.cut. Where triangles intersect, or cells are no disks, patches in a
 /// plane are triangulated there; around others curves get more seeds first, then the creases there go, and only the
-/// patches beside these curves are made again: as long as all this costs no more than the first time. In the end `cut`
+/// patches beside these curves are made again: until that has taken twice the surface. In the end `cut`
 /// is the surface that the mesh is on. Result: why there is no mesh; empty where there is one, which may have
 /// another number of vertices.
 std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,

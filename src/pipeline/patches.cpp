@@ -9,6 +9,7 @@
 #include "core/triangle_grid.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
+#include "features/cut_piece.h"
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
 #include "features/free_seeds.h"
@@ -56,13 +57,6 @@ TriangleSoup soup_of(const LatticeSurface& surface) {
   return soup;
 }
 
-SeededMesh fetched(const SeededMesh& made) {
-  SeededMesh out;
-  out.mesh = to_host(made.mesh);
-  out.seeds = to_host(made.seeds);
-  return out;
-}
-
 /// Flags vertices on faces that close gaps.
 void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
   const uint32_t first_cap = p.surface.first_cap;
@@ -84,8 +78,9 @@ void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
 int64_t count_new_crossings(const Prepared& p, const DualMesh& mesh, Context& context) {
   const OnHost<LatticeSurface> input(p.surface);
   const auto edge_q8 = int32_t(p.cut->longest_edge_q8);
-  return count_apart(find_crossings(mesh.position.view(), mesh.triangles.view(), context),
-                     find_crossings(input->points.view(), input->triangles.view(), context), edge_q8);
+  return int64_t(which_apart(find_crossings(mesh.position.view(), mesh.triangles.view(), context),
+                             find_crossings(input->points.view(), input->triangles.view(), context), edge_q8)
+                     .size());
 }
 
 /// The patches put together, with better angles beside curves; it intersects itself no more than before.
@@ -148,6 +143,18 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
   lost.erase(std::remove_if(lost.begin() + int64_t(first), lost.end(), is_no_seam), lost.end());
 }
 
+/// Passes on coarse levels cost as much as those on the finest one, which are the better spent.
+RelaxOptions for_coarse_patches(const PatchOptions& options) {
+  RelaxOptions relax = for_coarse_level(options.relax, options.tolerance_asked);
+  relax.max_passes = kPassesOfCoarsePatches;
+  return relax;
+}
+RelaxOptions for_finest_patches(const PatchOptions& options) {
+  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_asked);
+  if (!options.tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
+  return relax;
+}
+
 }  // namespace
 
 void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
@@ -185,18 +192,6 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   });
 }
 
-/// Passes on coarse levels cost as much as those on the finest one, which are the better spent.
-RelaxOptions for_coarse_patches(const PatchOptions& options) {
-  RelaxOptions relax = for_coarse_level(options.relax, options.tolerance_asked);
-  relax.max_passes = kPassesOfCoarsePatches;
-  return relax;
-}
-RelaxOptions for_finest_patches(const PatchOptions& options) {
-  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_asked);
-  if (!options.tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
-  return relax;
-}
-
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
   const FreeSeeds free_seeds(cut);
   std::vector<SeedSet> fixed;  // fine to coarse
@@ -211,9 +206,9 @@ RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options
   }
   std::optional<SeededMesh> coarser;
   for (size_t level = fixed.size(); level-- > 0;) {
-    SeedSet seeds =
-        coarser ? free_seeds.add_finer(std::move(fixed[level]), counts[level], fetched(*coarser), options.seeds.seed)
-                : free_seeds.add(std::move(fixed[level]), counts[level], options.seeds.seed);
+    if (coarser) bring_to_host(*coarser);
+    SeedSet seeds = coarser ? free_seeds.add_finer(std::move(fixed[level]), counts[level], *coarser, options.seeds.seed)
+                            : free_seeds.add(std::move(fixed[level]), counts[level], options.seeds.seed);
     if (level == 0)
       return relax_on_sheet(cut.surface, std::move(seeds), coarser ? for_finest_patches(options) : options.relax,
                             context);

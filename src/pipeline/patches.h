@@ -36,9 +36,9 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
                                     Context& context);
 
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
-/// curve counted once. Where triangles intersect, curves get more seeds there, and all seeds are relaxed again. None
-/// where that does not end it, cells are no disks, or patches touch along edges that are on no curve: report.features
-/// says so. With borders that are kept triangles may intersect where the input's do.
+/// curve counted once, where that is possible. Where triangles intersect, curves get more seeds there, and all seeds
+/// are relaxed again. None where that does not end it, cells are no disks, or patches touch along edges that are on no
+/// curve: report.features says so. With borders that are kept triangles may intersect where the input's do.
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
                                                 RemeshReport& report, Context& context);
 
