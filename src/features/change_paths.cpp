@@ -173,7 +173,7 @@ std::optional<Paths> mend_tight_borders(const CutSurface& cut) {
     CurvePath path = cut.fine->paths[c];
     const std::vector<uint32_t>& place = cut.curves[c].place;
     const bool is_wrong = std::all_of(place.begin(), place.end(), [&](uint32_t p) { return is_tight[p]; });
-    const bool goes = is_wrong && may_go(path);
+    const bool goes = is_wrong && path.kind == CurveKind::crease;
     any |= goes || (is_wrong && halve(segments_of(path, [](uint32_t) { return true; }), path));
     if (!goes) paths.push_back(std::move(path));
   }

@@ -17,8 +17,8 @@ std::optional<Paths> halve_segments(const FineMesh& mesh, const std::vector<Poin
 /// None where no crease is so near.
 std::optional<Paths> drop_creases(const FineMesh& mesh, const std::vector<PointQ8>& points);
 
-/// Without the curves inside of which a border has less than three seeds all around; with more seeds where they must
-/// stay. None where there are no such borders.
+/// Without the creases along borders that have less than three seeds all around; other curves there have more seeds.
+/// None where there are no such borders, or their segments are too short to be cut.
 std::optional<Paths> mend_tight_borders(const CutSurface& cut);
 
 /// Per path of `before` whether `after` does not have it, with as many seeds.

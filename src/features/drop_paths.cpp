@@ -62,7 +62,7 @@ void drop_stubs(Paths& paths) {
       return end - begin == 1;
     };
     const auto is_stub = [&](const CurvePath& path) {
-      return !path.is_loop && may_go(path) && is_short(path) &&
+      return !path.is_loop && path.kind == CurveKind::crease && is_short(path) &&
              (is_free(path.vertex.front()) || is_free(path.vertex.back()));
     };
     paths.erase(std::remove_if(paths.begin(), paths.end(), is_stub), paths.end());
@@ -70,8 +70,6 @@ void drop_stubs(Paths& paths) {
 }
 
 }  // namespace
-
-bool may_go(const CurvePath& path) { return path.kind != CurveKind::border && path.kind != CurveKind::non_manifold; }
 
 EdgesOfPaths no_edges_of(const Paths& paths) {
   EdgesOfPaths out;

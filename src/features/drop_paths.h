@@ -17,11 +17,7 @@ EdgesOfPaths no_edges_of(const Paths& paths);
 std::vector<double> turns_of(const FineMesh& mesh);
 
 /// Without the edges that are flagged, which are all those between some seeds. What is left of a path ends in corners,
-/// and goes, too, where it has less than three segments; so do other paths that are as short and end freely then, but
-/// borders and non-manifold edges.
+/// and goes, too, where it has less than three segments; so do other creases that are as short and end freely then.
 Paths without_edges(const FineMesh& mesh, const EdgesOfPaths& goes);
-
-/// Whether a path may be left out: its edges have two triangles.
-bool may_go(const CurvePath& path);
 
 }  // namespace isoshell
