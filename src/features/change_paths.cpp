@@ -13,11 +13,6 @@
 namespace isoshell {
 namespace {
 
-PointQ8 rounded(const WorldPoint& p) {
-  const auto nearest = [](double steps) { return int32_t(std::floor(steps + 0.5)); };
-  return {nearest(p.x), nearest(p.y), nearest(p.z)};
-}
-
 /// The vertices from one seed of a path to the next, `end` being the one after the last of a loop.
 struct Segment {
   size_t begin, end;

@@ -11,11 +11,6 @@
 namespace isoshell {
 namespace {
 
-PointQ8 rounded(const WorldPoint& p) {
-  const auto nearest = [](double steps) { return int32_t(std::floor(steps + 0.5)); };
-  return {nearest(p.x), nearest(p.y), nearest(p.z)};
-}
-
 std::vector<uint64_t> edges_of(const std::vector<CurvePath>& paths) {
   std::vector<uint64_t> edges;
   for (const CurvePath& path : paths)

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/cut_fine_mesh.h"
@@ -15,7 +14,6 @@
 #include "features/path_seeds.h"
 #include "features/refine_mesh.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 
 namespace isoshell {
 namespace {

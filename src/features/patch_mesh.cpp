@@ -27,7 +27,8 @@ constexpr int64_t kMostTriesPerCount = 64;
 constexpr size_t kFewEdges = 11;    ///< of both ends of an edge that is collapsed: 7 are left then
 constexpr size_t kPassesOfFew = 3;  ///< over edges, each with one edge more at the ends, before all count
 constexpr size_t kMostPasses = 12;
-constexpr double kKept = 1;  ///< edges around a point near which nothing is to change
+constexpr int64_t kLeastShare = 10;  ///< a pass that meets less than one part in so many is the last
+constexpr double kKept = 1;          ///< edges around a point near which nothing is to change
 
 /// Whether no angle is smaller than the smallest was, and no more triangles are poor, or all together much better.
 bool is_better(const MeshRegion& region, const MeshRegion& start) {
@@ -322,7 +323,8 @@ void PatchMesh::meet_count(const Context& context) {
       const Cutout cutout = cut_out({u, v}, triangles_around({u, v}));
       if (const std::optional<MeshRegion> there = recounted(cutout.region)) put_back(cutout, *there);
     }
-    if (surplus() == before && pass >= kPassesOfFew) return;
+    const int64_t gained = std::abs(before) - std::abs(surplus());
+    if (pass >= kPassesOfFew && kLeastShare * gained < std::abs(before)) return;
   }
 }
 

@@ -1,8 +1,11 @@
 // A mesh with short edges, and with vertices where its curves get seeds.
 #pragma once
 
+#include <cmath>
+
 #include "features/curve_paths.h"
 #include "isoshell/backend.h"
+#include "isoshell/lattice.h"
 
 namespace isoshell {
 
@@ -13,6 +16,12 @@ struct FineMesh {
   MeshTriangles triangles;
   std::vector<CurvePath> paths;
 };
+
+/// To the nearest whole steps.
+inline PointQ8 rounded(const WorldPoint& p) {
+  const auto nearest = [](double steps) { return int32_t(std::floor(steps + 0.5)); };
+  return {nearest(p.x), nearest(p.y), nearest(p.z)};
+}
 
 /// Cuts every edge into equal parts of at most a third of the edge length there, the mean of that at its ends; that of
 /// a path at its seeds first, and into parts of at most a quarter. Then fills each triangle between the parts of its

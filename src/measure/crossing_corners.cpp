@@ -14,15 +14,19 @@ void sort_places(std::vector<PointQ8>& places) {
   places.erase(std::unique(places.begin(), places.end()), places.end());
 }
 
-std::vector<PointQ8> crossing_corners(const DualMesh& mesh, View<const uint32_t> joined) {
+std::vector<PointQ8> corners_of(const DualMesh& mesh, const std::vector<std::array<uint32_t, 2>>& pairs) {
   std::vector<PointQ8> corners;
-  const std::atomic<bool> stop{false};
-  for (const auto& pair : crossing_pairs(mesh.position.view(), mesh.triangles.view(), joined, stop))
+  for (const auto& pair : pairs)
     for (const uint32_t t : pair)
       for (const uint32_t v : {mesh.triangles[t].a, mesh.triangles[t].b, mesh.triangles[t].c})
         corners.push_back(mesh.position[v]);
   sort_places(corners);
   return corners;
+}
+
+std::vector<PointQ8> crossing_corners(const DualMesh& mesh, View<const uint32_t> joined) {
+  const std::atomic<bool> stop{false};
+  return corners_of(mesh, crossing_pairs(mesh.position.view(), mesh.triangles.view(), joined, stop));
 }
 
 }  // namespace isoshell

@@ -8,9 +8,7 @@
 #include "features/curve_seeds.h"
 #include "features/free_seeds.h"
 #include "features/separate_fans.h"
-#include "features/split_edges.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/to_host.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/sizing.h"
@@ -67,9 +65,9 @@ int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_ope
   return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
 }
 
-/// An estimate with the fine surface, which has about 36 vertices a seed. Throws: usage where that is above the limit.
+/// An estimate with the fine surface, which has about 21 vertices a seed. Throws: usage where that is above the limit.
 int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
-  constexpr int64_t kBytesPerSeed = 36 * 350;
+  constexpr int64_t kBytesPerSeed = 21 * 350;
   const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
   if (limit > 0 && bytes > limit)
     throw Error(ErrorCode::usage, "features",
@@ -113,10 +111,19 @@ std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& 
   return out;
 }
 
-std::shared_ptr<const CutSurface> make_cut(CutSource source, const CurveNetwork& network, const LatticeFrame& frame,
+/// What is to be cut, and how.
+struct CutPlan {
+  const FeatureMesh& mesh;
+  const CurveOptions& curves;
+  const LatticeFrame& frame;
+  int64_t seeds;  ///< of a surface whose lengths do not decide
+  CutOptions how = {};
+};
+
+std::shared_ptr<const CutSurface> make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source,
                                            FeatureReport& found, Context& context) {
-  auto cut = std::make_shared<CutSurface>(cut_surface(*source.mesh, network, frame, source.how, context));
-  if (cut->seeds == 0) cut->seeds = source.seeds;
+  auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, plan.how, context));
+  if (cut->seeds == 0) cut->seeds = plan.seeds;
   const SeedSet fixed = seeds_on_curves(*cut, 0);
   FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
   found.vertices = count_places(fixed.fixed);
@@ -128,22 +135,20 @@ std::shared_ptr<const CutSurface> make_cut(CutSource source, const CurveNetwork&
 
 /// The same without the creases around patches that are too small for the edges of the result. Null where there are
 /// none to leave out. Throws: as cut_surface.
-std::shared_ptr<const CutSurface> cut_along_fewer(const CutSource& source, const LatticeFrame& frame,
+std::shared_ptr<const CutSurface> cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSource source,
                                                   RemeshReport& report, Context& context) {
-  const FeatureMesh& mesh = *source.mesh;
-  CurveOptions without_small = source.curves;
+  const FeatureMesh& mesh = plan.mesh;
+  CurveOptions without_small = plan.curves;
   without_small.drops_small_patches = true;
-  const CurveNetwork network = find_curves(mesh, without_small), all = find_curves(mesh, source.curves);
+  const CurveNetwork network = find_curves(mesh, without_small);
   const std::vector<uint64_t> kept = edges_of(network);
   if (kept == edges_of(all)) return nullptr;
-  CutSource fewer = source;
-  fewer.curves = without_small;
-  fewer.found = describe(mesh, network);
-  fewer.left_out = left_out_of(mesh, all, kept);
+  source.found = describe(mesh, network);
+  source.left_out = left_out_of(mesh, all, kept);
   const int64_t border_loops = report.features.border_loops;
   report_found(mesh, network, border_loops > 0, report.features);
   report.features.border_loops = border_loops;
-  return make_cut(std::move(fewer), network, frame, report.features, context);
+  return make_cut(plan, network, std::move(source), report.features, context);
 }
 
 }  // namespace
@@ -153,36 +158,37 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
   return options.boundary == Boundary::keep && !p.surface.topology.closed;
 }
 
-bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curves, const RemeshOptions& options,
-               Prepared& p, RemeshReport& report, Context& context) {
+bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
+               RemeshReport& report, Context& context) {
   CreaseReport creases;
   CurveNetwork network;
   FeatureReport& found = report.features;
   std::vector<LostCurve> if_lost;
   const std::string why = reason_against([&]() -> std::string {
-    network = find_curves(*mesh, curves, &creases);
+    network = find_curves(mesh, curves, &creases);
     const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
-    report_found(*mesh, network, is_open, found);
-    warn_of_branches(*mesh, network, report);
+    report_found(mesh, network, is_open, found);
+    warn_of_branches(mesh, network, report);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
     if (found.curves == 0 && !is_open) return "";
-    if_lost = describe(*mesh, network);
-    if (const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, *mesh, network);
+    if_lost = describe(mesh, network);
+    if (const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
         !against.empty())
       return against;
-    const SeparatedMesh apart = separated(*mesh, network);
+    const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;
-    CutSource source{mesh, curves, {}, vertices_of(options, p, is_open) - apart.more_places, if_lost, if_lost, {}};
-    report.memory_estimate_bytes = bytes_when_cut(source.seeds, report, context);
-    CutOptions how{edge_length_for(*mesh, network, source.seeds), 0, asked_lengths(options, p)};
+    CutPlan plan{mesh, curves, p.surface.frame, vertices_of(options, p, is_open) - apart.more_places};
+    report.memory_estimate_bytes = bytes_when_cut(plan.seeds, report, context);
+    CutOptions& how = plan.how;
+    how = {edge_length_for(mesh, network, plan.seeds), 0, asked_lengths(options, p)};
     const bool lengths_decide = how.asked.vary() && field_decides(options);
-    if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = source.seeds;
-    source.how = how;
+    if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = plan.seeds;
+    const CutSource source{if_lost, if_lost, {}};
     const std::string refused = reason_against([&] {
-      p.cut = make_cut(source, network, p.surface.frame, found, context);
+      p.cut = make_cut(plan, network, source, found, context);
       return std::string();
     });
-    if (!refused.empty()) p.cut = cut_along_fewer(source, p.surface.frame, report, context);
+    if (!refused.empty()) p.cut = cut_along_fewer(plan, network, source, report, context);
     return p.cut ? "" : refused;
   });
   if (!why.empty()) give_up(report, if_lost, why);

@@ -12,12 +12,8 @@
 
 namespace isoshell {
 
-/// What a surface was cut from, and along which curves.
+/// Along which curves a surface was cut.
 struct CutSource {
-  std::shared_ptr<const FeatureMesh> mesh;
-  CurveOptions curves;
-  CutOptions how;
-  int64_t seeds = 0;                ///< of a surface whose lengths do not decide
   std::vector<LostCurve> if_lost;   ///< all curves of the mesh, as a report says them
   std::vector<LostCurve> found;     ///< those that it was cut along
   std::vector<LostCurve> left_out;  ///< those that it was not
@@ -28,8 +24,8 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
 
 /// Cuts the surface along the curves of its mesh: p.cut, which stays empty where there are none. False where there are
 /// curves that could not be kept, as the report says.
-bool cut_along(std::shared_ptr<const FeatureMesh> mesh, const CurveOptions& curves, const RemeshOptions& options,
-               Prepared& p, RemeshReport& report, Context& context);
+bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
+               RemeshReport& report, Context& context);
 
 /// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
 /// Result: why it cannot be done, said by the work or by the stage that refuses; empty where it is done.

@@ -12,11 +12,10 @@
 #include "features/cut_fine_mesh.h"
 #include "features/cut_piece.h"
 #include "features/free_seeds.h"
-#include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
-#include "measure/crossings.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/flat_patches.h"
+#include "pipeline/new_crossings.h"
 #include "pipeline/patch_defects.h"
 #include "pipeline/resolve_intersections.h"
 #include "pipeline/timed.h"
@@ -83,10 +82,9 @@ struct Wrong {
 class PatchRounds {
  public:
   PatchRounds(const Prepared& p, const PatchOptions& options, RemeshReport& report, Context& context)
-      : p_(p), options_(options), report_(report), context_(context) {}
+      : options_(options), report_(report), context_(context), crossings_(p, context) {}
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
-    const int64_t vertices = vertices_of(made.seeds);
     report_.dual = {};
     report_.post = {};
     Wrong failed = mesh_patches(*cut, made);
@@ -100,15 +98,11 @@ class PatchRounds {
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
       std::optional<Paths> change = change_where(wrong, *cut, round);
       if (!change) return wrong.said();
-      failed = make_again(cut, made, wrong, std::move(*change), vertices);
+      failed = make_again(cut, made, wrong, std::move(*change));
     }
   }
 
  private:
-  static int64_t vertices_of(const SeedSet& seeds) {
-    return count_places(OnHost(seeds)->fixed) + seeds.size() - seeds.fixed.count;
-  }
-
   /// Runs work on the mesh of some patches alone; the mesh of the others stays, or goes.
   template <class Work>
   void on_patches(const CutSurface& cut, const PerPatch& chosen, bool keeps_others, SeededMesh& made, Work work) {
@@ -166,36 +160,14 @@ class PatchRounds {
     for (const uint32_t v : vertices) wrong.add(cut.surface.patch[made.seeds.home[v]], made.mesh.position[v]);
   }
 
-  std::vector<std::array<uint32_t, 2>> all_crossing(const SeededMesh& made) const {
-    auto pairs = run_with_threads(context_, [&] {
-      return crossing_pairs(made.mesh.position.view(), made.mesh.triangles.view(), made.seeds.fixed.joined.view(),
-                            context_.cancel);
-    });
-    check_cancel(context_, "features");
-    return pairs;
-  }
-
-  /// Of pairs of triangles that intersect those that must not: a result that is open may do so where the input does.
-  std::vector<std::array<uint32_t, 2>> not_of_input(const SeededMesh& made,
-                                                    const std::vector<std::array<uint32_t, 2>>& pairs) {
-    if (pairs.empty() || p_.surface.topology.closed) return pairs;
-    if (!input_crossings_) {
-      const OnHost<LatticeSurface> input(p_.surface);
-      input_crossings_ = find_crossings(input->points.view(), input->triangles.view(), context_);
-    }
-    std::vector<BoxOfPoints> boxes;
-    for (const auto& pair : pairs)
-      boxes.push_back(common_box(made.mesh.position.view(), made.mesh.triangles.view(), pair));
-    std::vector<std::array<uint32_t, 2>> out;
-    for (const size_t i : which_apart(boxes, *input_crossings_, int32_t(p_.cut->longest_edge_q8)))
-      out.push_back(pairs[i]);
-    return out;
+  TrianglePairs all_crossing(const SeededMesh& made) const {
+    return crossings_.all(made.mesh, made.seeds.fixed.joined.view());
   }
 
   void untangle(const CutSurface& cut, SeededMesh& made) {
     bring_to_host(made);
     Wrong wrong(cut);
-    add_crossing(cut, made, not_of_input(made, all_crossing(made)), wrong);
+    add_crossing(cut, made, crossings_.wrong_of(made.mesh, all_crossing(made)), wrong);
     if (wrong.is_nowhere()) return;
     timed(report_, "untangle", context_, [&] {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
@@ -207,8 +179,7 @@ class PatchRounds {
     });
   }
 
-  static void add_crossing(const CutSurface& cut, const SeededMesh& made,
-                           const std::vector<std::array<uint32_t, 2>>& pairs, Wrong& wrong) {
+  static void add_crossing(const CutSurface& cut, const SeededMesh& made, const TrianglePairs& pairs, Wrong& wrong) {
     wrong.crossing = int64_t(pairs.size());
     for (const auto& pair : pairs)
       for (const uint32_t t : pair) {
@@ -228,7 +199,7 @@ class PatchRounds {
     add_defects(cut, made, defects, wrong);
     const auto pairs = all_crossing(made);
     report_.post.self_intersections = int64_t(pairs.size());
-    add_crossing(cut, made, not_of_input(made, pairs), wrong);
+    add_crossing(cut, made, crossings_.wrong_of(made.mesh, pairs), wrong);
     return wrong;
   }
 
@@ -255,8 +226,7 @@ class PatchRounds {
   }
 
   /// Along changed paths, with new patches beside these and in place of those that are wrong. Result: those that fail.
-  Wrong make_again(std::shared_ptr<const CutSurface>& cut, SeededMesh& made, const Wrong& wrong, Paths paths,
-                   int64_t vertices) {
+  Wrong make_again(std::shared_ptr<const CutSurface>& cut, SeededMesh& made, const Wrong& wrong, Paths paths) {
     const std::shared_ptr<const CutSurface> before = cut;
     const std::shared_ptr<const CutSurface> next =
         timed(report_, "features", context_, [&] { return cut_again(*before, std::move(paths)); });
@@ -272,7 +242,7 @@ class PatchRounds {
     const CutPiece piece = piece_of(*next, comes, context_);
     work_ += piece.cut.fine->triangles.size();
     PatchOptions options = options_;
-    options.seeds.count = count_for(piece.cut, free_of(*next, comes, vertices));
+    options.seeds.count = count_for(piece.cut, free_of(*next, comes, options_.seeds.count));
     SeededMesh part = gather_patches(
         piece.cut, {{made, through(vertices_after(*before, *next, all_of(*before)), in_piece(piece, *next))}});
     part.seeds = timed(report_, "relax", context_,
@@ -305,11 +275,10 @@ class PatchRounds {
     return std::max(count_places(fixed.fixed) + free_vertices, FreeSeeds(piece).fewest(fixed));
   }
 
-  const Prepared& p_;
   const PatchOptions& options_;
   RemeshReport& report_;
   Context& context_;
-  std::optional<std::vector<BoxOfPoints>> input_crossings_;
+  NewCrossings crossings_;
   size_t work_ = 0;  ///< triangles of the fine mesh on which patches were made again
 };
 

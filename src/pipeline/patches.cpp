@@ -13,7 +13,6 @@
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
 #include "features/free_seeds.h"
-#include "features/separate_fans.h"
 #include "features/split_edges.h"
 #include "features/weld_for_features.h"
 #include "features/widen_angles.h"
@@ -23,11 +22,11 @@
 #include "isoshell/readable.h"
 #include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
-#include "measure/crossings.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/given_lines.h"
+#include "pipeline/new_crossings.h"
 #include "pipeline/part_fans.h"
 #include "pipeline/patch_rounds.h"
 #include "pipeline/relax_level.h"
@@ -74,24 +73,16 @@ void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
   }
 }
 
-/// As many boxes of intersections of the result as are farther than an edge from those of the input.
-int64_t count_new_crossings(const Prepared& p, const DualMesh& mesh, Context& context) {
-  const OnHost<LatticeSurface> input(p.surface);
-  const auto edge_q8 = int32_t(p.cut->longest_edge_q8);
-  return int64_t(which_apart(find_crossings(mesh.position.view(), mesh.triangles.view(), context),
-                             find_crossings(input->points.view(), input->triangles.view(), context), edge_q8)
-                     .size());
-}
-
 /// The patches put together, with better angles beside curves; it intersects itself no more than before.
 JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made, int64_t vertices,
                                const RemeshReport& report, Context& context) {
   const bool may_cross = report.post.self_intersections > 0;  // where the input does
-  const auto crossings = [&](const DualMesh& mesh) {
-    const bool is_clean = may_cross && count_new_crossings(p, mesh, context) == 0;
-    return is_clean ? std::vector<PointQ8>() : crossing_corners(mesh, {});
+  NewCrossings crossings(p, context);
+  const auto wrong_corners = [&](const DualMesh& mesh) {
+    const TrianglePairs pairs = crossings.all(mesh, {});
+    return corners_of(mesh, may_cross ? crossings.wrong_of(mesh, pairs) : pairs);
   };
-  return join_and_widen(cut, made, vertices, crossings, context);
+  return join_and_widen(cut, made, vertices, wrong_corners, context);
 }
 
 /// Those that were left out, and those of which less than half is still a curve.
@@ -181,14 +172,13 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
     }
     mesh.rounding_world = p.surface.frame.voxel_size / (2 * kOneVoxelQ8);
     const size_t lost_lines = report.features.lost.size();
-    const auto welded = std::make_shared<const FeatureMesh>(std::move(mesh));
-    if (cut_along(welded, curves, options, p, report, context) || curves.seams.empty()) return;
+    if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
     keep_lost_seams(report.features.lost, lost_lines);
     const int64_t seams_apart = report.features.seams;  // from creases and borders
     report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
                              " are not kept: " + report.features.given_up + "; triangles lie across seams";
     curves.seams.clear();
-    cut_along(welded, curves, options, p, report, context);
+    cut_along(mesh, curves, options, p, report, context);
   });
 }
 

@@ -4,41 +4,25 @@
 #include <numeric>
 
 #include "features/change_paths.h"
-#include "features/curve_seeds.h"
 #include "features/cut_fine_mesh.h"
 #include "features/cut_piece.h"
-#include "features/free_seeds.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/flat_patches.h"
 #include "support/catch.h"
 #include "support/feature_shapes.h"
+#include "support/made_patches.h"
 #include "support/open_surfaces.h"
 
 using namespace isoshell;
 
 namespace {
 
-constexpr int64_t kVertices = 400;
-
-struct Made {
-  CutSurface cut;
-  SeededMesh mesh;
-};
+using Made = MadePatches;
 
 Made made_of(const FeatureShape& shape, Context& context) {
-  TriangleSoup soup;
-  soup.vertices = shape.mesh.vertices;
-  soup.triangles = shape.mesh.triangles;
-  const auto [lo, hi] = bounding_box(soup);
-  const CutOptions options{edge_length_for(shape.mesh, shape.network, kVertices), 0};
-  CutSurface cut = cut_surface(shape.mesh, shape.network, LatticeFrame::around(lo, hi, 50), options, context);
-  const FreeSeeds free(cut);
-  SeedSet fixed = seeds_on_curves(cut, 0);
-  const FreeSeeds::Counts counts = free.counts(fixed, kVertices);
-  SeedSet seeds = relax_on_sheet(cut.surface, free.add(std::move(fixed), counts, 1), {20}, context).seeds;
-  Triangulation made = triangulate_dual(cut.surface, std::move(seeds), {}, context);
-  REQUIRE(made.report.failed_cells == 0);
-  return {std::move(cut), std::move(made)};
+  Made made = made_patches(shape, 20, context);
+  REQUIRE(made.mesh.report.failed_cells == 0);
+  return made;
 }
 
 /// Triangles by the positions of their corners: what does not depend on how seeds are numbered.

@@ -4,40 +4,21 @@
 #include <map>
 #include <set>
 
-#include "features/curve_seeds.h"
-#include "features/free_seeds.h"
 #include "features/widen_angles.h"
 #include "isoshell/mesh_topology.h"
 #include "support/catch.h"
 #include "support/feature_shapes.h"
+#include "support/made_patches.h"
 #include "support/open_surfaces.h"
 
 using namespace isoshell;
 
 namespace {
 
-constexpr int64_t kVertices = 400;
-
-struct Made {
-  CutSurface cut;
-  Triangulation mesh;
-};
+using Made = MadePatches;
 
 /// Seeds that have hardly moved: cells of all shapes, and triangles as bad.
-Made hardly_relaxed(const FeatureShape& shape, Context& context) {
-  TriangleSoup soup;
-  soup.vertices = shape.mesh.vertices;
-  soup.triangles = shape.mesh.triangles;
-  const auto [lo, hi] = bounding_box(soup);
-  const CutOptions options{edge_length_for(shape.mesh, shape.network, kVertices), 0};
-  CutSurface cut = cut_surface(shape.mesh, shape.network, LatticeFrame::around(lo, hi, 50), options, context);
-  const FreeSeeds free(cut);
-  SeedSet fixed = seeds_on_curves(cut, 0);
-  const FreeSeeds::Counts counts = free.counts(fixed, kVertices);
-  SeedSet seeds = relax_on_sheet(cut.surface, free.add(std::move(fixed), counts, 1), {3}, context).seeds;
-  Triangulation made = triangulate_dual(cut.surface, std::move(seeds), {}, context);
-  return {std::move(cut), std::move(made)};
-}
+Made hardly_relaxed(const FeatureShape& shape, Context& context) { return made_patches(shape, 3, context); }
 
 std::vector<PointQ8> no_crossings(const DualMesh&) { return {}; }
 int64_t count_of(const SeededMesh& made) { return join_patches(made.mesh, made.seeds.fixed).mesh.position.size(); }
