@@ -91,6 +91,7 @@ struct LostCurve {
 struct FeatureReport {
   bool kept = false;             ///< the result has the curves as edges
   std::string given_up;          ///< why there are none, though curves were found; empty otherwise
+  std::string on_sheet;          ///< why curves were laid onto the sheet instead of cutting the input; empty otherwise
   int64_t patches = 0;           ///< of the surface between the curves
   int64_t curves = 0;            ///< creases, seams and lines
   int64_t seams = 0;             ///< of the curves: where attributes jump and the surface does not turn

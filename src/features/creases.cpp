@@ -192,6 +192,12 @@ std::vector<CurveEdge> with_creases_above(const FeatureMesh& mesh, const MeshEdg
   return with_creases(fixed, edges_above(turns.view(), turn_of_degrees(degrees)), turns.view());
 }
 
+std::vector<CurveEdge> with_creases_at(const FeatureMesh& mesh, const MeshEdges& edges,
+                                       const std::vector<CurveEdge>& fixed, const std::vector<uint32_t>& creases) {
+  const Buffer<double> turns = turns_at(edges, face_normals(mesh, edges).view());
+  return with_creases(fixed, creases, turns.view());
+}
+
 std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
                                                   const std::vector<CurveEdge>& fixed, double edge_length_world,
                                                   CreaseReport& report) {

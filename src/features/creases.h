@@ -13,6 +13,10 @@ std::vector<CurveEdge> find_fixed_curve_edges(const MeshEdges& edges);
 std::vector<CurveEdge> with_creases_above(const FeatureMesh& mesh, const MeshEdges& edges,
                                           const std::vector<CurveEdge>& fixed, double degrees);
 
+/// And these inner edges, ascending.
+std::vector<CurveEdge> with_creases_at(const FeatureMesh& mesh, const MeshEdges& edges,
+                                       const std::vector<CurveEdge>& fixed, const std::vector<uint32_t>& creases);
+
 /// And the creases between surfaces that are smooth beside them, by filtered normals.
 std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
                                                   const std::vector<CurveEdge>& fixed, double edge_length_world,

@@ -248,17 +248,18 @@ class LineEmbedder {
 MeshWithLines embed_lines(FeatureMesh mesh, const LinesOnMesh& lines, const std::vector<EdgeList>& followed,
                           double tolerance_world) {
   LineEmbedder embedder(std::move(mesh), tolerance_world);
-  std::vector<uint32_t> vertex;
-  for (const PointOnMesh& p : lines.points) vertex.push_back(embedder.vertex_at(p));
   MeshWithLines out;
+  for (const PointOnMesh& p : lines.points) out.vertex.push_back(embedder.vertex_at(p));
+  out.ways.resize(lines.segments.size());
   for (size_t s = 0; s < lines.segments.size(); ++s) {
-    const uint32_t from = vertex[lines.segments[s][0]], to = vertex[lines.segments[s][1]];
+    const uint32_t from = out.vertex[lines.segments[s][0]], to = out.vertex[lines.segments[s][1]];
     if (from == to) continue;
-    const EdgeList way = embedder.way(from, to);
-    if (way.empty()) out.lost_segments.push_back(s);
-    out.edges.insert(out.edges.end(), way.begin(), way.end());
+    out.ways[s] = embedder.way(from, to);
+    if (out.ways[s].empty()) out.lost_segments.push_back(s);
+    out.edges.insert(out.edges.end(), out.ways[s].begin(), out.ways[s].end());
   }
   out.edges = embedder.mesh().parts_of(std::move(out.edges));
+  for (EdgeList& way : out.ways) way = embedder.mesh().parts_of(std::move(way));
   for (const EdgeList& edges : followed) out.followed.push_back(embedder.mesh().parts_of(edges));
   out.mesh = embedder.mesh().take();
   return out;

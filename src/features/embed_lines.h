@@ -24,6 +24,8 @@ using EdgeList = std::vector<std::array<uint32_t, 2>>;
 struct MeshWithLines {
   FeatureMesh mesh;                   ///< the same surface, cut into more triangles
   EdgeList edges;                     ///< that the segments run along, ascending, the smaller end first
+  std::vector<EdgeList> ways;         ///< the same, per segment; empty where its points fall together, or it is lost
+  std::vector<uint32_t> vertex;       ///< per point
   std::vector<EdgeList> followed;     ///< the parts of the edges that were to be followed
   std::vector<size_t> lost_segments;  ///< ascending: those for which the surface leads no way
 };

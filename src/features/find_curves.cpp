@@ -70,6 +70,8 @@ std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges
   if (options.mode == CreaseMode::threshold) found = with_creases_above(mesh, edges, found, options.degrees);
   if (options.mode == CreaseMode::automatic)
     found = with_creases_beside_smooth(mesh, edges, found, options.edge_length_world, report);
+  if (options.mode == CreaseMode::given)
+    found = with_creases_at(mesh, edges, found, inner_edges(edges, options.creases));
   if (!options.smooth.empty()) found = without_creases_at(std::move(found), inner_edges(edges, options.smooth));
   if (!options.lines.empty()) found = with_edges(found, inner_edges(edges, options.lines), CurveKind::line);
   if (!options.seams.empty()) found = with_edges(found, inner_edges(edges, options.seams), CurveKind::seam);

@@ -12,17 +12,19 @@ enum class CreaseMode : uint8_t {
   off,        ///< borders and non-manifold edges only
   automatic,  ///< edges that are sharp beside the surface next to them; none on scans
   threshold,  ///< every edge whose triangles turn by so many degrees or more
+  given,      ///< those that are given
 };
 
 struct CurveOptions {
   CreaseMode mode = CreaseMode::automatic;
-  double degrees = 40;                               ///< of mode threshold, above 0 and at most 180
-  double edge_length_world = 0;                      ///< h, the edge length that the result aims at; above 0
-  std::vector<std::array<uint32_t, 2>> seams = {};   ///< ends of edges that are curves, too; others are passed over
-  std::vector<std::array<uint32_t, 2>> lines = {};   ///< likewise
-  std::vector<std::array<uint32_t, 2>> smooth = {};  ///< ends of edges that are no creases, however sharp they are
-  bool drops_small_patches = false;                  ///< patches with less than 6 h of border lose a crease, however
-                                                     ///< sharp it is
+  double degrees = 40;                                ///< of mode threshold, above 0 and at most 180
+  double edge_length_world = 0;                       ///< h, the edge length that the result aims at; above 0
+  std::vector<std::array<uint32_t, 2>> seams = {};    ///< ends of edges that are curves, too; others are passed over
+  std::vector<std::array<uint32_t, 2>> lines = {};    ///< likewise
+  std::vector<std::array<uint32_t, 2>> creases = {};  ///< likewise; of mode given
+  std::vector<std::array<uint32_t, 2>> smooth = {};   ///< ends of edges that are no creases, however sharp they are
+  bool drops_small_patches = false;                   ///< patches with less than 6 h of border lose a crease, however
+                                                      ///< sharp it is
 };
 
 /// What was decided about creases.

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 
+#include "core/copy_product.h"
 #include "core/half_edge_list.h"
+#include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/free_seeds.h"
+#include "features/lay_curves.h"
 #include "features/separate_fans.h"
 #include "isoshell/mesh_topology.h"
+#include "isoshell/to_host.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/sizing.h"
@@ -144,11 +148,62 @@ std::shared_ptr<const CutSurface> cut_along_fewer(const CutPlan& plan, const Cur
   const std::vector<uint64_t> kept = edges_of(network);
   if (kept == edges_of(all)) return nullptr;
   source.found = describe(mesh, network);
-  source.left_out = left_out_of(mesh, all, kept);
+  for (LostCurve& curve : left_out_of(mesh, all, kept)) source.left_out.push_back(std::move(curve));
   const int64_t border_loops = report.features.border_loops;
   report_found(mesh, network, border_loops > 0, report.features);
   report.features.border_loops = border_loops;
   return make_cut(plan, network, std::move(source), report.features, context);
+}
+
+/// Cuts a mesh along its curves, or along fewer where there is no room for all: p.cut. Result: why that cannot be done.
+std::string cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
+                        CutSource source, int64_t seeds, const RemeshOptions& options, Prepared& p,
+                        RemeshReport& report, Context& context) {
+  CutPlan plan{mesh, curves, p.surface.frame, seeds};
+  report.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
+  CutOptions& how = plan.how;
+  how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(options, p)};
+  const bool lengths_decide = how.asked.vary() && field_decides(options);
+  if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
+  const std::string refused = reason_against([&] {
+    p.cut = make_cut(plan, network, source, report.features, context);
+    return std::string();
+  });
+  if (!refused.empty()) p.cut = cut_along_fewer(plan, network, std::move(source), report, context);
+  return p.cut ? "" : refused;
+}
+
+/// Those of which less than half was laid onto the sheet.
+std::vector<LostCurve> not_laid(const std::vector<LostCurve>& curves, const std::vector<double>& laid_world) {
+  std::vector<LostCurve> lost;
+  for (size_t c = 0; c < curves.size(); ++c) {
+    const bool is_wanted =
+        curves[c].kind != name_of(CurveKind::border) && curves[c].kind != name_of(CurveKind::non_manifold);
+    if (!is_wanted || 2 * laid_world[c] >= curves[c].length_world) continue;
+    lost.push_back(curves[c]);
+    lost.back().reason = "the result does not pass there";
+  }
+  return lost;
+}
+
+/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Result: as cut_network.
+std::string cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
+                      const std::vector<LostCurve>& all, const std::string& against, const RemeshOptions& options,
+                      Prepared& p, RemeshReport& report, Context& context) {
+  if (p.grown && !p.grown.only_flaps) return against;  // the sheet is beside the surface everywhere
+  const LaidCurves laid = run_with_threads(context, [&] { return lay_curves(mesh, network, *OnHost(p.sheet)); });
+  CurveOptions given;
+  given.mode = CreaseMode::given;
+  given.edge_length_world = curves.edge_length_world;
+  given.creases = laid.creases;
+  given.seams = laid.seams;
+  given.lines = laid.lines;
+  const CurveNetwork on_sheet = find_curves(laid.mesh, given);
+  if (on_sheet.curves.empty()) return against;
+  CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.length_world), true};
+  report.features.on_sheet = against;
+  return cut_network(laid.mesh, on_sheet, given, std::move(source), vertex_target(options, p), options, p, report,
+                     context);
 }
 
 }  // namespace
@@ -161,37 +216,25 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
                RemeshReport& report, Context& context) {
   CreaseReport creases;
-  CurveNetwork network;
   FeatureReport& found = report.features;
-  std::vector<LostCurve> if_lost;
+  std::vector<LostCurve> all;
   const std::string why = reason_against([&]() -> std::string {
-    network = find_curves(mesh, curves, &creases);
+    const CurveNetwork network = find_curves(mesh, curves, &creases);
     const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
     report_found(mesh, network, is_open, found);
     warn_of_branches(mesh, network, report);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
     if (found.curves == 0 && !is_open) return "";
-    if_lost = describe(mesh, network);
-    if (const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
-        !against.empty())
-      return against;
+    all = describe(mesh, network);
+    const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
+    if (!against.empty())
+      return is_open ? against : cut_sheet(mesh, network, curves, all, against, options, p, report, context);
     const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;
-    CutPlan plan{mesh, curves, p.surface.frame, vertices_of(options, p, is_open) - apart.more_places};
-    report.memory_estimate_bytes = bytes_when_cut(plan.seeds, report, context);
-    CutOptions& how = plan.how;
-    how = {edge_length_for(mesh, network, plan.seeds), 0, asked_lengths(options, p)};
-    const bool lengths_decide = how.asked.vary() && field_decides(options);
-    if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = plan.seeds;
-    const CutSource source{if_lost, if_lost, {}};
-    const std::string refused = reason_against([&] {
-      p.cut = make_cut(plan, network, source, found, context);
-      return std::string();
-    });
-    if (!refused.empty()) p.cut = cut_along_fewer(plan, network, source, report, context);
-    return p.cut ? "" : refused;
+    return cut_network(mesh, network, curves, {all, all, {}}, vertices_of(options, p, is_open) - apart.more_places,
+                       options, p, report, context);
   });
-  if (!why.empty()) give_up(report, if_lost, why);
+  if (!why.empty()) give_up(report, all, why);
   return why.empty();
 }
 

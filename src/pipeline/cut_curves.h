@@ -17,6 +17,7 @@ struct CutSource {
   std::vector<LostCurve> if_lost;   ///< all curves of the mesh, as a report says them
   std::vector<LostCurve> found;     ///< those that it was cut along
   std::vector<LostCurve> left_out;  ///< those that it was not
+  bool is_sheet = false;            ///< the curves were laid onto the sheet: the input's own triangles cannot be it
 };
 
 /// Of a surface that the options leave open.

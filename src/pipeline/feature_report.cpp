@@ -114,6 +114,7 @@ void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const s
     features.lost.back().reason = why;
   }
   features.given_up = why;
+  features.on_sheet.clear();
   features.patches = features.vertices = features.segments = features.border_loops = 0;
 }
 

@@ -5,6 +5,7 @@
 #include "core/watched.h"
 #include "features/cut_surface.h"
 #include "measure/crossings.h"
+#include "pipeline/cut_curves.h"
 
 namespace isoshell {
 
@@ -16,7 +17,7 @@ TrianglePairs NewCrossings::all(const DualMesh& mesh, View<const uint32_t> joine
 }
 
 TrianglePairs NewCrossings::wrong_of(const DualMesh& mesh, const TrianglePairs& pairs) {
-  if (pairs.empty() || p_.surface.topology.closed) return pairs;
+  if (pairs.empty() || p_.surface.topology.closed || p_.cut->source->is_sheet) return pairs;
   if (!of_input_) {
     const OnHost<LatticeSurface> input(p_.surface);
     of_input_ = find_crossings(input->points.view(), input->triangles.view(), context_);

@@ -6,6 +6,7 @@
 
 #include "attributes/seams.h"
 #include "core/copy_product.h"
+#include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
@@ -25,6 +26,7 @@
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/feature_report.h"
+#include "pipeline/flag_gaps.h"
 #include "pipeline/given_lines.h"
 #include "pipeline/new_crossings.h"
 #include "pipeline/part_fans.h"
@@ -71,6 +73,23 @@ void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
     if (surface->source_face[int64_t(t)] >= first_cap)
       report.area_world += triangle_area(input.vertices[a], input.vertices[b], input.vertices[c]);
   }
+}
+
+/// Per vertex of the result the nearest corner of a sheet's nearest triangle.
+std::vector<uint32_t> nearest_of_sheet(const Sheet& of, const TriangleMesh& mesh) {
+  const OnHost<Sheet> on(of);
+  TriangleMesh sheet;
+  for (const PointQ8& p : on->position) sheet.vertices.push_back(of.frame.to_world(p));
+  for (const TriangleIndices& t : on->triangles) sheet.triangles.push_back({t.a, t.b, t.c});
+  const TriangleGrid grid(sheet);
+  std::vector<uint32_t> nearest(mesh.vertices.size());
+  for_each_index(size_t(0), nearest.size(), [&](size_t v) {
+    const MeshPoint at = grid.nearest(mesh.vertices[v]);
+    const double a_part = 1 - at.b_part - at.c_part;
+    const size_t corner = at.b_part > std::max(a_part, at.c_part) ? 1 : at.c_part > a_part ? 2 : 0;
+    nearest[v] = sheet.triangles[at.triangle][corner];
+  });
+  return nearest;
 }
 
 /// The patches put together, with better angles beside curves; it intersects itself no more than before.
@@ -244,9 +263,16 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
     report.warnings.push_back("the result has " + std::to_string(joined.mesh.position.size()) +
                               " vertices instead of " + std::to_string(vertices) +
                               ": its curves need them, or leave no room for more");
-  report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
-  report.sheet.bridged_vertices = 0;
-  flag_caps(p, *mesh, report.gaps);
+  if (cut->source->is_sheet) {
+    const std::vector<uint32_t> at = nearest_of_sheet(p.sheet, *mesh);
+    flag_gaps(p, {at.data(), int64_t(at.size())}, *mesh, report.gaps);
+    report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
+                              report.features.on_sheet);
+  } else {
+    report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
+    report.sheet.bridged_vertices = 0;
+    flag_caps(p, *mesh, report.gaps);
+  }
   measure_edges(*cut, joined, report.sizing);
   report.features.vertices = joined.on_curves;
   report.features.segments = int64_t(mesh->features.curve_edges.size());

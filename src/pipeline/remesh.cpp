@@ -12,6 +12,7 @@
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/dual_of_seeds.h"
+#include "pipeline/flag_gaps.h"
 #include "pipeline/hierarchy.h"
 #include "pipeline/merge_walls.h"
 #include "pipeline/patches.h"
@@ -34,37 +35,12 @@ RelaxOptions relax_options(const RemeshOptions& options) {
   return relax;
 }
 
-/// Grown walls have no source, and bridge nothing.
-void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::vector<uint8_t>& gaps) {
-  const OnHost<Sheet> sheet(of);
-  for (size_t v = 0; v < gaps.size(); ++v)
-    if (sheet->source_triangle[int64_t(v)] == kNone) gaps[v] = !bridges.empty() && bridges[v];
-}
-
 /// Gives the caller the seeds that the mesh has, whether a stage returned or threw: stages take them by moving.
 struct GiveSeedsBack {
   SeedSet& from;
   SeedSet& to;
   ~GiveSeedsBack() { to = std::move(from); }
 };
-
-/// A vertex lies in a gap when its home does. Where all walls were grown, they lie off the surface everywhere.
-void flag_gaps(const Prepared& p, const SeedSet& seeds, TriangleMesh& mesh, GapReport& report) {
-  if (p.grown && !p.grown.only_flaps) return;
-  std::vector<uint8_t> bridges;
-  if (p.closing_vox > 0) {
-    bridges = find_bridges(solid_voxels_of(p), p.sheet);
-    measure_bridges(p.sheet, bridges, report);
-    if (report.bridges == 0) bridges.clear();
-  }
-  std::vector<uint8_t> gaps = find_gaps(p.surface, p.sheet, bridges);
-  if (p.grown.only_flaps) leave_out_grown(p.sheet, bridges, gaps);
-  if (gaps.empty()) return;
-  const OnHost<SeedSet> here(seeds);
-  mesh.gap.resize(mesh.vertices.size());
-  for (int64_t i = 0; i < here->size(); ++i) report.vertices += mesh.gap[size_t(i)] = gaps[here->home[i]];
-  report.area_world = gap_area_world(p.sheet, gaps);
-}
 
 PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize) {
   return {{p.cut->seeds, options.seed}, relax_options(options), options.tolerance.has_value(), optimize};
@@ -268,7 +244,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   warn_of_mesh(meshed, made, asked, report);
   measure_edges(meshed.sheet, made.seeds, made.mesh, report.sizing, context);
   TriangleMesh mesh = to_world(made.mesh, meshed.surface.frame);
-  flag_gaps(meshed, made.seeds, mesh, report.gaps);
+  flag_gaps(meshed, OnHost(made.seeds)->home.view(), mesh, report.gaps);
   follow_previous(options, mesh, report);
   note_digest(options, report, context, "mesh", mesh);
   return mesh;

@@ -214,6 +214,7 @@ Json features_json(const FeatureReport& f) {
           {"length", f.length_world},
           {"passed_over", f.passed_over_world},
           {"given_up", known(f.given_up)},
+          {"on_sheet", known(f.on_sheet)},
           {"lost", lost}};
 }
 

@@ -150,6 +150,29 @@ TEST_CASE("features: an open surface loses its creases, and the run says so", "[
   if (!result.report.features.kept) CHECK_FALSE(result.report.features.given_up.empty());
 }
 
+TEST_CASE("features: a box that a fin stands on keeps its other edges, on the sheet", "[features]") {
+  TestContext one, more;
+  one.threads = 1;
+  more.threads = 3;
+  TriangleSoup soup = shapes::box({0, 0, 0}, {2, 2, 2});
+  soup.vertices.push_back({1, 1, 3.5});
+  soup.triangles.push_back({4, 5, 8});  // on an upper edge
+  const RemeshResult result = remesh(soup, keeping_creases(1500), one);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.features.kept);
+  CHECK_FALSE(result.report.features.on_sheet.empty());
+  CHECK(result.report.features.curves == 11);  // one edge has three faces
+  const double fine = result.report.frame.voxel_size / 128;
+  double kept = 0;
+  for (const uint32_t a : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u})
+    for (const uint32_t axis : {1u, 2u, 4u})
+      if ((a & axis) == 0) kept += length_on(result.mesh, soup.vertices[a], soup.vertices[a | axis], fine);
+  CHECK(kept > .95 * 22);
+  CHECK(measure_quality(result.mesh).theta_min_deg > 20);
+  CHECK(digest(result.mesh) == digest(remesh(soup, keeping_creases(1500), more).mesh));
+}
+
 TEST_CASE("features: more places on curves than vertices are no error", "[features]") {
   TestContext context;
   const RemeshResult result = remesh(cylinder(1, 2, 6), keeping_creases(20), context);
