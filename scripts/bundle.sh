@@ -64,15 +64,15 @@ find "$from/bench" -maxdepth 1 -name 'bench_*' -type f -perm -u+x | while read -
 cp LICENSE "$folder"
 
 # Everything but the C library, which is the target's own (as new as this machine's, or newer), and the driver.
-find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + |
-  sed -nE 's/.* => (\/[^ ]+) .*/\1/p' | sort -u |
+needed=$(find "$folder"/vdb_* "$folder/tests" "$folder/bench" -maxdepth 1 -type f -perm -u+x -exec ldd {} +)
+missing=$(grep 'not found' <<<"$needed" | sort -u || true)
+[ -z "$missing" ] || { echo "bundle: not found: $missing" >&2; exit 1; }
+sed -nE 's/.* => (\/[^ ]+) .*/\1/p' <<<"$needed" | sort -u |
   grep -vE '/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|mvec)|libcuda|libnvidia[^/]*)\.so[^/]*$' |
   while read -r library; do
     cp -L "$library" "$folder/lib"
     strip --strip-unneeded "$folder/lib/${library##*/}"
   done
-missing=$(find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + | grep 'not found' | sort -u || true)
-[ -z "$missing" ] || { echo "bundle: not found: $missing" >&2; exit 1; }
 {
   echo "isoshell $(git describe --always --dirty 2>/dev/null || echo '(no git)'), preset $preset"
   ldd --version | sed -n '1s/^ldd/built against/p'  # all of it read: a pipe that closes early fails the script
