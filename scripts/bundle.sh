@@ -18,10 +18,7 @@ done
 preset=${1:-cuda}
 from=$PWD/build/$preset
 folder=${2:-$from/isoshell-bundle}
-if [ "$build" -eq 1 ]; then
-  cmake --preset "$preset" -DISOSHELL_CUDA_FOR_ALL=ON >&2  # not for the devices of this machine alone
-  scripts/build.sh "$preset"
-fi
+[ "$build" -eq 0 ] || ISOSHELL_CUDA_FOR_ALL=ON scripts/build.sh "$preset"
 for command in vdb_isomesh vdb_meshinfo; do
   [ -x "$from/$command" ] || { echo "bundle: $from/$command is not built" >&2; exit 1; }
 done
