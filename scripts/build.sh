@@ -10,7 +10,7 @@ preset=${1:-cpu}
 python=()  # the Python module, where setup.sh has made what it needs
 case "$preset" in
   cpu | cuda | cpu-asan)
-    if [ -x build/python/bin/python ]; then
+    if build/python/bin/python -c 'import nanobind, pytest' 2>/dev/null; then
       python=(-DISOSHELL_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python")
     fi
     if [ -x build/python-torch/bin/python ]; then
