@@ -70,5 +70,5 @@ package() { # tag of the wheel, end of the package's name, fields of the manifes
 }
 package cp311 '' 'blender_version_min = "4.2.0",blender_version_max = "5.1.0"' 3.11
 package cp312-abi3 -blender-5.1 'blender_version_min = "5.1.0"' 3.12 3.13
-[ "$packed" -eq 1 ] || exit 1
+[ "$packed" -eq 1 ] || { echo "blender: nothing packed: no wheel in $dist, and none of ${pythons[*]} is 3.11 to 3.13" >&2; exit 1; }
 ls -l build/blender

@@ -18,10 +18,7 @@ done
 preset=${1:-cuda}
 from=$PWD/build/$preset
 folder=${2:-$from/isoshell-bundle}
-if [ "$build" -eq 1 ]; then
-  cmake --preset "$preset" -DISOSHELL_CUDA_FOR_ALL=ON >&2  # not for the devices of this machine alone
-  scripts/build.sh "$preset"
-fi
+[ "$build" -eq 0 ] || ISOSHELL_CUDA_FOR_ALL=ON scripts/build.sh "$preset"
 for command in vdb_isomesh vdb_meshinfo; do
   [ -x "$from/$command" ] || { echo "bundle: $from/$command is not built" >&2; exit 1; }
 done
@@ -64,15 +61,15 @@ find "$from/bench" -maxdepth 1 -name 'bench_*' -type f -perm -u+x | while read -
 cp LICENSE "$folder"
 
 # Everything but the C library, which is the target's own (as new as this machine's, or newer), and the driver.
-find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + |
-  sed -nE 's/.* => (\/[^ ]+) .*/\1/p' | sort -u |
+needed=$(find "$folder"/vdb_* "$folder/tests" "$folder/bench" -maxdepth 1 -type f -perm -u+x -exec ldd {} +)
+missing=$(grep 'not found' <<<"$needed" | sort -u || true)
+[ -z "$missing" ] || { echo "bundle: not found: $missing" >&2; exit 1; }
+sed -nE 's/.* => (\/[^ ]+) .*/\1/p' <<<"$needed" | sort -u |
   grep -vE '/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|mvec)|libcuda|libnvidia[^/]*)\.so[^/]*$' |
   while read -r library; do
     cp -L "$library" "$folder/lib"
     strip --strip-unneeded "$folder/lib/${library##*/}"
   done
-missing=$(find "$folder" -maxdepth 2 -type f -perm -u+x ! -name '*.sh' -exec ldd {} + | grep 'not found' | sort -u || true)
-[ -z "$missing" ] || { echo "bundle: not found: $missing" >&2; exit 1; }
 {
   echo "isoshell $(git describe --always --dirty 2>/dev/null || echo '(no git)'), preset $preset"
   ldd --version | sed -n '1s/^ldd/built against/p'  # all of it read: a pipe that closes early fails the script

@@ -29,6 +29,8 @@ class Page(HTMLParser):
 
 def faults(root):
     pages = {path: Page(path.read_text()) for path in sorted(root.rglob("*.html"))}
+    if not pages:
+        yield f"{root}: has no pages"
     for path, page in pages.items():
         where = path.relative_to(root)
         for target in page.loads:

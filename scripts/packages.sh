@@ -8,12 +8,11 @@ folder=build/packages python=build/python-system
 # nanobind is no package of Debian 12.
 $python/bin/python -c 'import nanobind' 2>/dev/null ||
   $python/bin/python -m pip install --quiet --disable-pip-version-check nanobind typing_extensions
-launcher=()
-command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+. scripts/ccache.sh
 cmake -S . -B $folder -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DISOSHELL_CUDA="${ISOSHELL_CUDA:-off}" \
   -DISOSHELL_CUDA_FOR_ALL=ON \
   -DISOSHELL_TESTS=OFF -DISOSHELL_BENCH=OFF -DISOSHELL_PYTHON=ON -DISOSHELL_PYTHON_DIR=lib/python3/dist-packages \
-  -DPython_EXECUTABLE="$PWD/$python/bin/python" -DPython3_EXECUTABLE=/usr/bin/python3 "${launcher[@]}" >&2
+  -DPython_EXECUTABLE="$PWD/$python/bin/python" -DPython3_EXECUTABLE=/usr/bin/python3 >&2
 cmake --build $folder "$@" >&2
 rm -f $folder/*.deb
 (cd $folder && cpack) >&2

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes build/python, where the Python module is built and tested: a virtual environment with packages from PyPI. Where
-# they cannot be had, the module and its tests are left out. Pages of --report are tried in a browser where chromium is
+# they cannot be had, the module and its tests are left out, or, with an environment of before, tests alone. Pages of --report are tried in a browser where chromium is
 # (apt install chromium: 400 MB).
 #   scripts/python_env.sh [tests|ci]
 # With `ci` it has all that any test wants, and clang-format; there is build/python-torch beside it, whose torch is that of
@@ -27,10 +27,14 @@ if command -v chromium google-chrome >/dev/null; then packages+=(playwright); fi
 if [ "${1:-}" = ci ]; then packages+=(pyvista); fi
 modules=${packages[*]/usd-core/pxr}
 modules=${modules//-/_}
+ours=(build/python "${modules// /,}" "python3 -m venv" "${packages[@]}")
 if [ "${1:-}" = ci ]; then
   environment build/python-torch torch,pytest "/usr/bin/python3 -m venv --system-site-packages" pytest
-  environment build/python "${modules// /,},clang_format" "python3 -m venv" "${packages[@]}" clang-format==14.0.6
-elif ! environment build/python "${modules// /,}" "python3 -m venv" "${packages[@]}"; then
+  ours[1]+=,clang_format
+  environment "${ours[@]}" clang-format==14.0.6
+elif [ -e build/python ]; then
+  environment "${ours[@]}" || left_out "tests that need what build/python lacks"
+elif ! environment "${ours[@]}"; then
   rm -rf build/python
   left_out "the Python module and its tests"
 fi

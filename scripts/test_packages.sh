@@ -42,10 +42,12 @@ install_packages() { # root, package...
 
 # Executes the RUN lines of a stage of a Dockerfile, as a container engine would.
 run_stage() { # root, Dockerfile, stage
-  local line
+  local line lines
+  lines=$(awk -v stage="$3" '/^FROM/ { here = $NF == stage } here && sub(/^RUN /, "")' "packaging/docker/$2.Dockerfile")
+  [ -n "$lines" ] || { echo "packages: $2.Dockerfile has no RUN lines in a stage $3" >&2; return 1; }
   while read -r line; do
     quietly inside "$1" bash -c "cd /isoshell && $line" </dev/null
-  done < <(awk -v stage="$3" '/^FROM/ { here = $NF == stage } here && sub(/^RUN /, "")' "packaging/docker/$2.Dockerfile")
+  done <<<"$lines"
 }
 
 build_here() { # folder of the packages

@@ -15,11 +15,7 @@ if [ "$ISOSHELL_CUDA" = on ]; then
   dist=build/dist-cuda
   settings+=("--config-settings=build-dir=build/wheel-cuda-{wheel_tag}")
 fi
-if command -v ccache >/dev/null; then
-  . scripts/ccache.sh
-  settings+=(--config-settings=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache
-             --config-settings=cmake.define.CMAKE_CUDA_COMPILER_LAUNCHER=ccache)
-fi
+. scripts/ccache.sh
 
 tools=build/wheel-tools
 if [ ! -x $tools/bin/auditwheel ]; then

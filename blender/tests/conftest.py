@@ -2,10 +2,14 @@
 
 import os
 import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
+
+sys.path.append(str(Path(__file__).parents[2] / "python/tests"))
+from left_out import pytest_sessionfinish, pytest_terminal_summary  # noqa: E402, F401, hooks
 
 
 @pytest.fixture(scope="session")

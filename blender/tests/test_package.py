@@ -12,12 +12,11 @@ import pytest
 
 PACKAGE = Path(os.environ["ISOSHELL_EXTENSION"])
 LATER = PACKAGE.with_name(f"{PACKAGE.stem}-blender-5.1.zip")
+PACKED = [(PACKAGE, "cp311-cp311")] + ([(LATER, "cp312-abi3")] if LATER.exists() else [])  # for another Python
 
 
-@pytest.mark.parametrize("package, python", [(PACKAGE, "cp311-cp311"), (LATER, "cp312-abi3")])
+@pytest.mark.parametrize("package, python", PACKED)
 def test_blender_finds_nothing_wrong_with_the_packages(package, python):
-    if not package.exists():
-        pytest.skip(f"scripts/blender_extension.sh has not packed {package.name}")
     scripts = Path(bpy.utils.system_resource("SCRIPTS"))
     tool = next(scripts.glob("addons_core/bl_pkg/cli/blender_ext.py"))
     checked = subprocess.run([sys.executable, tool, "validate", package], text=True, capture_output=True)

@@ -10,6 +10,7 @@ from typing import Callable
 
 import numpy as np
 import pytest
+from left_out import pytest_sessionfinish, pytest_terminal_summary  # noqa: F401, hooks
 
 SOURCE = Path(__file__).resolve().parents[2]
 COMMAND = os.environ.get("VDB_ISOMESH", "").split() or [sys.executable, "-m", "isoshell"]
@@ -48,16 +49,6 @@ def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray) -> Path:
     lines += ["f " + " ".join(str(corner + 1) for corner in face) for face in faces.tolist()]
     path.write_text("\n".join(lines) + "\n")
     return path
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Tells scripts/test.sh what is left out for want of a tool. A device is none: who has one knows."""
-    if file := os.environ.get("ISOSHELL_LEFT_OUT"):
-        with open(file, "a") as left_out:
-            for report in terminalreporter.getreports("skipped"):
-                path, _, reason = report.longrepr
-                if "no device: " not in reason:
-                    left_out.write(f"tests of {Path(path).name} ({reason.removeprefix('Skipped: ')})\n")
 
 
 @pytest.fixture(scope="session")

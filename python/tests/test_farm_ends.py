@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -137,8 +138,9 @@ def test_a_farm_on_a_scheduler_that_dies_ends_and_says_how_to_go_on(held, serial
 def test_a_full_disk_stops_the_farm_and_room_lets_it_go_on(assets, serial, tmp_path):
     disk = tmp_path / "disk"
     disk.mkdir()
+    as_root = ["sudo", "-n"] if os.geteuid() and shutil.which("sudo") else []
     mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(disk)]
-    if os.geteuid() or subprocess.run(mount, capture_output=True).returncode:
+    if subprocess.run([*as_root, *mount], capture_output=True).returncode:
         pytest.skip("only root can mount a small disk")
     try:
         out, filler = disk / "out", disk / "filler"
@@ -153,7 +155,7 @@ def test_a_full_disk_stops_the_farm_and_room_lets_it_go_on(assets, serial, tmp_p
         assert done.returncode == 0, done.stderr
         assert_is_serial(out, serial)
     finally:
-        subprocess.run(["umount", str(disk)], check=True)
+        subprocess.run([*as_root, "umount", str(disk)], check=True)
 
 
 def test_a_share_that_comes_back_is_read_by_the_next_run(tmp_path):
