@@ -8,6 +8,7 @@
 #include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/world_vector.h"
+#include "features/face_normals.h"
 
 namespace isoshell {
 namespace {
@@ -17,6 +18,8 @@ constexpr double kFarthest = 1.5;    ///< from the sheet, which cuts corners
 constexpr double kNearest = .75;     ///< points of a curve, but for its ends
 constexpr double kLongest = 2;       ///< from a point to the next
 constexpr double kSameVertex = .25;  ///< what is nearer becomes one vertex
+
+constexpr double kLeastDegrees = 20;  ///< that the sheet turns by at an edge of three faces that is a crease
 
 /// Points along the curves of a network, and the segments between them.
 struct SampledCurves {
@@ -35,8 +38,6 @@ struct SampledCurves {
     return found->second;
   }
 };
-
-bool is_inside(CurveKind kind) { return kind != CurveKind::border && kind != CurveKind::non_manifold; }
 
 void sample(const FeatureMesh& mesh, const FeatureCurve& curve, uint32_t number, double voxel, SampledCurves& out) {
   const size_t edges = curve.vertex.size() - (curve.is_loop ? 0 : 1);
@@ -133,36 +134,88 @@ void move_to_curves(const SampledCurves& curves, const NearSegments& near, MeshW
     if (is_end[near.point[i]]) move_point(i);
 }
 
+/// Where triangles turned over their vertices go back, until there are none: near walls, in crevices.
+void undo_where_turned(LaidCurves& laid) {
+  const auto normal_at = [](const std::vector<WorldPoint>& at, const std::array<uint32_t, 3>& t) {
+    return doubled_area(at[t[0]], at[t[1]], at[t[2]]);
+  };
+  for (bool any = true; any;) {
+    any = false;
+    for (const auto& t : laid.mesh.triangles)
+      if (dot(normal_at(laid.on_sheet, t), normal_at(laid.mesh.vertices, t)) < 0)
+        for (const uint32_t v : t) any |= laid.take_back(v);
+  }
+}
+
 void sort_edges(EdgeList& edges) {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 }
 
+/// Tells which edges of a mesh turn as creases do, in the mean over their length.
+class Turns {
+ public:
+  explicit Turns(const FeatureMesh& mesh)
+      : mesh_(mesh), edges_(find_mesh_edges(mesh)), normals_(face_normals(mesh, edges_)) {}
+
+  bool are_of_a_crease(const EdgeList& ends) const {
+    double sum = 0, whole = 0;
+    for (const auto& end : ends) {
+      const auto at = std::lower_bound(edges_.edges.begin(), edges_.edges.end(), end,
+                                       [](const FeatureEdge& e, const auto& key) { return e.end < key; });
+      const double size = length(mesh_.vertices[end[1]] - mesh_.vertices[end[0]]);
+      sum += size * turn_between(normals_[at->face[0]], normals_[at->face[1]]);
+      whole += size;
+    }
+    return sum > turn_of_degrees(kLeastDegrees) * whole;
+  }
+
+ private:
+  const FeatureMesh& mesh_;
+  MeshEdges edges_;
+  Buffer<WorldPoint> normals_;
+};
+
 }  // namespace
+
+bool LaidCurves::take_back(uint32_t vertex) {
+  const WorldPoint &is = mesh.vertices[vertex], &was = on_sheet[vertex];
+  if (is.x == was.x && is.y == was.y && is.z == was.z) return false;
+  mesh.vertices[vertex] = was;
+  return true;
+}
 
 LaidCurves lay_curves(const FeatureMesh& mesh, const CurveNetwork& network, const Sheet& sheet) {
   const double voxel = sheet.frame.voxel_size;
   SampledCurves curves;
   for (size_t c = 0; c < network.curves.size(); ++c)
-    if (is_inside(network.curves[c].kind)) sample(mesh, network.curves[c], uint32_t(c), voxel, curves);
+    if (network.curves[c].kind != CurveKind::border) sample(mesh, network.curves[c], uint32_t(c), voxel, curves);
   FeatureMesh on = mesh_of(sheet);
   const NearSegments near = near_segments(on, curves, kFarthest * voxel);
   MeshWithLines embedded = embed_lines(std::move(on), near.lines, {}, kSameVertex * voxel);
-  move_to_curves(curves, near, embedded);
   LaidCurves laid;
+  laid.on_sheet = embedded.mesh.vertices;
+  move_to_curves(curves, near, embedded);
+  laid.mesh = std::move(embedded.mesh);
+  undo_where_turned(laid);
+  laid.mesh.rounding_world = voxel / (2 * kOneVoxelQ8);
   laid.length_world.assign(network.curves.size(), 0);
+  std::vector<EdgeList> edges_of(network.curves.size());
   for (size_t s = 0; s < near.segment.size(); ++s) {
     if (std::binary_search(embedded.lost_segments.begin(), embedded.lost_segments.end(), s)) continue;
     const auto [from, to] = curves.segments[near.segment[s]];
     const uint32_t curve = curves.curve[near.segment[s]];
     laid.length_world[curve] += length(curves.points[to] - curves.points[from]);
-    const CurveKind kind = network.curves[curve].kind;
-    EdgeList& edges = kind == CurveKind::crease ? laid.creases : kind == CurveKind::seam ? laid.seams : laid.lines;
-    edges.insert(edges.end(), embedded.ways[s].begin(), embedded.ways[s].end());
+    edges_of[curve].insert(edges_of[curve].end(), embedded.ways[s].begin(), embedded.ways[s].end());
+  }
+  const Turns turns(laid.mesh);
+  for (size_t c = 0; c < edges_of.size(); ++c) {
+    const CurveKind kind = network.curves[c].kind;
+    if (kind == CurveKind::non_manifold && !turns.are_of_a_crease(edges_of[c])) continue;
+    EdgeList& edges = kind == CurveKind::seam ? laid.seams : kind == CurveKind::line ? laid.lines : laid.creases;
+    edges.insert(edges.end(), edges_of[c].begin(), edges_of[c].end());
   }
   for (EdgeList* edges : {&laid.creases, &laid.seams, &laid.lines}) sort_edges(*edges);
-  laid.mesh = std::move(embedded.mesh);
-  laid.mesh.rounding_world = voxel / (2 * kOneVoxelQ8);
   return laid;
 }
 

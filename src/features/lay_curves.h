@@ -7,15 +7,20 @@
 namespace isoshell {
 
 struct LaidCurves {
-  FeatureMesh mesh;                ///< the sheet, cut into more triangles; vertices of curves are where the curves are
-  EdgeList creases, seams, lines;  ///< its edges, ascending
+  FeatureMesh mesh;  ///< the sheet, cut into more triangles; vertices of curves are where the curves are
+  std::vector<WorldPoint> on_sheet;  ///< per vertex its place on the sheet
+  EdgeList creases, seams, lines;    ///< edges of the mesh, ascending
   std::vector<double> length_world;  ///< per curve of the network, of what was laid
+
+  /// Moves a vertex to its place on the sheet. Result: whether it was elsewhere.
+  bool take_back(uint32_t vertex);
 };
 
 /// Lays the creases, seams and lines of a mesh onto the sheet that was made of it, in host memory. What is farther from
 /// the sheet than its triangles are wide is left out: there the sheet closes a gap, or goes around what is inside.
-/// Borders and edges of more than two triangles are no part of a closed surface. Cost: a search of the nearest triangle
-/// every two voxels of curve, and O(sheet).
+/// Edges of more than two triangles become creases where the sheet turns: what stands there is inside, or no wall.
+/// Borders are no part of a closed surface. Where triangles would turn over, vertices stay on the sheet. Cost: a search
+/// of the nearest triangle every two voxels of curve, and O(sheet).
 LaidCurves lay_curves(const FeatureMesh& mesh, const CurveNetwork& network, const Sheet& sheet);
 
 }  // namespace isoshell

@@ -3,18 +3,15 @@
 
 #include <algorithm>
 
-#include "core/copy_product.h"
 #include "core/half_edge_list.h"
-#include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/free_seeds.h"
-#include "features/lay_curves.h"
 #include "features/separate_fans.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/to_host.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/feature_report.h"
+#include "pipeline/lay_on_sheet.h"
 #include "pipeline/sizing.h"
 
 namespace isoshell {
@@ -191,7 +188,7 @@ std::string cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, cons
                       const std::vector<LostCurve>& all, const std::string& against, const RemeshOptions& options,
                       Prepared& p, RemeshReport& report, Context& context) {
   if (p.grown && !p.grown.only_flaps) return against;  // the sheet is beside the surface everywhere
-  const LaidCurves laid = run_with_threads(context, [&] { return lay_curves(mesh, network, *OnHost(p.sheet)); });
+  const LaidCurves laid = lay_on_sheet(mesh, network, p, context);
   CurveOptions given;
   given.mode = CreaseMode::given;
   given.edge_length_world = curves.edge_length_world;
