@@ -61,7 +61,7 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
     vary_edge_lengths(fine, graph, facing, {options.vertices, options.asked.growth, options.asked.field != nullptr});
   check_cancel(context, "features");
   place_path_seeds(fine, facing);
-  fine = refine_mesh(std::move(fine), context);
+  fine = refine_mesh(std::move(fine), context, &graph.neighbours);
   begin_loops_at_seeds(fine);
   return flip_flat_edges(std::move(fine));
 }
