@@ -35,14 +35,20 @@ Buckets<T> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
   Buckets<T> out;
   out.first = Buffer<int64_t>(buckets + 1);
   std::fill(out.first.begin(), out.first.end(), int64_t(0));
-  const auto for_each_source = [&](auto put) { for_each_index(int64_t(0), sources, [&](int64_t i) { list(i, put); }); };
-  for_each_source([&](int64_t bucket, const T&) { atomic_add(out.first[bucket], int64_t(1)); });
+  const bool is_alone = loops_run_alone();  // atomics cost more than all the rest
+  const auto add = [&](int64_t bucket, int64_t more) {
+    int64_t& first = out.first[bucket];
+    return is_alone ? first += more : __atomic_add_fetch(&first, more, __ATOMIC_RELAXED);
+  };
+  // From the last one on: buckets that are filled from their ends then are nearly in the order of sources.
+  const auto for_each_source = [&](auto put) {
+    for_each_index(int64_t(0), sources, [&](int64_t i) { list(sources - 1 - i, put); });
+  };
+  for_each_source([&](int64_t bucket, const T&) { add(bucket, 1); });
   int64_t total = 0;
   for (int64_t& f : out.first) f = total += f;  // where buckets end, until they are filled from there on
   out.items = Buffer<T>(total);
-  for_each_source([&](int64_t bucket, const T& item) {
-    out.items[__atomic_sub_fetch(&out.first[bucket], 1, __ATOMIC_RELAXED)] = item;
-  });
+  for_each_source([&](int64_t bucket, const T& item) { out.items[add(bucket, -1)] = item; });
   for_each_index(int64_t(0), buckets,
                  [&](int64_t b) { std::sort(out.items.begin() + out.first[b], out.items.begin() + out.first[b + 1]); });
   return out;

@@ -28,6 +28,9 @@ class RangeFunction {
 /// elements or fewer is cut further. What `body` throws is thrown here.
 void for_ranges(int64_t count, int64_t grain, RangeFunction<void> body);
 
+/// Whether only the calling thread runs the loops that it starts here.
+bool loops_run_alone();
+
 /// Calls `body` for every index from `begin` to `end`, which is not one of them, in any order and from several threads.
 template <class Index, class Body>
 void for_each_index(Index begin, Index end, const Body& body) {

@@ -85,6 +85,14 @@ void find_least_segments(const std::vector<char>& turns, std::vector<CurvePath>&
 
 }  // namespace
 
+std::vector<uint64_t> path_edges(const std::vector<CurvePath>& paths) {
+  std::vector<uint64_t> edges;
+  for (const CurvePath& path : paths)
+    for (size_t i = 0; i < path.edge_count(); ++i) edges.push_back(edge_key(path.vertex[i], path.edge_end(i)));
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
 void measure_path(const std::vector<WorldPoint>& position, CurvePath& path) {
   path.at.clear();
   path.length = 0;

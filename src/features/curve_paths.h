@@ -38,6 +38,9 @@ struct CurvePath {
 std::vector<CurvePath> curve_paths(const std::vector<WorldPoint>& position, const MeshTriangles& triangles,
                                    const CurveNetwork& network);
 
+/// The keys of their edges, ascending.
+std::vector<uint64_t> path_edges(const std::vector<CurvePath>& paths);
+
 /// Arclengths and length from positions.
 void measure_path(const std::vector<WorldPoint>& position, CurvePath& path);
 

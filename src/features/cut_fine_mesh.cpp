@@ -11,12 +11,11 @@
 namespace isoshell {
 namespace {
 
-std::vector<uint64_t> edges_of(const std::vector<CurvePath>& paths) {
-  std::vector<uint64_t> edges;
-  for (const CurvePath& path : paths)
-    for (size_t i = 0; i < path.edge_count(); ++i) edges.push_back(edge_key(path.vertex[i], path.edge_end(i)));
-  std::sort(edges.begin(), edges.end());
-  return edges;
+MeshFans fans_between_paths(const FineMesh& mesh, MeshTwins twins) {
+  const auto vertices = int64_t(mesh.position.size());
+  const std::vector<uint64_t> cut_edges = path_edges(mesh.paths);
+  return twins.of.empty() ? find_fans(mesh.triangles, vertices, cut_edges)
+                          : find_fans(mesh.triangles, vertices, cut_edges, std::move(twins));
 }
 
 /// Every fan becomes a vertex.
@@ -116,9 +115,10 @@ void list_patches_beside(const FineMesh& mesh, const MeshFans& fans, std::vector
 
 }  // namespace
 
-CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context) {
+CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context,
+                         MeshTwins twins) {
   return run_with_threads(context, [&] {
-    const MeshFans fans = find_fans(fine->triangles, int64_t(fine->position.size()), edges_of(fine->paths));
+    const MeshFans fans = fans_between_paths(*fine, std::move(twins));
     check_cancel(context, "features");
     CutSurface cut;
     cut.frame = frame;

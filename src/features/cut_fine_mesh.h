@@ -9,7 +9,9 @@ namespace isoshell {
 
 /// Snaps the vertices, gives every fan of triangles between paths a vertex of its own, and every component of triangles
 /// becomes a patch. Curve c is path c. Leaves open for how many seeds it is cut. Cost: sorts of the fine edges and
-/// vertices. Throws: usage where a border or non-manifold edge is on no path.
-CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context);
+/// vertices. Throws: usage where a border or non-manifold edge is on no path. `twins`: those between paths; empty:
+/// not known.
+CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context,
+                         MeshTwins twins = {});
 
 }  // namespace isoshell

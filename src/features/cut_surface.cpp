@@ -46,7 +46,7 @@ VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const 
 
 /// Cut at the one edge length first, then once more where lengths are less, with a vertex for every seed of a path.
 FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
-                 const CutOptions& options, Context& context) {
+                 const CutOptions& options, Context& context, MeshTwins& twins) {
   FineMesh fine;
   for (const WorldPoint& p : mesh.vertices) fine.position.push_back(on_lattice(frame, p));
   fine.edge_length.assign(fine.position.size(), options.edge_length_world / frame.voxel_size * kOneVoxelQ8);
@@ -61,9 +61,9 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
     vary_edge_lengths(fine, graph, facing, {options.vertices, options.asked.growth, options.asked.field != nullptr});
   check_cancel(context, "features");
   place_path_seeds(fine, facing);
-  fine = refine_mesh(std::move(fine), context);
+  fine = refine_mesh(std::move(fine), context, &graph.neighbours);
   begin_loops_at_seeds(fine);
-  return flip_flat_edges(std::move(fine));
+  return flip_flat_edges(std::move(fine), &twins);
 }
 
 void require_edge_length(double edge_length_world) {
@@ -78,8 +78,9 @@ CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, con
                        const CutOptions& options, Context& context) {
   require_edge_length(options.edge_length_world);
   auto fine = std::make_shared<FineMesh>();
-  run_with_threads(context, [&] { *fine = refined(mesh, network, frame, options, context); });
-  CutSurface cut = cut_fine_mesh(fine, frame, context);
+  MeshTwins twins;
+  run_with_threads(context, [&] { *fine = refined(mesh, network, frame, options, context, twins); });
+  CutSurface cut = cut_fine_mesh(fine, frame, context, std::move(twins));
   cut.is_asked = options.asked.vary();
   cut.seeds = options.vertices;
   if (cut.seeds == 0 && cut.is_asked) cut.seeds = std::llround(vertices_of_lengths(*fine));

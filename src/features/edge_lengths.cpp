@@ -35,7 +35,7 @@ std::vector<double> graded(const VertexGraph& graph, const Limits& limits, doubl
     const double asked = limits.asked[v] * longest;
     own[v] = std::clamp(limits.most[v], std::max(kShortest * asked, longest / kMostLengthRatio), asked);
   });
-  return settled(graph, own, [&](double length, double way) { return length + limits.growth * way; });
+  return settled_lengths(graph, own, limits.growth);
 }
 
 /// Beside strips between two curves, or two parts of one, by their width.

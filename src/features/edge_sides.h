@@ -39,4 +39,7 @@ void for_each_edge_from(const EdgeSides& sides, int64_t vertex, Visit visit) {
   }
 }
 
+/// Between the edges `cut_edges`: their keys, ascending.
+MeshTwins find_twins(const MeshTriangles& triangles, const EdgeSides& sides, const std::vector<uint64_t>& cut_edges);
+
 }  // namespace isoshell

@@ -35,63 +35,83 @@ std::vector<uint32_t> all_alone(size_t count) {
 }
 View<uint32_t> view_of(std::vector<uint32_t>& values) { return {values.data(), int64_t(values.size())}; }
 
-/// Numbers the sets by their roots, which are their smallest members. Returns how many there are.
-uint32_t number_sets(std::vector<uint32_t>& parent) {
+void point_at_roots(std::vector<uint32_t>& parent) {
   const View<uint32_t> sets = view_of(parent);
   for_each_index(size_t(0), parent.size(), [&](size_t i) { PointAtRoot{sets}(int64_t(i)); });
+}
+
+/// Numbers the sets by their roots, which are their smallest members and what all point at. Returns how many there are.
+uint32_t number_sets(std::vector<uint32_t>& parent) {
   uint32_t count = 0;
   for (size_t i = 0; i < parent.size(); ++i) parent[i] = parent[i] == i ? count++ : parent[parent[i]];
   return count;
 }
 
-/// Which values are not 0, ascending.
-std::vector<uint32_t> flagged(const std::vector<uint8_t>& flags) {
-  std::vector<uint32_t> out;
-  for (size_t i = 0; i < flags.size(); ++i)
-    if (flags[i]) out.push_back(uint32_t(i));
-  return out;
+/// Throws where some of the half-edges are of edges that are not to be cut, or others are missing.
+void require_cut_along(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint32_t>& half_edges,
+                       const std::vector<uint64_t>& cut_edges) {
+  uint64_t first_wrong = UINT64_MAX;
+  std::vector<uint8_t> is_found(cut_edges.size(), 0);
+  for (const uint32_t h : half_edges) {
+    const uint64_t edge = edge_key(start_of(triangles, h), start_of(triangles, next_in_triangle(h)));
+    const auto at = std::lower_bound(cut_edges.begin(), cut_edges.end(), edge);
+    if (at != cut_edges.end() && *at == edge)
+      is_found[size_t(at - cut_edges.begin())] = 1;
+    else
+      first_wrong = std::min(first_wrong, edge);
+  }
+  if (first_wrong != UINT64_MAX) {
+    const EdgeSides sides = find_edge_sides(triangles, size_t(vertices));
+    for_each_edge_from(sides, int64_t(first_wrong >> 32), [&](uint32_t end, View<const EdgeSide> on_edge) {
+      if (end == uint32_t(first_wrong)) refuse_edge(uint32_t(first_wrong >> 32), on_edge);
+    });
+  }
+  if (const auto missing = std::count(is_found.begin(), is_found.end(), 0); missing > 0)
+    throw Error(ErrorCode::usage, "features",
+                std::to_string(missing) + " of " + std::to_string(cut_edges.size()) +
+                    " edges of curves are no edges of the mesh; find the curves on this very mesh");
 }
 
 }  // namespace
 
-MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint64_t>& cut_edges) {
-  const EdgeSides sides = find_edge_sides(triangles, size_t(vertices));
-  std::vector<uint8_t> has_cut(size_t(vertices), 0);
+MeshTwins find_twins(const MeshTriangles& triangles, const EdgeSides& sides, const std::vector<uint64_t>& cut_edges) {
+  std::vector<uint8_t> has_cut(size_t(sides.count()), 0);
   for (const uint64_t edge : cut_edges) has_cut[edge >> 32] = has_cut[uint32_t(edge)] = 1;
-  const auto is_cut = [&](uint32_t u, uint32_t v) {
-    return has_cut[u] && has_cut[v] && std::binary_search(cut_edges.begin(), cut_edges.end(), edge_key(u, v));
-  };
-
-  MeshFans fans;
-  fans.of_corner = all_alone(3 * triangles.size());
-  fans.patch = all_alone(triangles.size());
-  std::vector<uint8_t> is_cut_side(3 * triangles.size(), 0);
-  uint32_t first_wrong = kNone, cut_found = 0;
-  for_each_index(uint32_t(0), uint32_t(vertices), [&](uint32_t v) {
+  MeshTwins twins{std::vector<uint32_t>(3 * triangles.size(), kNone), all_alone(triangles.size())};
+  for_each_index(uint32_t(0), uint32_t(sides.count()), [&](uint32_t v) {
     for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {
-      if (is_cut(v, end)) {
-        atomic_add(cut_found, 1u);
-        for (const EdgeSide& s : on_edge) is_cut_side[s.half_edge] = 1;
-      } else if (are_twins(triangles, on_edge)) {
-        const uint32_t g = on_edge[0].half_edge, h = on_edge[1].half_edge;
-        join(view_of(fans.of_corner), g, next_in_triangle(h));
-        join(view_of(fans.of_corner), next_in_triangle(g), h);
-        join(view_of(fans.patch), g / 3, h / 3);
-      } else {
-        atomic_min(first_wrong, v);
-      }
+      if (!are_twins(triangles, on_edge)) return;
+      if (has_cut[v] && has_cut[end] && std::binary_search(cut_edges.begin(), cut_edges.end(), edge_key(v, end)))
+        return;
+      const uint32_t g = on_edge[0].half_edge, h = on_edge[1].half_edge;
+      twins.of[g] = h;
+      twins.of[h] = g;
+      join(view_of(twins.part), g / 3, h / 3);
     });
   });
-  if (first_wrong != kNone)
-    for_each_edge_from(sides, first_wrong, [&](uint32_t end, View<const EdgeSide> on_edge) {
-      if (!is_cut(first_wrong, end) && !are_twins(triangles, on_edge)) refuse_edge(first_wrong, on_edge);
-    });
-  if (cut_found != cut_edges.size())
-    throw Error(ErrorCode::usage, "features",
-                std::to_string(cut_edges.size() - cut_found) + " of " + std::to_string(cut_edges.size()) +
-                    " edges of curves are no edges of the mesh; find the curves on this very mesh");
-  fans.cut = flagged(is_cut_side);
+  point_at_roots(twins.part);
+  return twins;
+}
+
+MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint64_t>& cut_edges) {
+  return find_fans(triangles, vertices, cut_edges,
+                   find_twins(triangles, find_edge_sides(triangles, size_t(vertices)), cut_edges));
+}
+
+MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint64_t>& cut_edges,
+                   MeshTwins twins) {
+  MeshFans fans;
+  for (uint32_t h = 0; h < twins.of.size(); ++h)
+    if (twins.of[h] == kNone) fans.cut.push_back(h);
+  require_cut_along(triangles, vertices, fans.cut, cut_edges);
+  fans.patch = std::move(twins.part);
   fans.patch_count = number_sets(fans.patch);
+  fans.of_corner = all_alone(twins.of.size());
+  for_each_index(uint32_t(0), uint32_t(twins.of.size()), [&](uint32_t g) {
+    // Those at its other end are joined from its twin.
+    if (const uint32_t h = twins.of[g]; h != kNone) join(view_of(fans.of_corner), g, next_in_triangle(h));
+  });
+  point_at_roots(fans.of_corner);
   fans.vertex.resize(number_sets(fans.of_corner));
   for_each_index(size_t(0), fans.of_corner.size(),
                  [&](size_t c) { fans.vertex[fans.of_corner[c]] = start_of(triangles, uint32_t(c)); });

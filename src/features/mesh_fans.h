@@ -20,9 +20,20 @@ struct MeshFans {
   uint32_t patch_count = 0;
 };
 
+/// How a mesh hangs together between edges that are cut.
+struct MeshTwins {
+  std::vector<uint32_t> of;  ///< per half-edge the other one of its edge, where that is not cut and has two triangles,
+                             ///< which pass it in opposite directions; kNone elsewhere
+  std::vector<uint32_t> part;  ///< per triangle the first one of its component
+};
+
 /// Fans are numbered by their first corner, patches by their first triangle. `cut_edges`: keys, ascending. Cost: a sort
 /// of the half-edges. Throws: usage where an edge that is not cut has not two triangles that pass it in opposite
 /// directions, or an edge that is cut has none.
 MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint64_t>& cut_edges);
+
+/// The same where it is known how the mesh hangs together.
+MeshFans find_fans(const MeshTriangles& triangles, int64_t vertices, const std::vector<uint64_t>& cut_edges,
+                   MeshTwins twins);
 
 }  // namespace isoshell

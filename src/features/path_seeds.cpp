@@ -142,6 +142,28 @@ void place_seeds(const std::vector<Candidate>& candidates, CurvePath& path) {
             [](const PathPoint& a, const PathPoint& b) { return std::tie(a.edge, a.part) < std::tie(b.edge, b.part); });
 }
 
+bool are_same(const std::vector<PathPoint>& a, const std::vector<PathPoint>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const PathPoint& p, const PathPoint& q) { return p.edge == q.edge && p.part == q.part; });
+}
+
+/// Places the seeds of paths that run along one another, again where those across changed. `is_placed`: per path
+/// whether its seeds are for those across as they are.
+void sweep_over(const std::vector<size_t>& group, const SeedsAcross& across, std::vector<char>& is_placed,
+                FineMesh& mesh) {
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (const size_t p : group) {
+      CurvePath& path = mesh.paths[p];
+      if (path.is_jagged || is_placed[p]) continue;
+      std::vector<Candidate> candidates = list_candidates(mesh, path);
+      for (Candidate& c : candidates) c.cost = kCostOfFacing * across.cost(mesh, p, c.point, c.position);
+      const std::vector<PathPoint> before = path.seeds;
+      place_seeds(path.is_loop ? from_cheapest(candidates) : candidates, path);
+      is_placed[p] = 1;
+      if (!are_same(before, path.seeds)) across.for_each_beside(p, [&](size_t other) { is_placed[other] = 0; });
+    }
+}
+
 }  // namespace
 
 std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) {
@@ -160,14 +182,9 @@ void place_path_seeds(FineMesh& mesh, const std::vector<FacingVertices>& facing)
   for_each_index(size_t(0), mesh.paths.size(), [&](size_t p) {
     if (is_alone(p)) place_seeds(list_candidates(mesh, mesh.paths[p]), mesh.paths[p]);
   });
-  const std::vector<size_t> order = across.order();
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (const size_t p : order) {
-      if (is_alone(p)) continue;
-      std::vector<Candidate> candidates = list_candidates(mesh, mesh.paths[p]);
-      for (Candidate& c : candidates) c.cost = kCostOfFacing * across.cost(mesh, p, c.point, c.position);
-      place_seeds(mesh.paths[p].is_loop ? from_cheapest(candidates) : candidates, mesh.paths[p]);
-    }
+  const std::vector<std::vector<size_t>> groups = across.groups();
+  std::vector<char> is_placed(mesh.paths.size(), 0);
+  for_each_index(size_t(0), groups.size(), [&](size_t g) { sweep_over(groups[g], across, is_placed, mesh); });
 }
 
 void begin_loops_at_seeds(FineMesh& mesh) {

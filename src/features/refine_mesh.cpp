@@ -14,7 +14,24 @@
 namespace isoshell {
 namespace {
 
-using Chain = std::vector<uint32_t>;  ///< vertices along an edge, with both ends
+/// Vertices along an edge, with both ends, that lie elsewhere.
+class Chain {
+ public:
+  explicit Chain(const std::vector<uint32_t>& along) : Chain(along.data(), 1, along.size()) {}
+
+  size_t size() const { return size_; }
+  uint32_t operator[](size_t i) const { return first_[int64_t(i) * step_]; }
+  Chain up_to(size_t i) const { return {first_, step_, i + 1}; }
+  Chain from(size_t i) const { return {first_ + int64_t(i) * step_, step_, size_ - i}; }
+  Chain reversed() const { return {first_ + int64_t(size_ - 1) * step_, -step_, size_}; }
+
+ private:
+  Chain(const uint32_t* first, int64_t step, size_t size) : first_(first), step_(step), size_(size) {}
+
+  const uint32_t* first_;
+  int64_t step_;
+  size_t size_;
+};
 
 /// Fills some triangles. Vertices that are new inside of them are numbered from `first_new` on.
 class Filling {
@@ -23,16 +40,17 @@ class Filling {
 
   /// Between three chains, each of which ends where the next one begins: where one has no inner points across the other
   /// two; else four parts, between the middles.
-  void fill(const Chain& a, const Chain& b, const Chain& c) {
+  void fill(Chain a, Chain b, Chain c) {
+    if (a.size() == 2 && b.size() == 2 && c.size() == 2) return triangles.push_back({b[0], c[0], a[0]});
     if (a.size() == 2) return zip(b, c);
     if (b.size() == 2) return zip(c, a);
     if (c.size() == 2) return zip(a, b);
     const size_t i = middle_of(a), j = middle_of(b), k = middle_of(c);
-    const Chain ab = straight(a[i], b[j]), bc = straight(b[j], c[k]), ca = straight(c[k], a[i]);
-    fill(before(c, k, true), before(a, i, false), reversed(ca));
-    fill(before(a, i, true), before(b, j, false), reversed(ab));
-    fill(before(b, j, true), before(c, k, false), reversed(bc));
-    fill(ab, bc, ca);
+    const std::vector<uint32_t> ab = straight(a[i], b[j]), bc = straight(b[j], c[k]), ca = straight(c[k], a[i]);
+    fill(c.from(k), a.up_to(i), Chain(ca).reversed());
+    fill(a.from(i), b.up_to(j), Chain(ab).reversed());
+    fill(b.from(j), c.up_to(k), Chain(bc).reversed());
+    fill(Chain(ab), Chain(bc), Chain(ca));
   }
 
   std::vector<WorldPoint> inside;
@@ -45,7 +63,7 @@ class Filling {
 
   /// Two chains that meet in the last point of the first; an edge joins their other ends. From that edge on, each step
   /// takes the shorter diagonal; of two that are as long the one to the point that comes first.
-  void zip(const Chain& there, const Chain& back) {
+  void zip(Chain there, Chain back) {
     size_t i = 0, j = back.size() - 1;  // at there[i] and back[j]
     const size_t last = there.size() - 1;
     while (i < last || j > 0) {
@@ -67,24 +85,16 @@ class Filling {
   }
 
   /// The place of the middle point of a chain, the same from both ends.
-  size_t middle_of(const Chain& chain) const {
+  size_t middle_of(Chain chain) const {
     const size_t last = chain.size() - 1;
     return is_before(at(chain[0]), at(chain[last])) ? last / 2 : last - last / 2;
   }
-  Chain before(const Chain& chain, size_t i, bool is_behind) const {
-    return is_behind ? Chain(chain.begin() + int64_t(i), chain.end())
-                     : Chain(chain.begin(), chain.begin() + int64_t(i) + 1);
-  }
-  static Chain reversed(Chain chain) {
-    std::reverse(chain.begin(), chain.end());
-    return chain;
-  }
   /// A new chain inside.
-  Chain straight(uint32_t u, uint32_t v) {
+  std::vector<uint32_t> straight(uint32_t u, uint32_t v) {
     const WorldPoint p = at(u), q = at(v);
     const double length_u = length_at(u), length_v = length_at(v);
     const int64_t parts = parts_of(p, q, longest_fine_edge((length_u + length_v) / 2));
-    Chain chain{u};
+    std::vector<uint32_t> chain{u};
     for (int64_t i = 1; i < parts; ++i) {
       chain.push_back(first_new_ + uint32_t(inside.size()));
       inside.push_back(point_between(p, q, i, parts));
@@ -98,7 +108,8 @@ class Filling {
   uint32_t first_new_;
 };
 
-constexpr size_t kTogether = 256;  ///< triangles that are filled by one task
+constexpr size_t kTasks = 1024;        ///< into which the triangles are shared: where they are few, some are large
+constexpr size_t kMostTogether = 256;  ///< triangles that are filled by one task
 
 /// Appends what the tasks made, in their order.
 void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
@@ -130,13 +141,14 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
 
 }  // namespace
 
-FineMesh refine_mesh(FineMesh mesh, Context& context) {
-  const SplitEdges edges(mesh, context.memory_limit_bytes);
-  const size_t tasks = (mesh.triangles.size() + kTogether - 1) / kTogether;
+FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* neighbours) {
+  const SplitEdges edges(mesh, context.memory_limit_bytes, neighbours);
+  const size_t together = std::clamp<size_t>(mesh.triangles.size() / kTasks, 1, kMostTogether);
+  const size_t tasks = (mesh.triangles.size() + together - 1) / together;
   std::vector<Filling> fillings(tasks, Filling(mesh));
   for_each_index(size_t(0), tasks, [&](size_t task) {
-    Chain chain[3];
-    for (size_t t = task * kTogether; t < std::min(mesh.triangles.size(), (task + 1) * kTogether); ++t) {
+    std::vector<uint32_t> chain[3];
+    for (size_t t = task * together; t < std::min(mesh.triangles.size(), (task + 1) * together); ++t) {
       if (context.cancel.load(std::memory_order_relaxed)) return;
       const auto& c = mesh.triangles[t];
       for (size_t i = 0; i < 3; ++i) {
@@ -144,7 +156,7 @@ FineMesh refine_mesh(FineMesh mesh, Context& context) {
         edges.append_chain(c[i], c[(i + 1) % 3], chain[i]);
         chain[i].push_back(c[(i + 1) % 3]);
       }
-      fillings[task].fill(chain[0], chain[1], chain[2]);
+      fillings[task].fill(Chain(chain[0]), Chain(chain[1]), Chain(chain[2]));
     }
   });
   check_cancel(context, "features");

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/buckets.h"
 #include "features/curve_paths.h"
 #include "isoshell/backend.h"
 #include "isoshell/lattice.h"
@@ -28,7 +29,7 @@ inline PointQ8 rounded(const WorldPoint& p) {
 /// edges. Result: edges are at most half of the length; seeds of paths are at vertices. What becomes of a triangle
 /// depends on its corners only. Cost: a sort of the edges, then O(fine triangles); of a long thin triangle these are as
 /// many as its edges have parts. Throws: usage when that is far more than the area needs, or than the memory limit
-/// allows.
-FineMesh refine_mesh(FineMesh mesh, Context& context);
+/// allows. `neighbours`: those of its vertices, ascending, where they are known; the edges then need no sort.
+FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* neighbours = nullptr);
 
 }  // namespace isoshell

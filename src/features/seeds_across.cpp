@@ -98,21 +98,21 @@ SeedsAcross::SeedsAcross(const FineMesh& mesh, const std::vector<FacingVertices>
   for (size_t p = 0; p + 1 < first_.size(); ++p) first_[p + 1] += first_[p];
 }
 
-std::vector<size_t> SeedsAcross::order() const {
-  std::vector<size_t> order;
+std::vector<std::vector<size_t>> SeedsAcross::groups() const {
+  std::vector<std::vector<size_t>> groups;
   std::vector<char> is_listed(first_.size() - 1, 0);
-  const auto list = [&](size_t path) {
-    if (is_listed[path]) return;
-    is_listed[path] = 1;
-    order.push_back(path);
-  };
   for (size_t begin = 0; begin < is_listed.size(); ++begin) {
     if (!beside(begin) || is_listed[begin]) continue;
+    std::vector<size_t> group;
+    const auto list = [&](size_t path) {
+      if (!is_listed[path]) group.push_back(path);
+      is_listed[path] = 1;
+    };
     list(begin);
-    for (size_t i = order.size() - 1; i < order.size(); ++i)
-      for (size_t s = first_[order[i]]; s < first_[order[i] + 1]; ++s) list(sides_[s].other);
+    for (size_t i = 0; i < group.size(); ++i) for_each_beside(group[i], list);
+    groups.push_back(std::move(group));
   }
-  return order;
+  return groups;
 }
 
 double SeedsAcross::cost(const FineMesh& mesh, size_t path, const PathPoint& point, const WorldPoint& position) const {

@@ -13,8 +13,15 @@ class SeedsAcross {
   /// Whether there are any.
   bool beside(size_t path) const { return first_[path] < first_[path + 1]; }
 
-  /// The paths that others run along, each after one that it runs along, as far as that is possible.
-  std::vector<size_t> order() const;
+  /// The paths that others run along, each after one that it runs along, as far as that is possible: in groups that run
+  /// along none of another group.
+  std::vector<std::vector<size_t>> groups() const;
+
+  /// Calls visit(other) for those that run along a path, some more than once.
+  template <class Visit>
+  void for_each_beside(size_t path, Visit visit) const {
+    for (size_t s = first_[path]; s < first_[path + 1]; ++s) visit(sides_[s].other);
+  }
 
   /// How much a seed at a point of a path faces seeds across strips, where it belongs between two of them: 0 to 1 a
   /// strip, less where the strip is so wide that it has seeds of its own.

@@ -37,6 +37,36 @@ double most_points(const FineMesh& mesh, int64_t memory_bytes) {
   return std::min({kTimesTheNeed * need + kAlways, kCountable, held});
 }
 
+/// Of the edges, by their smaller ends.
+Buckets<uint32_t> larger_ends(const FineMesh& mesh) {
+  const auto list = [&](int64_t t, auto put) {
+    const auto& c = mesh.triangles[size_t(t)];
+    for (size_t i = 0; i < 3; ++i) put(std::min(c[i], c[(i + 1) % 3]), std::max(c[i], c[(i + 1) % 3]));
+  };
+  return without_repeats(
+      sort_into_buckets<uint32_t>(int64_t(mesh.position.size()), int64_t(mesh.triangles.size()), list));
+}
+
+/// Those neighbours that are larger than the vertex.
+Buckets<uint32_t> larger_ones(const Buckets<uint32_t>& neighbours) {
+  const auto larger = [&](int64_t v) {
+    const View<const uint32_t> all = neighbours.in(v);
+    const auto begin = std::upper_bound(all.begin(), all.end(), uint32_t(v));
+    return all.part(begin - all.begin(), all.end() - begin);
+  };
+  Buckets<uint32_t> out;
+  out.first = Buffer<int64_t>(neighbours.first.size());
+  out.first[neighbours.count()] = 0;
+  for_each_index(int64_t(0), neighbours.count(), [&](int64_t v) { out.first[v] = larger(v).size; });
+  offsets_from_counts(out.first.view());
+  out.items = Buffer<uint32_t>(out.first[out.count()]);
+  for_each_index(int64_t(0), out.count(), [&](int64_t v) {
+    const View<const uint32_t> ends = larger(v);
+    std::copy(ends.begin(), ends.end(), out.items.begin() + out.first[v]);
+  });
+  return out;
+}
+
 }  // namespace
 
 bool is_before(const WorldPoint& a, const WorldPoint& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
@@ -55,14 +85,8 @@ double longest_fine_edge(double edge_length) {
   return std::min(edge_length / kPartsOfEdge, kLongestQ8);
 }
 
-SplitEdges::SplitEdges(FineMesh& mesh, int64_t memory_bytes)
-    : larger_end_(without_repeats(
-          sort_into_buckets<uint32_t>(int64_t(mesh.position.size()), int64_t(mesh.triangles.size()),
-                                      [&](int64_t t, auto put) {
-                                        const auto& c = mesh.triangles[size_t(t)];
-                                        for (size_t i = 0; i < 3; ++i)
-                                          put(std::min(c[i], c[(i + 1) % 3]), std::max(c[i], c[(i + 1) % 3]));
-                                      }))),
+SplitEdges::SplitEdges(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours)
+    : larger_end_(neighbours ? larger_ones(*neighbours) : larger_ends(mesh)),
       parts_(size_t(larger_end_.items.size()), Parts{0, 0, kNone}) {
   const std::vector<InnerPoints> on_paths = cut_paths(mesh);
   count_points(mesh, on_paths, memory_bytes);

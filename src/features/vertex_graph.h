@@ -59,4 +59,8 @@ std::vector<Value> settled(const VertexGraph& graph, const std::vector<Value>& o
   return value;
 }
 
+/// What settled gives for lengths above 0 that grow by `growth` along the way, sooner: shorter lengths spread first, in
+/// bands, so that few vertices hear of a length that a shorter one replaces.
+std::vector<double> settled_lengths(const VertexGraph& graph, const std::vector<double>& own, double growth);
+
 }  // namespace isoshell

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cpu/executor_tbb.h"
-#include "stages/halfedge/surface_borders_body.h"
+#include "stages/halfedge/half_edges.h"
 #include "stages/sheet/sheet_graph.h"
 #include "support/soup_sheet.h"
 

@@ -72,8 +72,13 @@ TEST_CASE("vertex graph: lengths that grow along ways settle at what a search fi
       const uint64_t bits = random_bits(seed + 100, v);
       own.push_back(bits % 50 == 0 ? double(bits >> 32 & 3) : 40);
     }
-    const auto step = [](double length, double way) { return length + .25 * way; };
-    CHECK(settled(find_vertex_graph(mesh), own, step) == searched(mesh, own, step));
+    for (const double growth : {.25, 0., 20.}) {
+      INFO("growth " << growth);
+      const auto step = [&](double length, double way) { return length + growth * way; };
+      const std::vector<double> expected = searched(mesh, own, step);
+      CHECK(settled(find_vertex_graph(mesh), own, step) == expected);
+      CHECK(settled_lengths(find_vertex_graph(mesh), own, growth) == expected);
+    }
   }
 }
 

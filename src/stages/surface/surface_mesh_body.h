@@ -30,11 +30,6 @@ struct ByPlace {
     return a.vertex < b.vertex;
   }
 };
-struct ByCorners {
-  bool operator()(const TriangleIndices& s, const TriangleIndices& t) const {
-    return s.a != t.a ? s.a < t.a : (s.b != t.b ? s.b < t.b : s.c < t.c);
-  }
-};
 inline TriangleIndices from_smallest_corner(TriangleIndices t) {
   if (t.b < t.a && t.b < t.c) return {t.b, t.c, t.a};
   if (t.c < t.a && t.c < t.b) return {t.c, t.a, t.b};
@@ -74,12 +69,22 @@ std::vector<uint32_t> order_vertices(Exec& exec, const SurfaceTriangles& from, S
 template <class Exec>
 void order_triangles(Exec& exec, const SurfaceTriangles& from, const std::vector<uint32_t>& number,
                      SurfaceMesh& surface) {
-  surface.triangles = Buffer<TriangleIndices>(int64_t(from.triangles.size()));
-  exec.for_each("number corners", surface.triangles.size(), [&](int64_t t) {
-    const TriangleIndices& old = from.triangles[size_t(t)];
-    surface.triangles[t] = from_smallest_corner({number[old.a], number[old.b], number[old.c]});
+  struct OtherCorners {
+    uint32_t b, c;
+    bool operator<(const OtherCorners& o) const { return b != o.b ? b < o.b : c < o.c; }
+  };
+  const auto triangles = int64_t(from.triangles.size());
+  const Buckets<OtherCorners> by_smallest =
+      sort_into_buckets<OtherCorners>(surface.vertex_count(), triangles, [&](int64_t t, auto put) {
+        const TriangleIndices& old = from.triangles[size_t(t)];
+        const TriangleIndices i = from_smallest_corner({number[old.a], number[old.b], number[old.c]});
+        put(i.a, OtherCorners{i.b, i.c});
+      });
+  surface.triangles = Buffer<TriangleIndices>(triangles);
+  exec.for_each("triangles of corners", surface.vertex_count(), [&](int64_t a) {
+    for (int64_t t = by_smallest.first[a]; t < by_smallest.first[a + 1]; ++t)
+      surface.triangles[t] = {uint32_t(a), by_smallest.items[t].b, by_smallest.items[t].c};
   });
-  exec.sort(surface.triangles.view(), ByCorners{});
 }
 
 inline void list_triangles_around(SurfaceMesh& surface) {
@@ -108,43 +113,58 @@ void find_normals(Exec& exec, SurfaceMesh& surface) {
   });
 }
 
-/// Whether the triangles around a vertex are one fan: each leads to the next over an edge that it shares with no other.
-inline bool is_one_fan(const SurfaceMesh& surface, int64_t v) {
+/// What the triangles around a vertex are together.
+struct Fan {
+  bool is_one = false;                     ///< each leads to the next over an edge that it shares with no other
+  uint32_t before = kNone, after = kNone;  ///< the vertex on the border of the surface, where it is on it
+};
+
+inline Fan fan_around(const SurfaceMesh& surface, int64_t v) {
   struct Sector {
     uint32_t next, last;
+    const Sector* after = nullptr;  ///< the one it leads to
+    bool is_behind = false;         ///< another one
   };
+  constexpr size_t kFew = 16;                // so many are searched sooner than sorted
   thread_local std::vector<Sector> sectors;  // these are small, and many
-  thread_local std::vector<uint32_t> last;
   sectors.clear();
-  last.clear();
   for (int64_t i = surface.vertex_first[v]; i < surface.vertex_first[v + 1]; ++i) {
     const TriangleIndices t = surface.triangles[surface.vertex_triangles[i]];
     sectors.push_back(t.a == v ? Sector{t.b, t.c} : (t.b == v ? Sector{t.c, t.a} : Sector{t.a, t.b}));
   }
-  std::sort(sectors.begin(), sectors.end(), [](Sector s, Sector t) { return s.next < t.next; });
-  for (const Sector& s : sectors) last.push_back(s.last);
-  std::sort(last.begin(), last.end());
-  for (size_t i = 1; i < sectors.size(); ++i)
-    if (sectors[i].next == sectors[i - 1].next || last[i] == last[i - 1]) return false;
-  // On a border the turn begins with the sector that no other one leads to.
-  Sector at = sectors[0];
-  for (const Sector& s : sectors)
-    if (!std::binary_search(last.begin(), last.end(), s.next)) at = s;
-  const uint32_t start = at.next;
+  const auto by_next = [](const Sector& s, const Sector& t) { return s.next < t.next; };
+  const bool are_few = sectors.size() <= kFew;
+  if (!are_few) std::sort(sectors.begin(), sectors.end(), by_next);
+  const auto find = [&](uint32_t next) -> Sector* {
+    if (!are_few) {
+      const auto found = std::lower_bound(sectors.begin(), sectors.end(), Sector{next, 0}, by_next);
+      return found != sectors.end() && found->next == next ? &*found : nullptr;
+    }
+    Sector* found = nullptr;
+    for (Sector& s : sectors) found = s.next == next ? &s : found;
+    return found;
+  };
+  for (Sector& s : sectors)
+    if (Sector* const after = find(s.last)) {
+      if (after->is_behind) return {};
+      after->is_behind = true;
+      s.after = after;
+    }
+  // On a border the turn begins with the sector that is behind no other one.
+  const Sector* begin = &sectors[0];
+  for (const Sector& s : sectors) begin = s.is_behind ? begin : &s;
+  const Sector* at = begin;
   for (size_t passed = 1; passed < sectors.size(); ++passed) {
-    const auto found = std::lower_bound(sectors.begin(), sectors.end(), at.last,
-                                        [](const Sector& s, uint32_t next) { return s.next < next; });
-    if (found == sectors.end() || found->next != at.last || found->next == start) return false;
-    at = *found;
+    at = at->after;
+    if (!at || at->next == begin->next) return {};
   }
-  return true;
+  return begin->is_behind ? Fan{true} : Fan{true, at->last, begin->next};
 }
 
 template <class Exec>
-void require_fans(Exec& exec, const SurfaceMesh& surface, const std::vector<uint32_t>& number) {
-  const auto is_wrong = [&](int64_t v) { return is_one_fan(surface, v) ? 0 : 1; };
-  const int64_t wrong = exec.sum(surface.vertex_count(), is_wrong);
-  if (wrong == 0) return;
+[[noreturn]] void refuse_fans(Exec& exec, const SurfaceMesh& surface, const std::vector<uint32_t>& number,
+                              int64_t wrong) {
+  const auto is_wrong = [&](int64_t v) { return !fan_around(surface, v).is_one; };
   const uint32_t first = exec.select(surface.vertex_count(), is_wrong)[0];
   const auto given = std::find(number.begin(), number.end(), first) - number.begin();
   throw Error(ErrorCode::usage, "surface",
@@ -153,17 +173,36 @@ void require_fans(Exec& exec, const SurfaceMesh& surface, const std::vector<uint
                   "way, or they are several fans; repair the faces first, or give every fan a vertex of its own");
 }
 
+/// Finds border_before and the chains. Throws: usage where the triangles around a vertex are no fan.
+template <class Exec>
+void find_borders(Exec& exec, const std::vector<uint32_t>& number, SurfaceMesh& surface) {
+  const int64_t vertices = surface.vertex_count();
+  Buffer<uint32_t> before(vertices), after(vertices);
+  const int64_t wrong = exec.sum(vertices, [&](int64_t v) {
+    const Fan fan = fan_around(surface, v);
+    before[v] = fan.before;
+    after[v] = fan.after;
+    return fan.is_one ? 0 : 1;
+  });
+  if (wrong > 0) refuse_fans(exec, surface, number, wrong);
+  const auto is_on_border = [](uint32_t u) { return u != kNone; };
+  if (std::none_of(before.begin(), before.end(), is_on_border)) return;
+  surface.border_before = std::move(before);
+  chain_borders(exec, after.view(), surface);
+}
+
 /// A triangle may be in the block of any of its corners.
 template <class Exec>
 void require_reach(Exec& exec, const SurfaceMesh& surface) {
   const auto is_far = [&](int64_t t) {
     const TriangleIndices i = surface.triangles[t];
-    for (const uint32_t v : {i.a, i.b, i.c})
+    for (const uint32_t v : {i.a, i.b, i.c}) {
+      const PointQ8 c = leaf_centre(leaf_of_voxel(voxel_of(surface.position[v])));
       for (const uint32_t u : {i.a, i.b, i.c}) {
-        const PointQ8 c = leaf_centre(leaf_of_voxel(voxel_of(surface.position[v]))), p = surface.position[u];
-        const Vec64 d = difference(p, c);
+        const Vec64 d = difference(surface.position[u], c);
         if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) >= VertexBlocks::kReachQ8) return 1;
       }
+    }
     return 0;
   };
   const int64_t far = exec.sum(surface.triangles.size(), is_far);
@@ -209,10 +248,9 @@ MadeSurface make_surface_mesh_body(Exec& exec, const SurfaceTriangles& from) {
   order_triangles(exec, from, made.number, surface);
   require_reach(exec, surface);
   list_triangles_around(surface);
-  require_fans(exec, surface, made.number);
+  find_borders(exec, made.number, surface);
   find_normals(exec, surface);
   cut_into_blocks(surface);
-  find_borders(exec, surface);
   return made;
 }
 
