@@ -12,4 +12,7 @@ namespace isoshell {
 /// vertices. Throws: usage where a border or non-manifold edge is on no path.
 CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context);
 
+/// Lists the copies of so many places from the place of every vertex.
+void list_copies(size_t places, CutSurface& cut);
+
 }  // namespace isoshell
