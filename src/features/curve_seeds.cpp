@@ -8,20 +8,6 @@
 namespace isoshell {
 namespace {
 
-/// Every second segment's ends, level times.
-std::vector<size_t> seeds_of_level(const CutCurve& curve, int level) {
-  std::vector<size_t> seeds = curve.seeds;
-  const size_t end = curve.is_loop ? 0 : 1;  // seeds beyond the last segment
-  for (; level > 0; --level) {
-    const size_t segments = seeds.size() - end, coarse = std::max((segments + 1) / 2, size_t(curve.least_segments));
-    if (coarse >= segments) break;
-    std::vector<size_t> next;
-    for (size_t i = 0; i < coarse + end; ++i) next.push_back(seeds[i * segments / coarse]);
-    seeds = std::move(next);
-  }
-  return seeds;
-}
-
 /// Per place the place of the nearest seed along its curve; places that are seeds are their own.
 std::vector<uint32_t> nearest_seed_places(const CutSurface& cut, int level) {
   std::vector<uint32_t> nearest(cut.copies_first.size() - 1, kNone);
@@ -64,6 +50,19 @@ void label_chain(const View<const uint32_t>& chain, const std::vector<uint32_t>&
 }
 
 }  // namespace
+
+std::vector<size_t> seeds_of_level(const CutCurve& curve, int level) {
+  std::vector<size_t> seeds = curve.seeds;
+  const size_t end = curve.is_loop ? 0 : 1;  // seeds beyond the last segment
+  for (; level > 0; --level) {
+    const size_t segments = seeds.size() - end, coarse = std::max((segments + 1) / 2, size_t(curve.least_segments));
+    if (coarse >= segments) break;
+    std::vector<size_t> next;
+    for (size_t i = 0; i < coarse + end; ++i) next.push_back(seeds[i * segments / coarse]);
+    seeds = std::move(next);
+  }
+  return seeds;
+}
 
 int64_t count_places(const FixedSeeds& fixed) {
   int64_t places = 0;

@@ -59,7 +59,7 @@ std::vector<uint32_t> number_places(const FineMesh& mesh, CutSurface& cut) {
 }
 
 /// Which border vertices are at a place.
-void list_copies(const MeshFans& fans, const std::vector<uint32_t>& place_of_fine, const std::vector<uint32_t>& number,
+void find_places(const MeshFans& fans, const std::vector<uint32_t>& place_of_fine, const std::vector<uint32_t>& number,
                  CutSurface& cut) {
   const SurfaceMesh& surface = cut.surface;
   cut.place.assign(size_t(surface.vertex_count()), kNone);
@@ -70,16 +70,9 @@ void list_copies(const MeshFans& fans, const std::vector<uint32_t>& place_of_fin
   uint32_t places = 0;
   for (const CutCurve& curve : cut.curves)
     for (const uint32_t p : curve.place) places = std::max(places, p + 1);
-  cut.copies_first.assign(size_t(places) + 1, 0);
   for (size_t f = 0; f < number.size(); ++f)
     if (surface.border_before[number[f]] != kNone) cut.place[number[f]] = place_of_fine[fans.vertex[f]];
-  for (const uint32_t p : cut.place)
-    if (p != kNone) ++cut.copies_first[p + 1];
-  for (size_t p = 0; p < places; ++p) cut.copies_first[p + 1] += cut.copies_first[p];
-  std::vector<int64_t> next(cut.copies_first.begin(), cut.copies_first.end());
-  cut.copies.resize(size_t(cut.copies_first.back()));
-  for (size_t v = 0; v < cut.place.size(); ++v)
-    if (cut.place[v] != kNone) cut.copies[size_t(next[cut.place[v]]++)] = uint32_t(v);
+  list_copies(places, cut);
 }
 
 /// Gives the surface the lengths, where they vary.
@@ -115,6 +108,17 @@ void list_patches_beside(const FineMesh& mesh, const MeshFans& fans, std::vector
 
 }  // namespace
 
+void list_copies(size_t places, CutSurface& cut) {
+  cut.copies_first.assign(places + 1, 0);
+  for (const uint32_t p : cut.place)
+    if (p != kNone) ++cut.copies_first[p + 1];
+  for (size_t p = 0; p < places; ++p) cut.copies_first[p + 1] += cut.copies_first[p];
+  std::vector<int64_t> next(cut.copies_first.begin(), cut.copies_first.end());
+  cut.copies.resize(size_t(cut.copies_first.back()));
+  for (size_t v = 0; v < cut.place.size(); ++v)
+    if (cut.place[v] != kNone) cut.copies[size_t(next[cut.place[v]]++)] = uint32_t(v);
+}
+
 CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context,
                          MeshTwins twins) {
   return run_with_threads(context, [&] {
@@ -126,7 +130,7 @@ CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFram
     cut.longest_edge_q8 = *std::max_element(fine->edge_length.begin(), fine->edge_length.end());
     cut.surface = std::move(made.surface);
     set_lengths(*fine, fans, made.number, cut.surface);
-    list_copies(fans, number_places(*fine, cut), made.number, cut);
+    find_places(fans, number_places(*fine, cut), made.number, cut);
     list_patches_beside(*fine, fans, cut.curves);
     cut.corner.resize(fans.of_corner.size());
     for_each_index(size_t(0), cut.corner.size(), [&](size_t c) { cut.corner[c] = made.number[fans.of_corner[c]]; });

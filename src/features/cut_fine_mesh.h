@@ -14,4 +14,7 @@ namespace isoshell {
 CutSurface cut_fine_mesh(std::shared_ptr<const FineMesh> fine, const LatticeFrame& frame, Context& context,
                          MeshTwins twins = {});
 
+/// Lists the copies of so many places from the place of every vertex.
+void list_copies(size_t places, CutSurface& cut);
+
 }  // namespace isoshell

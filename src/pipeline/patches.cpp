@@ -2,18 +2,14 @@
 #include "pipeline/patches.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "attributes/seams.h"
 #include "core/copy_product.h"
 #include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/world_vector.h"
-#include "features/curve_seeds.h"
-#include "features/cut_piece.h"
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
-#include "features/free_seeds.h"
 #include "features/split_edges.h"
 #include "features/weld_for_features.h"
 #include "features/widen_angles.h"
@@ -31,7 +27,6 @@
 #include "pipeline/new_crossings.h"
 #include "pipeline/part_fans.h"
 #include "pipeline/patch_rounds.h"
-#include "pipeline/relax_level.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
 
@@ -45,9 +40,6 @@ CurveOptions curve_options(const RemeshOptions& options, double edge_length_worl
                                                                     : CreaseMode::threshold;
   return {mode, options.features.degrees, edge_length_world};
 }
-
-constexpr int32_t kPassesOfCoarsePatches = 30;
-constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
 
 /// The snapped surface: what a stage file holds, so that a run that resumes finds the same features.
 TriangleSoup soup_of(const LatticeSurface& surface) {
@@ -153,18 +145,6 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
   lost.erase(std::remove_if(lost.begin() + int64_t(first), lost.end(), is_no_seam), lost.end());
 }
 
-/// Passes on coarse levels cost as much as those on the finest one, which are the better spent.
-RelaxOptions for_coarse_patches(const PatchOptions& options) {
-  RelaxOptions relax = for_coarse_level(options.relax, options.tolerance_asked);
-  relax.max_passes = kPassesOfCoarsePatches;
-  return relax;
-}
-RelaxOptions for_finest_patches(const PatchOptions& options) {
-  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_asked);
-  if (!options.tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
-  return relax;
-}
-
 }  // namespace
 
 void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
@@ -199,40 +179,6 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
     curves.seams.clear();
     cut_along(mesh, curves, options, p, report, context);
   });
-}
-
-RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
-  const FreeSeeds free_seeds(cut);
-  std::vector<SeedSet> fixed;  // fine to coarse
-  std::vector<FreeSeeds::Counts> counts;
-  for (int level = 0; level < kMaxLevels; ++level) {
-    SeedSet on_curves = seeds_on_curves(cut, level);
-    FreeSeeds::Counts in_patches =
-        level == 0 ? free_seeds.counts(on_curves, options.seeds.count) : free_seeds.coarser(on_curves, counts.back());
-    if (level > 0 && std::accumulate(in_patches.begin(), in_patches.end(), on_curves.size()) < kFewestSeeds) break;
-    fixed.push_back(std::move(on_curves));
-    counts.push_back(std::move(in_patches));
-  }
-  std::optional<SeededMesh> coarser;
-  for (size_t level = fixed.size(); level-- > 0;) {
-    if (coarser) bring_to_host(*coarser);
-    SeedSet seeds = coarser ? free_seeds.add_finer(std::move(fixed[level]), counts[level], *coarser, options.seeds.seed)
-                            : free_seeds.add(std::move(fixed[level]), counts[level], options.seeds.seed);
-    if (level == 0)
-      return relax_on_sheet(cut.surface, std::move(seeds), coarser ? for_finest_patches(options) : options.relax,
-                            context);
-    coarser = relax_level_once(cut.surface, for_coarse_patches(options), std::move(seeds), context);
-  }
-  return {};
-}
-
-RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& before, const PatchOptions& options,
-                                    Context& context) {
-  const FreeSeeds free_seeds(cut);
-  SeedSet fixed = seeds_on_curves(cut, 0);
-  const FreeSeeds::Counts counts = free_seeds.counts(fixed, options.seeds.count);
-  return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed),
-                        for_finest_patches(options), context);
 }
 
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
