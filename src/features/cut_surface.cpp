@@ -19,6 +19,7 @@ namespace isoshell {
 namespace {
 
 constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
+constexpr double kFirstCut = 1.5;     ///< lengths of the mesh on which they are found, over the one that is asked for
 constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
 
 /// As snap_coordinate, before it rounds.
@@ -44,16 +45,18 @@ VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const 
   }
 }
 
-/// Cut at the one edge length first, then once more where lengths are less, with a vertex for every seed of a path.
+/// Cut coarsely first, to find the lengths, then as they ask, with a vertex for every seed of a path.
 FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
                  const CutOptions& options, Context& context, MeshTwins& twins) {
   FineMesh fine;
   for (const WorldPoint& p : mesh.vertices) fine.position.push_back(on_lattice(frame, p));
-  fine.edge_length.assign(fine.position.size(), options.edge_length_world / frame.voxel_size * kOneVoxelQ8);
+  const double e = options.edge_length_world / frame.voxel_size * kOneVoxelQ8;
+  fine.edge_length.assign(fine.position.size(), kFirstCut * e);
   fine.triangles = mesh.triangles;
   fine.paths = curve_paths(fine.position, fine.triangles, network);
-  find_jagged_paths(fine.position, options.edge_length_world / frame.voxel_size * kOneVoxelQ8, fine.paths);
+  find_jagged_paths(fine.position, e, fine.paths);
   fine = refine_mesh(std::move(fine), context);
+  std::fill(fine.edge_length.begin(), fine.edge_length.end(), e);
   const VertexGraph graph = with_asked_lengths(fine, frame, options, context);
   const double widest = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
   const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * widest);

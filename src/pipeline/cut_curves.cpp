@@ -152,22 +152,27 @@ std::shared_ptr<const CutSurface> cut_along_fewer(const CutPlan& plan, const Cur
   return make_cut(plan, network, std::move(source), report.features, context);
 }
 
-/// Cuts a mesh along its curves, or along fewer where there is no room for all: p.cut. Result: why that cannot be done.
-std::string cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
-                        CutSource source, int64_t seeds, const RemeshOptions& options, Prepared& p,
-                        RemeshReport& report, Context& context) {
+using SharedCut = std::shared_ptr<const CutSurface>;
+
+/// Cuts a mesh along its curves, or along fewer where there is no room for all. Throws: usage where that cannot be
+/// done.
+SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
+                      CutSource source, int64_t seeds, const RemeshOptions& options, const Prepared& p,
+                      RemeshReport& report, Context& context) {
   CutPlan plan{mesh, curves, p.surface.frame, seeds};
   report.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(options, p)};
   const bool lengths_decide = how.asked.vary() && field_decides(options);
   if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
+  SharedCut cut;
   const std::string refused = reason_against([&] {
-    p.cut = make_cut(plan, network, source, report.features, context);
+    cut = make_cut(plan, network, source, report.features, context);
     return std::string();
   });
-  if (!refused.empty()) p.cut = cut_along_fewer(plan, network, std::move(source), report, context);
-  return p.cut ? "" : refused;
+  if (!cut) cut = cut_along_fewer(plan, network, std::move(source), report, context);
+  if (!cut) throw Error(ErrorCode::usage, "features", refused);
+  return cut;
 }
 
 /// Those of which less than half was laid onto the sheet.
@@ -183,20 +188,23 @@ std::vector<LostCurve> not_laid(const std::vector<LostCurve>& curves, const std:
   return lost;
 }
 
-/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Result: as cut_network.
-std::string cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
-                      const std::vector<LostCurve>& all, const std::string& against, const RemeshOptions& options,
-                      Prepared& p, RemeshReport& report, Context& context) {
-  if (p.grown && !p.grown.only_flaps) return against;  // the sheet is beside the surface everywhere
+/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Throws: usage where that
+/// cannot be done.
+SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
+                    const std::string& against, const RemeshOptions& options, const Prepared& p, RemeshReport& report,
+                    Context& context) {
+  if (p.grown && !p.grown.only_flaps)  // the sheet is beside the surface everywhere
+    throw Error(ErrorCode::usage, "features", against);
   const LaidCurves laid = lay_on_sheet(mesh, network, p, context);
   CurveOptions given;
   given.mode = CreaseMode::given;
-  given.edge_length_world = curves.edge_length_world;
+  given.edge_length_world = edge_length_world;
   given.creases = laid.creases;
   given.seams = laid.seams;
   given.lines = laid.lines;
   const CurveNetwork on_sheet = find_curves(laid.mesh, given);
-  if (on_sheet.curves.empty()) return against;
+  if (on_sheet.curves.empty()) throw Error(ErrorCode::usage, "features", against);
+  const std::vector<LostCurve> all = describe(mesh, network);
   CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.length_world), true};
   report.features.on_sheet = against;
   return cut_network(laid.mesh, on_sheet, given, std::move(source), vertex_target(options, p), options, p, report,
@@ -208,6 +216,18 @@ std::string cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, cons
 /// Of a surface that the options leave open.
 bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
   return options.boundary == Boundary::keep && !p.surface.topology.closed;
+}
+
+SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
+                            const Prepared& p, RemeshReport& report, Context& context) {
+  if (!failed.input) return nullptr;
+  const CutInput& input = *failed.input;
+  SharedCut cut;
+  reason_against([&] {
+    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, options, p, report, context);
+    return std::string();
+  });
+  return cut;
 }
 
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
@@ -224,12 +244,18 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
     if (found.curves == 0 && !is_open) return "";
     all = describe(mesh, network);
     const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
-    if (!against.empty())
-      return is_open ? against : cut_sheet(mesh, network, curves, all, against, options, p, report, context);
+    if (!against.empty() && is_open) return against;
+    if (!against.empty()) {
+      p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, options, p, report, context);
+      return "";
+    }
     const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;
-    return cut_network(mesh, network, curves, {all, all, {}}, vertices_of(options, p, is_open) - apart.more_places,
-                       options, p, report, context);
+    CutSource source{all, all, {}};
+    if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
+    p.cut = cut_network(mesh, network, curves, std::move(source), vertices_of(options, p, is_open) - apart.more_places,
+                        options, p, report, context);
+    return "";
   });
   if (!why.empty()) give_up(report, all, why);
   return why.empty();

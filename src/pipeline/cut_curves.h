@@ -12,12 +12,20 @@
 
 namespace isoshell {
 
+/// What a surface was cut from.
+struct CutInput {
+  FeatureMesh mesh;
+  CurveNetwork network;
+  double edge_length_world;  ///< of CurveOptions
+};
+
 /// Along which curves a surface was cut.
 struct CutSource {
   std::vector<LostCurve> if_lost;   ///< all curves of the mesh, as a report says them
   std::vector<LostCurve> found;     ///< those that it was cut along
   std::vector<LostCurve> left_out;  ///< those that it was not
   bool is_sheet = false;            ///< the curves were laid onto the sheet: the input's own triangles cannot be it
+  std::shared_ptr<const CutInput> input = nullptr;  ///< of a closed surface that is no sheet
 };
 
 /// Of a surface that the options leave open.
@@ -27,6 +35,12 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
 /// curves that could not be kept, as the report says.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
                RemeshReport& report, Context& context);
+
+/// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason. Null where that
+/// cannot be.
+std::shared_ptr<const CutSurface> cut_sheet_instead(const CutSource& failed, const std::string& why,
+                                                    const RemeshOptions& options, const Prepared& p,
+                                                    RemeshReport& report, Context& context);
 
 /// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
 /// Result: why it cannot be done, said by the work or by the stage that refuses; empty where it is done.

@@ -3,11 +3,16 @@
 
 #include "core/copy_product.h"
 #include "core/watched.h"
-#include "features/cut_surface.h"
 #include "measure/crossings.h"
 #include "pipeline/cut_curves.h"
 
 namespace isoshell {
+
+NewCrossings::NewCrossings(const Prepared& p, const CutSurface& cut, Context& context)
+    : p_(p),
+      context_(context),
+      may_be_old_(!p.surface.topology.closed && !cut.source->is_sheet),
+      edge_q8_(int32_t(cut.longest_edge_q8)) {}
 
 TrianglePairs NewCrossings::all(const DualMesh& mesh, View<const uint32_t> joined) const {
   TrianglePairs pairs = run_with_threads(
@@ -17,7 +22,7 @@ TrianglePairs NewCrossings::all(const DualMesh& mesh, View<const uint32_t> joine
 }
 
 TrianglePairs NewCrossings::wrong_of(const DualMesh& mesh, const TrianglePairs& pairs) {
-  if (pairs.empty() || p_.surface.topology.closed || p_.cut->source->is_sheet) return pairs;
+  if (pairs.empty() || !may_be_old_) return pairs;
   if (!of_input_) {
     const OnHost<LatticeSurface> input(p_.surface);
     of_input_ = find_crossings(input->points.view(), input->triangles.view(), context_);
@@ -25,7 +30,7 @@ TrianglePairs NewCrossings::wrong_of(const DualMesh& mesh, const TrianglePairs& 
   std::vector<BoxOfPoints> boxes;
   for (const auto& pair : pairs) boxes.push_back(common_box(mesh.position.view(), mesh.triangles.view(), pair));
   TrianglePairs wrong;
-  for (const size_t i : which_apart(boxes, *of_input_, int32_t(p_.cut->longest_edge_q8))) wrong.push_back(pairs[i]);
+  for (const size_t i : which_apart(boxes, *of_input_, edge_q8_)) wrong.push_back(pairs[i]);
   return wrong;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "features/cut_surface.h"
 #include "isoshell/remesh.h"
 #include "measure/box_tree.h"
 
@@ -16,7 +17,7 @@ using TrianglePairs = std::vector<std::array<uint32_t, 2>>;
 /// input must outlive it, and is looked at only where a result intersects. In host memory. Cost: as crossing_pairs.
 class NewCrossings {
  public:
-  NewCrossings(const Prepared& p, Context& context) : p_(p), context_(context) {}
+  NewCrossings(const Prepared& p, const CutSurface& cut, Context& context);
 
   /// All pairs of triangles that intersect. `joined`: as of crossing_pairs.
   TrianglePairs all(const DualMesh& mesh, View<const uint32_t> joined) const;
@@ -26,6 +27,8 @@ class NewCrossings {
  private:
   const Prepared& p_;
   Context& context_;
+  bool may_be_old_;  ///< the result is open as the input is
+  int32_t edge_q8_;
   std::optional<std::vector<BoxOfPoints>> of_input_;
 };
 

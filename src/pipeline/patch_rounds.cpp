@@ -81,8 +81,9 @@ struct Wrong {
 
 class PatchRounds {
  public:
-  PatchRounds(const Prepared& p, const PatchOptions& options, RemeshReport& report, Context& context)
-      : options_(options), report_(report), context_(context), crossings_(p, context) {}
+  PatchRounds(const Prepared& p, const CutSurface& cut, const PatchOptions& options, RemeshReport& report,
+              Context& context)
+      : options_(options), report_(report), context_(context), crossings_(p, cut, context) {}
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
     report_.dual = {};
@@ -286,7 +287,7 @@ class PatchRounds {
 
 std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
                            const PatchOptions& options, RemeshReport& report, Context& context) {
-  return PatchRounds(p, options, report, context).run(cut, made);
+  return PatchRounds(p, *cut, options, report, context).run(cut, made);
 }
 
 }  // namespace isoshell

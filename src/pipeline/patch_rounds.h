@@ -8,7 +8,7 @@
 
 namespace isoshell {
 
-/// Makes the mesh of the relaxed seeds of p.cut. Where triangles intersect, or cells are no disks, patches in a
+/// Makes the mesh of the relaxed seeds of `cut`. Where triangles intersect, or cells are no disks, patches in a
 /// plane are triangulated there; around others curves get more seeds first, then the creases there go, and only the
 /// patches beside these curves are made again: until that has taken twice the surface. In the end `cut`
 /// is the surface that the mesh is on. Result: why there is no mesh; empty where there is one, which may have

@@ -88,7 +88,7 @@ std::vector<uint32_t> nearest_of_sheet(const Sheet& of, const TriangleMesh& mesh
 JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made, int64_t vertices,
                                const RemeshReport& report, Context& context) {
   const bool may_cross = report.post.self_intersections > 0;  // where the input does
-  NewCrossings crossings(p, context);
+  NewCrossings crossings(p, cut, context);
   const auto wrong_corners = [&](const DualMesh& mesh) {
     const TrianglePairs pairs = crossings.all(mesh, {});
     return corners_of(mesh, may_cross ? crossings.wrong_of(mesh, pairs) : pairs);
@@ -145,6 +145,44 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
   lost.erase(std::remove_if(lost.begin() + int64_t(first), lost.end(), is_no_seam), lost.end());
 }
 
+/// The mesh of patches, or why there is none.
+struct MeshOfPatches {
+  std::shared_ptr<const CutSurface> cut;  ///< that it is on in the end
+  TriangleMesh mesh;
+  JoinedPatches joined;
+  std::string why_not;
+};
+MeshOfPatches mesh_of_patches(const Prepared& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
+                              const PatchOptions& options, RemeshReport& report, Context& context) {
+  MeshOfPatches out;
+  out.why_not = reason_against([&]() -> std::string {
+    if (std::string why = mesh_in_rounds(p, cut, made, options, report, context); !why.empty()) return why;
+    out.joined = timed(report, "angles", context,
+                       [&] { return with_wide_angles(p, *cut, made, options.seeds.count, report, context); });
+    out.mesh = to_world(out.joined.mesh, p.surface.frame);
+    out.mesh.features = std::move(out.joined.features);
+    part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
+    const bool is_manifold = check_mesh(out.mesh).is_manifold_with(report.features.border_loops);
+    return is_manifold ? "" : "parts that touch would make no manifold";
+  });
+  out.cut = std::move(cut);
+  return out;
+}
+
+/// From the curves on the sheet, which has no bad place.
+MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, const RemeshOptions& options,
+                                    PatchOptions in_patches, SeededMesh& made, RemeshReport& report, Context& context) {
+  const std::shared_ptr<const CutSurface> cut = timed(report, "features", context, [&] {
+    return cut_sheet_instead(*failed.cut->source, failed.why_not, options, p, report, context);
+  });
+  if (!cut) return failed;
+  in_patches.seeds.count = cut->seeds;
+  RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
+  report.relax = std::move(relaxed.report);
+  made = {{}, std::move(relaxed.seeds)};
+  return mesh_of_patches(p, cut, made, in_patches, report, context);
+}
+
 }  // namespace
 
 void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
@@ -181,50 +219,40 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   });
 }
 
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
-                                                RemeshReport& report, Context& context) {
-  const int64_t vertices = options.seeds.count;
-  std::shared_ptr<const CutSurface> cut = p.cut;
-  std::string why = reason_against([&] { return mesh_in_rounds(p, cut, made, options, report, context); });
-  std::optional<TriangleMesh> mesh;
-  JoinedPatches joined;
-  if (why.empty())
-    why = reason_against([&]() -> std::string {
-      joined =
-          timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, vertices, report, context); });
-      mesh = to_world(joined.mesh, p.surface.frame);
-      mesh->features = std::move(joined.features);
-      part_fans(*mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
-      const bool is_manifold = check_mesh(*mesh).is_manifold_with(report.features.border_loops);
-      return is_manifold ? "" : "parts that touch would make no manifold";
-    });
-  if (!why.empty()) {
-    give_up(report, p.cut->source->if_lost, why);
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
+                                                const PatchOptions& in_patches, RemeshReport& report,
+                                                Context& context) {
+  MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
+  if (!made_here.why_not.empty())
+    made_here = mesh_on_sheet_instead(std::move(made_here), p, options, in_patches, made, report, context);
+  if (!made_here.why_not.empty()) {
+    give_up(report, p.cut->source->if_lost, made_here.why_not);
     return {};
   }
+  const CutSurface& cut = *made_here.cut;
+  TriangleMesh& mesh = made_here.mesh;
   if (const int64_t crossings = report.post.self_intersections; crossings > 0)
     report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
                               " where the input's own triangles do");
-  if (joined.mesh.position.size() != vertices)
-    report.warnings.push_back("the result has " + std::to_string(joined.mesh.position.size()) +
-                              " vertices instead of " + std::to_string(vertices) +
-                              ": its curves need them, or leave no room for more");
-  if (cut->source->is_sheet) {
-    const std::vector<uint32_t> at = nearest_of_sheet(p.sheet, *mesh);
-    flag_gaps(p, {at.data(), int64_t(at.size())}, *mesh, report.gaps);
+  if (const int64_t vertices = made_here.joined.mesh.position.size(); vertices != cut.seeds)
+    report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
+                              std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
+  if (cut.source->is_sheet) {
+    const std::vector<uint32_t> at = nearest_of_sheet(p.sheet, mesh);
+    flag_gaps(p, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
                               report.features.on_sheet);
   } else {
     report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
     report.sheet.bridged_vertices = 0;
-    flag_caps(p, *mesh, report.gaps);
+    flag_caps(p, mesh, report.gaps);
   }
-  measure_edges(*cut, joined, report.sizing);
-  report.features.vertices = joined.on_curves;
-  report.features.segments = int64_t(mesh->features.curve_edges.size());
+  measure_edges(cut, made_here.joined, report.sizing);
+  report.features.vertices = made_here.joined.on_curves;
+  report.features.segments = int64_t(mesh.features.curve_edges.size());
   report.features.kept = report.post_done = true;
-  report_left_out(not_kept(*cut), report);
-  return mesh;
+  report_left_out(not_kept(cut), report);
+  return std::move(mesh);
 }
 
 }  // namespace isoshell

@@ -37,9 +37,10 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
 
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
 /// curve counted once, where that is possible. Where triangles intersect, curves get more seeds there, and all seeds
-/// are relaxed again. None where that does not end it, cells are no disks, or patches touch along edges that are on no
-/// curve: report.features says so. With borders that are kept triangles may intersect where the input's do.
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const PatchOptions& options,
-                                                RemeshReport& report, Context& context);
+/// are relaxed again. Where that does not end it the same is tried on the sheet, with the curves laid onto it. None
+/// where that fails, too: cells are no disks, or patches touch along edges that are on no curve: report.features says
+/// so. With borders that are kept triangles may intersect where the input's do.
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
+                                                const PatchOptions& in_patches, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

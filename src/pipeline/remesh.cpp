@@ -227,7 +227,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   made.seeds = std::move(seeds);
   if (p.cut && made.seeds.fixed.count > 0) {
     if (std::optional<TriangleMesh> mesh =
-            triangulate_patches(p, made, patch_options(p, options, optimize), report, context)) {
+            triangulate_patches(p, made, options, patch_options(p, options, optimize), report, context)) {
       follow_previous(options, *mesh, report);
       note_digest(options, report, context, "mesh", *mesh);
       return std::move(*mesh);
