@@ -6,8 +6,13 @@
 namespace isoshell {
 namespace {
 
-constexpr int32_t kPassesAgain = 20;
-constexpr int kMostTimesAgain = 4;
+/// How seeds relax after a repair that took many.
+struct Again {
+  int32_t passes;
+  int most_times;
+};
+constexpr Again kOnSheet{20, 4};
+constexpr Again kBetweenFixed{3, 6};       // more passes take seeds back to where cells need the same repair
 constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relaxing again
 
 }  // namespace
@@ -15,6 +20,7 @@ constexpr int64_t kFewRepairPerMille = 5;  // the mesh takes these without relax
 void make_dual_of_seeds(const SurfaceMesh& surface, const CollapseOptions& count, SeededMesh& made,
                         RemeshReport& report, Context& context) {
   report.dual = {};
+  const Again again = made.seeds.fixed.count > 0 ? kBetweenFixed : kOnSheet;
   for (int round = 0;; ++round) {
     Triangulation dual =
         timed(report, "dual", context, [&] { return triangulate_dual(surface, std::move(made.seeds), {}, context); });
@@ -26,10 +32,10 @@ void make_dual_of_seeds(const SurfaceMesh& surface, const CollapseOptions& count
     made = std::move(dual);
     if (found.failed_cells == 0)
       made = timed(report, "dual", context, [&] { return collapse_edges(surface, std::move(made), count, context); });
-    if (found.inserted_seeds <= count.target * kFewRepairPerMille / 1000 || round == kMostTimesAgain) return;
-    const RelaxOptions again{kPassesAgain, 0, 0};
-    made.seeds = timed(report, "relax", context,
-                       [&] { return relax_on_sheet(surface, std::move(made.seeds), again, context).seeds; });
+    if (found.inserted_seeds <= count.target * kFewRepairPerMille / 1000 || round == again.most_times) return;
+    made.seeds = timed(report, "relax", context, [&] {
+      return relax_on_sheet(surface, std::move(made.seeds), {again.passes, 0, 0}, context).seeds;
+    });
   }
 }
 
