@@ -34,8 +34,9 @@ bool take_back(const std::vector<std::array<uint32_t, 2>>& pairs, LaidCurves& la
 }  // namespace
 
 LaidCurves lay_on_sheet(const FeatureMesh& mesh, const CurveNetwork& network, const Prepared& p, Context& context) {
+  const UntangledSheet sheet = untangle_sheet(host_copy(p.sheet), {}, context);
   LaidCurves laid = run_with_threads(context, [&] {
-    LaidCurves all = lay_curves(mesh, network, *OnHost(p.sheet));
+    LaidCurves all = lay_curves(mesh, network, *OnHost(sheet.sheet));
     for (int round = 0; round < kMostRounds; ++round)
       if (!take_back(crossings_of(all.mesh, p.sheet.frame, context), all)) break;
     return all;

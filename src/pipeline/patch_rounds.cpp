@@ -24,7 +24,8 @@ namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 10;
-constexpr size_t kMostWork = 2;  ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostWork = 2;        ///< of all rounds after the first one, over that of the whole surface
+constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
 using PerPatch = std::vector<char>;
 
@@ -96,6 +97,7 @@ class PatchRounds {
         wrong = find_wrong(*cut, made, failed);
       }
       if (wrong.is_nowhere()) return "";
+      if (is_hopeless(wrong.crossing, made)) return wrong.said();
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
       std::optional<Paths> change = change_where(wrong, *cut, round);
       if (!change) return wrong.said();
@@ -141,8 +143,12 @@ class PatchRounds {
       report_.post.undone_vertices += optimized.report.undone_vertices;
       mesh = std::move(optimized);
     });
-    if (crossing > 0) untangle(cut, made);
+    if (crossing > 0 && !is_hopeless(crossing, made)) untangle(cut, made);
     return failed;
+  }
+
+  static bool is_hopeless(int64_t crossing, const SeededMesh& made) {
+    return kMostCrossing * crossing > made.mesh.triangles.size();
   }
 
   /// Result: whether all cells are disks.
