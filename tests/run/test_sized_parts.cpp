@@ -173,6 +173,14 @@ double largest_distance_from_disc(const TriangleMesh& mesh) {
   return largest;
 }
 
+/// Largest distance of a vertex from the surface of the cube.
+double largest_distance_from_cube(const TriangleMesh& mesh) {
+  double largest = 0;
+  for (const WorldPoint& p : mesh.vertices)
+    largest = std::max(largest, std::abs(1 - std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)})));
+  return largest;
+}
+
 }  // namespace
 
 TEST_CASE("sized parts: edges of a cube follow a field in both directions, and its creases stay", "[sizing]") {
@@ -260,7 +268,8 @@ TEST_CASE("sized parts: both fits and even areas keep creases and the count", "[
         CHECK(result.mesh.vertices.size() == 700);
         CHECK(result.report.features.kept);
         CHECK(result.report.post.self_intersections == 0);
-        CHECK(std::abs(volume(result.mesh) - 8) < .001);
+        CHECK(largest_distance_from_cube(result.mesh) < .1 * result.report.frame.voxel_size);
+        CHECK(std::abs(volume(result.mesh) - 8) < .002);  // a balanced fit takes vertices a few steps off planes
       }
 }
 
