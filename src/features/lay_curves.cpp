@@ -134,19 +134,6 @@ void move_to_curves(const SampledCurves& curves, const NearSegments& near, MeshW
     if (is_end[near.point[i]]) move_point(i);
 }
 
-/// Where triangles turned over their vertices go back, until there are none: near walls, in crevices.
-void undo_where_turned(LaidCurves& laid) {
-  const auto normal_at = [](const std::vector<WorldPoint>& at, const std::array<uint32_t, 3>& t) {
-    return doubled_area(at[t[0]], at[t[1]], at[t[2]]);
-  };
-  for (bool any = true; any;) {
-    any = false;
-    for (const auto& t : laid.mesh.triangles)
-      if (dot(normal_at(laid.on_sheet, t), normal_at(laid.mesh.vertices, t)) < 0)
-        for (const uint32_t v : t) any |= laid.take_back(v);
-  }
-}
-
 void sort_edges(EdgeList& edges) {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -185,6 +172,18 @@ bool LaidCurves::take_back(uint32_t vertex) {
   return true;
 }
 
+void LaidCurves::take_back_turned() {
+  const auto normal_at = [](const std::vector<WorldPoint>& at, const std::array<uint32_t, 3>& t) {
+    return doubled_area(at[t[0]], at[t[1]], at[t[2]]);
+  };
+  for (bool any = true; any;) {
+    any = false;
+    for (const auto& t : mesh.triangles)
+      if (dot(normal_at(on_sheet, t), normal_at(mesh.vertices, t)) < 0)
+        for (const uint32_t v : t) any |= take_back(v);
+  }
+}
+
 LaidCurves lay_curves(const FeatureMesh& mesh, const CurveNetwork& network, const Sheet& sheet) {
   const double voxel = sheet.frame.voxel_size;
   SampledCurves curves;
@@ -197,7 +196,7 @@ LaidCurves lay_curves(const FeatureMesh& mesh, const CurveNetwork& network, cons
   laid.on_sheet = embedded.mesh.vertices;
   move_to_curves(curves, near, embedded);
   laid.mesh = std::move(embedded.mesh);
-  undo_where_turned(laid);
+  laid.take_back_turned();
   laid.mesh.rounding_world = voxel / (2 * kOneVoxelQ8);
   laid.length_world.assign(network.curves.size(), 0);
   std::vector<EdgeList> edges_of(network.curves.size());

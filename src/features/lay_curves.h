@@ -14,6 +14,8 @@ struct LaidCurves {
 
   /// Moves a vertex to its place on the sheet. Result: whether it was elsewhere.
   bool take_back(uint32_t vertex);
+  /// The same of the vertices of triangles that are turned over, until none is: near walls, in crevices.
+  void take_back_turned();
 };
 
 /// Lays the creases, seams and lines of a mesh onto the sheet that was made of it, in host memory. What is farther from

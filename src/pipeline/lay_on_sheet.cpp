@@ -37,8 +37,10 @@ LaidCurves lay_on_sheet(const FeatureMesh& mesh, const CurveNetwork& network, co
   const UntangledSheet sheet = untangle_sheet(host_copy(p.sheet), {}, context);
   LaidCurves laid = run_with_threads(context, [&] {
     LaidCurves all = lay_curves(mesh, network, *OnHost(sheet.sheet));
-    for (int round = 0; round < kMostRounds; ++round)
+    for (int round = 0; round < kMostRounds; ++round) {
       if (!take_back(crossings_of(all.mesh, p.sheet.frame, context), all)) break;
+      all.take_back_turned();
+    }
     return all;
   });
   check_cancel(context, "features");

@@ -24,7 +24,8 @@ namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 10;
-constexpr size_t kMostWork = 2;        ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostWork = 2;  ///< of all rounds after the first one, over that of the whole surface
+constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
 using PerPatch = std::vector<char>;
@@ -97,7 +98,7 @@ class PatchRounds {
         wrong = find_wrong(*cut, made, failed);
       }
       if (wrong.is_nowhere()) return "";
-      if (is_hopeless(wrong.crossing, made)) return wrong.said();
+      if (is_hopeless(wrong)) return wrong.said();
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
       std::optional<Paths> change = change_where(wrong, *cut, round);
       if (!change) return wrong.said();
@@ -143,12 +144,13 @@ class PatchRounds {
       report_.post.undone_vertices += optimized.report.undone_vertices;
       mesh = std::move(optimized);
     });
-    if (crossing > 0 && !is_hopeless(crossing, made)) untangle(cut, made);
+    if (crossing > 0) untangle(cut, made);
     return failed;
   }
 
-  static bool is_hopeless(int64_t crossing, const SeededMesh& made) {
-    return kMostCrossing * crossing > made.mesh.triangles.size();
+  /// Of so many vertices the whole mesh has twice as many triangles.
+  bool is_hopeless(const Wrong& wrong) const {
+    return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
   }
 
   /// Result: whether all cells are disks.
@@ -175,7 +177,7 @@ class PatchRounds {
     bring_to_host(made);
     Wrong wrong(cut);
     add_crossing(cut, made, crossings_.wrong_of(made.mesh, all_crossing(made)), wrong);
-    if (wrong.is_nowhere()) return;
+    if (wrong.is_nowhere() || is_hopeless(wrong)) return;
     timed(report_, "untangle", context_, [&] {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
         RemeshReport here;

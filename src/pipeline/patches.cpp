@@ -7,6 +7,7 @@
 #include "core/copy_product.h"
 #include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
+#include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
@@ -177,9 +178,14 @@ MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, con
   });
   if (!cut) return failed;
   in_patches.seeds.count = cut->seeds;
-  RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
-  report.relax = std::move(relaxed.report);
-  made = {{}, std::move(relaxed.seeds)};
+  failed.why_not = reason_against([&] {
+    RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
+    report.relax = std::move(relaxed.report);
+    made = {{}, std::move(relaxed.seeds)};
+    return std::string();
+  });
+  if (!failed.why_not.empty()) return failed;
+  report.seeds = made.seeds.size();
   return mesh_of_patches(p, cut, made, in_patches, report, context);
 }
 
@@ -238,7 +244,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
     report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
                               std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
   if (cut.source->is_sheet) {
-    const std::vector<uint32_t> at = nearest_of_sheet(p.sheet, mesh);
+    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(p.sheet, mesh); });
     flag_gaps(p, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
                               report.features.on_sheet);

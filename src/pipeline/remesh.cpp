@@ -11,6 +11,7 @@
 #include "measure/crossing_corners.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
+#include "pipeline/cut_curves.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/flag_gaps.h"
 #include "pipeline/hierarchy.h"
@@ -233,7 +234,8 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
       return std::move(*mesh);
     }
     report.post = {};
-    if (!p.surface.topology.closed) warn_of_topology(p, p.surface.topology, options, report);
+    if (!p.surface.topology.closed && !p.cut->source->is_sheet)
+      warn_of_topology(p, p.surface.topology, options, report);
     made.seeds = relax_without_creases(p, options, report, context);
   }
   const int64_t asked = report.coherence.began_warm ? vertex_target(options, p) : made.seeds.size();
