@@ -169,7 +169,17 @@ bool LaidCurves::take_back(uint32_t vertex) {
   const WorldPoint &is = mesh.vertices[vertex], &was = on_sheet[vertex];
   if (is.x == was.x && is.y == was.y && is.z == was.z) return false;
   mesh.vertices[vertex] = was;
+  is_back[vertex] = 1;
   return true;
+}
+
+std::vector<double> LaidCurves::lengths_world(size_t curves) const {
+  std::vector<double> lengths(curves, 0);
+  for (const LaidPiece& piece : pieces) {
+    const auto is_off = [&](const std::array<uint32_t, 2>& edge) { return is_back[edge[0]] || is_back[edge[1]]; };
+    if (std::none_of(piece.edges.begin(), piece.edges.end(), is_off)) lengths[piece.curve] += piece.length_world;
+  }
+  return lengths;
 }
 
 void LaidCurves::take_back_turned() {
@@ -194,18 +204,18 @@ LaidCurves lay_curves(const FeatureMesh& mesh, const CurveNetwork& network, cons
   MeshWithLines embedded = embed_lines(std::move(on), near.lines, {}, kSameVertex * voxel);
   LaidCurves laid;
   laid.on_sheet = embedded.mesh.vertices;
+  laid.is_back.assign(laid.on_sheet.size(), 0);
   move_to_curves(curves, near, embedded);
   laid.mesh = std::move(embedded.mesh);
   laid.take_back_turned();
   laid.mesh.rounding_world = voxel / (2 * kOneVoxelQ8);
-  laid.length_world.assign(network.curves.size(), 0);
   std::vector<EdgeList> edges_of(network.curves.size());
   for (size_t s = 0; s < near.segment.size(); ++s) {
     if (std::binary_search(embedded.lost_segments.begin(), embedded.lost_segments.end(), s)) continue;
     const auto [from, to] = curves.segments[near.segment[s]];
     const uint32_t curve = curves.curve[near.segment[s]];
-    laid.length_world[curve] += length(curves.points[to] - curves.points[from]);
     edges_of[curve].insert(edges_of[curve].end(), embedded.ways[s].begin(), embedded.ways[s].end());
+    laid.pieces.push_back({curve, length(curves.points[to] - curves.points[from]), std::move(embedded.ways[s])});
   }
   const Turns turns(laid.mesh);
   for (size_t c = 0; c < edges_of.size(); ++c) {

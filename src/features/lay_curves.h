@@ -6,12 +6,22 @@
 
 namespace isoshell {
 
+/// A piece of a curve of the network, and the edges that it was laid onto.
+struct LaidPiece {
+  uint32_t curve;
+  double length_world;
+  EdgeList edges;
+};
+
 struct LaidCurves {
   FeatureMesh mesh;  ///< the sheet, cut into more triangles; vertices of curves are where the curves are
   std::vector<WorldPoint> on_sheet;  ///< per vertex its place on the sheet
+  std::vector<uint8_t> is_back;      ///< per vertex whether it was taken back there
   EdgeList creases, seams, lines;    ///< edges of the mesh, ascending
-  std::vector<double> length_world;  ///< per curve of the network, of what was laid
+  std::vector<LaidPiece> pieces;
 
+  /// Of so many curves of the network what was laid, and whose vertices are where the curve is.
+  std::vector<double> lengths_world(size_t curves) const;
   /// Moves a vertex to its place on the sheet. Result: whether it was elsewhere.
   bool take_back(uint32_t vertex);
   /// The same of the vertices of triangles that are turned over, until none is: near walls, in crevices.

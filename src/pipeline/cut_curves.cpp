@@ -205,7 +205,7 @@ SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double
   const CurveNetwork on_sheet = find_curves(laid.mesh, given);
   if (on_sheet.curves.empty()) throw Error(ErrorCode::usage, "features", against);
   const std::vector<LostCurve> all = describe(mesh, network);
-  CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.length_world), true};
+  CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.lengths_world(all.size())), true};
   report.features.on_sheet = against;
   return cut_network(laid.mesh, on_sheet, given, std::move(source), vertex_target(options, p), options, p, report,
                      context);
