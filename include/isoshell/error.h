@@ -1,4 +1,4 @@
-// The one exception type of the public face. Its code maps one to one to an exit status of the command.
+// The exception of the public face. Its code maps one to one to an exit status of the command.
 #pragma once
 
 #include <stdexcept>
@@ -30,6 +30,13 @@ class Error : public std::runtime_error {
  private:
   ErrorCode code_;
   std::string stage_;
+};
+
+/// Of code `usage`: what is asked has no room on this surface, on this grid or in this memory, though nothing is wrong
+/// with how it was asked. A run that knows another way tries that.
+class NoRoom : public Error {
+ public:
+  NoRoom(std::string stage, const std::string& message) : Error(ErrorCode::usage, std::move(stage), message) {}
 };
 
 }  // namespace isoshell

@@ -101,6 +101,7 @@ struct FeatureReport {
   int64_t segments = 0;          ///< edges of the result on curves, borders too
   int64_t border_loops = 0;      ///< of the result
   double length_world = 0;       ///< of the curves found
+  double kept_length_world = 0;  ///< of these the length that the result has as edges
   double passed_over_world = 0;  ///< length of sharp edges that were not taken for creases: of scans, or too short
   std::vector<LostCurve> lost;   ///< in the order of the curves, after the lines
 };

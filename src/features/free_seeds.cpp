@@ -111,10 +111,10 @@ FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) cons
     taken += double(on_border[p]) / 2 - double(patches_[p].euler);
   }
   if (vertices < places + least)
-    throw Error(ErrorCode::usage, "features",
-                std::to_string(vertices) + " vertices are too few: curves and corners take " + std::to_string(places) +
-                    (least > 0 ? ", and closed parts without curves " + std::to_string(least) : std::string()) +
-                    "; use more vertices, or a higher angle from which on edges are features");
+    throw NoRoom("features",
+                 std::to_string(vertices) + " vertices are too few: curves and corners take " + std::to_string(places) +
+                     (least > 0 ? ", and closed parts without curves " + std::to_string(least) : std::string()) +
+                     "; use more vertices, or a higher angle from which on edges are features");
   const double per_share = (double(vertices - places) + taken) / shares;
   std::vector<double> demand, area;
   for (size_t p = 0; p < patches_.size(); ++p) {
@@ -139,10 +139,10 @@ void FreeSeeds::fill(int64_t seeds, std::vector<double> demand, std::vector<doub
     const auto is_wanted = [](double d) { return d > 0; };
     if (std::none_of(demand.begin(), demand.end(), is_wanted)) demand = area;
     if (std::none_of(demand.begin(), demand.end(), is_wanted))
-      throw Error(ErrorCode::usage, "features",
-                  std::to_string(seeds) +
-                      " seeds are too many for the patches, whose vertices are too few; cut the surface for a shorter "
-                      "edge length, or use fewer vertices");
+      throw NoRoom("features",
+                   std::to_string(seeds) +
+                       " seeds are too many for the patches, whose vertices are too few; cut the surface for a shorter "
+                       "edge length, or use fewer vertices");
     const std::vector<int64_t> more = shared(seeds, demand);
     for (size_t p = 0; p < patches_.size(); ++p) {
       const int64_t room = std::max<int64_t>(0, patches_[p].inside / 2 - counts[p]), takes = std::min(more[p], room);

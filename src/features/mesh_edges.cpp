@@ -12,9 +12,9 @@ namespace isoshell {
 MeshEdges find_mesh_edges(const FeatureMesh& mesh) {
   constexpr size_t kMostTriangles = UINT32_MAX / 3;
   if (mesh.triangles.size() > kMostTriangles)
-    throw Error(ErrorCode::usage, "features",
-                "the input has " + std::to_string(mesh.triangles.size()) + " triangles; features can be found on " +
-                    std::to_string(kMostTriangles) + " at most, simplify it");
+    throw NoRoom("features", "the input has " + std::to_string(mesh.triangles.size()) +
+                                 " triangles; features can be found on " + std::to_string(kMostTriangles) +
+                                 " at most, simplify it");
   const EdgeSides sides = find_edge_sides(mesh.triangles, mesh.vertices.size());
   Buffer<int64_t> first(sides.first.size());
   first[sides.count()] = 0;

@@ -120,9 +120,8 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
     first_triangle.push_back(first_triangle.back() + f.triangles.size());
   }
   if (first_triangle.back() > kNone / 3)
-    throw Error(ErrorCode::usage, "features",
-                "the surface takes " + std::to_string(first_triangle.back()) + " triangles; at most " +
-                    std::to_string(kNone / 3) + " can be numbered: ask for longer edges");
+    throw NoRoom("features", "the surface takes " + std::to_string(first_triangle.back()) + " triangles; at most " +
+                                 std::to_string(kNone / 3) + " can be numbered: ask for longer edges");
   mesh.position.resize(first_vertex.back());
   mesh.edge_length.resize(first_vertex.back());
   mesh.triangles.resize(first_triangle.back());

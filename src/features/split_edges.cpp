@@ -168,10 +168,10 @@ void SplitEdges::count_points(const FineMesh& mesh, const std::vector<InnerPoint
   });
   const double most = most_points(mesh, memory_bytes), total = std::accumulate(asked.begin(), asked.end(), 0.0);
   if (total > most)
-    throw Error(ErrorCode::usage, "features",
-                "cut into parts, the input's edges take more than " + std::to_string(int64_t(most)) +
-                    " points, more than its area or the memory limit allows: it has long thin triangles; mesh the " +
-                    "input without features, give it better triangles first, or ask for longer edges");
+    throw NoRoom("features",
+                 "cut into parts, the input's edges take more than " + std::to_string(int64_t(most)) +
+                     " points, more than its area or the memory limit allows: it has long thin triangles; mesh the " +
+                     "input without features, give it better triangles first, or ask for longer edges");
   uint32_t next = uint32_t(mesh.position.size());
   for (size_t i = 0; i < parts_.size(); ++i) {
     const bool is_on_path = parts_[i].on_path != kNone;

@@ -2,6 +2,7 @@
 #include "pipeline/cut_curves.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "core/half_edge_list.h"
 #include "core/world_vector.h"
@@ -9,6 +10,7 @@
 #include "features/free_seeds.h"
 #include "features/separate_fans.h"
 #include "isoshell/mesh_topology.h"
+#include "pipeline/attempt.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/lay_on_sheet.h"
@@ -66,15 +68,14 @@ int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_ope
   return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
 }
 
-/// An estimate with the fine surface, which has about 21 vertices a seed. Throws: usage where that is above the limit.
+/// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
 int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
   constexpr int64_t kBytesPerSeed = 21 * 350;
   const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
   if (limit > 0 && bytes > limit)
-    throw Error(ErrorCode::usage, "features",
-                "the surface cut along them would take about " + std::to_string(bytes >> 20) +
-                    " MiB, more than the limit of " + std::to_string(limit >> 20) +
-                    "; raise --max-memory, or ask for fewer vertices");
+    throw NoRoom("features", "the surface cut along them would take about " + std::to_string(bytes >> 20) +
+                                 " MiB, more than the limit of " + std::to_string(limit >> 20) +
+                                 "; raise --max-memory, or ask for fewer vertices");
   return bytes;
 }
 
@@ -107,7 +108,7 @@ std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& 
                                     [&](uint64_t e) { return std::binary_search(kept.begin(), kept.end(), e); });
     if (2 * size_t(held) >= edges.size()) continue;
     out.push_back(all[c]);
-    out.back().reason = "the edges are too long for it";
+    out.back().reason = kEdgesTooLong;
   }
   return out;
 }
@@ -121,8 +122,8 @@ struct CutPlan {
   CutOptions how = {};
 };
 
-std::shared_ptr<const CutSurface> make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source,
-                                           FeatureReport& found, Context& context) {
+SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport& found,
+                   Context& context) {
   auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, plan.how, context));
   if (cut->seeds == 0) cut->seeds = plan.seeds;
   const SeedSet fixed = seeds_on_curves(*cut, 0);
@@ -136,8 +137,8 @@ std::shared_ptr<const CutSurface> make_cut(const CutPlan& plan, const CurveNetwo
 
 /// The same without the creases around patches that are too small for the edges of the result. Null where there are
 /// none to leave out. Throws: as cut_surface.
-std::shared_ptr<const CutSurface> cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSource source,
-                                                  RemeshReport& report, Context& context) {
+SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSource source, RemeshReport& report,
+                          Context& context) {
   const FeatureMesh& mesh = plan.mesh;
   CurveOptions without_small = plan.curves;
   without_small.drops_small_patches = true;
@@ -152,10 +153,7 @@ std::shared_ptr<const CutSurface> cut_along_fewer(const CutPlan& plan, const Cur
   return make_cut(plan, network, std::move(source), report.features, context);
 }
 
-using SharedCut = std::shared_ptr<const CutSurface>;
-
-/// Cuts a mesh along its curves, or along fewer where there is no room for all. Throws: usage where that cannot be
-/// done.
+/// Cuts a mesh along its curves, or along fewer where there is no room for all. Throws: NoRoom where there is none.
 SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
                       CutSource source, int64_t seeds, const RemeshOptions& options, const Prepared& p,
                       RemeshReport& report, Context& context) {
@@ -171,7 +169,7 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
     return std::string();
   });
   if (!cut) cut = cut_along_fewer(plan, network, std::move(source), report, context);
-  if (!cut) throw Error(ErrorCode::usage, "features", refused);
+  if (!cut) throw NoRoom("features", refused);
   return cut;
 }
 
@@ -188,13 +186,24 @@ std::vector<LostCurve> not_laid(const std::vector<LostCurve>& curves, const std:
   return lost;
 }
 
-/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Throws: usage where that
-/// cannot be done.
+/// Of each curve on the sheet the number of the one that was laid there.
+void name_as_laid(const LaidCurves& laid, const CurveNetwork& on_sheet, std::vector<LostCurve>& curves) {
+  std::unordered_map<uint64_t, uint32_t> curve_of;
+  for (const LaidPiece& piece : laid.pieces)
+    for (const auto& [a, b] : piece.edges) curve_of.emplace(edge_key(a, b), piece.curve);
+  for (size_t c = 0; c < curves.size(); ++c) {
+    const auto found = curve_of.find(edges_of(on_sheet.curves[c]).front());
+    if (found != curve_of.end()) curves[c].index = found->second;
+  }
+}
+
+/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Null where none of them
+/// is near it. Throws: NoRoom.
 SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
                     const std::string& against, const RemeshOptions& options, const Prepared& p, RemeshReport& report,
                     Context& context) {
   if (p.grown && !p.grown.only_flaps)  // the sheet is beside the surface everywhere
-    throw Error(ErrorCode::usage, "features", against);
+    return nullptr;
   const LaidCurves laid = lay_on_sheet(mesh, network, p, context);
   CurveOptions given;
   given.mode = CreaseMode::given;
@@ -203,9 +212,10 @@ SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double
   given.seams = laid.seams;
   given.lines = laid.lines;
   const CurveNetwork on_sheet = find_curves(laid.mesh, given);
-  if (on_sheet.curves.empty()) throw Error(ErrorCode::usage, "features", against);
+  if (on_sheet.curves.empty()) return nullptr;
   const std::vector<LostCurve> all = describe(mesh, network);
   CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.lengths_world(all.size())), true};
+  name_as_laid(laid, on_sheet, source.found);
   report.features.on_sheet = against;
   return cut_network(laid.mesh, on_sheet, given, std::move(source), vertex_target(options, p), options, p, report,
                      context);
@@ -247,7 +257,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
     if (!against.empty() && is_open) return against;
     if (!against.empty()) {
       p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, options, p, report, context);
-      return "";
+      return p.cut ? "" : against;
     }
     const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;

@@ -7,7 +7,6 @@
 
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
-#include "isoshell/error.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
@@ -28,6 +27,8 @@ struct CutSource {
   std::shared_ptr<const CutInput> input = nullptr;  ///< of a closed surface that is no sheet
 };
 
+using SharedCut = std::shared_ptr<const CutSurface>;
+
 /// Of a surface that the options leave open.
 bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
 
@@ -38,20 +39,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const Remesh
 
 /// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason. Null where that
 /// cannot be.
-std::shared_ptr<const CutSurface> cut_sheet_instead(const CutSource& failed, const std::string& why,
-                                                    const RemeshOptions& options, const Prepared& p,
-                                                    RemeshReport& report, Context& context);
-
-/// What stages refuse as too coarse or too narrow for a curve or patch is no error of the user's: the sheet can do it.
-/// Result: why it cannot be done, said by the work or by the stage that refuses; empty where it is done.
-template <class Work>
-std::string reason_against(Work work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    return error.what();
-  }
-}
+SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
+                            const Prepared& p, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -2,6 +2,7 @@
 #include "pipeline/feature_report.h"
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -83,12 +84,16 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
 }
 
 void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report) {
-  if (curves.empty()) return;
-  const WorldPoint& at = curves.front().at;
-  std::ostringstream text;
-  text << counted(int64_t(curves.size()), "crease is", "creases are") << " not kept, the first near " << at.x << ' '
-       << at.y << ' ' << at.z << ": the edges are too long for them; ask for more --vertices";
-  report.warnings.push_back(text.str());
+  std::map<std::string, std::vector<const LostCurve*>> by_reason;
+  for (const LostCurve& curve : curves) by_reason[curve.reason].push_back(&curve);
+  for (const auto& [reason, of_it] : by_reason) {
+    const WorldPoint& at = of_it.front()->at;
+    std::ostringstream text;
+    text << counted(int64_t(of_it.size()), "crease is", "creases are") << " not kept, the first near " << at.x << ' '
+         << at.y << ' ' << at.z << ": "
+         << (reason == kEdgesTooLong ? "the edges are too long for them; ask for more --vertices" : reason);
+    report.warnings.push_back(text.str());
+  }
   report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
 }
 
@@ -115,6 +120,7 @@ void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const s
   }
   features.given_up = why;
   features.on_sheet.clear();
+  features.kept_length_world = 0;
   features.patches = features.vertices = features.segments = features.border_loops = 0;
 }
 

@@ -9,6 +9,9 @@
 
 namespace isoshell {
 
+/// Why a curve is lost whose patches, or whose segments, have no room.
+constexpr const char* kEdgesTooLong = "the edges are too long for it";
+
 /// "border", "edge of three faces", "crease", "seam" or "line".
 const char* name_of(CurveKind kind);
 

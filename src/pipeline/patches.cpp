@@ -20,6 +20,7 @@
 #include "isoshell/readable.h"
 #include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
+#include "pipeline/attempt.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/feature_report.h"
@@ -97,19 +98,31 @@ JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const S
   return join_and_widen(cut, made, vertices, wrong_corners, context);
 }
 
-/// Those that were left out, and those of which less than half is still a curve.
-std::vector<LostCurve> not_kept(const CutSurface& cut) {
-  std::vector<LostCurve> lost = cut.source->left_out;
+/// Of each curve that was found what is still one.
+std::vector<double> kept_lengths_world(const CutSurface& cut) {
   std::vector<double> kept_world(cut.source->found.size(), 0);
   for (const CutCurve& curve : cut.curves)
     kept_world[curve.curve] += curve.length_q8 / kOneVoxelQ8 * cut.frame.voxel_size;
+  for (size_t c = 0; c < kept_world.size(); ++c)
+    kept_world[c] = std::min(kept_world[c], cut.source->found[c].length_world);
+  return kept_world;
+}
+
+/// How long the curves are that the result has, and which it does not have: those that were left out, and those of
+/// which less than half is kept.
+void report_kept(const CutSurface& cut, RemeshReport& report) {
+  const std::vector<double> kept_world = kept_lengths_world(cut);
+  std::vector<LostCurve> lost = cut.source->left_out;
   for (size_t c = 0; c < kept_world.size(); ++c) {
     const LostCurve& found = cut.source->found[c];
+    if (found.kind != name_of(CurveKind::border)) report.features.kept_length_world += kept_world[c];
     if (2 * kept_world[c] >= found.length_world) continue;
     lost.push_back(found);
-    lost.back().reason = "the edges are too long for it";
+    lost.back().reason = kEdgesTooLong;
   }
-  return lost;
+  double& kept_length_world = report.features.kept_length_world;  // edges of three faces may be kept, too
+  kept_length_world = std::min(kept_length_world, report.features.length_world);
+  report_left_out(lost, report);
 }
 
 /// Says which attributes have none that could be kept.
@@ -257,7 +270,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   report.features.vertices = made_here.joined.on_curves;
   report.features.segments = int64_t(mesh.features.curve_edges.size());
   report.features.kept = report.post_done = true;
-  report_left_out(not_kept(cut), report);
+  report_kept(cut, report);
   return std::move(mesh);
 }
 

@@ -6,7 +6,7 @@
 #include "features/curve_seeds.h"
 #include "features/cut_piece.h"
 #include "features/free_seeds.h"
-#include "pipeline/cut_curves.h"
+#include "pipeline/attempt.h"
 #include "pipeline/patches.h"
 #include "pipeline/relax_level.h"
 

@@ -3,12 +3,14 @@
 #include "isoshell/remesh.h"
 
 #include <sstream>
+#include <utility>
 
 #include "core/copy_product.h"
 #include "features/cut_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/to_host.h"
 #include "measure/crossing_corners.h"
+#include "pipeline/attempt.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/cut_curves.h"
@@ -35,13 +37,6 @@ RelaxOptions relax_options(const RemeshOptions& options) {
   if (options.max_step_vox) relax.max_step_q8 = int32_t(*options.max_step_vox * kOneVoxelQ8);
   return relax;
 }
-
-/// Gives the caller the seeds that the mesh has, whether a stage returned or threw: stages take them by moving.
-struct GiveSeedsBack {
-  SeedSet& from;
-  SeedSet& to;
-  ~GiveSeedsBack() { to = std::move(from); }
-};
 
 PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize) {
   return {{p.cut->seeds, options.seed}, relax_options(options), options.tolerance.has_value(), optimize};
@@ -111,67 +106,86 @@ void mesh_on_sheet(const Prepared& p, const RemeshOptions& asked, OptimizeOption
   report.post_done = true;
 }
 
+/// A mesh on a sheet, and how it came about. Of two attempts that is kept which has fewer flaws.
+struct Attempt {
+  SeededMesh made;
+  RemeshReport report;
+
+  /// Cells that are no disks, before pairs of triangles that intersect.
+  std::pair<int64_t, int64_t> flaws() const { return {report.dual.failed_cells, report.post.self_intersections}; }
+};
+
+/// Gives the caller the seeds and the report of an attempt, whether a stage returned or threw: stages take seeds by
+/// moving.
+struct GiveBack {
+  Attempt& from;
+  SeedSet& seeds;
+  RemeshReport& report;
+  ~GiveBack() {
+    seeds = std::move(from.made.seeds);
+    report = std::move(from.report);
+  }
+};
+
+/// From new seeds. Result: why there is none, because of room or memory; empty otherwise.
+std::string try_on_sheet(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize,
+                         Attempt& attempt, Context& context) {
+  try {
+    return reason_against([&]() -> std::string {
+      attempt.made = {};
+      attempt.made.seeds = relax_seeds(p, options, false, attempt.report, context);
+      mesh_on_sheet(p, options, optimize, attempt.made, attempt.report, context);
+      return "";
+    });
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::out_of_memory) throw;
+    return error.what();
+  }
+}
+
+/// Puts another attempt on a sheet in the place of the one that there is, where it has fewer flaws. Its time counts
+/// anyway.
+bool keep_better(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize, Attempt& best,
+                 Context& context) {
+  Attempt other{{}, best.report};
+  const bool is_made = try_on_sheet(p, options, optimize, other, context).empty();
+  if (is_made && other.flaws() < best.flaws()) {
+    best = std::move(other);
+    return true;
+  }
+  best.report.times = std::move(other.report.times);
+  return false;
+}
+
 /// Merges walls where triangles intersect, and makes the mesh anew, while that leaves fewer that do. Null where nothing
 /// was merged.
 std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptions asked,
-                                                  const OptimizeOptions& optimize, SeededMesh& made,
-                                                  RemeshReport& report, Context& context) {
+                                                  const OptimizeOptions& optimize, Attempt& best, Context& context) {
   asked.method = Method::sheet;
   const RemeshOptions options = checked(asked);
-  std::unique_ptr<MergedWalls> best;
+  std::unique_ptr<MergedWalls> kept;
   std::vector<PointQ8> points;
-  for (int merge = 0; merge < kMostMerges && report.post.self_intersections > 0; ++merge) {
-    const std::vector<PointQ8> more = crossing_corners(*OnHost(made.mesh), {});
+  for (int merge = 0; merge < kMostMerges && best.report.post.self_intersections > 0; ++merge) {
+    const std::vector<PointQ8> more = crossing_corners(*OnHost(best.made.mesh), {});
     points.insert(points.end(), more.begin(), more.end());
     sort_places(points);  // a mesh that stays has the same ones again
     auto merged = std::make_unique<MergedWalls>(
-        timed(report, "merge", context, [&] { return merge_walls(p, points, merge, options, context); }));
-    RemeshReport tried = report;
-    SeededMesh again;
-    try {
-      again.seeds = relax_seeds(merged->prepared, options, false, tried, context);
-      mesh_on_sheet(merged->prepared, options, optimize, again, tried, context);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::usage && error.code() != ErrorCode::out_of_memory) throw;
-      continue;  // the mesh that there is stays
-    }
-    if (!tried.post_done || tried.post.self_intersections >= report.post.self_intersections) {
-      report.times = std::move(tried.times);
-      continue;
-    }
-    report = std::move(tried);
-    made = std::move(again);
-    best = std::move(merged);
+        timed(best.report, "merge", context, [&] { return merge_walls(p, points, merge, options, context); }));
+    if (keep_better(merged->prepared, options, optimize, best, context)) kept = std::move(merged);
   }
-  if (best) report_merge(*best, points, report);
-  return best;
+  if (kept) report_merge(*kept, points, best.report);
+  return kept;
 }
 
 /// A frame that cannot be meshed from the one before begins cold, where that gives a better mesh.
-void begin_again_cold(const Prepared& p, RemeshOptions options, const OptimizeOptions& optimize, SeededMesh& made,
-                      RemeshReport& report, Context& context) {
-  const int64_t failed = report.dual.failed_cells, crossing = report.post.self_intersections;
-  if (!report.coherence.began_warm || (failed == 0 && crossing == 0)) return;
+void begin_again_cold(const Prepared& p, RemeshOptions options, const OptimizeOptions& optimize, Attempt& best,
+                      Context& context) {
+  const auto [failed, crossing] = best.flaws();
+  if (!best.report.coherence.began_warm || (failed == 0 && crossing == 0)) return;
   options.previous.reset();
-  RemeshReport tried = report;
-  SeededMesh again;
-  try {
-    again.seeds = relax_seeds(p, options, false, tried, context);
-    mesh_on_sheet(p, options, optimize, again, tried, context);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage && error.code() != ErrorCode::out_of_memory) throw;
-    return;  // the mesh that there is stays
-  }
-  const bool is_better =
-      tried.dual.failed_cells < failed || (failed == 0 && tried.post_done && tried.post.self_intersections < crossing);
-  if (!is_better) {
-    report.times = std::move(tried.times);
-    return;
-  }
-  tried.coherence.why_cold =
+  if (!keep_better(p, options, optimize, best, context)) return;
+  best.report.coherence.why_cold =
       failed > 0 ? "cells of the carried vertices are no disks" : "triangles of the carried vertices intersect";
-  report = std::move(tried);
-  made = std::move(again);
 }
 
 /// Numbers as in the frame before, and how steady the frame is.
@@ -185,10 +199,9 @@ void follow_previous(const RemeshOptions& options, TriangleMesh& mesh, RemeshRep
 SeedSet relax_without_creases(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
   try {
     return relax_seeds(p, options, false, report, context);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    throw Error(ErrorCode::usage, error.stage(),
-                std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
+  } catch (const NoRoom& error) {
+    throw NoRoom(error.stage(),
+                 std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
   }
 }
 
@@ -211,6 +224,23 @@ void warn_of_mesh(const Prepared& p, const SeededMesh& made, int64_t asked, Reme
   report.warnings.push_back(text.str());
 }
 
+/// From relaxed seeds, with all that is tried where the mesh has flaws.
+TriangleMesh triangulate_on_sheet(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize,
+                                  Attempt& best, Context& context) {
+  const int64_t asked = best.report.coherence.began_warm ? vertex_target(options, p) : best.made.seeds.size();
+  mesh_on_sheet(p, options, optimize, best.made, best.report, context);
+  begin_again_cold(p, options, optimize, best, context);
+  const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, options, optimize, best, context);
+  const Prepared& meshed = merged ? merged->prepared : p;
+  warn_of_mesh(meshed, best.made, asked, best.report);
+  measure_edges(meshed.sheet, best.made.seeds, best.made.mesh, best.report.sizing, context);
+  TriangleMesh mesh = to_world(best.made.mesh, meshed.surface.frame);
+  flag_gaps(meshed, OnHost(best.made.seeds)->home.view(), mesh, best.report.gaps);
+  follow_previous(options, mesh, best.report);
+  note_digest(options, best.report, context, "mesh", mesh);
+  return mesh;
+}
+
 }  // namespace
 
 SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
@@ -223,33 +253,22 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   OptimizeOptions optimize;
   optimize.fit = options.fit;
   optimize.uniform_area = options.uniform_area;
-  SeededMesh made;
-  const GiveSeedsBack give_back{made.seeds, seeds};
-  made.seeds = std::move(seeds);
-  if (p.cut && made.seeds.fixed.count > 0) {
+  Attempt best{{}, std::move(report)};
+  const GiveBack give_back{best, seeds, report};
+  best.made.seeds = std::move(seeds);
+  if (p.cut && best.made.seeds.fixed.count > 0) {
     if (std::optional<TriangleMesh> mesh =
-            triangulate_patches(p, made, options, patch_options(p, options, optimize), report, context)) {
-      follow_previous(options, *mesh, report);
-      note_digest(options, report, context, "mesh", *mesh);
+            triangulate_patches(p, best.made, options, patch_options(p, options, optimize), best.report, context)) {
+      follow_previous(options, *mesh, best.report);
+      note_digest(options, best.report, context, "mesh", *mesh);
       return std::move(*mesh);
     }
-    report.post = {};
+    best.report.post = {};
     if (!p.surface.topology.closed && !p.cut->source->is_sheet)
-      warn_of_topology(p, p.surface.topology, options, report);
-    made.seeds = relax_without_creases(p, options, report, context);
+      warn_of_topology(p, p.surface.topology, options, best.report);
+    best.made.seeds = relax_without_creases(p, options, best.report, context);
   }
-  const int64_t asked = report.coherence.began_warm ? vertex_target(options, p) : made.seeds.size();
-  mesh_on_sheet(p, options, optimize, made, report, context);
-  begin_again_cold(p, options, optimize, made, report, context);
-  const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, options, optimize, made, report, context);
-  const Prepared& meshed = merged ? merged->prepared : p;
-  warn_of_mesh(meshed, made, asked, report);
-  measure_edges(meshed.sheet, made.seeds, made.mesh, report.sizing, context);
-  TriangleMesh mesh = to_world(made.mesh, meshed.surface.frame);
-  flag_gaps(meshed, OnHost(made.seeds)->home.view(), mesh, report.gaps);
-  follow_previous(options, mesh, report);
-  note_digest(options, report, context, "mesh", mesh);
-  return mesh;
+  return triangulate_on_sheet(p, options, optimize, best, context);
 }
 
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context) {

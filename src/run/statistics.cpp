@@ -212,6 +212,7 @@ Json features_json(const FeatureReport& f) {
           {"segments", f.segments},
           {"border_loops", f.border_loops},
           {"length", f.length_world},
+          {"kept_length", f.kept_length_world},
           {"passed_over", f.passed_over_world},
           {"given_up", known(f.given_up)},
           {"on_sheet", known(f.on_sheet)},

@@ -169,6 +169,9 @@ TEST_CASE("features: a box that a fin stands on keeps its other edges, on the sh
     for (const uint32_t axis : {1u, 2u, 4u})
       if ((a & axis) == 0) kept += length_on(result.mesh, soup.vertices[a], soup.vertices[a | axis], fine);
   CHECK(kept > .95 * 22);
+  CHECK(result.report.features.kept_length_world > .95 * 22);
+  CHECK(result.report.features.kept_length_world <= result.report.features.length_world);
+  for (const LostCurve& curve : result.report.features.lost) CHECK(curve.index < 12);
   CHECK(measure_quality(result.mesh).theta_min_deg > 20);
   CHECK(digest(result.mesh) == digest(remesh(soup, keeping_creases(1500), more).mesh));
 }

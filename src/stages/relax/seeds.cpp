@@ -35,10 +35,10 @@ int32_t resolution_of(const VoxelSet& voxels) {
 SeedSet place_seeds(const SurfaceMesh& surface, const SeedOptions& options, Context& context) {
   const int64_t most = surface.vertex_count() / 2;
   if (options.count < 4 || options.count > most)
-    throw Error(ErrorCode::usage, "seeds",
-                std::to_string(options.count) + " seeds for a surface of " + std::to_string(surface.vertex_count()) +
-                    " vertices; there must be 4 to half as many as vertices, " + std::to_string(most) +
-                    ": use a finer surface or fewer seeds");
+    throw NoRoom("seeds", std::to_string(options.count) + " seeds for a surface of " +
+                              std::to_string(surface.vertex_count()) +
+                              " vertices; there must be 4 to half as many as vertices, " + std::to_string(most) +
+                              ": use a finer surface or fewer seeds");
   return backend_for(context).place_seeds_on_surface(surface, options, context);
 }
 
@@ -50,15 +50,14 @@ SeedSet place_seeds(const Sheet& sheet, const SeedOptions& options, Context& con
 SeedSet place_seeds(const SiteSet& sites, const SiteSamples& samples, const SeedOptions& options, Context& context) {
   const int64_t most = sites.voxels.voxel_count() / 2;
   if (options.count < 4)
-    throw Error(ErrorCode::usage, "seeds",
-                std::to_string(options.count) + " vertices are too few; it takes at least 4");
+    throw NoRoom("seeds", std::to_string(options.count) + " vertices are too few; it takes at least 4");
   if (options.count > most) {
     const int32_t resolution = resolution_of(sites.voxels);
     const double factor = std::sqrt(double(options.count) / double(std::max<int64_t>(1, most)));
-    throw Error(ErrorCode::usage, "seeds",
-                std::to_string(options.count) + " vertices are too many for resolution " + std::to_string(resolution) +
-                    ", which can carry " + std::to_string(most) + "; use a resolution of at least " +
-                    std::to_string(int64_t(std::ceil(resolution * factor))));
+    throw NoRoom("seeds", std::to_string(options.count) + " vertices are too many for resolution " +
+                              std::to_string(resolution) + ", which can carry " + std::to_string(most) +
+                              "; use a resolution of at least " +
+                              std::to_string(int64_t(std::ceil(resolution * factor))));
   }
   return backend_for(context).place_seeds_on_sites(sites, samples, options, context);
 }
