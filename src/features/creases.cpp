@@ -19,7 +19,7 @@ constexpr double kStraightOn = .5;       // cosine between an edge and the next 
 constexpr int64_t kMostToGrow = 64;      // edges around a vertex: where more meet, none goes on from another
 constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
-constexpr size_t kParts = 3;             // in which chains are judged
+constexpr size_t kParts = 12;            // in which chains are judged
 constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
@@ -115,7 +115,8 @@ class Judge {
         View<const double> filtered_turns, double reach_world)
       : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
 
-  /// Looks at every third chain, then at the next ones of components that may have creases: few are left on a scan.
+  /// Looks at every twelfth chain, then at the next ones of components that may have creases: on a scan, it needs no
+  /// more than show that a quarter of their length is bad.
   /// Sums up what all chains of components are long, and those that were found bad.
   std::vector<Judged> judge(const std::vector<EdgeChain>& chains, std::map<uint32_t, Lengths>& of_component) const {
     std::vector<uint8_t> is_end(edges_.count(), 0);

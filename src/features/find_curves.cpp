@@ -64,14 +64,8 @@ std::vector<CurveEdge> without_creases_at(std::vector<CurveEdge> curve_edges, co
   return curve_edges;
 }
 
-std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges& edges, const CurveOptions& options,
-                                        CreaseReport& report) {
-  std::vector<CurveEdge> found = find_fixed_curve_edges(edges);
-  if (options.mode == CreaseMode::threshold) found = with_creases_above(mesh, edges, found, options.degrees);
-  if (options.mode == CreaseMode::automatic)
-    found = with_creases_beside_smooth(mesh, edges, found, options.edge_length_world, report);
-  if (options.mode == CreaseMode::given)
-    found = with_creases_at(mesh, edges, found, inner_edges(edges, options.creases));
+std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<CurveEdge> found,
+                                        const CurveOptions& options) {
   if (!options.smooth.empty()) found = without_creases_at(std::move(found), inner_edges(edges, options.smooth));
   if (!options.lines.empty()) found = with_edges(found, inner_edges(edges, options.lines), CurveKind::line);
   if (!options.seams.empty()) found = with_edges(found, inner_edges(edges, options.seams), CurveKind::seam);
@@ -124,13 +118,30 @@ std::vector<NumberedCurve> cut_at_corners(const FeatureMesh& mesh, const EdgeCha
 
 }  // namespace
 
-CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report) {
+FoundCreases find_creases(const FeatureMesh& mesh, const CurveOptions& options) {
   check(options);
-  CreaseReport unread;
-  CreaseReport& told = report ? *report : unread;
-  told = {};
-  const MeshEdges edges = find_mesh_edges(mesh);
-  const std::vector<EdgeChain> chains = find_chains(edges, find_curve_edges(mesh, edges, options, told));
+  FoundCreases found;
+  found.edges = find_mesh_edges(mesh);
+  const MeshEdges& edges = found.edges;
+  std::vector<CurveEdge>& all = found.curve_edges;
+  all = find_fixed_curve_edges(edges);
+  if (options.mode == CreaseMode::threshold) all = with_creases_above(mesh, edges, all, options.degrees);
+  if (options.mode == CreaseMode::automatic)
+    all = with_creases_beside_smooth(mesh, edges, all, options.edge_length_world, found.report);
+  if (options.mode == CreaseMode::given) all = with_creases_at(mesh, edges, all, inner_edges(edges, options.creases));
+  return found;
+}
+
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report) {
+  return find_curves(mesh, options, find_creases(mesh, options), report);
+}
+
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, FoundCreases found,
+                         CreaseReport* report) {
+  CreaseReport& told = found.report;
+  const MeshEdges& edges = found.edges;
+  const std::vector<EdgeChain> chains =
+      find_chains(edges, find_curve_edges(mesh, edges, std::move(found.curve_edges), options));
 
   std::vector<std::vector<NumberedCurve>> cut(chains.size());
   for_each_index(size_t(0), chains.size(),
@@ -150,6 +161,7 @@ CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, C
   network.corners.erase(std::unique(network.corners.begin(), network.corners.end()), network.corners.end());
   for (const EdgeChain& chain : chains)
     if (chain.kind == CurveKind::crease) told.kept_length_world += length_of(mesh, chain);
+  if (report) *report = told;
   return network;
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "features/feature_mesh.h"
+#include "features/edge_chains.h"
 
 namespace isoshell {
 
@@ -35,11 +35,24 @@ struct CreaseReport {
   int64_t components_without_creases = 0;  ///< of those, taken for a scan or an organic shape as a whole
 };
 
+/// The creases of a mesh, before seams and lines join them and small ones are dropped.
+struct FoundCreases {
+  MeshEdges edges;
+  std::vector<CurveEdge> curve_edges;  ///< with borders and non-manifold edges, ascending
+  CreaseReport report;                 ///< without the length that is kept
+};
+
+/// Of the options only the mode, the edge length and what the mode asks for matter. Throws: usage.
+FoundCreases find_creases(const FeatureMesh& mesh, const CurveOptions& options);
+
 /// Result: every border and non-manifold edge, the seams and lines, and the creases of the mode, less dangling and
 /// looping ones shorter than 2 h. A seam or line at a crease is a crease, a line at a seam is a seam. Corners are
 /// vertices with another number of curve edges than two or edges of two kinds, and those where a curve turns by more
 /// than 45 degrees between chords of .7 h. An open curve runs from its smaller corner (from the smaller edge of two at
 /// the same corner); a loop from its smallest vertex along the smaller edge. Throws: usage.
 CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report = nullptr);
+/// The same from the creases that were found with these options.
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, FoundCreases found,
+                         CreaseReport* report = nullptr);
 
 }  // namespace isoshell

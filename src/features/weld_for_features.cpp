@@ -3,12 +3,24 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "core/buckets.h"
+#include "features/split_edges.h"
+#include "isoshell/distance.h"
 
 namespace isoshell {
 namespace {
+
+/// Positions that are used, ascending and once each, and per vertex its place among them.
+struct WeldedVertices {
+  std::vector<WorldPoint> position;
+  std::vector<uint32_t> place;
+};
+
+WorldPoint without_negative_zero(const WorldPoint& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
 
 /// A vertex of the soup; its position lies beside its number for the sort.
 struct UsedVertex {
@@ -33,19 +45,62 @@ std::vector<UsedVertex> used_by_position(const TriangleSoup& soup) {
   return used;
 }
 
-/// Per vertex of the soup its vertex in the mesh.
-std::vector<uint32_t> weld_vertices(const TriangleSoup& soup, FeatureMesh& mesh) {
-  std::vector<uint32_t> welded(soup.vertices.size(), 0);
+WeldedVertices weld_vertices(const TriangleSoup& soup) {
   const std::vector<UsedVertex> used = used_by_position(soup);
-  mesh.vertices.reserve(used.size());
+  std::vector<WorldPoint> position;
+  position.reserve(used.size());
+  std::vector<uint32_t> place(soup.vertices.size(), 0);
   for (const auto& [p, v] : used) {
-    const bool is_known = !mesh.vertices.empty() && mesh.vertices.back().x == p.x && mesh.vertices.back().y == p.y &&
-                          mesh.vertices.back().z == p.z;
-    if (!is_known) mesh.vertices.push_back({p.x + 0.0, p.y + 0.0, p.z + 0.0});  // -0 becomes 0
-    welded[v] = uint32_t(mesh.vertices.size() - 1);
+    const bool is_known =
+        !position.empty() && position.back().x == p.x && position.back().y == p.y && position.back().z == p.z;
+    if (!is_known) position.push_back(without_negative_zero(p));
+    place[v] = uint32_t(position.size() - 1);
   }
+  return {std::move(position), std::move(place)};
+}
+
+/// A point of a lattice, as a number to sort by.
+struct NumberedPoint {
+  uint64_t x_y;
+  uint32_t z, number;
+
+  bool operator<(const NumberedPoint& o) const { return x_y != o.x_y ? x_y < o.x_y : z < o.z; }
+};
+
+bool are_all_used(const LatticeSurface& surface) {
+  std::vector<uint8_t> is_used(size_t(surface.points.size()), 0);
+  const auto use = [&](uint32_t v) { __atomic_store_n(&is_used[v], uint8_t(1), __ATOMIC_RELAXED); };
+  for_each_index(int64_t(0), surface.triangles.size(), [&](int64_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    use(a), use(b), use(c);
+  });
+  return std::find(is_used.begin(), is_used.end(), 0) == is_used.end();
+}
+
+/// Points of a lattice are in the order of their positions in the world. None where some are not used, and where the
+/// lattice is so fine and so far from the origin that rounding makes neighbours one.
+std::optional<WeldedVertices> vertices_of(const LatticeSurface& surface) {
+  if (!are_all_used(surface)) return {};
+  const size_t count = size_t(surface.points.size());
+  Buffer<NumberedPoint> points(surface.points.size());
+  for_each_index(uint32_t(0), uint32_t(count), [&](uint32_t v) {
+    const PointQ8& q = surface.points[v];
+    points[v] = {uint64_t(uint32_t(q.x)) << 32 | uint32_t(q.y), uint32_t(q.z), v};
+  });
+  tbb::parallel_sort(points.begin(), points.end());
+  WeldedVertices welded{std::vector<WorldPoint>(count), std::vector<uint32_t>(count)};
+  for_each_index(uint32_t(0), uint32_t(count), [&](uint32_t i) {
+    const uint32_t v = points[i].number;
+    welded.position[i] = without_negative_zero(surface.frame.to_world(surface.points[v]));
+    welded.place[v] = i;
+  });
+  for (size_t i = 1; i < count; ++i)
+    if (!is_before(welded.position[i - 1], welded.position[i])) return {};
   return welded;
 }
+
+std::array<uint32_t, 3> corners_of(const std::array<uint32_t, 3>& t) { return t; }
+std::array<uint32_t, 3> corners_of(const TriangleIndices& t) { return {t.a, t.b, t.c}; }
 
 /// A triangle among those of its smallest corner.
 struct WeldedTriangle {
@@ -62,10 +117,12 @@ struct WeldedTriangle {
 };
 using WeldedTriangles = Buckets<WeldedTriangle>;
 
-WeldedTriangles by_smallest_corner(const TriangleSoup& soup, const std::vector<uint32_t>& welded, size_t vertices) {
-  return sort_into_buckets<WeldedTriangle>(int64_t(vertices), int64_t(soup.triangles.size()), [&](int64_t t, auto put) {
-    const auto& corner = soup.triangles[size_t(t)];
-    const uint32_t c[3] = {welded[corner[0]], welded[corner[1]], welded[corner[2]]};
+template <class Triangle>
+WeldedTriangles by_smallest_corner(View<const Triangle> triangles, const WeldedVertices& welded) {
+  const auto vertices = int64_t(welded.position.size());
+  return sort_into_buckets<WeldedTriangle>(vertices, triangles.size, [&](int64_t t, auto put) {
+    const std::array<uint32_t, 3> corner = corners_of(triangles[t]);
+    const uint32_t c[3] = {welded.place[corner[0]], welded.place[corner[1]], welded.place[corner[2]]};
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return;
     const size_t first = size_t(std::min_element(c, c + 3) - c);
     const uint32_t a = c[(first + 1) % 3], b = c[(first + 2) % 3];
@@ -81,12 +138,11 @@ void for_each_first(const WeldedTriangles& all, int64_t vertex, Visit visit) {
     if (i == 0 || in[i].others != in[i - 1].others) visit(in[i]);
 }
 
-}  // namespace
-
-FeatureMesh weld_for_features(const TriangleSoup& soup) {
+template <class Triangle>
+FeatureMesh weld_triangles(View<const Triangle> triangles, WeldedVertices welded) {
+  const WeldedTriangles all = by_smallest_corner(triangles, welded);
   FeatureMesh mesh;
-  const std::vector<uint32_t> welded = weld_vertices(soup, mesh);
-  const WeldedTriangles all = by_smallest_corner(soup, welded, mesh.vertices.size());
+  mesh.vertices = std::move(welded.position);
   Buffer<int64_t> first(all.first.size());
   first[all.count()] = 0;
   for_each_index(int64_t(0), all.count(), [&](int64_t v) {
@@ -105,6 +161,23 @@ FeatureMesh weld_for_features(const TriangleSoup& soup) {
     });
   });
   return mesh;
+}
+
+}  // namespace
+
+FeatureMesh weld_for_features(const TriangleSoup& soup) {
+  const View<const std::array<uint32_t, 3>> triangles{soup.triangles.data(), int64_t(soup.triangles.size())};
+  return weld_triangles(triangles, weld_vertices(soup));
+}
+
+FeatureMesh weld_for_features(const LatticeSurface& surface) {
+  if (std::optional<WeldedVertices> vertices = vertices_of(surface))
+    return weld_triangles(surface.triangles.view(), std::move(*vertices));
+  TriangleMesh mesh = to_world(surface);
+  TriangleSoup soup;
+  soup.vertices = std::move(mesh.vertices);
+  soup.triangles = std::move(mesh.triangles);
+  return weld_for_features(soup);
 }
 
 }  // namespace isoshell

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "features/feature_mesh.h"
-#include "isoshell/surface_source.h"
+#include "isoshell/lattice_surface.h"
 
 namespace isoshell {
 
@@ -11,5 +11,8 @@ namespace isoshell {
 /// whichever way it faces. So the mesh depends on the order of the soup in source_face only, and where triangles that
 /// face each other have the same corners. Cost: a sort of the vertices, and sorts of the triangles of each.
 FeatureMesh weld_for_features(const TriangleSoup& soup);
+
+/// The same of to_world(surface), which is in host memory. Cost: less, as its points are distinct whole numbers.
+FeatureMesh weld_for_features(const LatticeSurface& surface);
 
 }  // namespace isoshell

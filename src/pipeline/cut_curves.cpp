@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "core/half_edge_list.h"
+#include "core/watched.h"
 #include "core/world_vector.h"
 #include "features/curve_seeds.h"
 #include "features/free_seeds.h"
@@ -240,13 +241,15 @@ SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, con
   return cut;
 }
 
-bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, const RemeshOptions& options, Prepared& p,
-               RemeshReport& report, Context& context) {
+bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
+               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {
   CreaseReport creases;
   FeatureReport& found = report.features;
   std::vector<LostCurve> all;
   const std::string why = reason_against([&]() -> std::string {
-    const CurveNetwork network = find_curves(mesh, curves, &creases);
+    const CurveNetwork network = run_with_threads(context, [&] {
+      return find_curves(mesh, curves, known ? *std::move(known) : find_creases(mesh, curves), &creases);
+    });
     const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
     report_found(mesh, network, is_open, found);
     warn_of_branches(mesh, network, report);

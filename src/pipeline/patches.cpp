@@ -12,7 +12,6 @@
 #include "features/cut_surface.h"
 #include "features/find_curves.h"
 #include "features/split_edges.h"
-#include "features/weld_for_features.h"
 #include "features/widen_angles.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
@@ -22,6 +21,7 @@
 #include "measure/crossing_corners.h"
 #include "pipeline/attempt.h"
 #include "pipeline/choose_grid.h"
+#include "pipeline/crease_search.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/flag_gaps.h"
@@ -34,23 +34,6 @@
 
 namespace isoshell {
 namespace {
-
-CurveOptions curve_options(const RemeshOptions& options, double edge_length_world) {
-  const Features::Creases creases = options.features.creases;
-  const CreaseMode mode = creases == Features::Creases::off         ? CreaseMode::off
-                          : creases == Features::Creases::automatic ? CreaseMode::automatic
-                                                                    : CreaseMode::threshold;
-  return {mode, options.features.degrees, edge_length_world};
-}
-
-/// The snapped surface: what a stage file holds, so that a run that resumes finds the same features.
-TriangleSoup soup_of(const LatticeSurface& surface) {
-  TriangleMesh mesh = to_world(surface);
-  TriangleSoup soup;
-  soup.vertices = std::move(mesh.vertices);
-  soup.triangles = std::move(mesh.triangles);
-  return soup;
-}
 
 /// Flags vertices on faces that close gaps.
 void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
@@ -137,6 +120,12 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
   });
 }
 
+/// What the search found that began with the surface, or the surface alone.
+SearchedSurface searched_surface(Prepared& p, const Context& context) {
+  if (const std::shared_ptr<CreaseSearch> search = std::move(p.creases)) return search->result();
+  return {feature_mesh_of(*OnHost(p.surface), context), {}};
+}
+
 /// The mesh's vertices where the ends of edges were snapped to; of edges that are no longer there none.
 EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const FeatureMesh& mesh,
                      const LatticeFrame& frame) {
@@ -214,7 +203,8 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       !may_keep_borders(options, p))
     return;
   timed(report, "features", context, [&] {
-    FeatureMesh mesh = weld_for_features(soup_of(*OnHost(p.surface)));
+    SearchedSurface searched = searched_surface(p, context);
+    FeatureMesh& mesh = searched.mesh;
     CurveOptions curves = curve_options(options, edge_world);
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
     if (curves.mode != CreaseMode::off) curves.lines = vertices_of(source.interfaces, mesh, p.surface.frame);
@@ -226,15 +216,15 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       curves.lines = std::move(embedded.followed[1]);
       curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
     }
-    mesh.rounding_world = p.surface.frame.voxel_size / (2 * kOneVoxelQ8);
     const size_t lost_lines = report.features.lost.size();
-    if (cut_along(mesh, curves, options, p, report, context) || curves.seams.empty()) return;
+    if (cut_along(mesh, curves, std::move(searched.creases), options, p, report, context) || curves.seams.empty())
+      return;
     keep_lost_seams(report.features.lost, lost_lines);
     const int64_t seams_apart = report.features.seams;  // from creases and borders
     report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
                              " are not kept: " + report.features.given_up + "; triangles lie across seams";
     curves.seams.clear();
-    cut_along(mesh, curves, options, p, report, context);
+    cut_along(mesh, curves, {}, options, p, report, context);
   });
 }
 

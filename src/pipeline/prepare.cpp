@@ -12,6 +12,7 @@
 #include "isoshell/to_host.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
+#include "pipeline/crease_search.h"
 #include "pipeline/flaps.h"
 #include "pipeline/joined_parts.h"
 #include "pipeline/patches.h"
@@ -39,6 +40,7 @@ class Preparation {
   Prepared from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
     Prepared p;
     p.surface = std::move(surface);
+    p.creases = begin_crease_search(options_, p.surface, report_, context_);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
     const bool shows_handles = shows_most_handles(options_, p.surface.topology);
@@ -250,13 +252,6 @@ void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options
   note_digest(options, report, context, "sites", p.sites);
   note_digest(options, report, context, "samples", p.samples);
   note_digest(options, report, context, "sheet", p.sheet);
-}
-
-/// A field of one length that decides the count is an edge length.
-RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
-  if (options.sizing && !options.vertices && options.adaptivity <= 0)
-    if (const double length = even_length_world(*options.sizing, soup); length > 0) options.edge_length_world = length;
-  return options;
 }
 
 /// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.

@@ -147,6 +147,14 @@ void measure_edges(const SurfaceMesh& surface, double voxel_size, double edge_of
   report.edge_error_mean = sum / double(3 * triangles.size());
 }
 
+/// The length that a field has at all vertices of the soup, or 0 when it varies or says nothing somewhere.
+double even_length_world(const SizingField& field, const TriangleSoup& soup) {
+  const std::vector<double> length = field.lengths_at(soup.vertices);
+  for (const double l : length)
+    if (l != length[0]) return 0;
+  return length.empty() ? 0 : length[0];
+}
+
 }  // namespace
 
 bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
@@ -164,11 +172,10 @@ AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p) {
 
 bool wants_lengths(const RemeshOptions& options) { return options.sizing || options.adaptivity > 0; }
 
-double even_length_world(const SizingField& field, const TriangleSoup& soup) {
-  const std::vector<double> length = field.lengths_at(soup.vertices);
-  for (const double l : length)
-    if (l != length[0]) return 0;
-  return length.empty() ? 0 : length[0];
+RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
+  if (options.sizing && !options.vertices && options.adaptivity <= 0)
+    if (const double length = even_length_world(*options.sizing, soup); length > 0) options.edge_length_world = length;
+  return options;
 }
 
 void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {

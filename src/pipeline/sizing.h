@@ -16,8 +16,8 @@ bool field_decides(const RemeshOptions& options);
 /// What is asked for of a surface that is cut; nothing where lengths are all equal.
 AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p);
 
-/// The length that a field has at all vertices of the soup, or 0 when it varies or says nothing somewhere.
-double even_length_world(const SizingField& field, const TriangleSoup& soup);
+/// A field that decides the count, and has one length at all vertices of the soup, is an edge length.
+RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup);
 
 /// Gives the sheet its edge lengths, none when they are all equal; then p.vertices where the field decides it.
 void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);

@@ -1,0 +1,40 @@
+// Creases of a snapped surface, looked for while a device works on the same surface.
+#pragma once
+
+#include <future>
+#include <optional>
+
+#include "features/find_curves.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// How curves are looked for on a surface with edges of this length; without seams and lines.
+CurveOptions curve_options(const RemeshOptions& options, double edge_length_world);
+
+/// The snapped surface, welded: what a stage file holds, so that a run that resumes finds the same features.
+FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& context);
+
+/// What there is to know before seams and lines are.
+struct SearchedSurface {
+  FeatureMesh mesh;
+  std::optional<FoundCreases> creases;  ///< none where find_creases refuses the mesh, and will say so again
+};
+
+/// A search on a thread of its own. Its end waits for it.
+class CreaseSearch {
+ public:
+  CreaseSearch(LatticeSurface surface, const CurveOptions& options, const Context& context);
+  /// Waits. Throws what the search threw. To be called once.
+  SearchedSurface result() { return result_.get(); }
+
+ private:
+  std::future<SearchedSurface> result_;
+};
+
+/// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a
+/// device. Null elsewhere, and where the edge length depends on the sheet. Reports the time of the beginning alone.
+std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const LatticeSurface& surface,
+                                                  RemeshReport& report, Context& context);
+
+}  // namespace isoshell
