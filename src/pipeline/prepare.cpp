@@ -374,8 +374,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
     current = &changed;
     const SoupTopology left = timed(report, "topology", context, [&] { return measure_topology(changed, context); });
     input = left.topology;
-    if (auto joined = join_parts(changed, left, options.boundary == Boundary::keep, report, context))
-      take(std::move(*joined));
+    if (auto mended = join_parts(changed, left, options.boundary == Boundary::keep, report, context))
+      take(std::move(*mended));
   }
   if (input.closed && input.oriented && input.components > 1) {
     const UnionOptions union_options{options.outer_only, voxel_edge(*current, input, options) / 2};
