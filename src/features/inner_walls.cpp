@@ -14,6 +14,9 @@ namespace {
 /// Side 2 t is the front of triangle t, which its normal looks to, and 2 t + 1 its back.
 uint32_t side(uint32_t triangle, bool is_front) { return 2 * triangle + (is_front ? 0 : 1); }
 
+constexpr double kThin = 1e-6;  // height of triangles that have no direction, in terms of their longest edge
+constexpr int kMostThin = 8;    // of them one beside the other
+
 /// A triangle at an edge, seen along the edge.
 struct FaceAtEdge {
   uint32_t triangle;
@@ -29,9 +32,10 @@ bool is_before(const FaceAtEdge& a, const FaceAtEdge& b) {
 
 class Regions {
  public:
-  Regions(const FeatureMesh& mesh, const MeshEdges& edges) : mesh_(mesh), parent_(2 * mesh.triangles.size()) {
+  Regions(const FeatureMesh& mesh, const MeshEdges& edges)
+      : mesh_(mesh), edges_(edges), parent_(2 * mesh.triangles.size()) {
     for (uint32_t s = 0; s < parent_.size(); ++s) parent_[s] = s;
-    join_sides(edges);
+    join_sides();
     volume_.assign(parent_.size(), 0);
     is_seen_from_back_.assign(parent_.size(), 0);
     const WorldPoint& o = mesh.vertices[0];
@@ -57,12 +61,12 @@ class Regions {
   }
   void join_both(uint32_t a, uint32_t b) { join({parent_.data(), int64_t(parent_.size())}, a, b); }
 
-  void join_sides(const MeshEdges& edges) {
+  void join_sides() {
     std::vector<std::pair<uint32_t, uint32_t>> branching;  // edge, triangle
     for (uint32_t t = 0; t < mesh_.triangles.size(); ++t)
-      for (const uint32_t e : edges.of_triangle[t])
-        if (!edges.is_inner(e)) branching.push_back({e, t});
-    for (const FeatureEdge& e : edges.edges)
+      for (const uint32_t e : edges_.of_triangle[t])
+        if (!edges_.is_inner(e)) branching.push_back({e, t});
+    for (const FeatureEdge& e : edges_.edges)
       if (e.use == EdgeUse::inner)
         for (const bool is_front : {false, true}) join_both(side(e.face[0], is_front), side(e.face[1], is_front));
     std::sort(branching.begin(), branching.end());
@@ -70,7 +74,7 @@ class Regions {
       std::vector<uint32_t> faces;
       for (; end < branching.size() && branching[end].first == branching[begin].first; ++end)
         faces.push_back(branching[end].second);
-      join_around(edges.edges[branching[begin].first], faces);
+      join_around(edges_.edges[branching[begin].first], faces);
     }
   }
 
@@ -85,26 +89,66 @@ class Regions {
     }
   }
 
-  /// Its third corner, and whether the triangle passes the edge from the smaller end.
-  std::pair<uint32_t, bool> apex_of(const FeatureEdge& edge, uint32_t triangle) const {
+  /// Whether the triangle passes the edge from the smaller end.
+  bool rises(const FeatureEdge& edge, uint32_t triangle) const {
     const auto& corner = mesh_.triangles[triangle];
     for (size_t i = 0; i < 3; ++i)
-      if (corner[i] != edge.end[0] && corner[i] != edge.end[1]) return {corner[i], corner[(i + 1) % 3] == edge.end[0]};
-    return {corner[0], true};
+      if (corner[i] == edge.end[0]) return corner[(i + 1) % 3] == edge.end[1];
+    return true;
+  }
+
+  double length_sq_of(const FeatureEdge& e) const {
+    return distance_sq(mesh_.vertices[e.end[0]], mesh_.vertices[e.end[1]]);
+  }
+  bool is_thin(uint32_t triangle) const {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    double longest_sq = 0;
+    for (const uint32_t e : edges_.of_triangle[triangle])
+      longest_sq = std::max(longest_sq, length_sq_of(edges_.edges[e]));
+    return length(doubled_area(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c])) <= kThin * longest_sq;
+  }
+
+  /// The triangle that shows where one goes at an edge: where it has no height, as at T-junctions, the one across the
+  /// longest of its other edges.
+  uint32_t with_height(const FeatureEdge& edge, uint32_t triangle) const {
+    const FeatureEdge* behind = &edge;
+    for (int i = 0; i < kMostThin && is_thin(triangle); ++i) {
+      const FeatureEdge* longest = nullptr;
+      for (const uint32_t e : edges_.of_triangle[triangle]) {
+        const FeatureEdge& other = edges_.edges[e];
+        if (other.use != EdgeUse::inner || other.end == behind->end) continue;
+        if (!longest || length_sq_of(other) > length_sq_of(*longest)) longest = &other;
+      }
+      if (!longest) break;
+      triangle = longest->face[0] == triangle ? longest->face[1] : longest->face[0];
+      behind = longest;
+    }
+    return triangle;
+  }
+
+  /// The corner of a triangle that is farthest from an edge, which is seen from its smaller end.
+  WorldPoint apex_of(const FeatureEdge& edge, uint32_t triangle) const {
+    const WorldPoint &from = mesh_.vertices[edge.end[0]], along = mesh_.vertices[edge.end[1]] - from;
+    WorldPoint apex = {0, 0, 0};
+    for (const uint32_t v : mesh_.triangles[with_height(edge, triangle)]) {
+      const WorldPoint to = mesh_.vertices[v] - from;
+      if (length_sq(cross(along, to)) > length_sq(cross(along, apex))) apex = to;
+    }
+    return apex;
   }
 
   /// In a frame that the first triangle gives.
   FaceAtEdge seen_along(const FeatureEdge& edge, uint32_t triangle, uint32_t first) const {
     const WorldPoint &from = mesh_.vertices[edge.end[0]], along = mesh_.vertices[edge.end[1]] - from;
-    const WorldPoint y_axis = cross(along, mesh_.vertices[apex_of(edge, first).first] - from);
+    const WorldPoint y_axis = cross(along, apex_of(edge, first));
     const WorldPoint x_axis = cross(y_axis, along);
-    const auto [apex, rises] = apex_of(edge, triangle);
-    const WorldPoint to = mesh_.vertices[apex] - from;
+    const WorldPoint to = apex_of(edge, triangle);
     // The first axis is longer than the second, by the length of the edge.
-    return {triangle, rises, dot(to, x_axis), triangle == first ? 0 : dot(to, y_axis) * length(along)};
+    return {triangle, rises(edge, triangle), dot(to, x_axis), triangle == first ? 0 : dot(to, y_axis) * length(along)};
   }
 
   const FeatureMesh& mesh_;
+  const MeshEdges& edges_;
   std::vector<uint32_t> parent_;
   std::vector<double> volume_;
   std::vector<uint8_t> is_seen_from_back_;

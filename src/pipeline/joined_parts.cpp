@@ -22,29 +22,6 @@ void warn(const WithoutWalls& found, RemeshReport& report) {
   report.warnings.push_back(text.str());
 }
 
-}  // namespace
-
-std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, RemeshReport& report,
-                                      Context& context) {
-  const InputTopology& given = measured.topology;
-  if (given.boundary_loops > 0) return {};
-  if (measured.dirt.nonmanifold_edges == 0) return join_crossing_parts(soup, given, false, report, context);
-  std::optional<JoinedParts> without_walls = timed(report, "mend", context, [&]() -> std::optional<JoinedParts> {
-    std::optional<WithoutWalls> found = drop_inner_walls(weld_for_features(soup));
-    if (!found || found->interfaces.empty()) return {};
-    JoinedParts joined;
-    joined.soup.vertices = std::move(found->mesh.vertices);
-    joined.soup.triangles = std::move(found->mesh.triangles);
-    joined.soup.faces_in_file = soup.faces_in_file;
-    joined.topology = measure_topology(joined.soup, context).topology;
-    if (!joined.topology.closed || !joined.topology.oriented) return {};
-    warn(*found, report);
-    joined.interfaces = std::move(found->interfaces);
-    return joined;
-  });
-  return without_walls ? std::move(without_walls) : join_crossing_parts(soup, given, false, report, context);
-}
-
 std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given, bool may_be_open,
                                                RemeshReport& report, Context& context) {
   if ((given.boundary_loops > 0 && !may_be_open) || (given.components < 2 && given.genus >= 0)) return {};
@@ -62,6 +39,45 @@ std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const I
     report.join = {"their union is not closed", {}, 0};
     return {};
   });
+}
+
+/// Faces of the soup, and after them those that close its holes.
+TriangleSoup with_caps_last(const FeatureMesh& mesh, const TriangleSoup& from) {
+  TriangleSoup soup;
+  soup.vertices = mesh.vertices;
+  soup.faces_in_file = from.faces_in_file;
+  std::vector<std::array<uint32_t, 3>> caps;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    (mesh.source_face[t] < from.first_cap ? soup.triangles : caps).push_back(mesh.triangles[t]);
+  if (!caps.empty()) soup.first_cap = uint32_t(soup.triangles.size());
+  soup.triangles.insert(soup.triangles.end(), caps.begin(), caps.end());
+  return soup;
+}
+
+/// None where there are no walls.
+std::optional<JoinedParts> without_inner_walls(const TriangleSoup& soup, RemeshReport& report, Context& context) {
+  return timed(report, "mend", context, [&]() -> std::optional<JoinedParts> {
+    std::optional<WithoutWalls> found = drop_inner_walls(weld_for_features(soup));
+    if (!found || found->interfaces.empty()) return {};
+    JoinedParts joined;
+    joined.soup = with_caps_last(found->mesh, soup);
+    joined.topology = measure_topology(joined.soup, context).topology;
+    if (!joined.topology.closed || !joined.topology.oriented) return {};
+    warn(*found, report);
+    joined.interfaces = std::move(found->interfaces);
+    return joined;
+  });
+}
+
+}  // namespace
+
+std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, bool may_be_open,
+                                      RemeshReport& report, Context& context) {
+  const InputTopology& given = measured.topology;
+  std::optional<JoinedParts> joined;
+  if (given.boundary_loops == 0 && measured.dirt.nonmanifold_edges > 0)
+    joined = without_inner_walls(soup, report, context);
+  return joined ? std::move(joined) : join_crossing_parts(soup, given, may_be_open, report, context);
 }
 
 }  // namespace isoshell

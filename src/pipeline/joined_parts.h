@@ -17,13 +17,10 @@ struct JoinedParts {
   int64_t cut_faces = 0;
 };
 
-/// None where there are no such parts, or where the surface is not closed. Warns of walls that are left out.
-std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, RemeshReport& report,
-                                      Context& context);
-
-/// Only of parts that pass through or touch each other (see join_solids.h); with `may_be_open` also beside others that
-/// are open. Says what is left, or why none are joined.
-std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const InputTopology& given, bool may_be_open,
-                                               RemeshReport& report, Context& context);
+/// None where there are no such parts, or where the surface is not closed; with `may_be_open` parts that pass through
+/// or touch each other (see join_solids.h) are joined also beside others that are open. Warns of walls that are left
+/// out, and says what is left, or why none are joined.
+std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopology& measured, bool may_be_open,
+                                      RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -355,22 +355,22 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const auto measure = [&] { return measure_topology(*current, context).topology; };
   PatchSource source{&soup, {}};
   int64_t cut_faces = 0;
-  if (std::optional<JoinedParts> joined = join_parts(soup, measured, report, context)) {
-    changed = std::move(joined->soup);
-    source.interfaces = std::move(joined->interfaces);
-    cut_faces = joined->cut_faces;
+  const auto take = [&](JoinedParts&& joined) {
+    changed = std::move(joined.soup);
+    source.interfaces = std::move(joined.interfaces);
+    cut_faces = joined.cut_faces;
     current = &changed;
-    input = joined->topology;
+    input = joined.topology;
+  };
+  if (std::optional<JoinedParts> joined = join_parts(soup, measured, false, report, context)) {
+    take(std::move(*joined));
   } else if (!given.closed || !given.oriented) {
     changed = timed(report, "mend", context, [&] { return repaired(soup, given, options, report.mend); });
     current = &changed;
-    input = timed(report, "topology", context, measure);
-    if (std::optional<JoinedParts> mended =
-            join_crossing_parts(*current, input, options.boundary == Boundary::keep, report, context)) {
-      changed = std::move(mended->soup);
-      cut_faces = mended->cut_faces;
-      input = mended->topology;
-    }
+    const SoupTopology left = timed(report, "topology", context, [&] { return measure_topology(changed, context); });
+    input = left.topology;
+    if (auto mended = join_parts(changed, left, options.boundary == Boundary::keep, report, context))
+      take(std::move(*mended));
   }
   if (input.closed && input.oriented && input.components > 1) {
     const UnionOptions union_options{options.outer_only, voxel_edge(*current, input, options) / 2};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/world_vector.h"
+#include "repair/missing_faces.h"
 #include "repair/open_soup.h"
 #include "repair/repair_holes.h"
 #include "repair/repair_patches.h"
@@ -69,11 +70,28 @@ void turn_outward(RepairMesh& mesh, const Patches& patches, std::vector<Cap>& ca
     if (mesh.is_live(f) && bodies.is_inward(f)) mesh.turn(f);
 }
 
-/// Per tube a face at either end.
-std::vector<std::array<uint32_t, 2>> faces_that_join(const std::vector<Cap>& tubes) {
+Joins find_joins(const RepairMesh& mesh) {
+  const std::vector<Loop> loops = closed_loops(mesh);
+  Joins joins;
+  joins.faces = find_missing_faces(mesh, loops);
+  joins.tubes = find_tubes(mesh, loops_but(mesh, joins.faces, loops));
+  return joins;
+}
+
+/// Pairs of faces whose patches joins make one.
+std::vector<std::array<uint32_t, 2>> faces_that_join(const Joins& joins) {
   std::vector<std::array<uint32_t, 2>> faces;
-  for (const Cap& tube : tubes) faces.push_back({tube.loop.front() / 3, tube.loop.back() / 3});
+  for (const std::vector<Cap>* caps : {&joins.faces, &joins.tubes})
+    for (const Cap& cap : *caps)
+      for (const uint32_t h : cap.loop) faces.push_back({cap.loop.front() / 3, h / 3});
   return faces;
+}
+
+/// Those whose surface was dropped as an island.
+void forget_dropped(const RepairMesh& mesh, Joins& joins) {
+  const auto is_dropped = [&](const Cap& cap) { return !mesh.is_live(cap.loop[0] / 3); };
+  for (std::vector<Cap>* caps : {&joins.faces, &joins.tubes})
+    caps->erase(std::remove_if(caps->begin(), caps->end(), is_dropped), caps->end());
 }
 
 /// The soup's own triangles in their order, then the caps.
@@ -99,13 +117,12 @@ TriangleSoup repaired(const TriangleSoup& soup, const Closing& closing, bool may
   report.repeated_faces = mesh.repeats();
   drop_fins(mesh, report);
   orient_patches(mesh);
-  std::vector<Cap> tubes;
-  if (closing.holes) tubes = find_tubes(mesh);
-  if (may_drop_islands) drop_islands(mesh, faces_that_join(tubes), report);
-  const auto is_dropped = [&](const Cap& tube) { return !mesh.is_live(tube.loop[0] / 3); };
-  tubes.erase(std::remove_if(tubes.begin(), tubes.end(), is_dropped), tubes.end());
+  Joins joins;
+  if (closing.holes) joins = find_joins(mesh);
+  if (may_drop_islands) drop_islands(mesh, faces_that_join(joins), report);
+  forget_dropped(mesh, joins);
   const Patches patches = find_patches(mesh);
-  std::vector<Cap> caps = cap_holes(mesh, std::move(tubes), closing, report);
+  std::vector<Cap> caps = cap_holes(mesh, std::move(joins), closing, report);
   turn_outward(mesh, patches, caps);
   for (uint32_t f = 0; f < mesh.face_count(); ++f) report.turned_faces += mesh.is_live(f) && mesh.is_turned(f);
   return report.changed_anything() ? repaired_soup(soup, mesh, caps) : soup;

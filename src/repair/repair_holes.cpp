@@ -7,6 +7,7 @@
 
 #include "core/world_vector.h"
 #include "repair/cap_loop.h"
+#include "repair/fill_plane.h"
 #include "voxel/union_find.h"
 
 namespace isoshell::repair {
@@ -54,12 +55,15 @@ class Capper {
   Capper(const RepairMesh& mesh, const Closing& closing, RepairReport& report)
       : mesh_(mesh), closing_(closing), report_(report) {}
 
-  std::vector<Cap> run(std::vector<Cap> tubes, const std::vector<Loop>& loops) {
-    for (Cap& tube : tubes) add_tube(std::move(tube));
+  std::vector<Cap> run(Joins joins, const std::vector<Loop>& loops) {
+    for (Cap& face : joins.faces) add_flat(std::move(face));
+    for (Cap& tube : joins.tubes) add_tube(std::move(tube));
     if (loops.empty()) return std::move(caps_);
     Components components(mesh_);
-    for (const Loop& loop : loops)
-      if (!cap(loop, largest_cap(loop, components.of(mesh_.from(loop[0]))))) ++report_.open_loops;
+    for (const Loop& loop : loops) {
+      const Components::Size& component = components.of(mesh_.from(loop[0]));
+      if (!cap(loop, largest_cap(loop, component)) && !fill(loop, component)) ++report_.open_loops;
+    }
     return std::move(caps_);
   }
 
@@ -71,6 +75,24 @@ class Capper {
     for (uint32_t h : loop) box.add(mesh_.position[mesh_.from(h)]);
     const bool is_short = box.diagonal_sq() <= kLargestHole * kLargestHole * component.box.diagonal_sq();
     return is_short ? component.area : kLargestCrack * component.area;
+  }
+
+  /// Closes a rim that a piece of a flat face left, or the narrow side of a plate. Its faces are not those of least
+  /// area, as in a plane all are: some would be without area, between corners on a line.
+  bool fill(const Loop& loop, const Components::Size& component) {
+    const std::optional<FlatRim> rim = closing_.holes ? flat_rim(mesh_, loop) : std::nullopt;
+    if (!rim || (rim->area > kLargestSide * component.area && !is_piece_of_face(mesh_, loop, *rim))) return false;
+    Cap cap = {loop, fill_plane(mesh_, *rim, loop)};
+    if (cap.face.empty() || !brings_new_chords(cap)) return false;
+    add_flat(std::move(cap));
+    return true;
+  }
+  bool brings_new_chords(const Cap& cap) const {
+    return std::all_of(cap.face.begin(), cap.face.end(), [&](const Corners& c) {
+      return chords_.count(key_of(c[0], c[1])) + chords_.count(key_of(c[1], c[2])) +
+                 chords_.count(key_of(c[2], c[0])) ==
+             0;
+    });
   }
 
   /// The loop in one piece; where that fails because it passes vertices more than once, each simple cycle of it.
@@ -119,7 +141,7 @@ class Capper {
     Cap cap = {loop, {}};
     for (const LoopTriangle& t : triangles) cap.face.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
     count_cap(area, length_of(corner));
-    add(std::move(cap), 1);
+    add(std::move(cap));
     return true;
   }
 
@@ -140,10 +162,15 @@ class Capper {
   static uint64_t key_of(uint32_t u, uint32_t v) { return uint64_t(std::min(u, v)) << 32 | std::max(u, v); }
 
   void add_tube(Cap tube) {
-    for (const Corners& c : tube.face)
-      report_.cap_area_world += triangle_area(mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]);
+    report_.cap_area_world += area_of(tube);
     ++report_.tubes;
-    add(std::move(tube), 2);
+    add(std::move(tube));
+  }
+  void add_flat(Cap face) {
+    double around = 0;
+    for (const uint32_t h : face.loop) around += length(mesh_.position[mesh_.to(h)] - mesh_.position[mesh_.from(h)]);
+    count_cap(area_of(face), around);
+    add(std::move(face));
   }
 
   static double width_of(double area, double length) { return 4 * area / length; }
@@ -155,14 +182,20 @@ class Capper {
     report_.widest_cap_world = std::max(report_.widest_cap_world, width_of(area, length));
   }
 
-  void add(Cap cap, int loops) {
+  void add(Cap cap) {
     for (const Corners& c : cap.face)
       for (size_t i = 0; i < 3; ++i) chords_.insert(key_of(c[i], c[(i + 1) % 3]));
-    report_.capped_loops += loops;
+    report_.capped_loops += cap.loops;
     report_.cap_faces += int64_t(cap.face.size());
     caps_.push_back(std::move(cap));
   }
 
+  double area_of(const Cap& cap) const {
+    double area = 0;
+    for (const Corners& c : cap.face)
+      area += triangle_area(mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]);
+    return area;
+  }
   static double area_of(const std::vector<WorldPoint>& corner, const std::vector<LoopTriangle>& triangles) {
     double area = 0;
     for (const LoopTriangle& t : triangles) area += triangle_area(corner[t[0]], corner[t[1]], corner[t[2]]);
@@ -183,15 +216,18 @@ class Capper {
 
 }  // namespace
 
-std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const Closing& closing,
-                           RepairReport& report) {
-  std::vector<uint8_t> is_joined(size_t(mesh.face_count()) * 3, 0);
-  for (const Cap& tube : tubes)
-    for (uint32_t h : tube.loop) is_joined[h] = 1;
-  std::vector<Loop> loops = closed_loops(mesh);
-  loops.erase(std::remove_if(loops.begin(), loops.end(), [&](const Loop& loop) { return is_joined[loop[0]] != 0; }),
+std::vector<Loop> loops_but(const RepairMesh& mesh, const std::vector<Cap>& caps, std::vector<Loop> loops) {
+  std::vector<uint8_t> is_closed(size_t(mesh.face_count()) * 3, 0);
+  for (const Cap& cap : caps)
+    for (uint32_t h : cap.loop) is_closed[h] = 1;
+  loops.erase(std::remove_if(loops.begin(), loops.end(), [&](const Loop& loop) { return is_closed[loop[0]] != 0; }),
               loops.end());
-  return Capper(mesh, closing, report).run(std::move(tubes), loops);
+  return loops;
+}
+
+std::vector<Cap> cap_holes(const RepairMesh& mesh, Joins joins, const Closing& closing, RepairReport& report) {
+  const std::vector<Loop> loops = loops_but(mesh, joins.tubes, loops_but(mesh, joins.faces, closed_loops(mesh)));
+  return Capper(mesh, closing, report).run(std::move(joins), loops);
 }
 
 }  // namespace isoshell::repair

@@ -13,12 +13,19 @@ struct Closing {
 };
 
 struct Cap {
-  Loop loop;                  ///< what it closes; of a tube both its ends, one after the other
+  Loop loop;                  ///< what it closes; where that are several loops, one after the other
   std::vector<Corners> face;  ///< oriented like the faces around
+  int loops = 1;
 };
-/// Closes loops, all but those that tubes join, and counts those that stay open. Faces agree
-/// in their patches already. Tubes come first, then caps in the order of their smallest half-edges.
-std::vector<Cap> cap_holes(const RepairMesh& mesh, std::vector<Cap> tubes, const Closing& closing,
-                           RepairReport& report);
+/// Caps of several loops each.
+struct Joins {
+  std::vector<Cap> tubes, faces;
+};
+/// Some loops without those that caps close.
+std::vector<Loop> loops_but(const RepairMesh& mesh, const std::vector<Cap>& caps, std::vector<Loop> loops);
+
+/// Closes loops, all but those that are joined, and counts those that stay open. Faces agree in their patches already.
+/// Joins come first, then caps in the order of their smallest half-edges.
+std::vector<Cap> cap_holes(const RepairMesh& mesh, Joins joins, const Closing& closing, RepairReport& report);
 
 }  // namespace isoshell::repair

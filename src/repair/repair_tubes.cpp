@@ -149,8 +149,7 @@ class Strip {
 
 }  // namespace
 
-std::vector<Cap> find_tubes(const RepairMesh& mesh) {
-  const std::vector<Loop> loops = closed_loops(mesh);
+std::vector<Cap> find_tubes(const RepairMesh& mesh, const std::vector<Loop>& loops) {
   const Patches patches = find_patches(mesh);
   const std::vector<double> area = patch_areas(mesh, patches);
   std::vector<Rim> rims;
@@ -169,7 +168,7 @@ std::vector<Cap> find_tubes(const RepairMesh& mesh) {
     if (j <= i || nearest[j] != i) continue;
     const Loop &p = *rims[i].loop, &q = *rims[j].loop;
     if (p.size() * q.size() > kMostRungs) continue;
-    Cap tube = {p, Strip(mesh, p, q).faces()};
+    Cap tube = {p, Strip(mesh, p, q).faces(), 2};
     if (tube.face.empty()) continue;
     tube.loop.insert(tube.loop.end(), q.begin(), q.end());
     tubes.push_back(std::move(tube));

@@ -144,10 +144,21 @@ TEST_CASE("features: an angle decides which edges are creases", "[features]") {
 TEST_CASE("features: an open surface loses its creases, and the run says so", "[features]") {
   TestContext context;
   TriangleSoup soup = shapes::box({0, 0, 0}, {2, 2, 2});
-  soup.triangles.pop_back();
+  soup.triangles.resize(10);  // no lid
   const RemeshResult result = remesh(soup, keeping_creases(400), context);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   if (!result.report.features.kept) CHECK_FALSE(result.report.features.given_up.empty());
+}
+
+TEST_CASE("features: a cube without one of its triangles keeps its twelve creases", "[features]") {
+  TestContext context;
+  TriangleSoup soup = shapes::box({0, 0, 0}, {2, 2, 2});
+  soup.triangles.pop_back();
+  const RemeshResult result = remesh(soup, keeping_creases(400), context);
+  check_valid(result, 400, 0);
+  CHECK(result.report.features.kept);
+  CHECK(result.report.features.curves == 12);
+  CHECK(result.report.features.on_sheet.empty());
 }
 
 TEST_CASE("features: a box that a fin stands on keeps its other edges, on the sheet", "[features]") {

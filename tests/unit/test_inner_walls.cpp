@@ -18,6 +18,31 @@ TriangleSoup boxes_in_a_row(int count) {
   return all;
 }
 
+/// Two boxes, of which one keeps an edge of the wall whole that all others have divided: a triangle without area is
+/// between.
+TriangleSoup boxes_with_junction() {
+  const TriangleSoup all = boxes_in_a_row(2);
+  TriangleSoup divided;
+  divided.vertices = all.vertices;
+  const auto middle = uint32_t(all.vertices.size());
+  divided.vertices.push_back({1, .5, 0});
+  const auto is_on_edge = [&](uint32_t v) { return all.vertices[v].x == 1 && all.vertices[v].z == 0; };
+  for (const auto& t : all.triangles) {
+    size_t i = 0;
+    while (i < 3 && !(is_on_edge(t[i]) && is_on_edge(t[(i + 1) % 3]))) ++i;
+    const uint32_t from = t[i % 3], to = t[(i + 1) % 3], other = t[(i + 2) % 3];
+    if (i == 3 || all.vertices[other].x < 1) divided.triangles.push_back(t);
+    if (i == 3) continue;
+    if (all.vertices[other].x < 1) {
+      divided.triangles.push_back({to, from, middle});
+    } else {
+      divided.triangles.push_back({from, middle, other});
+      divided.triangles.push_back({middle, to, other});
+    }
+  }
+  return divided;
+}
+
 double volume_of(const FeatureMesh& mesh) {
   double volume = 0;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -56,6 +81,14 @@ TEST_CASE("inner walls: it does not matter which way the faces look", "[walls][u
   }
   const auto turned = drop_inner_walls(weld_for_features(shapes::inside_out(soup)));
   CHECK((!turned || volume_of(turned->mesh) > 0));
+}
+
+TEST_CASE("inner walls: a triangle without area goes on as the one behind it", "[walls][unit]") {
+  const auto found = drop_inner_walls(weld_for_features(boxes_with_junction()));
+  REQUIRE(found);
+  CHECK(found->walls == 3);
+  check_closed(found->mesh);
+  CHECK(volume_of(found->mesh) == Approx(2));
 }
 
 TEST_CASE("inner walls: a hollow between parts stays one", "[walls][unit]") {
