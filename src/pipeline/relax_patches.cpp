@@ -103,8 +103,10 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
   const FreeSeeds free_seeds(cut);
   SeedSet fixed = seeds_on_curves(cut, 0);
   const FreeSeeds::Counts counts = free_seeds.counts(fixed, options.seeds.count);
-  return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed),
-                        for_finest_patches(options), context);
+  RelaxOptions relax = for_finest_patches(options);
+  if (!options.tolerance_asked) relax.max_passes = std::min(relax.max_passes, kLastPasses);
+  return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed), relax,
+                        context);
 }
 
 }  // namespace isoshell
