@@ -309,9 +309,9 @@ def dirty(parts, kind):
 DIRTY = ("overlap", "holes", "twice", "turned")
 
 
-def main():
-    folder, count = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 60
-    random = numpy.random.default_rng(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
+def write_parts(folder, count, seed):
+    """The same files for the same count and seed."""
+    random = numpy.random.default_rng(seed)
     os.makedirs(folder, exist_ok=True)
     first_dirty = count - count // 5
     for i in range(count):
@@ -323,4 +323,5 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    given = sys.argv[1:]
+    write_parts(given[0], int(given[1]) if len(given) > 1 else 60, int(given[2]) if len(given) > 2 else 1)
