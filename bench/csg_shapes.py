@@ -17,6 +17,22 @@ from manifold3d import CrossSection, Manifold
 
 SIDES = (12, 16, 24, 32, 48, 64, 96)
 
+# The strokes of letters, in a box of 4 by 6: polylines along their middle.
+LETTERS = {
+    "A": [[(0, 0), (2, 6), (4, 0)], [(0.8, 2.2), (3.2, 2.2)]],
+    "E": [[(4, 0), (0, 0), (0, 6), (4, 6)], [(0, 3), (3, 3)]],
+    "K": [[(0, 0), (0, 6)], [(4, 6), (0, 2.6)], [(1.4, 3.8), (4, 0)]],
+    "M": [[(0, 0), (0, 6), (2, 2.5), (4, 6), (4, 0)]],
+    "O": [[(1.2, 0), (2.8, 0), (4, 1.5), (4, 4.5), (2.8, 6), (1.2, 6), (0, 4.5), (0, 1.5), (1.2, 0)]],
+    "R": [[(0, 0), (0, 6), (3, 6), (4, 5.2), (4, 3.8), (3, 3), (0, 3)], [(1.8, 3), (4, 0)]],
+    "S": [[(0, 0.8), (1, 0), (3, 0), (4, 1), (4, 2.3), (3, 3), (1, 3), (0, 3.8), (0, 5.2), (1, 6), (3, 6), (4, 5.2)]],
+    "T": [[(0, 6), (4, 6)], [(2, 0), (2, 6)]],
+    "X": [[(0, 0), (4, 6)], [(0, 6), (4, 0)]],
+    "2": [[(0, 5), (1, 6), (3, 6), (4, 5), (4, 4), (0, 0), (4, 0)]],
+    "7": [[(0, 6), (4, 6), (1.5, 0)]],
+}
+LETTER_PITCH = 5.6
+
 
 class Parts:
     def __init__(self, random):
@@ -184,8 +200,63 @@ class Parts:
                 part -= hole.translate([(i + 0.5) * pitch, (j + 0.5) * pitch, -1])
         return part
 
+    def stroke(self, line, pen):
+        """What a pen leaves that goes along a polyline."""
+        tips = [pen.translate(list(at)) for at in line]
+        return CrossSection.batch_boolean(
+            [CrossSection.batch_hull(list(pair)) for pair in zip(tips, tips[1:])], manifold3d.OpType.Add)
 
-KINDS = ("plate", "l_bracket", "u_bracket", "gear", "housing", "shaft", "fillet", "tilted", "ring", "grid")
+    def word(self, letters):
+        half = self.between(0.3, 0.6)
+        pen = CrossSection.circle(half, 12) if self.chance() else CrossSection.square([2 * half, 2 * half], True)
+        strokes = [self.stroke(line, pen).translate([LETTER_PITCH * i, 0])
+                   for i, letter in enumerate(letters) for line in LETTERS[letter]]
+        return CrossSection.batch_boolean(strokes, manifold3d.OpType.Add)
+
+    def text(self):
+        """A word on a plate, or in it."""
+        letters = self.random.choice(sorted(LETTERS), self.random.integers(2, 6))
+        wide, thick, deep = LETTER_PITCH * len(letters) + 1, self.between(1, 4), self.between(0.3, 1)
+        part = self.chamfered_plate(wide, 9, thick, 0.4 * min(thick, 3)).translate([-1.3, -1.5, 0])
+        if self.chance(0.3):
+            return part - Manifold.extrude(self.word(letters), thick).translate([0, 0, thick - 0.5 * deep])
+        return part + Manifold.extrude(self.word(letters), thick + deep)
+
+    def ridge(self, profile, pitch, turns, sides):
+        """A section, points (radius, height) around it, that winds around the axis while it rises."""
+        n, count = len(profile), int(sides * turns)
+        angle = numpy.arange(count + 1)[:, None] * 2 * math.pi / sides
+        radius, height = numpy.array(profile).T
+        points = numpy.stack([radius * numpy.cos(angle), radius * numpy.sin(angle),
+                              height + angle * pitch / (2 * math.pi)], -1).reshape(-1, 3)
+        faces = [(0, k, k + 1) for k in range(1, n - 1)]
+        faces += [(count * n, count * n + k + 1, count * n + k) for k in range(1, n - 1)]
+        for i in range(0, count * n, n):
+            for k in range(n):
+                a, b = i + k, i + (k + 1) % n
+                faces += [(b, a, a + n), (b, a + n, b + n)]
+        return Manifold(manifold3d.Mesh(points.astype(numpy.float32), numpy.array(faces, numpy.uint32)))
+
+    def screw(self):
+        radius, turns, sides = self.between(3, 8), self.between(3, 9), int(self.random.choice((24, 32, 48, 64)))
+        pitch = radius * self.between(0.3, 0.6)
+        depth, crest, foot = pitch * self.between(0.4, 0.6), pitch * self.between(0.03, 0.12), 0.46 * pitch
+        root = radius - depth
+        profile = [(0.9 * root, -foot), (root, -foot), (radius, -crest),
+                   (radius, crest), (root, foot), (0.9 * root, foot)]
+        long = pitch * (turns - 1)  # the thread begins in the head and is cut off at the other end
+        part = self.ridge(profile, pitch, turns, sides).translate([0, 0, -0.5 * pitch])
+        part = (part + Manifold.cylinder(2 * long, root, -1, sides)) ^ self.box(
+            (4 * radius, 4 * radius, long + 0.5 * pitch), (-2 * radius, -2 * radius, -0.5 * pitch))
+        high, head = radius * self.between(0.8, 1.5), radius * self.between(1.5, 2)
+        if self.chance():
+            return part + Manifold.cylinder(high, head, -1, 6).translate([0, 0, -high])
+        slot = self.box((3 * head, 0.25 * head, 0.4 * high), (-1.5 * head, -0.125 * head, -1.01 * high))
+        return part + self.cylinder(head, high, (0, 0, -high)) - slot
+
+
+KINDS = ("plate", "l_bracket", "u_bracket", "gear", "housing", "shaft", "fillet", "tilted", "ring", "grid",
+         "text", "screw")
 
 
 def to_trimesh(part):
@@ -238,9 +309,9 @@ def dirty(parts, kind):
 DIRTY = ("overlap", "holes", "twice", "turned")
 
 
-def main():
-    folder, count = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 60
-    random = numpy.random.default_rng(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
+def write_parts(folder, count, seed):
+    """The same files for the same count and seed."""
+    random = numpy.random.default_rng(seed)
     os.makedirs(folder, exist_ok=True)
     first_dirty = count - count // 5
     for i in range(count):
@@ -252,4 +323,5 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    given = sys.argv[1:]
+    write_parts(given[0], int(given[1]) if len(given) > 1 else 60, int(given[2]) if len(given) > 2 else 1)

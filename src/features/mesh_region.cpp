@@ -12,14 +12,8 @@
 namespace isoshell {
 namespace {
 
-constexpr double kGoodSine = 0.587785;     ///< of 36 degrees
-constexpr double kMostCost = 1e6;          ///< of one triangle: a degenerate one
 constexpr double kFollows = 0.94;          ///< cosine between a triangle's normal and the surface's at its corners
 constexpr double kLeastFollows = 0.5;      ///< what a region may begin with
-constexpr double kCostOfPoor = 0.05;       ///< of any angle below 30 degrees, beside its own
-constexpr double kCostOfTurn = 200;        ///< a normal 30 degrees off weighs as much as an angle of 17 degrees
-constexpr double kMostOffCurve = 0.03;     ///< edges from the curve to its chord
-constexpr double kCostOfChord = 0.4;       ///< at twice as far
 constexpr int kRounds = 6;                 ///< of flips and moves
 constexpr double kLeastCost = 1. / 64;     ///< of a triangle that is looked at: its smallest angle is below 32 degrees
 constexpr double kEnough = 1 - 1. / 1024;  ///< of the cost before, or a change is not made
@@ -31,12 +25,6 @@ WorldPoint whole(const WorldPoint& p) {
 
 }  // namespace
 
-double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-  const double ab = distance_sq(a, b), bc = distance_sq(b, c), ca = distance_sq(c, a);
-  const double longer_sq = std::max({ab * bc, bc * ca, ca * ab});  // beside the smallest angle
-  return longer_sq > 0 ? length(doubled_area(a, b, c)) / std::sqrt(longer_sq) : 0;
-}
-
 MeshRegion::MeshRegion(const CutLookup& surface, std::vector<RegionVertex> vertices,
                        std::vector<RegionTriangle> triangles)
     : surface_(&surface),
@@ -45,63 +33,11 @@ MeshRegion::MeshRegion(const CutLookup& surface, std::vector<RegionVertex> verti
       changed_(vertices_.size(), 0),
       tried_(vertices_.size(), -1),
       looked_at_(triangles_.size(), -1),
+      flips_tried_(triangles_.size(), -1),
       follows_(kFollows) {
   for (const RegionTriangle& t : triangles_) follows_ = std::min(follows_, cosine_to_surface(t));
   follows_ = std::max(follows_, kLeastFollows);
   for (const RegionTriangle& t : triangles_) costs_.push_back(cost_of(t, kMostCost));
-}
-
-double MeshRegion::sine_of(const RegionTriangle& t) const {
-  if (t.is_gone()) return 1;
-  return smallest_sine(vertices_[t.corner[0]].position, vertices_[t.corner[1]].position,
-                       vertices_[t.corner[2]].position);
-}
-
-int64_t MeshRegion::poor() const {
-  return std::count_if(triangles_.begin(), triangles_.end(),
-                       [&](const RegionTriangle& t) { return sine_of(t) < kPoorSine; });
-}
-
-double MeshRegion::worst_sine() const {
-  double worst = kPoorSine;
-  for (const RegionTriangle& t : triangles_) worst = std::min(worst, sine_of(t));
-  return worst;
-}
-
-double MeshRegion::cost() const { return std::accumulate(costs_.begin(), costs_.end(), 0.0); }
-
-/// Exact below `enough`; what is above may leave out the rest.
-double MeshRegion::cost_of(const RegionTriangle& t, double enough) const {
-  if (t.is_gone()) return 0;
-  const double sine = sine_of(t);
-  if (!(sine > 0)) return kMostCost;
-  const double thin = std::max(0.0, kGoodSine / sine - 1);
-  double sum = thin * thin + (sine < kPoorSine ? kCostOfPoor : 0);
-  if (sum >= enough) return std::min(sum, kMostCost);
-  const double turned = std::max(0.0, follows_ - cosine_to_surface(t));
-  sum += kCostOfTurn * turned * turned;
-  for (size_t i = 0; i < 3 && sum < enough; ++i)
-    if (t.curve[i] != kNone) sum += cost_of_chord(t.corner[i], t.corner[(i + 1) % 3], t.curve[i]);
-  return std::min(sum, kMostCost);
-}
-
-/// Between the normal of a triangle and those of the surface at its corners, the least.
-double MeshRegion::cosine_to_surface(const RegionTriangle& t) const {
-  const WorldPoint n =
-      doubled_area(vertices_[t.corner[0]].position, vertices_[t.corner[1]].position, vertices_[t.corner[2]].position);
-  const double whole = length(n);
-  if (!(whole > 0)) return 1;
-  double least = 1;
-  for (const uint32_t v : t.corner)
-    least = std::min(least, surface_->cosine(vertices_[v].home, t.patch, 1 / whole * n));
-  return least;
-}
-
-double MeshRegion::cost_of_chord(uint32_t u, uint32_t v, uint32_t curve) const {
-  const auto [begin, end] = span(u, v, curve);
-  const double off =
-      surface_->off_chord(curve, begin, end) / surface_->edge_length(vertices_[u].home) / kMostOffCurve - 1;
-  return off > 0 ? kCostOfChord * off * off : 0;
 }
 
 std::vector<size_t> MeshRegion::triangles_of(uint32_t v) const {
@@ -111,29 +47,6 @@ std::vector<size_t> MeshRegion::triangles_of(uint32_t v) const {
     if (c[0] == v || c[1] == v || c[2] == v) out.push_back(t);
   }
   return out;
-}
-
-/// Its place on a curve that it is on or ends; of both ends of a curve that returns to its corner the one nearer to
-/// `other`.
-size_t MeshRegion::place_on(const RegionVertex& v, uint32_t curve, size_t other) const {
-  if (v.kind == RegionVertex::Kind::on_curve) return v.at;
-  const CutCurve& c = surface_->cut().curves[curve];
-  const size_t last = c.place.size() - 1;
-  if (c.place.front() == c.place.back()) return 2 * other < last ? 0 : last;
-  return c.place.front() == surface_->cut().place[v.home] ? 0 : last;
-}
-
-/// The places between two vertices that follow each other on a curve, the shorter way around a loop; beyond its last
-/// one it goes on with the first.
-std::array<size_t, 2> MeshRegion::span(uint32_t u, uint32_t v, uint32_t curve) const {
-  const RegionVertex &a = vertices_[u], &b = vertices_[v];
-  const CutCurve& c = surface_->cut().curves[curve];
-  const size_t n = c.place.size();
-  if (a.kind != RegionVertex::Kind::on_curve && b.kind != RegionVertex::Kind::on_curve) return {0, n - 1};
-  const size_t i = place_on(a, curve, b.at), j = place_on(b, curve, a.at);
-  const size_t begin = std::min(i, j), end = std::max(i, j);
-  if (c.is_loop && 2 * (c.at_q8[end] - c.at_q8[begin]) > c.length_q8) return {end, begin + n};
-  return {begin, end};
 }
 
 std::vector<MeshRegion::Side> MeshRegion::sides_of(uint32_t u, uint32_t v) const {
@@ -146,6 +59,16 @@ std::vector<MeshRegion::Side> MeshRegion::sides_of(uint32_t u, uint32_t v) const
     if (c[(i + 2) % 3] == v) sides.push_back({t, (i + 2) % 3});
   }
   return sides;
+}
+
+/// Off curves there is one at most.
+std::optional<MeshRegion::Side> MeshRegion::side_from(uint32_t u, uint32_t v) const {
+  for (size_t t = 0; t < triangles_.size(); ++t) {
+    const auto& c = triangles_[t].corner;
+    for (size_t i = 0; i < 3; ++i)
+      if (c[i] == u && c[(i + 1) % 3] == v) return Side{t, i};
+  }
+  return {};
 }
 
 std::vector<uint32_t> MeshRegion::neighbours_of(uint32_t v) const {
@@ -262,6 +185,7 @@ bool MeshRegion::split(uint32_t u, uint32_t v, const WorldPoint& near) {
     costs_[s.triangle] = cost_of(t, kMostCost);
     costs_.push_back(cost_of(other, kMostCost));
     looked_at_.push_back(-1);
+    flips_tried_.push_back(-1);
     triangles_.push_back(other);
   }
   touch(touched);
@@ -314,23 +238,22 @@ bool MeshRegion::flip(size_t triangle, size_t edge) {
   const RegionTriangle t = triangles_[triangle];
   if (t.curve[edge] != kNone) return false;
   const uint32_t a = t.corner[edge], b = t.corner[(edge + 1) % 3], c = t.corner[(edge + 2) % 3];
-  const std::vector<Side> sides = sides_of(a, b);
-  if (sides.size() != 2) return false;
-  const Side other = sides[0].triangle == triangle ? sides[1] : sides[0];
-  const RegionTriangle s = triangles_[other.triangle];
-  const uint32_t d = s.corner[(other.edge + 2) % 3];
-  if (c == d || s.patch != t.patch || s.corner[other.edge] != b) return false;
+  const std::optional<Side> other = side_from(b, a);
+  if (!other) return false;
+  const RegionTriangle s = triangles_[other->triangle];
+  const uint32_t d = s.corner[(other->edge + 2) % 3];
+  if (c == d || s.patch != t.patch) return false;
   if (!vertices_[c].is_inner && !vertices_[d].is_inner) return false;
-  const RegionTriangle first = {{a, d, c}, {s.curve[(other.edge + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch};
-  const RegionTriangle second = {{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(other.edge + 2) % 3]}, t.patch};
-  const double most = kEnough * (costs_[triangle] + costs_[other.triangle]);
+  const RegionTriangle first = {{a, d, c}, {s.curve[(other->edge + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch};
+  const RegionTriangle second = {{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(other->edge + 2) % 3]}, t.patch};
+  const double most = kEnough * (costs_[triangle] + costs_[other->triangle]);
   const double cost = cost_of(first, most);
   const double other_cost = cost < most ? cost_of(second, most - cost) : 0;
   if (cost + other_cost >= most || !sides_of(c, d).empty()) return false;
   triangles_[triangle] = first;
-  triangles_[other.triangle] = second;
+  triangles_[other->triangle] = second;
   costs_[triangle] = cost;
-  costs_[other.triangle] = other_cost;
+  costs_[other->triangle] = other_cost;
   touch({a, b, c, d});
   return true;
 }
@@ -401,14 +324,24 @@ bool MeshRegion::move(uint32_t v) {
 void MeshRegion::settle() {
   std::fill(tried_.begin(), tried_.end(), clock_);
   std::fill(looked_at_.begin(), looked_at_.end(), clock_);
+  std::fill(flips_tried_.begin(), flips_tried_.end(), clock_);
+}
+
+/// Unless that did not help before and nothing around has changed since.
+bool MeshRegion::flip_any(size_t triangle) {
+  bool has_changed = false;
+  for (size_t i = 0; i < 3 && costs_[triangle] >= kLeastCost; ++i) {
+    if (changed_at(triangles_[triangle]) <= flips_tried_[triangle]) break;
+    has_changed = flip(triangle, i) || has_changed;
+  }
+  if (!has_changed) flips_tried_[triangle] = clock_;
+  return has_changed;
 }
 
 void MeshRegion::flip_edges() {
   for (bool has_changed = true; has_changed;) {
     has_changed = false;
-    for (size_t t = 0; t < triangles_.size(); ++t)
-      for (size_t i = 0; i < 3 && costs_[t] >= kLeastCost && changed_at(triangles_[t]) > looked_at_[t]; ++i)
-        has_changed = flip(t, i) || has_changed;
+    for (size_t t = 0; t < triangles_.size(); ++t) has_changed = flip_any(t) || has_changed;
   }
 }
 
@@ -418,7 +351,7 @@ void MeshRegion::relax(double hopeless) {
     for (size_t t = 0; t < triangles_.size(); ++t) {
       if (costs_[t] < kLeastCost || changed_at(triangles_[t]) <= looked_at_[t]) continue;
       looked_at_[t] = clock_;
-      for (size_t i = 0; i < 3; ++i) has_changed = flip(t, i) || has_changed;
+      has_changed = flip_any(t) || has_changed;
       for (const uint32_t v : std::array<uint32_t, 3>(triangles_[t].corner)) has_changed = move(v) || has_changed;
     }
     if (!has_changed || cost() > hopeless) return;

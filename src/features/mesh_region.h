@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/world_vector.h"
@@ -40,10 +41,16 @@ class MeshRegion {
 
   /// 0 where no angle is below 36 degrees and the triangles follow surface and curves; rises steeply below.
   double cost() const;
+  /// Of the triangle between the first three vertices.
+  double cost_of_first() const;
   /// Triangles with an angle below 30 degrees.
   int64_t poor() const;
   /// Of the smallest angle, or of 30 degrees where that is less.
   double worst_sine() const;
+  /// Whether no angle is smaller than the smallest was, and no more triangles are poor, or all together much better.
+  bool is_better_than(const MeshRegion& start) const;
+  /// The same for regions that are the same, of one surface.
+  uint64_t digest() const;
   /// Puts a vertex, the last one then, into an edge, where that is nearest to a point.
   bool split(uint32_t u, uint32_t v, const WorldPoint& near);
   /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.
@@ -75,6 +82,7 @@ class MeshRegion {
 
   std::vector<size_t> triangles_of(uint32_t v) const;
   std::vector<Side> sides_of(uint32_t u, uint32_t v) const;
+  std::optional<Side> side_from(uint32_t u, uint32_t v) const;
   std::vector<uint32_t> neighbours_of(uint32_t v) const;
   std::vector<uint32_t> next_on_curve(uint32_t v) const;
   void touch(const std::vector<uint32_t>& vertices);
@@ -86,6 +94,7 @@ class MeshRegion {
   std::vector<RegionVertex> places_around(uint32_t v) const;
   std::vector<RegionVertex> places_along(uint32_t v) const;
   bool flip(size_t triangle, size_t edge);
+  bool flip_any(size_t triangle);
   bool move(uint32_t v);
 
   const CutLookup* surface_;
@@ -95,10 +104,12 @@ class MeshRegion {
   int clock_ = 0;                     ///< changes so far
   std::vector<int> changed_, tried_;  ///< per vertex when it or a neighbour changed last, and was to move
   std::vector<int> looked_at_;        ///< per triangle
+  std::vector<int> flips_tried_;      ///< per triangle, when none of its edges was better flipped
   double follows_;                    ///< cosine between normals of triangles and surface, below which it costs
 };
 
 constexpr double kPoorSine = 0.5;  ///< of 30 degrees
+constexpr double kMostCost = 1e6;  ///< of one triangle: a degenerate one
 /// The sine of the smallest angle of a triangle.
 double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c);
 

@@ -8,32 +8,24 @@
 #include "core/copy_product.h"
 #include "core/near_points.h"
 #include "core/parallel_ranges.h"
-#include "core/watched.h"
 #include "features/mesh_fans.h"
 #include "isoshell/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int kRings = 2;          ///< of triangles around what is changed
-constexpr double kLess = 0.97;     ///< of the cost that a change must leave
-constexpr double kMuchLess = 0.8;  ///< where more triangles are poor then
-constexpr int64_t kFewPoor = 3;    ///< triangles of a region, for which every change is relaxed
-constexpr size_t kMostTries = 6;   ///< changes that are relaxed where more are poor
+constexpr int kRings = 2;                       ///< of triangles around what is changed
+constexpr double kLess = 0.97;                  ///< of the cost that a change must leave
+constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triangle itself must have for changes to pay
+constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
+constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor
 constexpr double kHopeless = 1.5;  ///< of the least cost so far: a change that is above after a round is given up
-constexpr double kMostPerCount = 1. / 24;  ///< cost that a change may bring that only keeps the count
-constexpr double kMostAtFirst = 0.25;      ///< beyond that, before vertices move
-constexpr int64_t kMostTriesPerCount = 64;
-constexpr size_t kFewEdges = 11;    ///< of both ends of an edge that is collapsed: 7 are left then
-constexpr size_t kPassesOfFew = 3;  ///< over edges, each with one edge more at the ends, before all count
-constexpr size_t kMostPasses = 12;
-constexpr int64_t kLeastShare = 10;  ///< a pass that meets less than one part in so many is the last
-constexpr double kKept = 1;          ///< edges around a point near which nothing is to change
+constexpr double kKept = 1;        ///< edges around a point near which nothing is to change
 
-/// Whether no angle is smaller than the smallest was, and no more triangles are poor, or all together much better.
-bool is_better(const MeshRegion& region, const MeshRegion& start) {
-  const bool is_mended = region.poor() <= start.poor() || region.cost() < kMuchLess * start.cost();
-  return is_mended && region.worst_sine() >= start.worst_sine();
+/// Along strips narrower than edges all triangles are poor. Where one hardly counts beside the others, changes at its
+/// corners do not save what they must, and the others have their own turn.
+bool is_among_worse(const MeshRegion& region) {
+  return region.poor() > kFewPoor && region.cost_of_first() < kLeastPart * region.cost();
 }
 
 template <class T>
@@ -45,7 +37,10 @@ void sort_unique(std::vector<T>& values) {
 }  // namespace
 
 PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, int64_t vertices)
-    : cut_(&cut), lookup_(std::make_shared<CutLookup>(cut)), wanted_(vertices) {
+    : cut_(&cut),
+      lookup_(std::make_shared<CutLookup>(cut)),
+      hopeless_(std::make_shared<std::unordered_set<uint64_t>>()),
+      wanted_(vertices) {
   const OnHost<SeedSet> seeds(made.seeds);
   const OnHost<DualMesh> open(made.mesh);
   const JoinedMesh joined = join_patches(*open, seeds->fixed);
@@ -218,13 +213,15 @@ std::vector<MeshRegion> PatchMesh::promising(const MeshRegion& region, Reach rea
 std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) {
   MeshRegion relaxed = start;
   relaxed.relax();
-  if (!is_better(relaxed, start)) relaxed = start;
+  if (!relaxed.is_better_than(start)) relaxed = start;
   if (relaxed.poor() == 0) return relaxed;
+  const bool is_enough = relaxed.cost() < kLess * start.cost();
+  if (is_among_worse(start)) return is_enough ? std::make_optional(relaxed) : std::nullopt;
   MeshRegion best = relaxed;
   for (const Reach reach : {Reach::corners, Reach::beyond}) {
     for (MeshRegion& there : promising(relaxed, reach)) {
       there.relax(kHopeless * best.cost());
-      if (there.cost() < best.cost() && is_better(there, start)) best = std::move(there);
+      if (there.cost() < best.cost() && there.is_better_than(start)) best = std::move(there);
     }
     if (best.cost() < kLess * start.cost()) return best;
   }
@@ -261,71 +258,19 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
       const auto& corner = triangles_[apart[i]].corner;
       const std::vector<uint32_t> corners(corner.begin(), corner.end());
       cutouts[i] = cut_out(corners, triangles_around(corners));
-      better[i] = improved(cutouts[i]->region);
+      if (!hopeless_->count(cutouts[i]->region.digest())) better[i] = improved(cutouts[i]->region);
     });
     for (size_t i = 0; i < apart.size(); ++i) {
-      if (better[i])
-        put_back(*cutouts[i], *better[i]);
-      else
-        is_hopeless_[apart[i]] = 1;
       has_changed = has_changed || better[i];
+      if (better[i]) {
+        put_back(*cutouts[i], *better[i]);
+        continue;
+      }
+      is_hopeless_[apart[i]] = 1;
+      hopeless_->insert(cutouts[i]->region.digest());
     }
   }
   return has_changed;
-}
-
-/// Each edge between vertices off curves, by its length beside the one aimed at there.
-std::vector<std::pair<double, uint64_t>> PatchMesh::edges_by_length() const {
-  using Kind = RegionVertex::Kind;
-  const EdgeLengths& lengths = cut_->surface.lengths;
-  std::vector<std::pair<double, uint64_t>> out;
-  for (const RegionTriangle& t : triangles_)
-    for (size_t i = 0; i < 3; ++i) {
-      const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
-      if (u >= v || vertices_[u].kind != Kind::free || vertices_[v].kind != Kind::free) continue;
-      const double aimed_at =
-          lengths.at.empty() ? 1 : double(lengths.at[vertices_[u].home]) + double(lengths.at[vertices_[v].home]);
-      out.push_back(
-          {distance_sq(vertices_[u].position, vertices_[v].position) / (aimed_at * aimed_at), edge_key(u, v)});
-    }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-/// With a vertex more or less in the edge between the first two, where that hardly costs.
-std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
-  const auto what = surplus() > 0 ? Change::collapse : Change::split;
-  for (const Change& change : {Change{what, 0, 1}, Change{what, 1, 0}}) {
-    MeshRegion there = start;
-    there.settle();
-    if (!make(there, change)) continue;
-    there.flip_edges();
-    const double most = start.cost() + kMostPerCount;
-    if (there.cost() > most + kMostAtFirst) continue;
-    there.relax(most + kMostAtFirst);
-    if (there.cost() <= most && is_better(there, start)) return there;
-  }
-  return {};
-}
-
-void PatchMesh::meet_count(const Context& context) {
-  for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
-    check_cancel(context, "features");
-    const int64_t before = surplus();
-    std::vector<std::pair<double, uint64_t>> edges = edges_by_length();
-    if (before < 0) std::reverse(edges.begin(), edges.end());
-    int64_t tries = kMostTriesPerCount * std::abs(before);
-    for (size_t i = 0; i < edges.size() && surplus() != 0 && tries > 0; ++i) {
-      const auto u = uint32_t(edges[i].second >> 32), v = uint32_t(edges[i].second);
-      const bool has_many = before > 0 && around_[u].size() + around_[v].size() > kFewEdges + pass;
-      if (!is_edge(u, v) || (has_many && pass < kPassesOfFew)) continue;
-      --tries;
-      const Cutout cutout = cut_out({u, v}, triangles_around({u, v}));
-      if (const std::optional<MeshRegion> there = recounted(cutout.region)) put_back(cutout, *there);
-    }
-    const int64_t gained = std::abs(before) - std::abs(surplus());
-    if (pass >= kPassesOfFew && kLeastShare * gained < std::abs(before)) return;
-  }
 }
 
 void PatchMesh::keep_near(const std::vector<PointQ8>& points) {

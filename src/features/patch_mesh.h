@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,7 @@ class PatchMesh {
 
   const CutSurface* cut_;
   std::shared_ptr<const CutLookup> lookup_;
+  std::shared_ptr<std::unordered_set<uint64_t>> hopeless_;  ///< digests of regions, of all copies of this mesh
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
   std::vector<char> is_kept_;                        ///< per vertex that was there at first; empty: none

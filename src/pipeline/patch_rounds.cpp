@@ -90,23 +90,29 @@ class PatchRounds {
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
     report_.dual = {};
     report_.post = {};
-    Wrong failed = mesh_patches(*cut, made);
-    for (int round = 0;; ++round) {
-      Wrong wrong = find_wrong(*cut, made, failed);
-      if (!wrong.is_nowhere()) {
-        failed.forget(triangulate_flat(*cut, wrong.patch, made));
-        wrong = find_wrong(*cut, made, failed);
-      }
-      if (wrong.is_nowhere()) return "";
+    Wrong wrong = left_of(*cut, made, mesh_patches(*cut, made));
+    if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
+    for (int round = 0; !wrong.is_nowhere(); ++round) {
       if (is_hopeless(wrong)) return wrong.said();
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
-      std::optional<Paths> change = change_where(wrong, *cut, round);
-      if (!change) return wrong.said();
-      failed = make_again(cut, made, wrong, std::move(*change));
+      std::optional<Paths> fewer = drop_creases(*cut->fine, wrong.places());
+      if (!fewer) return wrong.said();
+      Again again = make_again(cut, made, wrong, std::move(*fewer));
+      cut = again.cut;
+      made = std::move(again.made);
+      wrong = std::move(again.wrong);
     }
+    return "";
   }
 
  private:
+  /// What comes of other paths.
+  struct Again {
+    std::shared_ptr<const CutSurface> cut;
+    SeededMesh made;
+    Wrong wrong;
+  };
+
   /// Runs work on the mesh of some patches alone; the mesh of the others stays, or goes.
   template <class Work>
   void on_patches(const CutSurface& cut, const PerPatch& chosen, bool keeps_others, SeededMesh& made, Work work) {
@@ -212,12 +218,23 @@ class PatchRounds {
     return wrong;
   }
 
-  /// Shorter segments are tried first.
-  static std::optional<Paths> change_where(const Wrong& wrong, const CutSurface& cut, int round) {
-    const std::vector<PointQ8> places = wrong.places();
-    if (round == 0 && wrong.failed() == 0)
-      if (auto shorter = halve_segments(*cut.fine, places, cut.longest_edge_q8)) return shorter;
-    return drop_creases(*cut.fine, places);
+  /// In the whole mesh, with flat patches of it triangulated where something is wrong.
+  Wrong left_of(const CutSurface& cut, SeededMesh& made, Wrong failed) {
+    const Wrong wrong = find_wrong(cut, made, failed);
+    if (wrong.is_nowhere()) return wrong;
+    failed.forget(triangulate_flat(cut, wrong.patch, made));
+    return find_wrong(cut, made, failed);
+  }
+
+  /// Tries shorter segments, which cost no crease, and keeps them where less is wrong then.
+  void halve_where(std::shared_ptr<const CutSurface>& cut, SeededMesh& made, Wrong& wrong) {
+    std::optional<Paths> halved = halve_segments(*cut->fine, wrong.places(), cut->longest_edge_q8);
+    if (!halved) return;
+    Again again = make_again(cut, made, wrong, std::move(*halved));
+    if (again.wrong.where.size() >= wrong.where.size()) return;
+    cut = again.cut;
+    made = std::move(again.made);
+    wrong = std::move(again.wrong);
   }
 
   std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, Paths paths) const {
@@ -234,9 +251,9 @@ class PatchRounds {
     }
   }
 
-  /// Along changed paths, with new patches beside these and in place of those that are wrong. Result: those that fail.
-  Wrong make_again(std::shared_ptr<const CutSurface>& cut, SeededMesh& made, const Wrong& wrong, Paths paths) {
-    const std::shared_ptr<const CutSurface> before = cut;
+  /// Along changed paths, with new patches beside these and in place of those that are wrong.
+  Again make_again(const std::shared_ptr<const CutSurface>& before, const SeededMesh& made, const Wrong& wrong,
+                   Paths paths) {
     const std::shared_ptr<const CutSurface> next =
         timed(report_, "features", context_, [&] { return cut_again(*before, std::move(paths)); });
     PerPatch goes = wrong.patch;
@@ -258,14 +275,15 @@ class PatchRounds {
                        [&] { return relax_in_patches_again(piece.cut, part, options, context_).seeds; });
     const Wrong failed_here = mesh_patches(piece.cut, part);
     bring_to_host(part);
-    made = gather_patches(*next, {{kept, vertices_after(*next, *next, inverse(comes))}, {part, piece.in_whole}});
+    SeededMesh whole =
+        gather_patches(*next, {{kept, vertices_after(*next, *next, inverse(comes))}, {part, piece.in_whole}});
     std::vector<uint32_t> patch_in_whole(patch_count(piece.cut));
     for (size_t v = 0; v < piece.in_whole.size(); ++v)
       patch_in_whole[piece.cut.surface.patch[v]] = next->surface.patch[piece.in_whole[v]];
     Wrong failed(*next);
     for (const auto& [patch, place] : failed_here.where) failed.add(patch_in_whole[patch], place);
-    cut = next;
-    return failed;
+    Wrong left = left_of(*next, whole, std::move(failed));
+    return {next, std::move(whole), std::move(left)};
   }
 
   /// How many free seeds some patches have where the whole surface has so many vertices.

@@ -116,6 +116,23 @@ TEST_CASE("wide angles: are the same for every number of threads", "[widen_angle
     CHECK(place_of(a.mesh.position[v]) == place_of(b.mesh.position[v]));
 }
 
+TEST_CASE("wide angles: copies of a mesh that know what was hopeless become what it became", "[widen_angles][stage]") {
+  Context context;
+  for (const FeatureShape& shape : feature_shapes()) {
+    INFO(shape.name);
+    const Made made = hardly_relaxed(shape, context);
+    if (made.mesh.report.failed_cells > 0) continue;
+    PatchMesh first(made.cut, made.mesh, count_of(made.mesh));
+    PatchMesh second = first;
+    for (PatchMesh* mesh : {&first, &second})
+      while (mesh->improve(mesh->poor_triangles())) continue;
+    const JoinedPatches a = first.joined(), b = second.joined();
+    REQUIRE(a.mesh.position.size() == b.mesh.position.size());
+    for (int64_t v = 0; v < a.mesh.position.size(); ++v)
+      CHECK(place_of(a.mesh.position[v]) == place_of(b.mesh.position[v]));
+  }
+}
+
 TEST_CASE("wide angles: a mesh that is refused is as it was", "[widen_angles][stage]") {
   Context context;
   const Made made = hardly_relaxed(feature_cylinder(40), context);
