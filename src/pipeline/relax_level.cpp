@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/copy_product.h"
-#include "isoshell/to_host.h"
 
 namespace isoshell {
 namespace {
@@ -13,17 +12,14 @@ constexpr int64_t kMostRepairPerMille = 60;
 constexpr int32_t kCoarsePasses = 60;
 constexpr int32_t kCoarseTolerancePpb = 30000;
 constexpr int32_t kCoarseSmoothingSteps = 40;
-// Small levels, which cost little, relax again after their flips.
-constexpr int64_t kMostSeedsTwice = 3000;
-constexpr int32_t kPassesAgain = 30;
 // Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes.
 constexpr int32_t kFinestPasses = 40;
 constexpr int32_t kFinestTolerancePpb = 500000;
 
 }  // namespace
 
-std::optional<SeededMesh> relax_level_once(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
-                                           Context& context) {
+std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+                                      Context& context) {
   const int64_t asked = seeds.size();
   seeds = relax_on_sheet(surface, std::move(seeds), relax, context).seeds;
   Triangulation dual = triangulate_dual(surface, std::move(seeds), {}, context);
@@ -44,15 +40,6 @@ RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_asked) {
   relax.max_passes = std::min(relax.max_passes, kFinestPasses);
   if (!tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
   return relax;
-}
-
-std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
-                                      Context& context) {
-  std::optional<SeededMesh> first = relax_level_once(surface, relax, std::move(seeds), context);
-  if (!first || first->seeds.size() > kMostSeedsTwice) return first;
-  const RelaxOptions again{kPassesAgain, relax.tolerance_ppb, relax.max_step_q8};
-  std::optional<SeededMesh> second = relax_level_once(surface, again, to_host(first->seeds), context);
-  return second ? std::move(second) : std::move(first);
 }
 
 }  // namespace isoshell

@@ -14,13 +14,9 @@ constexpr int64_t kFewestSeeds = 64;  ///< of a level
 RelaxOptions for_coarse_level(RelaxOptions relax, bool tolerance_asked);
 RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_asked);
 
-/// Relaxes a coarse level once, and again from there if it is small. The first round stands where cells are no disks
-/// after the second one. Returns its dual with as many vertices as it had seeds, flipped and smoothed, so that the
+/// Relaxes a coarse level. Returns its dual with as many vertices as it had seeds, flipped and smoothed, so that the
 /// cells of the seeds that it is split into meet as its triangles do; none when the level is too coarse for the shape.
 std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
                                       Context& context);
-/// The same without a second round.
-std::optional<SeededMesh> relax_level_once(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
-                                           Context& context);
 
 }  // namespace isoshell

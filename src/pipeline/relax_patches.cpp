@@ -61,7 +61,7 @@ class PatchLevels {
   std::optional<SeededMesh> relaxed_on(const CutSurface& surface, size_t level, int finer) const {
     const RelaxOptions relax = for_coarse_level(options_.relax, options_.tolerance_asked);
     SeedSet seeds = seeds_on(surface, FreeSeeds(surface), level, finer);
-    std::optional<SeededMesh> made = relax_level_once(surface.surface, relax, std::move(seeds), context_);
+    std::optional<SeededMesh> made = relax_level(surface.surface, relax, std::move(seeds), context_);
     if (made) bring_to_host(*made);
     return made;
   }
