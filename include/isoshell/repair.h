@@ -9,10 +9,9 @@
 namespace isoshell {
 
 /// Larger loops are rims, of a bowl or a terrain: longer in terms of their component's diagonal, unless they are
-/// cracks, whose caps are small in terms of its area, or narrow sides, as plates have, which are flat.
+/// cracks, whose caps are small in terms of its area.
 constexpr double kLargestHole = .6;
 constexpr double kLargestCrack = .01;
-constexpr double kLargestSide = .05;
 /// Boundaries nearer to each other than this part of the diagonal are one.
 constexpr double kWidestCrack = 1e-5;
 
@@ -48,19 +47,19 @@ struct RepairReport {
 /// is what edges of exactly two faces connect. A fin is a patch that ends in the open and on edges of more faces, none
 /// of which it leaves with one face, T-junctions taken for closed, and that has less than a two hundredth of the area.
 /// A hole is a loop of edges with one face whose box has a diagonal of at most kLargestHole of its component's, or
-/// whose cap has at most kLargestCrack of its area, of loops in a plane kLargestSide; or which is what pieces of a flat
-/// face left: along a third of it or more, but not all of it, the surface goes on in its plane, and at the ends of
-/// these parts the outline of the face turns. Loops of one plane are holes together where a flat face with holes is
-/// missing whole: the surface at the outer one lies behind that face, the others are inside of it and run the other way
-/// round, and one of them at least is of another patch. An island is an open patch that shares no vertex with another
-/// and has less than a hundredth of the area. Two holes that are rims of one tube, an arm that was cut through, are
-/// joined instead: each looks towards the other, the surface at them runs along the way between them, the radii of
-/// circles of their areas are within 2.5 of each other, and either is the other's nearest. They belong to one patch and
-/// are no farther apart than three times their radii together, or to two, of which one has at most a fifth of the
-/// other's area, and are no farther apart than their radii together; then neither is part of an island. Fins stay when
-/// all of them have more than a tenth together, islands more than a twentieth: then they are the surface. Closed
-/// patches in which faces disagreed are turned outward. The set of positions and triangles does not depend on the order
-/// of the soup's. Cost: sorts of vertices, faces and edges; n^3 steps for a hole of n edges up to 128, n^2 beyond.
+/// whose cap has at most kLargestCrack of its area; or which is what pieces of a flat face left: along a third of it or
+/// more, but not all of it, the surface goes on in its plane, and at the ends of these parts the outline of the face
+/// turns. Loops of one plane are holes together where a flat face with holes is missing whole: the surface at the outer
+/// one lies behind that face, the others are inside of it and run the other way round, and one of them at least is of
+/// another patch. An island is an open patch that shares no vertex with another and has less than a hundredth of the
+/// area. Two holes that are rims of one tube, an arm that was cut through, are joined instead: each looks towards the
+/// other, the surface at them runs along the way between them, the radii of circles of their areas are within 2.5 of
+/// each other, and either is the other's nearest. They belong to one patch and are no farther apart than three times
+/// their radii together, or to two, of which one has at most a fifth of the other's area, and are no farther apart than
+/// their radii together; then neither is part of an island. Fins stay when all of them have more than a tenth together,
+/// islands more than a twentieth: then they are the surface. Closed patches in which faces disagreed are turned
+/// outward. The set of positions and triangles does not depend on the order of the soup's. Cost: sorts of vertices,
+/// faces and edges; n^3 steps for a hole of n edges up to 128, n^2 beyond.
 TriangleSoup repair_soup(const TriangleSoup& soup, const RepairOptions& options, RepairReport& report);
 
 }  // namespace isoshell

@@ -47,7 +47,7 @@ double MeshRegion::cost_of_first() const {
   const auto first = std::find_if(triangles_.begin(), triangles_.end(), [](const RegionTriangle& t) {
     return std::max({t.corner[0], t.corner[1], t.corner[2]}) < 3;
   });
-  return costs_[size_t(first - triangles_.begin())];
+  return first == triangles_.end() ? 0 : costs_[size_t(first - triangles_.begin())];
 }
 
 /// Exact below `enough`; what is above may leave out the rest.

@@ -13,6 +13,7 @@
 #include "features/cut_piece.h"
 #include "features/free_seeds.h"
 #include "measure/crossing_corners.h"
+#include "pipeline/attempt.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/flat_patches.h"
 #include "pipeline/new_crossings.h"
@@ -230,11 +231,15 @@ class PatchRounds {
   void halve_where(std::shared_ptr<const CutSurface>& cut, SeededMesh& made, Wrong& wrong) {
     std::optional<Paths> halved = halve_segments(*cut->fine, wrong.places(), cut->longest_edge_q8);
     if (!halved) return;
-    Again again = make_again(cut, made, wrong, std::move(*halved));
-    if (again.wrong.where.size() >= wrong.where.size()) return;
-    cut = again.cut;
-    made = std::move(again.made);
-    wrong = std::move(again.wrong);
+    std::optional<Again> again;
+    reason_against([&]() -> std::string {  // there may be no room for the seeds of so many segments
+      again = make_again(cut, made, wrong, std::move(*halved));
+      return "";
+    });
+    if (!again || again->wrong.failed() > 0 || again->wrong.where.size() >= wrong.where.size()) return;
+    cut = again->cut;
+    made = std::move(again->made);
+    wrong = std::move(again->wrong);
   }
 
   std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, Paths paths) const {

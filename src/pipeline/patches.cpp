@@ -29,6 +29,7 @@
 #include "pipeline/new_crossings.h"
 #include "pipeline/part_fans.h"
 #include "pipeline/patch_rounds.h"
+#include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
 
@@ -193,6 +194,8 @@ MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, con
 
 }  // namespace
 
+bool is_on_own_triangles(const Prepared& p) { return p.cut && !p.cut->source->is_sheet; }
+
 void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
                       Context& context) {
   if (options.method != Method::sheet) return;
@@ -251,8 +254,10 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
     flag_gaps(p, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
                               report.features.on_sheet);
+    if (is_on_own_triangles(p)) warn_of_topology(p, p.surface.topology, options, report);
   } else {
     report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
+    report.topology_agrees = report.topology_compared;
     report.sheet.bridged_vertices = 0;
     flag_caps(p, mesh, report.gaps);
   }

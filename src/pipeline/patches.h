@@ -21,6 +21,9 @@ struct PatchSource {
 void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
                       Context& context);
 
+/// Whether the surface was cut there, and not the sheet.
+bool is_on_own_triangles(const Prepared& p);
+
 struct PatchOptions {
   SeedOptions seeds;  ///< the count is that of the result's vertices: a place of a curve counts once
   RelaxOptions relax;

@@ -4,163 +4,24 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/copy_product.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/remesh.h"
 #include "isoshell/repair.h"
-#include "isoshell/to_host.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
-#include "pipeline/crease_search.h"
-#include "pipeline/flaps.h"
 #include "pipeline/joined_parts.h"
 #include "pipeline/patches.h"
+#include "pipeline/prepare_surface.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
-#include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
-#include "repair/hollows.h"
-#include "repair/joined_components.h"
 #include "repair/open_soup.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int32_t kMaxAutoClosingVox = 4;
 constexpr int32_t kCoarsestGrid = 8;
-constexpr double kSidesOfCrust = 0.75;  ///< of the area of both sides; a solid shows half of it
-
-/// Sites, samples and sheet of a surface, with the closing that is asked for or found.
-class Preparation {
- public:
-  Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
-      : options_(options), report_(report), context_(context) {}
-
-  Prepared from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
-    Prepared p;
-    p.surface = std::move(surface);
-    p.creases = begin_crease_search(options_, p.surface, report_, context_);
-    p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
-    p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
-    const bool shows_handles = shows_most_handles(options_, p.surface.topology);
-    join_components(p);
-    mark_hollows(p);
-    if (!shows_handles) {
-      const int32_t grown = growth_for_edge(edge_vox(p));
-      p.closing_vox = 2 * grown;
-      grow(p, grown);
-      return p;
-    }
-    if (closing_vox) {
-      p.closing_vox = *closing_vox;
-      p.sheet = sheet(p, p.closing_vox);
-    } else {
-      close_leaks(p);
-    }
-    const bool is_open = !p.surface.topology.closed;
-    if (is_open && is_crust(p))
-      keep_sides_apart(p);
-    else if (is_open || p.surface.first_cap != kNone)  // a flap's cap may lie on it
-      thicken_flaps(p);
-    return p;
-  }
-
- private:
-  /// Surfaces that pass through each other bound one solid, whose genus none of them tells.
-  void join_components(Prepared& p) {
-    InputTopology& input = p.surface.topology;
-    if (input.genus < 0 || input.components < 2) return;
-    const int64_t joins =
-        timed(report_, "topology", context_, [&] { return count_joins(*OnHost(p.surface), *OnHost(p.samples)); });
-    if (joins == 0) return;
-    input.components -= joins;
-    input.genus = -1;
-  }
-
-  /// What inner surfaces bound is open to the outside, as it were.
-  void mark_hollows(Prepared& p) {
-    const InputTopology& input = p.surface.topology;
-    if (!input.closed || !input.oriented || input.components < 2) return;
-    const std::vector<Voxel> hollows = timed(report_, "hollows", context_, [&] {
-      return find_hollows(*OnHost(p.surface), *OnHost(p.sites), *OnHost(p.samples));
-    });
-    if (hollows.empty()) return;
-    p.sites = to_host(p.sites);
-    p.sites.hollows = Buffer<Voxel>(int64_t(hollows.size()));
-    std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
-  }
-
-  double edge_vox(const Prepared& p) const {
-    return usual_edge_length(options_, p.surface.topology.area_world) / p.surface.frame.voxel_size;
-  }
-
-  /// Of what the sheet bounds, on average.
-  double thickness_vox(const Sheet& sheet) const {
-    const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
-    return double(six_volume_vox(sheet, context_)) / 3 / area_vox;
-  }
-
-  /// Whether the outside reaches both sides of the surface. Closing fills parts of a crust, but makes it no solid: that
-  /// would hide one of the two sides.
-  bool is_crust(const Prepared& p) {
-    const double here = thickness_vox(p.sheet);
-    if (here < 1) return true;
-    if (here >= std::min(edge_vox(p) / 2, 2. * p.closing_vox + 1)) return false;
-    const Sheet open = sheet(p, 0);
-    if (here < 2 * thickness_vox(open)) return true;
-    return sheet_area_world(p.sheet) > kSidesOfCrust * sheet_area_world(open);
-  }
-
-  /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not
-  /// close what no one asked to close.
-  void keep_sides_apart(Prepared& p) {
-    int32_t grown = growth_for_edge(std::sqrt(2) * edge_vox(p));  // both sides share the vertices
-    for (;; grown /= 2) {
-      grow(p, grown);
-      if (grown == 1 || thickness_vox(p.sheet) < 2 * grown + 3) return;
-    }
-  }
-
-  /// A solid whose false handles were cut is no longer that of its sites, and stays as it is.
-  void thicken_flaps(Prepared& p) {
-    if (p.sheet.topology.cut_handles > 0) return;
-    const double edge_vox = usual_edge_length(options_, sheet_area_world(p.sheet)) / p.surface.frame.voxel_size;
-    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    timed(report_, "sheet", context_, [&] { return grow_flaps(p, growth_for_edge(edge_vox), smallest, context_); });
-  }
-
-  void grow(Prepared& p, int32_t grown_vox) {
-    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest, context_); });
-  }
-
-  Sheet sheet(const Prepared& p, int32_t closing_vox) {
-    const InputTopology& input = p.surface.topology;
-    const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
-    const int64_t genus = !input.closed || !input.oriented ? kNoGenus : input.genus < 0 ? kUnknownGenus : input.genus;
-    return timed(report_, "sheet", context_, [&] {
-      return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest, genus}, context_);
-    });
-  }
-
-  /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in
-  /// and the solid collapses to a crust.
-  void close_leaks(Prepared& p) {
-    Sheet widest = sheet(p, kMaxAutoClosingVox);
-    const int64_t widest_volume = six_volume_vox(widest, context_);
-    for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
-      p.sheet = {};
-      p.sheet = sheet(p, p.closing_vox);
-      if (10 * six_volume_vox(p.sheet, context_) >= 9 * widest_volume) return;
-    }
-    p.sheet = std::move(widest);
-  }
-
-  const RemeshOptions& options_;
-  RemeshReport& report_;
-  Context& context_;
-};
 
 bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
 
@@ -263,7 +124,7 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& in
   const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
   LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
   surface.topology = input;
-  Prepared p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+  Prepared p = prepare_surface(std::move(surface), asked_closing(options, input, frame), options, report, context);
   RemeshReport unsaid;
   timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
   if (p.sheet.lengths.at.empty()) return usual;
@@ -301,7 +162,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     surface.topology = input;
     Prepared p;
     try {
-      p = Preparation(options, report, context).from(std::move(surface), asked_closing(options, input, frame));
+      p = prepare_surface(std::move(surface), asked_closing(options, input, frame), options, report, context);
     } catch (const Error& error) {  // what is there is better than nothing
       if (error.code() != ErrorCode::out_of_memory || best_gap == INT64_MAX) throw;
       report.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
@@ -315,7 +176,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
     }
   }
   finish(best, source, options, report, context);
-  if (report.features.border_loops == 0) warn_of_topology(best, input, options, report);
+  if (!is_on_own_triangles(best)) warn_of_topology(best, input, options, report);
   return best;
 }
 
@@ -337,7 +198,7 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   const RemeshOptions options = checked(asked);
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
-  Prepared p = Preparation(options, report, context).from(std::move(surface), closing);
+  Prepared p = prepare_surface(std::move(surface), closing, options, report, context);
   finish(p, {}, options, report, context);
   return p;
 }

@@ -264,8 +264,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
       return std::move(*mesh);
     }
     best.report.post = {};
-    if (!p.surface.topology.closed && !p.cut->source->is_sheet)
-      warn_of_topology(p, p.surface.topology, options, best.report);
+    if (is_on_own_triangles(p)) warn_of_topology(p, p.surface.topology, options, best.report);
     best.made.seeds = relax_without_creases(p, options, best.report, context);
   }
   return triangulate_on_sheet(p, options, optimize, best, context);

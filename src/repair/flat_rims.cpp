@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kFlat = 1e-5;          // of the loop's reach: coordinates are floats in most files
 constexpr double kSameSide = .99;       // cosine between a face and the plane that it lies in
-constexpr double kStraight = .999;      // cosine between edges of a straight side
+constexpr double kStraight = .8;        // cosine between edges of one side, which may be round: 37 degrees
 constexpr double kLeastShare = 1. / 3;  // of a loop, beside which pieces of its face are
 
 /// Tells which faces lie in the plane of a loop.

@@ -21,7 +21,7 @@ std::optional<FlatRim> flat_rim(const RepairMesh& mesh, const Loop& loop);
 
 /// Whether pieces of a face are missing of which others are there: along a third of the loop or more, but not all of
 /// it, the faces at it lie in its plane and look the same way. An opening that someone made is all in a face, or ends
-/// on a straight side of it; where triangles are missing the outline of the face turns.
+/// on a straight or round side of it; where triangles are missing the outline of the face turns.
 bool is_piece_of_face(const RepairMesh& mesh, const Loop& loop, const FlatRim& rim);
 
 }  // namespace isoshell::repair

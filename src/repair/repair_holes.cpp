@@ -62,7 +62,7 @@ class Capper {
     Components components(mesh_);
     for (const Loop& loop : loops) {
       const Components::Size& component = components.of(mesh_.from(loop[0]));
-      if (!cap(loop, largest_cap(loop, component)) && !fill(loop, component)) ++report_.open_loops;
+      if (!cap(loop, largest_cap(loop, component)) && !fill(loop)) ++report_.open_loops;
     }
     return std::move(caps_);
   }
@@ -77,11 +77,11 @@ class Capper {
     return is_short ? component.area : kLargestCrack * component.area;
   }
 
-  /// Closes a rim that a piece of a flat face left, or the narrow side of a plate. Its faces are not those of least
+  /// Closes a rim that a piece of a flat face left. Its faces are not those of least
   /// area, as in a plane all are: some would be without area, between corners on a line.
-  bool fill(const Loop& loop, const Components::Size& component) {
+  bool fill(const Loop& loop) {
     const std::optional<FlatRim> rim = closing_.holes ? flat_rim(mesh_, loop) : std::nullopt;
-    if (!rim || (rim->area > kLargestSide * component.area && !is_piece_of_face(mesh_, loop, *rim))) return false;
+    if (!rim || !is_piece_of_face(mesh_, loop, *rim)) return false;
     Cap cap = {loop, fill_plane(mesh_, *rim, loop)};
     if (cap.face.empty() || !brings_new_chords(cap)) return false;
     add_flat(std::move(cap));

@@ -194,6 +194,15 @@ TEST_CASE("features: more places on curves than vertices are no error", "[featur
   CHECK(result.mesh.vertices.size() == 20);
 }
 
+TEST_CASE("features: few vertices on a fine grid are no error", "[features]") {
+  TestContext context;
+  RemeshOptions options = keeping_creases(60);
+  options.resolution = 700;  // triangles of coarse levels are longer than what their stages take
+  const RemeshResult result = remesh(shapes::box({0, 0, 0}, {1, 1, 1}), options, context);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(result.report.features.kept);
+}
+
 TEST_CASE("features: the bytes are the same for any number of threads", "[features]") {
   TestContext one, more;
   one.threads = 1;

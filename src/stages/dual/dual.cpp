@@ -13,9 +13,9 @@ Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, cons
   require_blocks(surface, "dual");
   const int64_t seed_count = seeds.size(), vertex_count = surface.vertex_count();
   if (seed_count < 1 || seed_count > vertex_count)
-    throw Error(ErrorCode::usage, "dual",
-                std::to_string(seed_count) + " seeds for a surface of " + std::to_string(vertex_count) +
-                    " vertices; there must be 1 to as many as vertices: use a higher resolution or fewer seeds");
+    throw NoRoom("dual",
+                 std::to_string(seed_count) + " seeds for a surface of " + std::to_string(vertex_count) +
+                     " vertices; there must be 1 to as many as vertices: use a higher resolution or fewer seeds");
   if (options.max_repair_rounds < 0)
     throw Error(ErrorCode::usage, "dual",
                 "max_repair_rounds is " + std::to_string(options.max_repair_rounds) + "; it must be 0 or more");

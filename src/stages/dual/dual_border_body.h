@@ -52,10 +52,9 @@ FixedBorder follow_borders(Exec& exec, const SurfaceMesh& surface, const FixedSe
   const View<const uint32_t> before = surface.border_before.view(), of_vertex = fixed.of_vertex.view();
   const int64_t wrong = exec.sum(surface.vertex_count(), IsWronglyHeld{before, of_vertex, fixed.count});
   if (wrong > 0)
-    throw Error(ErrorCode::usage, "dual",
-                "fixed.of_vertex is wrong at " + std::to_string(wrong) + " of " +
-                    std::to_string(surface.vertex_count()) + " vertices; it must name one of the " +
-                    std::to_string(fixed.count) + " fixed seeds at border vertices, and none elsewhere");
+    throw NoRoom("dual", "fixed.of_vertex is wrong at " + std::to_string(wrong) + " of " +
+                             std::to_string(surface.vertex_count()) + " vertices; it must name one of the " +
+                             std::to_string(fixed.count) + " fixed seeds at border vertices, and none elsewhere");
   FixedBorder border;
   border.vertex = exec.select(surface.vertex_count(), IsOnBorder{before});
   border.held = exec.template make<uint32_t>(fixed.count);
@@ -69,10 +68,10 @@ FixedBorder follow_borders(Exec& exec, const SurfaceMesh& surface, const FixedSe
       FollowBorder{border.vertex.view(), before, of_vertex, border.held.view(), runs.view(), border.next.view()});
   const int64_t misplaced = exec.sum(fixed.count, IsMisplaced{runs.view(), border.next.view()});
   if (misplaced > 0)
-    throw Error(ErrorCode::usage, "dual",
-                std::to_string(misplaced) + " of " + std::to_string(fixed.count) +
-                    " fixed seeds have no single run of border vertices, or share their border with one other seed " +
-                    "at most; place three or more along every border, each with the vertices around it");
+    throw NoRoom("dual",
+                 std::to_string(misplaced) + " of " + std::to_string(fixed.count) +
+                     " fixed seeds have no single run of border vertices, or share their border with one other seed " +
+                     "at most; place three or more along every border, each with the vertices around it");
   return border;
 }
 

@@ -71,10 +71,9 @@ Buffer<uint32_t> find_patches_of_seeds(Exec& exec, const SurfaceMesh& surface, c
       exec.select(surface.blocks.count(), label::IsBlockWithoutSeed{block_first, of_vertex, has_seed.view()});
   if (without.empty()) return of_seed;
   const int64_t vertex = exec.value(block_first, exec.value(without.view(), int64_t(0)));
-  throw Error(ErrorCode::usage, "labels",
-              "patch " + std::to_string(exec.value(of_vertex, vertex)) + " has 0 of the " +
-                  std::to_string(seeds.size()) +
-                  " seeds; patches are numbered from 0 on, and each needs at least 1: place a seed in it");
+  throw NoRoom("labels", "patch " + std::to_string(exec.value(of_vertex, vertex)) + " has 0 of the " +
+                             std::to_string(seeds.size()) +
+                             " seeds; patches are numbered from 0 on, and each needs at least 1: place a seed in it");
 }
 
 /// Gives vertices on borders the fixed seeds whose cells they are in, whatever seeds are near.

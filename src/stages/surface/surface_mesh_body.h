@@ -208,11 +208,11 @@ void require_reach(Exec& exec, const SurfaceMesh& surface) {
   const int64_t far = exec.sum(surface.triangles.size(), is_far);
   if (far == 0) return;
   const PointQ8 p = surface.position[surface.triangles[exec.select(surface.triangles.size(), is_far)[0]].a];
-  throw Error(ErrorCode::usage, "surface",
-              std::to_string(far) + " triangles, as one at voxel (" + std::to_string(p.x / kOneVoxelQ8) + ", " +
-                  std::to_string(p.y / kOneVoxelQ8) + ", " + std::to_string(p.z / kOneVoxelQ8) + "), reach " +
-                  std::to_string(VertexBlocks::kReachQ8 / kOneVoxelQ8) +
-                  " voxels or more from the middle of a corner's leaf; split their edges, or use larger voxels");
+  throw NoRoom("surface",
+               std::to_string(far) + " triangles, as one at voxel (" + std::to_string(p.x / kOneVoxelQ8) + ", " +
+                   std::to_string(p.y / kOneVoxelQ8) + ", " + std::to_string(p.z / kOneVoxelQ8) + "), reach " +
+                   std::to_string(VertexBlocks::kReachQ8 / kOneVoxelQ8) +
+                   " voxels or more from the middle of a corner's leaf; split their edges, or use larger voxels");
 }
 
 /// Blocks are the vertices of a patch in a leaf, cut where they are more than a block may have.
