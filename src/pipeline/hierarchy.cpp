@@ -53,6 +53,7 @@ class CoarseProxies {
       : finest_(prepared.sheet) {
     halvings_.assign(counts.size(), 0);
     const SiteSet* sites = &solid_voxels_of(prepared);
+    SiteSet of_coarsest;  // proxy so far
     const double crowding = crowding_of(finest_, context);
     LatticeFrame frame = prepared.sheet.frame;
     int32_t closing_vox = closing_of_solid(prepared);
@@ -73,8 +74,8 @@ class CoarseProxies {
         }
         if (!finest_.lengths.at.empty())
           proxy.lengths = transfer_edge_lengths(finest_, int(proxies_.size()) + 1, proxy, context);
-        sites_ = std::move(coarser);
-        sites = &sites_;
+        of_coarsest = std::move(coarser);
+        sites = &of_coarsest;
         proxies_.push_back(std::move(proxy));
         halvings_[size_t(level)] = int(proxies_.size());
       }
@@ -85,6 +86,8 @@ class CoarseProxies {
   const Sheet& sheet(size_t level) const {
     return halvings_[level] == 0 ? finest_ : proxies_[size_t(halvings_[level]) - 1];
   }
+  /// Frees the proxies that only coarser levels relax on: the finest level takes most memory, and needs none.
+  void drop_before(size_t level) { proxies_.erase(proxies_.begin() + halvings_[level], proxies_.end()); }
 
  private:
   /// Whether near parts of the surface are one in the coarse proxy, or join in places by many handles.
@@ -94,7 +97,6 @@ class CoarseProxies {
   }
 
   const Sheet& finest_;
-  SiteSet sites_;  ///< of the coarsest proxy
   std::vector<Sheet> proxies_;
   std::vector<int> halvings_;
 };
@@ -106,7 +108,7 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& option
   require_seed_count(prepared.sheet, options.count);
   std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
   const RelaxOptions coarse = for_coarse_level(relax, tolerance_asked);
-  const CoarseProxies proxies(prepared, counts, context);
+  CoarseProxies proxies(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
   SeedSet seeds;
@@ -115,10 +117,12 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& option
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
     seeds = {};
-    if (!relaxed) continue;
-    seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
-    const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
-    if (halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
+    if (relaxed) {
+      seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
+      const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
+      if (halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
+    }
+    proxies.drop_before(level + 1);
   }
   if (seeds.size() > 0)
     return relax_on_sheet(prepared.sheet, std::move(seeds), for_finest_level(relax, tolerance_asked), context);

@@ -272,7 +272,8 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
 
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context) {
   RemeshResult result;
-  const Prepared prepared = prepare(soup, options, result.report, context);
+  Prepared prepared = prepare(soup, options, result.report, context);
+  if (options.method == Method::sheet) prepared.samples = {};  // made the sheet, and are not read again
   SeedSet seeds = relax(prepared, options, result.report, context);
   result.mesh = triangulate(prepared, seeds, options, result.report, context);
   return result;

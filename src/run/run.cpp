@@ -96,6 +96,8 @@ class Run {
     if (measures_all()) step("risks", [&] { count_risks(prepared); });
     save_shell_if_asked(prepared);
     if (request_.stop_after == StopAfter::shell) return finish({});
+    if (!options_.values.want_shell && options_.values.method == Method::sheet)
+      prepared.samples = {};  // made the sheet, and are not read again
     SeedSet seeds = step("relax", [&] { return relaxed_seeds(input, prepared); });
     save_voronoi_if_asked(prepared, seeds);
     if (request_.stop_after == StopAfter::voronoi) return finish({});

@@ -21,11 +21,11 @@ struct FillBlockPatch {
     int64_t at = first[block];
     const PointQ8 origin = patch.blocks.centre[block];
     for (int64_t v = patch.blocks.first[block]; v < patch.blocks.first[block + 1]; ++v) of_vertex[v] = {};
-    patch.visit(block, [&](TriangleIndices t) {
+    patch.visit(block, [&](TriangleIndices t, uint32_t index) {
       const PointQ8 a = position[t.a], b = position[t.b], c = position[t.c];
       const Vec64 n = cross(difference(b, a), difference(c, a));
       const uint32_t area2 = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
-      triangles[at++] = {t.a, t.b, t.c, area2};
+      triangles[at++] = {index, area2};
       PieceSum& sum = of_vertex[std::min({t.a, t.b, t.c})];
       sum = sum + piece_sum(area2, local(a, origin), local(b, origin), local(c, origin));
     });
@@ -71,6 +71,7 @@ struct SumBlockSimd {
   View<const BlockPatches::Triangle> triangles;
   View<const PieceSum> of_vertex;
   View<const PointQ8> position;
+  View<const TriangleIndices> corners;
   View<const uint32_t> label;
   View<const PointQ8> seed;
   View<CellSum> cell;
@@ -124,7 +125,8 @@ struct SumBlockSimd {
   template <class Cut>
   void list_cut(int64_t begin, int64_t end, Cut& cut) const {
     for (int64_t t = begin; t < end; ++t) {
-      const uint32_t a = label[triangles[t].a], b = label[triangles[t].b], c = label[triangles[t].c];
+      const TriangleIndices corner = corners[triangles[t].index];
+      const uint32_t a = label[corner.a], b = label[corner.b], c = label[corner.c];
       const int same = (a == b) + (b == c) + (c == a);
       cut.two[cut.two_count] = t;
       cut.two_count += same == 1;
@@ -135,8 +137,9 @@ struct SumBlockSimd {
 
   Local here(uint32_t vertex, PointQ8 origin) const { return local(position[vertex], origin); }
 
-  void add_lane(const BlockPatches::Triangle& t, PointQ8 origin, ThreeCellSimd& lanes) const {
+  void add_lane(const BlockPatches::Triangle& of, PointQ8 origin, ThreeCellSimd& lanes) const {
     const int i = lanes.count++;
+    const TriangleIndices t = corners[of.index];
     const uint32_t vertices[3] = {t.a, t.b, t.c}, smallest = std::min({t.a, t.b, t.c});
     for (int k = 0; k < 3; ++k) {
       const uint32_t id = label[vertices[k]];
@@ -145,11 +148,12 @@ struct SumBlockSimd {
       lanes.cell[k][i] = id;
       lanes.has_all[k][i] = vertices[k] == smallest ? 1 : 0;
     }
-    lanes.area2[i] = t.area2;
+    lanes.area2[i] = of.area2;
   }
 
-  void add_lane(const BlockPatches::Triangle& t, PointQ8 origin, CutSimd& lanes) const {
+  void add_lane(const BlockPatches::Triangle& of, PointQ8 origin, CutSimd& lanes) const {
     const int i = lanes.count++;
+    const TriangleIndices t = corners[of.index];
     const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
     const uint32_t p = b == c ? t.a : (c == a ? t.b : t.c), q = b == c ? t.b : (c == a ? t.c : t.a),
                    r = b == c ? t.c : (c == a ? t.a : t.b);
@@ -159,7 +163,7 @@ struct SumBlockSimd {
     lanes.r.set(i, here(r, origin));
     lanes.seed.set(i, local(seed[alone], origin));
     lanes.other_seed.set(i, local(seed[other], origin));
-    lanes.area2[i] = t.area2;
+    lanes.area2[i] = of.area2;
     const bool all_is_at_p = p < q && p < r;
     lanes.all_is_at_p[i] = all_is_at_p ? 1 : 0;
     lanes.from[i] = all_is_at_p ? alone : other;
@@ -202,10 +206,10 @@ CpuPassSimd::CpuPassSimd(CpuExecutor& exec, const SurfaceMesh& surface, const Se
 void CpuPassSimd::measure(CpuExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> block_energy,
                           View<const PassState> state) {
   labels_.label(exec, seeds, label_.view());
-  exec.for_each(
-      "sum cells", surface_.blocks.count(),
-      SumBlockSimd{surface_.blocks.view(), patches_.first.view(), patches_.triangles.view(), patches_.of_vertex.view(),
-                   surface_.position.view(), label_.view(), seeds.position.view(), cells, block_energy, state});
+  exec.for_each("sum cells", surface_.blocks.count(),
+                SumBlockSimd{surface_.blocks.view(), patches_.first.view(), patches_.triangles.view(),
+                             patches_.of_vertex.view(), surface_.position.view(), surface_.triangles.view(),
+                             label_.view(), seeds.position.view(), cells, block_energy, state});
 }
 
 }  // namespace isoshell

@@ -11,8 +11,9 @@ namespace isoshell {
 /// Triangles by the block of their smallest vertex, and the moments about the block's origin of each vertex's
 /// triangles.
 struct BlockPatches {
+  /// Its corners are read from the surface: the list would else be the largest one while seeds relax.
   struct Triangle {
-    uint32_t a, b, c, area2;
+    uint32_t index, area2;
   };
   Buffer<int64_t> first;  ///< block_count + 1
   Buffer<Triangle> triangles;

@@ -45,8 +45,9 @@ struct VisitPatch {
   ISOSHELL_HD void visit(int64_t block, Visit each) const {
     for (int64_t v = blocks.first[block]; v < blocks.first[block + 1]; ++v)
       for (int64_t n = vertex_first[v]; n < vertex_first[v + 1]; ++n) {
-        const TriangleIndices t = triangles[vertex_triangles[n]];
-        if (t.a >= v && t.b >= v && t.c >= v) each(t);
+        const uint32_t index = vertex_triangles[n];
+        const TriangleIndices t = triangles[index];
+        if (t.a >= v && t.b >= v && t.c >= v) each(t, index);
       }
   }
 };
@@ -56,7 +57,7 @@ struct CountPatch {
   View<int64_t> count;
   ISOSHELL_HD void operator()(int64_t block) const {
     int64_t n = 0;
-    patch.visit(block, [&](TriangleIndices) { ++n; });
+    patch.visit(block, [&](TriangleIndices, uint32_t) { ++n; });
     count[block] = n;
   }
 };
@@ -70,7 +71,7 @@ struct FillPatch {
   ISOSHELL_HD void operator()(int64_t block) const {
     int64_t at = first[block];
     const PointQ8 origin = patch.blocks.centre[block];
-    patch.visit(block, [&](TriangleIndices t) {
+    patch.visit(block, [&](TriangleIndices t, uint32_t) {
       const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
       const Local a = local(position[t.a], origin), b = local(position[t.b], origin), c = local(position[t.c], origin);
       const uint32_t mass = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
