@@ -1,5 +1,6 @@
 #include "cpu/optimize/optimize_simd.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "cpu/optimize/pull_simd.h"
@@ -129,71 +130,100 @@ struct FitVertices {
   }
 };
 
-/// Sums over samples of one triangle after another, before they are added to what other threads add to.
-class TriangleRun {
- public:
-  explicit TriangleRun(View<TrianglePull> to) : to_(to) {}
-  ~TriangleRun() { flush(); }
-
-  void add(uint32_t triangle, const PullSimd& lanes, int i) {
-    if (triangle != triangle_) flush();
-    triangle_ = triangle;
-    for (int k = 0; k < 3; ++k) {
-      sum_.weight[k] += int64_t(lanes.weight[k][i]);
-      sum_.pull[k] += int64_t(lanes.pull[k][i]);
-    }
-  }
-
- private:
-  void flush() {
-    if (triangle_ == kNone) return;
-    for (int k = 0; k < 3; ++k) {
-      atomic_add(to_[triangle_].weight[k], sum_.weight[k]);
-      atomic_add(to_[triangle_].pull[k], sum_.pull[k]);
-    }
-    sum_ = {};
-  }
-
-  const View<TrianglePull> to_;
-  uint32_t triangle_ = kNone;
-  TrianglePull sum_{};
-};
-
-/// Some samples, one after the other in their order.
+/// Some samples, one after the other in their order, which has most of a triangle's samples side by side.
 struct PullSamples {
   PullCorners step;
+  const TrianglesAround& around;
+  bool alone;  ///< no other thread adds to the same sums
 
   static constexpr int64_t kRun = 8 * PullSimd::kLanes;
   int64_t runs() const { return (step.sample.size + kRun - 1) / kRun; }
 
   void operator()(int64_t run) const {
-    TriangleRun sums(step.triangle_pull);
     const int64_t end = std::min(step.sample.size, (run + 1) * kRun);
     PullSimd lanes;
     for (int64_t begin = run * kRun; begin < end; begin += PullSimd::kLanes)
-      pull(begin, int(std::min<int64_t>(PullSimd::kLanes, end - begin)), lanes, sums);
+      pull(step.sample.part(begin, std::min<int64_t>(PullSimd::kLanes, end - begin)), begin, lanes);
   }
 
  private:
-  void pull(int64_t begin, int count, PullSimd& lanes, TriangleRun& sums) const {
-    for (int i = 0; i < PullSimd::kLanes; ++i) {
-      const FitSample& s = step.sample[begin + std::min(i, count - 1)];
-      const TriangleIndices t = step.mesh.triangles[s.triangle == kNone ? 0 : s.triangle];
-      lanes.sample.set(i, s.position);
-      lanes.a.set(i, step.position[t.a]);
-      lanes.b.set(i, step.position[t.b]);
-      lanes.c.set(i, step.position[t.c]);
+  void pull(View<const FitSample> samples, int64_t first, PullSimd& lanes) const {
+    const int count = int(samples.size);
+    for (int i = 0; i < count; ++i) lanes.set(i, samples[i].position);
+    for (int begin = 0, end; begin < count; begin = end) {
+      const uint32_t triangle = samples[begin].triangle;
+      for (end = begin + 1; end < count && samples[end].triangle == triangle;) ++end;
+      if (triangle != kNone)
+        pull_one_triangle(triangle, first, begin, end, lanes);
+      else
+        std::fill_n(step.rest_sq.begin() + first + begin, end - begin, 0);
     }
-    lanes.find(step.options);
-    for (int i = 0; i < count; ++i) {
-      const FitSample& s = step.sample[begin + i];
-      if (s.triangle == kNone || s.is_off_surface || !(lanes.is_inside[i] > 0)) {
-        step(begin + i);
+  }
+  void pull_one_triangle(uint32_t triangle, int64_t first, int begin, int end, PullSimd& lanes) const {
+    const TriangleIndices t = step.mesh.triangles[triangle];
+    lanes.find(begin, end, {step.position[t.a], step.position[t.b], step.position[t.c]}, step.options);
+    TrianglePull sum{};
+    for (int i = begin; i < end; ++i) {
+      if (step.sample[first + i].is_off_surface || !(lanes.is_inside[i] > 0)) {
+        pull_one(first + i);
         continue;
       }
-      step.rest_sq[begin + i] = int64_t(lanes.distance_sq[i]);
-      sums.add(s.triangle, lanes, i);
+      step.rest_sq[first + i] = int64_t(lanes.distance_sq[i]);
+      for (int k = 0; k < 3; ++k) {
+        sum.weight[k] += int64_t(lanes.weight[k][i]);
+        sum.pull[k] += int64_t(lanes.pull[k][i]);
+      }
     }
+    add(sum, step.triangle_pull[triangle]);
+  }
+  void pull_one(int64_t i) const {
+    const FitSample& s = step.sample[i];
+    const Foot foot = step.foot_on(s.triangle, s.position);
+    const double distance_sq = dot(foot.rest, foot.rest);
+    if (step.is_far(distance_sq) && is_nearest(s, distance_sq))
+      step.pull(i, s, foot);
+    else
+      step(i);
+  }
+  /// Whether no triangle around the sample's own one is nearer. Most far samples stay where they are, and what they
+  /// look at takes more time than all others together.
+  bool is_nearest(const FitSample& s, double distance_sq) const {
+    const MeshView& mesh = step.mesh;
+    FarSimd lanes;
+    int count = 0;
+    const auto add = [&](uint32_t t) {
+      const TriangleIndices i = mesh.triangles[t];
+      lanes.a.set(count, step.position[i.a]);
+      lanes.b.set(count, step.position[i.b]);
+      lanes.c.set(count, step.position[i.c]);
+      ++count;
+    };
+    const uint32_t own = s.triangle, *twin = &mesh.twin[3 * own];
+    const uint32_t beside[3] = {twin[0] / 3, twin[1] / 3, twin[2] / 3};  // no triangle's number on a border
+    for (int k = 0; k < 3; ++k)
+      if (twin[k] != kNone) add(beside[k]);
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t v = corner(mesh.triangles[own], k);
+      if (count + int(around.first[v + 1] - around.first[v]) > FarSimd::kLanes) return false;
+      for (uint32_t n = around.first[v]; n < around.first[v + 1]; ++n) {
+        const uint32_t t = around.triangles[n].half_edge / 3;
+        if (t != own && t != beside[0] && t != beside[1] && t != beside[2]) add(t);
+      }
+    }
+    lanes.find(s.position, count);
+    return std::none_of(lanes.distance_sq, lanes.distance_sq + count, [&](double d) { return d < distance_sq; });
+  }
+  void add(const TrianglePull& sum, TrianglePull& to) const {
+    for (int k = 0; k < 3; ++k) {
+      add(sum.weight[k], to.weight[k]);
+      add(sum.pull[k], to.pull[k]);
+    }
+  }
+  void add(int64_t sum, int64_t& to) const {
+    if (alone)
+      to += sum;
+    else
+      atomic_add(to, sum);
   }
 };
 
@@ -226,7 +256,7 @@ void CpuStepSimd::sort(CpuExecutor&, int64_t triangles, View<FitSample> samples)
 }
 
 void CpuStepSimd::pull(CpuExecutor& exec, const PullCorners& step) {
-  const PullSamples samples{step};
+  const PullSamples samples{step, around_, loops_run_alone()};
   exec.for_each("pull corners", samples.runs(), samples);
 }
 

@@ -90,6 +90,8 @@ struct FarPlace {
     if (far.offset[t] == 0 || !(double(distance) > least_edges * size.at(home[mesh.triangles[t].a]))) return 0;
     return best_star(t).quality > 0 ? uint64_t(distance) << 32 | (0xffffffffu - t) : 0;
   }
+  /// One of those below.
+  ISOSHELL_HD uint32_t a_vertex(uint32_t t) const { return mesh.from(3 * t); }
   /// The corners, and those opposite of the edges.
   template <class Visit>
   ISOSHELL_HD void for_each_vertex(uint32_t t, Visit visit) const {
@@ -161,6 +163,8 @@ struct SpareEdge {
     if (!is_flat(cost.mesh.from(h)) || !is_flat(cost.mesh.to(h))) return 0;
     return (0xffffffffu - uint64_t(c < most ? c : most)) << 32 | (0xffffffffu - h);
   }
+  /// One of those below.
+  ISOSHELL_HD uint32_t a_vertex(uint32_t h) const { return cost.mesh.to(h); }
   /// The neighbours of both ends, which are neighbours.
   template <class Visit>
   ISOSHELL_HD void for_each_vertex(uint32_t h, Visit visit) const {
@@ -200,6 +204,8 @@ struct HoldsItsVertices {
   Places places;
   View<const uint64_t> claim;
   ISOSHELL_HD bool operator()(int64_t i) const {
+    // Few are claimed by it at all; the others need no key.
+    if (number_of(claim[places.a_vertex(uint32_t(i))]) != uint32_t(i)) return false;
     const uint64_t key = places(uint32_t(i));
     bool holds = key != 0;
     if (holds) places.for_each_vertex(uint32_t(i), [&](uint32_t v) { holds = holds && claim[v] == key; });

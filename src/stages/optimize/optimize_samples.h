@@ -124,22 +124,31 @@ struct PullCorners {
     for (int step = 0; step < 4 && slide(s, foot); ++step) {
     }
     if (s.triangle != before) sample[i].triangle = s.triangle;
+    pull(i, s, foot);
+  }
+
+  // The parts of a step.
+
+  ISOSHELL_HD Foot foot_on(uint32_t t, PointQ8 q) const {
+    const TriangleIndices i = mesh.triangles[t];
+    return foot_on_triangle(q, position[i.a], position[i.b], position[i.c]);
+  }
+  /// Whether a sample looks at all triangles around its own one.
+  ISOSHELL_HD bool is_far(double distance_sq) const { return distance_sq > options.far_q8 * options.far_q8; }
+  /// Adds what a sample asks for where it is.
+  ISOSHELL_HD void pull(int64_t i, const FitSample& s, const Foot& foot) const {
     const double distance_sq = dot(foot.rest, foot.rest);
     rest_sq[i] = int64_t(distance_sq);
     add(s, foot, distance_sq);
   }
 
  private:
-  ISOSHELL_HD Foot foot_on(uint32_t t, PointQ8 q) const {
-    const TriangleIndices i = mesh.triangles[t];
-    return foot_on_triangle(q, position[i.a], position[i.b], position[i.c]);
-  }
   /// To the closest of the triangles that share the edge that the foot lies on, or, where it lies on a corner or far
   /// from the sample, any corner. False when that is the sample's own.
   ISOSHELL_HD bool slide(FitSample& s, Foot& foot) const {
     const int zeros = (foot.weight[0] <= 0) + (foot.weight[1] <= 0) + (foot.weight[2] <= 0);
     double best = dot(foot.rest, foot.rest);
-    const bool far = best > options.far_q8 * options.far_q8;
+    const bool far = is_far(best);
     if (zeros == 0 && !far) return false;
     const uint32_t own = s.triangle;
     const auto consider = [&](uint32_t t) {

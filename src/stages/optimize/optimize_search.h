@@ -30,6 +30,18 @@ struct MarkPoor {
     if (v >= locked) atomic_or(poor[v], 1u);
   }
 };
+struct MarkPoorAround {
+  MeshView mesh;
+  View<const uint32_t> vertices;
+  MarkPoor mark;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    for_each_half_edge_around(mesh, vertices[i], [&](uint32_t h) { mark(h / 3); });
+  }
+};
+struct IsPoor {
+  View<const uint32_t> poor;
+  ISOSHELL_HD bool operator()(int64_t v) const { return poor[v] != 0; }
+};
 /// A poor vertex moves in a round when none of its poor neighbours drew a larger number.
 struct MayMove {
   MeshView mesh;
@@ -152,15 +164,22 @@ struct SearchOptions {
   int64_t locked;  ///< see MarkPoor
 };
 
-/// Looks for better places for poor vertices, in rounds of independent ones.
+/// Looks for better places for poor vertices, in rounds of independent ones. Only poor vertices move, so a triangle
+/// that is poor after a round was so before it or has such a vertex: after the first round few are looked at.
 struct PlainSearchPlaces {
   template <class Exec>
   static void run(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
+    const MarkPoor mark{mesh.triangles, position, options.least_quality, options.locked, poor};
     for (int r = 0; r < options.rounds; ++r) {
-      exec.fill(poor, 0u);
-      exec.for_each("mark poor", mesh.triangles.size,
-                    MarkPoor{mesh.triangles, position, options.least_quality, options.locked, poor});
+      if (r == 0) {
+        exec.fill(poor, 0u);
+        exec.for_each("mark poor", mesh.triangles.size, mark);
+      } else {
+        const Buffer<uint32_t> before = exec.select(poor.size, IsPoor{poor});
+        exec.fill(poor, 0u);
+        exec.for_each("mark poor again", before.size(), MarkPoorAround{mesh, before.view(), mark});
+      }
       const Buffer<uint32_t> chosen = exec.select(poor.size, MayMove{mesh, poor, uint64_t(r)});
       if (chosen.empty()) return;
       exec.for_each(
