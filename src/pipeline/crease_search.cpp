@@ -16,7 +16,8 @@ namespace {
 std::optional<FoundCreases> creases_unless_refused(const FeatureMesh& mesh, const CurveOptions& options) {
   try {
     return find_creases(mesh, options);
-  } catch (const NoRoom&) {
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
     return {};
   }
 }

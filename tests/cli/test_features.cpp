@@ -1,4 +1,5 @@
 // Features as a user asks for them: lines from files, colours, requirements, statistics.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -112,15 +113,18 @@ TEST_CASE("features: requirements on normals and curves end with 6 where they ar
   const auto round = folder.run("box.off out.ply --features off --require normal-deviation=.5" + kQuick);
   CHECK(round.status == 6);
   CHECK(contains(round.err, "gate failed: normal-deviation=0.5: normals of the result deviate by"));
-  TriangleSoup open = shapes::box({-1, -1, -1}, {1, 1, 1});
-  open.triangles.pop_back();
+  TriangleSoup open = shapes::box({-1, -1, -1}, {1, 1, 1});  // loses its lid
+  const auto is_on_top = [&](const std::array<uint32_t, 3>& t) {
+    return std::all_of(t.begin(), t.end(), [&](uint32_t v) { return open.vertices[v].z == 1; });
+  };
+  open.triangles.erase(std::remove_if(open.triangles.begin(), open.triangles.end(), is_on_top), open.triangles.end());
   folder.write_off("open.off", open);
   const auto lost = folder.run("open.off out.ply --require features --stats s.json" + kQuick);
   CHECK(lost.status == 6);
   CHECK(contains(lost.err, "gate failed: features: "));
   const Json j = Json::parse(folder.content("s.json"));
   CHECK(j["features"]["kept"] == false);
-  CHECK(j["features"]["lost"].size() > 8);
+  CHECK(j["features"]["lost"].size() == 8);
   CHECK(j["features"]["lost"][0]["reason"] == j["features"]["given_up"]);
   CHECK(j["features"]["lost"][0]["length"] > 0);
 }
