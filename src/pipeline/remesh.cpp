@@ -253,7 +253,7 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   OptimizeOptions optimize;
   optimize.fit = options.fit;
   optimize.uniform_area = options.uniform_area;
-  Attempt best{{}, std::move(report)};
+  Attempt best{{}, std::exchange(report, {})};
   const GiveBack give_back{best, seeds, report};
   best.made.seeds = std::move(seeds);
   if (p.cut && best.made.seeds.fixed.count > 0) {

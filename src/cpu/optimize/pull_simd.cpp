@@ -31,7 +31,7 @@ ISOSHELL_INLINE void find(PullSimd& s, int begin, int end, const PullSimd::Trian
     const double along = dot(rest, normal);
     const bool beyond = (distance_sq > 1) & (along * along < 0.96 * distance_sq) & (along * along > 0.04 * distance_sq);
     const bool inside = (u > 0) & (v > 0) & (w > 0) & (distance_sq <= far_sq);
-    s.is_inside[i] = inside & !at_corner & !on_edge & !beyond ? 1 : 0;
+    s.is_inside[i] = (inside & !at_corner & !on_edge & !beyond) ? 1 : 0;
     s.distance_sq[i] = distance_sq;
     double all = 1;
     if (kWeighs) {

@@ -11,7 +11,7 @@ struct FootSimd {
   static constexpr int kLanes = 128;
   struct Points {
     int32_t x[kLanes], y[kLanes], z[kLanes];
-    void set(int i, PointQ8 p) { x[i] = p.x, y[i] = p.y, z[i] = p.z; }
+    void set(int i, PointQ8 q) { x[i] = q.x, y[i] = q.y, z[i] = q.z; }
     PointQ8 at(int i) const { return {x[i], y[i], z[i]}; }
   };
 
