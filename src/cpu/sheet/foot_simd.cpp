@@ -5,8 +5,6 @@
 namespace isoshell {
 namespace {
 
-constexpr int kLanes = FootSimd::kLanes;
-
 struct Offset {
   double x, y, z;
 };
