@@ -65,39 +65,6 @@ struct PatchParts {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-/// Of all triangles that fill closed lines, which may lie in one another, those to the left of the lines.
-Triangles left_of(const std::vector<std::array<uint32_t, 2>>& lines, const Triangles& triangles) {
-  struct Side {
-    std::array<uint32_t, 2> end;
-    size_t triangle;
-    bool operator<(const Side& o) const { return end < o.end; }
-  };
-  std::vector<Side> sides;
-  for (size_t t = 0; t < triangles.size(); ++t)
-    for (size_t i = 0; i < 3; ++i) sides.push_back({{triangles[t][i], triangles[t][(i + 1) % 3]}, t});
-  std::sort(sides.begin(), sides.end());
-  std::vector<char> is_left(triangles.size(), 0);
-  std::vector<size_t> found;
-  const auto reach = [&](std::array<uint32_t, 2> end) {
-    const auto side = std::lower_bound(sides.begin(), sides.end(), Side{end, 0});
-    if (side == sides.end() || side->end != end || is_left[side->triangle]) return;
-    is_left[side->triangle] = 1;
-    found.push_back(side->triangle);
-  };
-  for (const auto& line : lines) reach(line);
-  std::vector<std::array<uint32_t, 2>> border = lines;
-  std::sort(border.begin(), border.end());
-  Triangles out;
-  for (size_t i = 0; i < found.size(); ++i) {
-    const auto& t = triangles[found[i]];
-    out.push_back(t);
-    for (size_t k = 0; k < 3; ++k)
-      if (!std::binary_search(border.begin(), border.end(), std::array{t[k], t[(k + 1) % 3]}))
-        reach({t[(k + 1) % 3], t[k]});
-  }
-  return out;
-}
-
 class FlatPatch {
  public:
   FlatPatch(const CutSurface& cut, const SeededMesh& made, const PatchParts& parts, uint32_t patch)

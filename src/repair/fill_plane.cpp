@@ -27,20 +27,6 @@ class InPlane {
   WorldPoint at_, u_, v_;
 };
 
-using Line = std::array<std::array<double, 2>, 2>;
-
-void add_lines(const RepairMesh& mesh, const Loop& loop, const InPlane& plane, std::vector<Line>& lines) {
-  for (const uint32_t h : loop)
-    lines.push_back({plane.of(mesh.position[mesh.from(h)]), plane.of(mesh.position[mesh.to(h)])});
-}
-
-bool is_among(const std::vector<Line>& lines, const std::array<double, 2>& p) {
-  bool inside = false;
-  for (const auto& [a, b] : lines)
-    if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])) inside = !inside;
-  return inside;
-}
-
 /// Fills what is between the loops of a plane.
 class Filling {
  public:
@@ -52,15 +38,12 @@ class Filling {
 
   /// None where lines cross or touch, or faces would have an edge that is there already.
   std::vector<Corners> faces() const {
-    std::vector<std::array<uint32_t, 2>> ends;
-    for (const uint32_t h : loop_) ends.push_back({number_of(mesh_.from(h)), number_of(mesh_.to(h))});
-    const auto triangles = triangulate_plane(on_lattice(), ends);
+    std::vector<Edge> lines;
+    for (const uint32_t h : loop_) lines.push_back({number_of(mesh_.to(h)), number_of(mesh_.from(h))});
+    const auto triangles = triangulate_plane(on_lattice(), lines);
     if (!triangles) return {};
-    std::vector<Line> lines;
-    add_lines(mesh_, loop_, plane_, lines);
     std::vector<Corners> faces;
-    for (const auto& [a, b, c] : *triangles)
-      if (is_among(lines, middle_of(a, b, c))) faces.push_back({vertex_[a], vertex_[b], vertex_[c]});
+    for (const auto& [a, b, c] : left_of(lines, *triangles)) faces.push_back({vertex_[a], vertex_[b], vertex_[c]});
     return closes(faces) ? faces : std::vector<Corners>();
   }
 
@@ -71,10 +54,6 @@ class Filling {
     return uint32_t(std::lower_bound(vertex_.begin(), vertex_.end(), v) - vertex_.begin());
   }
   std::array<double, 2> place_of(uint32_t number) const { return plane_.of(mesh_.position[vertex_[number]]); }
-  std::array<double, 2> middle_of(uint32_t a, uint32_t b, uint32_t c) const {
-    const auto p = place_of(a), q = place_of(b), r = place_of(c);
-    return {(p[0] + q[0] + r[0]) / 3, (p[1] + q[1] + r[1]) / 3};
-  }
 
   std::vector<PlanePoint> on_lattice() const {
     std::array<double, 2> lo = place_of(0), hi = lo;
@@ -119,9 +98,13 @@ class Filling {
 
 bool is_inside(const RepairMesh& mesh, const FlatRim& rim, const Loop& loop, const WorldPoint& p) {
   const InPlane plane(rim);
-  std::vector<Line> lines;
-  add_lines(mesh, loop, plane, lines);
-  return is_among(lines, plane.of(p));
+  const std::array<double, 2> q = plane.of(p);
+  bool inside = false;
+  for (const uint32_t h : loop) {
+    const auto a = plane.of(mesh.position[mesh.from(h)]), b = plane.of(mesh.position[mesh.to(h)]);
+    if ((a[1] > q[1]) != (b[1] > q[1]) && q[0] < a[0] + (q[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])) inside = !inside;
+  }
+  return inside;
 }
 
 std::vector<Corners> fill_plane(const RepairMesh& mesh, const FlatRim& rim, const Loop& loop) {

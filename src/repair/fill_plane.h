@@ -10,7 +10,7 @@ bool is_inside(const RepairMesh& mesh, const FlatRim& rim, const Loop& loop, con
 
 /// Faces between the edges of a loop, or of several, one after the other, that lie in the plane of a rim and pass it
 /// the other way; Delaunay triangles otherwise. None where edges cross or touch each other, or where a new edge is
-/// there already. Cost: as triangulate_plane, and a step per triangle and edge.
+/// there already. Cost: as triangulate_plane.
 std::vector<Corners> fill_plane(const RepairMesh& mesh, const FlatRim& rim, const Loop& loop);
 
 }  // namespace isoshell::repair

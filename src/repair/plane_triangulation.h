@@ -20,4 +20,9 @@ constexpr int64_t kLargestInPlane = int64_t(1) << 28;
 std::optional<std::vector<std::array<uint32_t, 3>>> triangulate_plane(
     const std::vector<PlanePoint>& points, const std::vector<std::array<uint32_t, 2>>& lines);
 
+/// Of triangles that fill closed lines, which may lie in one another, those to the left of the lines. Cost: a sort of
+/// their edges.
+std::vector<std::array<uint32_t, 3>> left_of(const std::vector<std::array<uint32_t, 2>>& lines,
+                                             const std::vector<std::array<uint32_t, 3>>& triangles);
+
 }  // namespace isoshell

@@ -77,8 +77,8 @@ class Capper {
     return is_short ? component.area : kLargestCrack * component.area;
   }
 
-  /// Closes a rim that a piece of a flat face left. Its faces are not those of least
-  /// area, as in a plane all are: some would be without area, between corners on a line.
+  /// Closes a rim that a piece of a flat face left. Its faces are not those of least area, as in a plane all are: some
+  /// would be without area, between corners on a line.
   bool fill(const Loop& loop) {
     const std::optional<FlatRim> rim = closing_.holes ? flat_rim(mesh_, loop) : std::nullopt;
     if (!rim || !is_piece_of_face(mesh_, loop, *rim)) return false;
@@ -136,10 +136,10 @@ class Capper {
     const std::vector<LoopTriangle> triangles =
         cap_loop(corner, [&](uint32_t i, uint32_t j) { return may_join(vertex[i], vertex[j]); });
     if (triangles.empty() || !joins_each_pair_once(vertex, triangles)) return false;
-    const double area = area_of(corner, triangles);
-    if (area > largest || is_too_wide(area, length_of(corner))) return false;
     Cap cap = {loop, {}};
     for (const LoopTriangle& t : triangles) cap.face.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
+    const double area = area_of(cap);
+    if (area > largest || is_too_wide(area, length_of(corner))) return false;
     count_cap(area, length_of(corner));
     add(std::move(cap));
     return true;
@@ -194,11 +194,6 @@ class Capper {
     double area = 0;
     for (const Corners& c : cap.face)
       area += triangle_area(mesh_.position[c[0]], mesh_.position[c[1]], mesh_.position[c[2]]);
-    return area;
-  }
-  static double area_of(const std::vector<WorldPoint>& corner, const std::vector<LoopTriangle>& triangles) {
-    double area = 0;
-    for (const LoopTriangle& t : triangles) area += triangle_area(corner[t[0]], corner[t[1]], corner[t[2]]);
     return area;
   }
   static double length_of(const std::vector<WorldPoint>& corner) {

@@ -7,6 +7,7 @@
 #include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "support/soup_volume.h"
 
 using namespace isoshell;
 
@@ -74,15 +75,6 @@ Repaired repaired(const TriangleSoup& soup) {
   Context context;
   m.topology = measure_topology(m.soup, context).topology;
   return m;
-}
-
-double volume(const TriangleSoup& soup) {
-  double sum = 0;
-  for (const auto& t : soup.triangles) {
-    const WorldPoint &p = soup.vertices[t[0]], &q = soup.vertices[t[1]], &r = soup.vertices[t[2]];
-    sum += p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
-  }
-  return sum / 6;
 }
 
 void check_solid(const TriangleSoup& soup, double expected) {
