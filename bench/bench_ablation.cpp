@@ -25,7 +25,7 @@ struct Bench {
   Context& context;
 
   SeedSet from_levels(int32_t passes) const {
-    return relax_by_levels(prepared, start, {passes, kTolerancePpb, 0}, true, context).seeds;
+    return relax_by_levels(prepared, {start, {passes, kTolerancePpb, 0}, true}, context).seeds;
   }
   SeedSet from_strata() const { return place_seeds(prepared.sheet, start, context); }
 

@@ -161,6 +161,7 @@ struct GrownSolid {
 
 class CreaseSearch;
 struct CutSurface;
+struct RelaxedMeanwhile;
 
 /// Products up to the sheet.
 struct Prepared {
@@ -170,10 +171,11 @@ struct Prepared {
   Shell shell;  ///< empty unless the method or want_shell asks for it
   Sheet sheet;  ///< with edge lengths where they vary
   int32_t closing_vox = 0;
-  std::optional<int64_t> vertices;        ///< as many as the sizing field asks for; without it as the options say
-  GrownSolid grown;                       ///< for the stages that follow
-  std::shared_ptr<CreaseSearch> creases;  ///< looked for while a device makes the sheet; null once it is prepared
-  std::shared_ptr<const CutSurface> cut;  ///< the input's own triangles in patches; null where no features are kept
+  std::optional<int64_t> vertices;            ///< as many as the sizing field asks for; without it as the options say
+  GrownSolid grown;                           ///< for the stages that follow
+  std::shared_ptr<CreaseSearch> creases;      ///< looked for while a device makes the sheet; null once it is prepared
+  std::shared_ptr<const CutSurface> cut;      ///< the input's own triangles in patches; null where no features are kept
+  std::shared_ptr<RelaxedMeanwhile> relaxed;  ///< on a device while creases were looked for, in case there are none
 };
 
 /// Repairs the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for.

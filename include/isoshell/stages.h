@@ -115,6 +115,8 @@ Buffer<uint32_t> measure_curvature(const SurfaceMesh& surface, int32_t rounds, C
 struct SeedOptions {
   int64_t count = 0;  ///< k
   uint64_t seed = 0;  ///< start of the counter-based generator
+
+  bool operator==(const SeedOptions& o) const { return count == o.count && seed == o.seed; }
 };
 /// k seeds spread over the surface, one at random in each of k strata of equal area along the order of its triangles.
 /// Throws: usage when k is below 4 or above half the surface's vertices.
@@ -128,6 +130,10 @@ struct RelaxOptions {
   int32_t max_passes = 100;
   int32_t tolerance_ppb = 10000;  ///< stop when the energy falls by less than this part in 10^9 a pass, over 5 passes
   int32_t max_step_q8 = 0;        ///< u, bound of a seed's move in a pass; 0 chooses (sheet: 0.4 h; shell: 1 voxel)
+
+  bool operator==(const RelaxOptions& o) const {
+    return max_passes == o.max_passes && tolerance_ppb == o.tolerance_ppb && max_step_q8 == o.max_step_q8;
+  }
 };
 /// Energy of every pass: integer units of that method, comparable within one run.
 struct RelaxReport {

@@ -41,10 +41,11 @@ FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& contex
 CreaseSearch::CreaseSearch(LatticeSurface surface, const CurveOptions& options, const Context& context) {
   // Where there is no thread for it, result() does the work.
   constexpr auto own_thread_if_any = std::launch::async | std::launch::deferred;
-  result_ = std::async(own_thread_if_any, [surface = std::move(surface), options, &context] {
+  result_ = std::async(own_thread_if_any, [this, surface = std::move(surface), options, &context] {
     SearchedSurface found{feature_mesh_of(surface, context), {}};
     check_cancel(context, "features");
     found.creases = run_with_threads(context, [&] { return creases_unless_refused(found.mesh, options); });
+    has_found_curves_ = found.creases && !found.creases->curve_edges.empty();
     return found;
   });
 }

@@ -1,6 +1,8 @@
 // Creases of a snapped surface, looked for while a device works on the same surface.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <future>
 #include <optional>
 
@@ -25,11 +27,16 @@ struct SearchedSurface {
 class CreaseSearch {
  public:
   CreaseSearch(LatticeSurface surface, const CurveOptions& options, const Context& context);
+  /// Whether it goes on, on a thread of its own.
+  bool goes_on() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout; }
+  /// Whether it is known that there are curves. Does not wait.
+  bool has_found_curves() const { return has_found_curves_; }
   /// Waits. Throws what the search threw. To be called once.
   SearchedSurface result() { return result_.get(); }
 
  private:
-  std::future<SearchedSurface> result_;
+  std::atomic<bool> has_found_curves_{false};
+  std::future<SearchedSurface> result_;  // ends before what it writes to
 };
 
 /// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a

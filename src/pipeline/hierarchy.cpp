@@ -103,18 +103,19 @@ class CoarseProxies {
 
 }  // namespace
 
-RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& options, const RelaxOptions& relax,
-                             bool tolerance_asked, Context& context) {
-  require_seed_count(prepared.sheet, options.count);
-  std::vector<int64_t> counts = level_counts(options.count, prepared.sheet.topology);
-  const RelaxOptions coarse = for_coarse_level(relax, tolerance_asked);
+RelaxedSeeds relax_by_levels(const Prepared& prepared, const LevelOptions& options, Context& context,
+                             const std::function<bool()>& is_in_vain) {
+  require_seed_count(prepared.sheet, options.seeds.count);
+  std::vector<int64_t> counts = level_counts(options.seeds.count, prepared.sheet.topology);
+  const RelaxOptions coarse = for_coarse_level(options.relax, options.tolerance_asked);
   CoarseProxies proxies(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
   SeedSet seeds;
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
+    if (is_in_vain()) return {};
     const Sheet& sheet = proxies.sheet(level);
-    if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
+    if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seeds.seed}, context);
     const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
     seeds = {};
     if (relaxed) {
@@ -124,9 +125,13 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& option
     }
     proxies.drop_before(level + 1);
   }
+  if (is_in_vain()) return {};
+  RelaxOptions finest = options.relax;
   if (seeds.size() > 0)
-    return relax_on_sheet(prepared.sheet, std::move(seeds), for_finest_level(relax, tolerance_asked), context);
-  return relax_on_sheet(prepared.sheet, place_seeds(prepared.sheet, options, context), relax, context);
+    finest = for_finest_level(finest, options.tolerance_asked);
+  else
+    seeds = place_seeds(prepared.sheet, options.seeds, context);
+  return relax_on_sheet(prepared.sheet, std::move(seeds), finest, context);
 }
 
 }  // namespace isoshell

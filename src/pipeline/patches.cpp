@@ -29,6 +29,7 @@
 #include "pipeline/new_crossings.h"
 #include "pipeline/part_fans.h"
 #include "pipeline/patch_rounds.h"
+#include "pipeline/relax_meanwhile.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
@@ -205,6 +206,8 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines &&
       !may_keep_borders(options, p))
     return;
+  const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(options, p);
+  if (may_be_uncut && !options.previous) relax_meanwhile(options, p, report, context);
   timed(report, "features", context, [&] {
     SearchedSurface searched = searched_surface(p, context);
     FeatureMesh& mesh = searched.mesh;

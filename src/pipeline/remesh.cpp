@@ -16,27 +16,18 @@
 #include "pipeline/cut_curves.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/flag_gaps.h"
-#include "pipeline/hierarchy.h"
 #include "pipeline/merge_walls.h"
 #include "pipeline/patches.h"
+#include "pipeline/relax_meanwhile.h"
 #include "pipeline/resolve_intersections.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
 #include "pipeline/warm_start.h"
-#include "voxel/exact_int.h"
 
 namespace isoshell {
 namespace {
-
-RelaxOptions relax_options(const RemeshOptions& options) {
-  RelaxOptions relax;
-  relax.max_passes = options.max_passes.value_or(options.method == Method::shell ? 200 : 100);
-  if (options.tolerance) relax.tolerance_ppb = int32_t(*options.tolerance * 1e9);
-  if (options.max_step_vox) relax.max_step_q8 = int32_t(*options.max_step_vox * kOneVoxelQ8);
-  return relax;
-}
 
 PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize) {
   return {{p.cut->seeds, options.seed}, relax_options(options), options.tolerance.has_value(), optimize};
@@ -68,9 +59,7 @@ SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patch
                                  options.tolerance.has_value(), context);
     });
   } else if (options.method == Method::sheet) {
-    relaxed = timed(report, "relax", context, [&] {
-      return relax_by_levels(p, seed_options, relax_options(options), options.tolerance.has_value(), context);
-    });
+    relaxed = timed(report, "relax", context, [&] { return relaxed_by_levels(p, options, context); });
   } else {
     SeedSet start =
         timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });

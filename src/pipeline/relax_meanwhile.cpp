@@ -1,0 +1,46 @@
+// See relax_meanwhile.h.
+#include "pipeline/relax_meanwhile.h"
+
+#include <utility>
+
+#include "pipeline/attempt.h"
+#include "pipeline/choose_grid.h"
+#include "pipeline/crease_search.h"
+#include "pipeline/timed.h"
+#include "voxel/exact_int.h"
+
+namespace isoshell {
+
+RelaxOptions relax_options(const RemeshOptions& options) {
+  RelaxOptions relax;
+  relax.max_passes = options.max_passes.value_or(options.method == Method::shell ? 200 : 100);
+  if (options.tolerance) relax.tolerance_ppb = int32_t(*options.tolerance * 1e9);
+  if (options.max_step_vox) relax.max_step_q8 = int32_t(*options.max_step_vox * kOneVoxelQ8);
+  return relax;
+}
+
+LevelOptions level_options(const Prepared& prepared, const RemeshOptions& options) {
+  return {{vertex_target(options, prepared), options.seed}, relax_options(options), options.tolerance.has_value()};
+}
+
+void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshReport& report, Context& context) {
+  const std::shared_ptr<CreaseSearch> search = prepared.creases;
+  if (!search || !search->goes_on()) return;
+  RelaxedMeanwhile made{level_options(prepared, options), {}};
+  const std::string why_not = reason_against([&]() -> std::string {
+    made.relaxed = timed(report, "relax", context, [&] {
+      return relax_by_levels(prepared, made.options, context, [&] { return search->has_found_curves(); });
+    });
+    return made.relaxed.seeds.size() > 0 ? "" : "there are creases";
+  });
+  if (why_not.empty()) prepared.relaxed = std::make_shared<RelaxedMeanwhile>(std::move(made));
+}
+
+RelaxedSeeds relaxed_by_levels(const Prepared& prepared, const RemeshOptions& options, Context& context) {
+  const LevelOptions levels = level_options(prepared, options);
+  if (prepared.relaxed && prepared.relaxed->options == levels && prepared.relaxed->relaxed.seeds.size() > 0)
+    return std::exchange(prepared.relaxed->relaxed, {});
+  return relax_by_levels(prepared, levels, context);
+}
+
+}  // namespace isoshell
