@@ -17,11 +17,13 @@ constexpr uint32_t kMany = kNone - 1;  ///< in slot 0: more than kSlots neighbou
 
 /// Scratch of all splits of a round, by the cells' places in the queue.
 struct Scratch {
-  View<uint32_t> place_of;            ///< per sheet vertex of a cell that is split: its place in the cell
-  View<uint32_t> split_of;            ///< per cell that is split: number of its split
-  View<uint32_t> cursor;              ///< per split
-  View<uint32_t> neighbour;           ///< kSlots a place: places of neighbours in the cell, then kNone
-  View<uint32_t> from_old, from_new;  ///< edges from the two sources
+  View<uint32_t> place_of;                 ///< per sheet vertex of a cell that is split: its place in the cell
+  View<uint32_t> split_of;                 ///< per cell that is split: number of its split
+  View<uint32_t> cursor;                   ///< per split
+  View<uint32_t> neighbour;                ///< kSlots a place: places of neighbours in the cell, then kNone
+  View<uint32_t> from_first, from_second;  ///< edges from the two sources
+
+  __device__ bool is_in_second(int64_t at) const { return from_second[at] < from_first[at]; }
 };
 
 struct NumberSplits {
@@ -72,13 +74,9 @@ struct Work {
   int64_t first, size;
 
   __device__ uint32_t vertex(int64_t p) const { return split.queue[first + p]; }
-  __device__ uint32_t& from_old(int64_t p) const { return scratch.from_old[first + p]; }
-  __device__ uint32_t& from_new(int64_t p) const { return scratch.from_new[first + p]; }
-  /// Of the old source, whose one vertex is `source` where it has no border.
-  __device__ bool is_old_source(uint32_t v, uint32_t source) const {
-    return split.cells.is_fixed(id) ? split.graph.is_on_border(v) : v == source;
-  }
-  __device__ bool is_new(int64_t p) const { return from_new(p) < from_old(p); }
+  __device__ uint32_t& from_first(int64_t p) const { return scratch.from_first[first + p]; }
+  __device__ uint32_t& from_second(int64_t p) const { return scratch.from_second[first + p]; }
+  __device__ bool is_in_second(int64_t p) const { return scratch.is_in_second(first + p); }
 
   /// Calls visit(place) for the neighbours in the cell until it returns true; returns whether it did.
   template <class Visit>
@@ -143,16 +141,17 @@ __device__ inline uint32_t nearest_to_seed(const Work& work, uint64_t* shared) {
   return uint32_t(block_min(nearest == least ? best : uint64_t(kNone), shared));
 }
 
-/// The vertex of the most edges from the old source, among those that touch the requested cell if there are any; the
-/// smallest of equals.
-__device__ inline uint32_t farthest(const Work& work, uint64_t* shared) {
+/// The vertex of the most edges from where distances begin, among others that touch the requested cell if there are
+/// any; the smallest of equals.
+template <class Distance>
+__device__ inline uint32_t farthest(const Work& work, Distance distance, uint64_t* shared) {
   const uint32_t touching = work.split.request[work.id];
   uint64_t anywhere = ~uint64_t(0), at_other = ~uint64_t(0);  // ~distance << 32 | vertex
   for (int64_t p = threadIdx.x; p < work.size; p += kThreads) {
     const uint32_t v = work.vertex(p);
-    const uint64_t key = uint64_t(~work.from_old(p)) << 32 | v;
+    const uint64_t key = uint64_t(~distance(p)) << 32 | v;
     anywhere = key < anywhere ? key : anywhere;
-    const bool is_source = work.from_old(p) == 0;
+    const bool is_source = distance(p) == 0;
     if (touching != kSplitAnywhere && !is_source && key < at_other && work.touches(v, touching)) at_other = key;
   }
   anywhere = block_min(anywhere, shared);
@@ -161,7 +160,7 @@ __device__ inline uint32_t farthest(const Work& work, uint64_t* shared) {
 }
 
 /// Sizes and Euler numbers of both halves.
-__device__ inline void measure_halves(const Work& work, int64_t i, uint32_t* size, int32_t* euler) {
+__device__ inline void measure_halves(const Work& work, int64_t i, bool keeps_first, uint32_t* size, int32_t* euler) {
   __syncthreads();
   if (threadIdx.x < 2) size[threadIdx.x] = 0, euler[threadIdx.x] = 0;
   __syncthreads();
@@ -170,10 +169,10 @@ __device__ inline void measure_halves(const Work& work, int64_t i, uint32_t* siz
   int32_t euler_all = 0, euler_new = 0;
   for (int64_t p = threadIdx.x; p < work.size; p += kThreads) {
     const uint32_t v = work.vertex(p);
-    const bool side = work.is_new(p);
+    const bool side = work.is_in_second(p);
     int32_t sum = 1;
     const auto is_same = [&](uint32_t w) {
-      return split.label[w] == work.id && work.is_new(work.scratch.place_of[w]) == side;
+      return split.label[w] == work.id && work.is_in_second(work.scratch.place_of[w]) == side;
     };
     split.graph.for_each_corner(v, [&](uint32_t next, uint32_t last) {
       if (next < v || !is_same(next)) return;
@@ -183,7 +182,7 @@ __device__ inline void measure_halves(const Work& work, int64_t i, uint32_t* siz
     if (split.graph.is_on_border(v) && split.graph.border_before[v] > v && is_same(split.graph.border_before[v])) --sum;
     ++all;
     euler_all += sum;
-    if (side) ++in_new, euler_new += sum;
+    if (side == keeps_first) ++in_new, euler_new += sum;
   }
   atomic_add(size[0], all - in_new);
   atomic_add(size[1], in_new);
@@ -197,26 +196,36 @@ __device__ inline void measure_halves(const Work& work, int64_t i, uint32_t* siz
   split.half[i].euler = euler[1];
 }
 
-/// A vertex goes to the source that is fewer edges away, so distances to the new one matter only where they are
+/// A vertex goes to the source that is fewer edges away, so distances to the second one matter only where they are
 /// smaller.
 __global__ void __launch_bounds__(kThreads) split_in_blocks(int64_t count, SplitCell split, Scratch scratch) {
   __shared__ uint64_t least;
   __shared__ uint32_t size[2];
   __shared__ int32_t euler[2];
+  const auto no_limit = [](int64_t) { return kFar; };
   for (int64_t i = blockIdx.x; i < count; i += gridDim.x) {
     const Work work = {split, scratch, split.cell[i], split.first[i], split.first[i + 1] - split.first[i]};
-    const uint32_t old_source = nearest_to_seed(work, &least);
-    const auto from_old = [&](int64_t p) -> uint32_t& { return work.from_old(p); };
+    const auto from_first = [&](int64_t p) -> uint32_t& { return work.from_first(p); };
+    const auto from_second = [&](int64_t p) -> uint32_t& { return work.from_second(p); };
+    const bool is_fixed = split.cells.is_fixed(work.id);
+    const uint32_t kept = nearest_to_seed(work, &least);
+    uint32_t first_source = kept;
+    if (!is_fixed) {
+      measure_from(
+          work, [&](uint32_t v) { return v == kept; }, from_first, no_limit);
+      first_source = farthest(work, from_first, &least);
+    }
+    const auto is_first_source = [&](uint32_t v) { return is_fixed ? split.graph.is_on_border(v) : v == first_source; };
+    measure_from(work, is_first_source, from_first, no_limit);
+    const uint32_t second_source = farthest(work, from_first, &least);
     measure_from(
-        work, [&](uint32_t v) { return work.is_old_source(v, old_source); }, from_old, [](int64_t) { return kFar; });
-    const uint32_t new_source = farthest(work, &least);
-    measure_from(
-        work, [&](uint32_t v) { return v == new_source; }, [&](int64_t p) -> uint32_t& { return work.from_new(p); },
-        from_old);
-    measure_halves(work, i, size, euler);
+        work, [&](uint32_t v) { return v == second_source; }, from_second, from_first);
+    __syncthreads();
+    const bool keeps_first = !work.is_in_second(scratch.place_of[kept]);
+    measure_halves(work, i, keeps_first, size, euler);
     if (threadIdx.x == 0) {
-      split.cells.root[work.id] = old_source;
-      split.half[i].seed_vertex = new_source;
+      split.cells.root[work.id] = kept;
+      split.half[i].seed_vertex = keeps_first ? second_source : first_source;
     }
   }
 }
@@ -224,8 +233,9 @@ __global__ void __launch_bounds__(kThreads) split_in_blocks(int64_t count, Split
 __global__ void __launch_bounds__(kThreads) apply_in_blocks(int64_t count, ApplySplit apply, Scratch scratch) {
   for (int64_t i = blockIdx.x; i < count; i += gridDim.x) {
     const uint32_t id = apply.new_id[i];
+    const bool takes_second = scratch.is_in_second(apply.first[i] + scratch.place_of[apply.half[i].seed_vertex]);
     for (int64_t at = apply.first[i] + threadIdx.x; at < apply.first[i + 1]; at += kThreads)
-      if (scratch.from_new[at] < scratch.from_old[at]) apply.label[apply.queue[at]] = id;
+      if (scratch.is_in_second(at) == takes_second) apply.label[apply.queue[at]] = id;
     if (threadIdx.x != 0) continue;
     apply.cells.root[id] = apply.half[i].seed_vertex;
     apply.cells.size[id] = apply.half[i].size;
@@ -242,9 +252,9 @@ struct SplitCellsByBlocks {
     const int64_t members = split.queue.size, vertices = split.label.size;
     Buffer<uint32_t> place_of = exec.make<uint32_t>(vertices), split_of = exec.make<uint32_t>(split.cells.size.size),
                      cursor = exec.make<uint32_t>(count), neighbour = exec.make<uint32_t>(members * kSlots),
-                     from_old = exec.make<uint32_t>(members), from_new = exec.make<uint32_t>(members);
-    const Scratch scratch = {place_of.view(),  split_of.view(), cursor.view(),
-                             neighbour.view(), from_old.view(), from_new.view()};
+                     from_first = exec.make<uint32_t>(members), from_second = exec.make<uint32_t>(members);
+    const Scratch scratch = {place_of.view(),  split_of.view(),   cursor.view(),
+                             neighbour.view(), from_first.view(), from_second.view()};
     exec.for_each("number splits", count, NumberSplits{split.cell, split_of.view(), cursor.view()});
     exec.for_each("list members", vertices, ListMembers{split, scratch});
     exec.for_each("list neighbours", members, ListNeighbours{split, scratch});

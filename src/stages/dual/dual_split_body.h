@@ -13,13 +13,14 @@ struct Half {
   int32_t euler;
 };
 
-/// Splits cell[i]: its old source is its vertex nearest to its seed, of a fixed seed all its border vertices, which are
-/// connected; the new source is the vertex farthest from that along edges (among those that touch the requested cell,
-/// if one is), ties by the smaller vertex. A vertex goes to the source that is fewer edges away within the cell, ties
-/// to the old one; so both halves are connected, and the old one keeps the border. Writes marks only, so that all
-/// splits of a round read the same labels.
+/// Splits cell[i] between two sources that are far apart: the vertex farthest along edges from the one nearest to its
+/// seed, and the vertex farthest from that; among those that touch the requested cell if one is, so that where two
+/// cells meet twice, each half keeps one of the places. Of a fixed seed the first source are all its border vertices,
+/// which are connected. Of equally far vertices the smallest is taken. A vertex goes to the source that is fewer edges
+/// away within the cell, ties to the first; so both halves are connected. The one with the vertex nearest to the seed
+/// keeps the seed, and the border. Writes marks only, so that all splits of a round read the same labels.
 struct SplitCell {
-  enum Mark : uint8_t { kClear, kSeen, kMeasured, kOldHalf, kNewHalf };
+  enum Mark : uint8_t { kClear, kSeen, kMeasured, kMeasuredAgain, kFirstHalf, kSecondHalf, kNewHalf };
 
   SheetGraph graph;
   View<const uint32_t> label, cell, request;
@@ -33,19 +34,29 @@ struct SplitCell {
   ISOSHELL_HD void operator()(int64_t i) const {
     const uint32_t id = cell[i];
     const View<uint32_t> places = {queue.data + first[i], first[i + 1] - first[i]};
-    const uint32_t old_source = nearest_to_seed(id, places);
-    const int64_t sources = gather_sources(id, places, old_source);
-    const uint32_t new_source = farthest(id, places, sources, request[id]);
-    for (int64_t at = 0; at < sources; ++at) mark[places[at]] = kOldHalf;
-    places[sources] = new_source;
-    mark[new_source] = kNewHalf;
-    // Within a level the queue holds the old half first, so ties go to it.
-    spread(id, places, sources + 1, kMeasured, [&](uint32_t from) { return mark[from]; });
+    const uint32_t kept = nearest_to_seed(id, places);
+    int64_t sources = gather_sources(id, places, kept);
+    uint8_t measured = kMeasured;
+    if (!cells.is_fixed(id)) {
+      places[0] = farthest(id, places, sources, request[id], measured);
+      sources = 1;
+      measured = kMeasuredAgain;
+    }
+    const uint32_t first_source = places[0];
+    const uint32_t second_source = farthest(id, places, sources, request[id], measured);
+    for (int64_t at = 0; at < sources; ++at) mark[places[at]] = kFirstHalf;
+    places[sources] = second_source;
+    mark[second_source] = kSecondHalf;
+    // Within a level the queue holds the first half first, so ties go to it.
+    spread(id, places, sources + 1, measured, [&](uint32_t from) { return mark[from]; });
+    const bool keeps_first = mark[kept] == kFirstHalf;
+    for (uint32_t v : places)
+      if ((mark[v] == kFirstHalf) != keeps_first) mark[v] = kNewHalf;
     measure_halves(i, id, places);
-    cells.root[id] = old_source;
-    half[i].seed_vertex = new_source;
+    cells.root[id] = kept;
+    half[i].seed_vertex = keeps_first ? second_source : first_source;
   }
-  /// Of the old half.
+  /// Of the half that stays.
   ISOSHELL_HD bool may_be_source(uint32_t id, uint32_t v) const { return !cells.is_fixed(id) || graph.is_on_border(v); }
 
  private:
@@ -79,10 +90,10 @@ struct SplitCell {
     return best;
   }
 
-  /// The first places become the old source; returns how many.
-  ISOSHELL_HD int64_t gather_sources(uint32_t id, View<uint32_t> places, uint32_t old_source) const {
+  /// The first places become where distances begin; returns how many.
+  ISOSHELL_HD int64_t gather_sources(uint32_t id, View<uint32_t> places, uint32_t kept) const {
     if (!cells.is_fixed(id)) {
-      places[0] = old_source;
+      places[0] = kept;
       return 1;
     }
     int64_t count = 0;
@@ -97,8 +108,10 @@ struct SplitCell {
     return found;
   }
 
-  ISOSHELL_HD uint32_t farthest(uint32_t id, View<uint32_t> places, int64_t sources, uint32_t touching) const {
-    for (int64_t at = 0; at < sources; ++at) mark[places[at]] = kMeasured;
+  /// From the first `sources` places; raises all marks by one, to `measured`.
+  ISOSHELL_HD uint32_t farthest(uint32_t id, View<uint32_t> places, int64_t sources, uint32_t touching,
+                                uint8_t measured) const {
+    for (int64_t at = 0; at < sources; ++at) mark[places[at]] = measured;
     uint32_t anywhere = kNone, at_other = kNone;
     for (int64_t begin = 0, end = sources; begin < end;) {
       uint32_t level_anywhere = kNone, level_at_other = kNone;
@@ -109,8 +122,8 @@ struct SplitCell {
         if (touching != kSplitAnywhere && at >= sources && v < level_at_other && touches(v, touching))
           level_at_other = v;
         graph.for_each_neighbour(v, [&](uint32_t w) {
-          if (label[w] != id || mark[w] != kSeen) return;
-          mark[w] = kMeasured;
+          if (label[w] != id || mark[w] + 1 != measured) return;
+          mark[w] = measured;
           places[count++] = w;
         });
       }
