@@ -1,12 +1,16 @@
 // Streams and device memory.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstring>
 #include <iterator>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "cuda/runtime/device_stream.h"
+#include "cuda/runtime/host_bell.cuh"
 #include "isoshell/device_info.h"
 #include "isoshell/error.h"
 
@@ -88,8 +92,15 @@ DeviceStream* take_stream(int device) {
   cudaEvent_t event;
   require_success(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreate");
   void* pinned;
-  require_success(cudaMallocHost(&pinned, DeviceStream::kPinnedBytes), "cudaMallocHost");
+  require_success(cudaMallocHost(&pinned, DeviceStream::kPinnedBytes + sizeof(uint32_t)), "cudaMallocHost");
   return new DeviceStream(pool, processors, stream, event, pinned);
+}
+
+__global__ void write_to_host(const uint8_t* from, int64_t bytes, uint8_t* to, HostBell bell) {
+  for (int64_t i = threadIdx.x; i < bytes; i += blockDim.x) to[i] = from[i];
+  __threadfence_system();
+  __syncthreads();
+  if (threadIdx.x == 0) ring(bell);
 }
 
 __global__ void probe() {}
@@ -116,6 +127,8 @@ void return_stream(void* stream) {
   const std::lock_guard<std::mutex> lock(pool.idle_mutex);
   pool.idle.push_back(idle);
 }
+
+constexpr int64_t kStagedBytes = int64_t(1) << 20;  ///< of a copy to the host, at once
 
 /// Size of the block that serves this many bytes: four sizes from one power of two to the next, so that blocks fit
 /// again. Large blocks are as asked.
@@ -177,7 +190,14 @@ DeviceStream& DeviceStream::of(Context& context) {
 }
 
 DeviceStream::DeviceStream(DevicePool& pool, int processors, cudaStream_t stream, cudaEvent_t event, void* pinned)
-    : pool_(pool), processors_(processors), stream_(stream), event_(event), pinned_(pinned) {}
+    : pool_(pool),
+      processors_(processors),
+      stream_(stream),
+      event_(event),
+      pinned_(pinned),
+      bell_(reinterpret_cast<uint32_t*>(static_cast<char*>(pinned) + kPinnedBytes)) {
+  *bell_ = 0;
+}
 
 int DeviceStream::device() const { return pool_.device; }
 
@@ -248,8 +268,47 @@ void DeviceStream::free(void* data, int64_t bytes) noexcept {
 
 void DeviceStream::copy_to_host(void* to, const void* from, int64_t bytes) {
   if (bytes <= 0) return;
+  if (bytes <= kPinnedBytes) return copy_few_to_host(to, from, bytes);
+  if (bytes > kStagedBytes) return copy_many_to_host(static_cast<char*>(to), static_cast<const char*>(from), bytes);
   require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
   synchronize();
+}
+
+void DeviceStream::copy_few_to_host(void* to, const void* from, int64_t bytes) {
+  constexpr int64_t kMostThreads = 256;
+  write_to_host<<<1, unsigned(std::min(bytes, kMostThreads)), 0, stream_>>>(
+      static_cast<const uint8_t*>(from), bytes, static_cast<uint8_t*>(pinned_), next_bell());
+  require_success(cudaGetLastError(), "write to the host");
+  wait_for_bell();
+  std::memcpy(to, pinned_, size_t(bytes));
+}
+
+/// Piece by piece through pinned memory. The driver's way is bound by one thread that touches new pages.
+void DeviceStream::copy_many_to_host(char* to, const char* from, int64_t bytes) {
+  for (Staging& s : staging_) {
+    if (s.pinned) continue;
+    require_success(cudaEventCreateWithFlags(&s.copied, cudaEventDisableTiming), "cudaEventCreate");
+    require_success(cudaMallocHost(&s.pinned, size_t(kStagedBytes)), "cudaMallocHost");
+  }
+  const int64_t pieces = (bytes + kStagedBytes - 1) / kStagedBytes;
+  const auto size = [&](int64_t piece) { return std::min(kStagedBytes, bytes - piece * kStagedBytes); };
+  for (int64_t piece = 0; piece <= pieces; ++piece) {
+    if (piece < pieces) {
+      const Staging& s = staging_[piece % 2];
+      require_success(
+          cudaMemcpyAsync(s.pinned, from + piece * kStagedBytes, size_t(size(piece)), cudaMemcpyDeviceToHost, stream_),
+          "cudaMemcpyAsync");
+      require_success(cudaEventRecord(s.copied, stream_), "cudaEventRecord");
+    }
+    if (piece == 0) continue;
+    const Staging& s = staging_[(piece - 1) % 2];
+    require_success(cudaEventSynchronize(s.copied), "cudaEventSynchronize");
+    char* const out = to + (piece - 1) * kStagedBytes;
+    constexpr int64_t kBytesAtATime = 1 << 16;
+    for_ranges(size(piece - 1), kBytesAtATime, [&](int64_t begin, int64_t end) {
+      std::memcpy(out + begin, static_cast<const char*>(s.pinned) + begin, size_t(end - begin));
+    });
+  }
 }
 
 void DeviceStream::copy_to_device(void* to, const void* from, int64_t bytes) {
@@ -258,6 +317,18 @@ void DeviceStream::copy_to_device(void* to, const void* from, int64_t bytes) {
 }
 
 void DeviceStream::synchronize() { require_success(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+void DeviceStream::wait_for_bell() {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kLongWait = std::chrono::microseconds(200);
+  constexpr int kLooks = 64;  // between two at the clock
+  const auto has_rung = [&] { return __atomic_load_n(bell_, __ATOMIC_ACQUIRE) == bells_; };
+  for (const Clock::time_point start = Clock::now(); Clock::now() - start < kLongWait;)
+    for (int look = 0; look < kLooks; ++look)
+      if (has_rung()) return;
+  synchronize();  // says what failed, where something did
+  if (!has_rung()) throw Error(ErrorCode::internal, "cuda", "a kernel ended without an answer");
+}
 
 void DeviceStream::wait_for(const DeviceStream& other) {
   require_success(cudaEventRecord(other.event_, other.stream_), "cudaEventRecord");

@@ -25,6 +25,12 @@ inline unsigned blocks_for(int64_t count, int64_t per_block) { return unsigned((
 
 struct DevicePool;
 
+/// A word of pinned memory, and what a kernel writes to it in the end; see host_bell.cuh.
+struct HostBell {
+  uint32_t* word;
+  uint32_t number;
+};
+
 /// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Small
 /// blocks that were freed are handed out again without asking the driver: a run takes a thousand of them. Lives as long
 /// as the process: contexts borrow it, and Buffers may outlive them.
@@ -50,12 +56,15 @@ class DeviceStream final : public Memory {
   cudaStream_t stream() const { return stream_; }
   /// Waits for everything in the stream.
   void synchronize();
+  /// For the next kernel. wait_for_bell waits until it rings, so for everything in the stream before it.
+  HostBell next_bell() { return {bell_, ++bells_}; }
+  void wait_for_bell();
   /// Work that is enqueued from now on starts after all that is in `other`, a stream of the same device. The host does
   /// not wait.
   void wait_for(const DeviceStream& other);
   static constexpr int64_t kLargestKept = int64_t(8) << 20;  ///< bytes of a block that is kept when freed
   /// A few words of pinned host memory for read-backs.
-  static constexpr int64_t kPinnedBytes = 4096;
+  static constexpr int64_t kPinnedBytes = 4032;
   void* pinned() const { return pinned_; }
   /// Bytes of the Buffers that the stream serves. A context is given a stream that serves none: they are its own.
   int64_t held_bytes() const { return held_bytes_; }
@@ -64,13 +73,22 @@ class DeviceStream final : public Memory {
 
  private:
   void* take(int64_t bytes);
+  void copy_few_to_host(void* to, const void* from, int64_t bytes);
+  void copy_many_to_host(char* to, const char* from, int64_t bytes);
 
   DevicePool& pool_;
   int processors_;
   cudaStream_t stream_;
   cudaEvent_t event_;  ///< for others to wait for
   void* pinned_;
-  int64_t limit_ = 0;  ///< of the context that uses the stream, in bytes; 0 means none
+  uint32_t* bell_;      ///< behind them
+  uint32_t bells_ = 0;  ///< so far
+  struct Staging {
+    void* pinned = nullptr;
+    cudaEvent_t copied;
+  };
+  Staging staging_[2];  ///< for large copies to the host; made for the first one
+  int64_t limit_ = 0;   ///< of the context that uses the stream, in bytes; 0 means none
   std::atomic<int64_t> held_bytes_{0};
   std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread
   std::unordered_map<int64_t, std::vector<void*>> kept_;  ///< by their sizes

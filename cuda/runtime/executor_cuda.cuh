@@ -101,11 +101,10 @@ class CudaExecutor {
 
   template <class T>
   T value(View<const T> values, int64_t i) {
-    static_assert(sizeof(T) <= DeviceStream::kPinnedBytes, "read back through the pinned words");
     static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
-    read_back(values.data + i, 0, sizeof(T));
-    stream_.synchronize();
-    return *static_cast<const T*>(stream_.pinned());
+    T out;
+    stream_.copy_to_host(&out, values.data + i, sizeof(T));
+    return out;
   }
 
   template <class Step>
@@ -125,17 +124,20 @@ class CudaExecutor {
     if (counts.empty()) return 0;
     if (counts.size <= small_words::kMost) {
       T* const total = static_cast<T*>(stream_.pinned());
-      small_words::exclusive_scan<<<1, small_words::kThreads, 0, stream()>>>(counts, total);
+      small_words::exclusive_scan<<<1, small_words::kThreads, 0, stream()>>>(counts, total, stream_.next_bell());
       check("scan");
-      stream_.synchronize();
+      stream_.wait_for_bell();
       return *total;
     }
-    read_back(counts.data + counts.size - 1, 0, sizeof(T));
+    Buffer<T> last = make<T>(1);
+    copy(View<const T>(counts).part(counts.size - 1, 1), last.view());
     exclusive_scan_async(stream_, counts);
-    read_back(counts.data + counts.size - 1, sizeof(T), sizeof(T));
-    stream_.synchronize();
-    const T* last = static_cast<const T*>(stream_.pinned());
-    return T(last[0] + last[1]);
+    T* const total = static_cast<T*>(stream_.pinned());
+    small_words::give_sum<<<1, 1, 0, stream()>>>(last.data(), counts.data + counts.size - 1, total,
+                                                 stream_.next_bell());
+    check("scan");
+    stream_.wait_for_bell();
+    return *total;
   }
 
   template <class T>
@@ -166,10 +168,8 @@ class CudaExecutor {
     stop_if_cancelled();
     if (count <= 0) return {};
     if (count <= small_words::kMost) return select_of_few(count, keep);
-    Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32), rank = make<uint32_t>(words.size() + 1);
-    cuda_steps::mark_kept<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, keep,
-                                                                                                words.view());
-    check("select");
+    const Buffer<uint32_t> words = mark_kept(count, keep);
+    Buffer<uint32_t> rank = make<uint32_t>(words.size() + 1);
     rank_kept_async(stream_, words.view(), rank.view());
     Buffer<uint32_t> out = make<uint32_t>(value(View<const uint32_t>(rank.view()), words.size()));
     if (!out.empty()) list_kept_async(stream_, words.view(), rank.view(), out.view());
@@ -182,9 +182,9 @@ class CudaExecutor {
     if (count <= 0) return 0;
     if (count <= small_words::kMost) {
       int64_t* const few = static_cast<int64_t*>(stream_.pinned());
-      small_words::sum<<<1, small_words::kThreads, 0, stream()>>>(count, term, few);
+      small_words::sum<<<1, small_words::kThreads, 0, stream()>>>(count, term, few, stream_.next_bell());
       check("sum");
-      stream_.synchronize();
+      stream_.wait_for_bell();
       return *few;
     }
     Buffer<int64_t> total = make<int64_t>(1);
@@ -237,25 +237,36 @@ class CudaExecutor {
     return copy;
   }
 
+  /// A bit each.
+  template <class Keep>
+  Buffer<uint32_t> mark_kept(int64_t count, Keep keep) {
+    Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32);
+    cuda_steps::mark_kept<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, keep,
+                                                                                                words.view());
+    check("select");
+    return words;
+  }
+
   template <class Keep>
   Buffer<uint32_t> select_of_few(int64_t count, Keep keep) {
+    constexpr int64_t kMostOfOneBlock = 2048;  // it asks of all of them itself
     Buffer<uint32_t> room = make<uint32_t>(count);
     uint32_t* const total = static_cast<uint32_t*>(stream_.pinned());
-    small_words::select<<<1, small_words::kThreads, 0, stream()>>>(count, keep, room.data(), total);
+    if (count <= kMostOfOneBlock) {
+      small_words::select<<<1, small_words::kThreads, 0, stream()>>>(count, keep, room.data(), total,
+                                                                     stream_.next_bell());
+    } else {
+      const Buffer<uint32_t> words = mark_kept(count, keep);
+      small_words::list_bits<<<1, small_words::kThreads, 0, stream()>>>(words.view(), room.data(), total,
+                                                                        stream_.next_bell());
+    }
     check("select");
-    stream_.synchronize();
+    stream_.wait_for_bell();
     const int64_t kept = *total;
     if (kept == count) return room;
     Buffer<uint32_t> out = make<uint32_t>(kept);
     copy(View<const uint32_t>(room.view()).part(0, kept), out.view());
     return out;
-  }
-
-  /// To the pinned memory; complete after the stream was waited for.
-  void read_back(const void* from, int64_t at, size_t bytes) {
-    require_success(
-        cudaMemcpyAsync(static_cast<char*>(stream_.pinned()) + at, from, bytes, cudaMemcpyDeviceToHost, stream()),
-        "cudaMemcpyAsync");
   }
 
   Context& context_;

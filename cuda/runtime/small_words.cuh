@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "cuda/runtime/host_bell.cuh"
 #include "cuda/runtime/warp.cuh"
 #include "isoshell/buffer.h"
 
@@ -31,7 +32,18 @@ __device__ inline T block_sum_before(T value, T& total) {
 }
 
 template <class T>
-__global__ void __launch_bounds__(kThreads) exclusive_scan(View<T> counts, T* total) {
+__device__ inline void give(T* to, T number, const HostBell& bell) {
+  *to = number;
+  ring(bell);
+}
+
+template <class T>
+__global__ void give_sum(const T* a, const T* b, T* to, HostBell bell) {
+  give(to, T(*a + *b), bell);
+}
+
+template <class T>
+__global__ void __launch_bounds__(kThreads) exclusive_scan(View<T> counts, T* total, HostBell bell) {
   T own = 0, value[kPerThread], all;
   const int64_t begin = int64_t(threadIdx.x) * kPerThread;
 #pragma unroll
@@ -45,12 +57,13 @@ __global__ void __launch_bounds__(kThreads) exclusive_scan(View<T> counts, T* to
     if (begin + k < counts.size) counts[begin + k] = at;
     at += value[k];
   }
-  if (threadIdx.x == 0) *total = all;
+  if (threadIdx.x == 0) give(total, all, bell);
 }
 
 /// Element k * kThreads + thread is the thread's k-th, so that the reads of a warp lie together.
 template <class Keep>
-__global__ void __launch_bounds__(kThreads) select(int64_t count, Keep keep, uint32_t* out, uint32_t* total) {
+__global__ void __launch_bounds__(kThreads)
+    select(int64_t count, Keep keep, uint32_t* out, uint32_t* total, HostBell bell) {
   __shared__ uint32_t before[kThreads];  // of word 32 k + warp
   const int lane = int(threadIdx.x) & 31, warp = int(threadIdx.x) >> 5;
   before[threadIdx.x] = 0;
@@ -76,15 +89,24 @@ __global__ void __launch_bounds__(kThreads) select(int64_t count, Keep keep, uin
     const uint32_t word = __ballot_sync(kWholeWarp, in);
     if (in) out[before[32 * k + warp] + lanes_before(word)] = uint32_t(k * kThreads + threadIdx.x);
   }
-  if (threadIdx.x == 0) *total = all;
+  if (threadIdx.x == 0) give(total, all, bell);
+}
+
+/// The numbers of the bits that are set, ascending; a word a thread.
+__global__ inline void __launch_bounds__(kThreads)
+    list_bits(View<const uint32_t> words, uint32_t* out, uint32_t* total, HostBell bell) {
+  uint32_t word = int64_t(threadIdx.x) < words.size ? words[threadIdx.x] : 0, all;
+  uint32_t at = block_sum_before(uint32_t(__popc(word)), all);
+  for (; word; word &= word - 1) out[at++] = 32 * threadIdx.x + uint32_t(__ffs(int(word))) - 1;
+  if (threadIdx.x == 0) give(total, all, bell);
 }
 
 template <class Term>
-__global__ void __launch_bounds__(kThreads) sum(int64_t count, Term term, int64_t* total) {
+__global__ void __launch_bounds__(kThreads) sum(int64_t count, Term term, int64_t* total, HostBell bell) {
   int64_t own = 0, all;
   for (int64_t i = threadIdx.x; i < count; i += kThreads) own += int64_t(term(i));
   block_sum_before(own, all);
-  if (threadIdx.x == 0) *total = all;
+  if (threadIdx.x == 0) give(total, all, bell);
 }
 
 }  // namespace isoshell::small_words
