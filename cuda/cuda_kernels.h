@@ -25,6 +25,7 @@ struct SplitCellsByBlocks;
 namespace optimize {
 struct FlipEdgesInBatches;
 struct SearchPlacesInOneLaunch;
+class StepsByLanes;
 struct UndoHarmInOneLaunch;
 }  // namespace optimize
 
@@ -96,13 +97,14 @@ struct CudaKernels {
   using UndoHarm = optimize::UndoHarmInOneLaunch;
   /// optimize_kernels.cuh: the same, and a warp a vertex: a lane tries each place.
   using SearchPlaces = optimize::SearchPlacesInOneLaunch;
+  /// steps_by_lanes.cuh: smoothing and fit by eight lanes a vertex, one a triangle around it.
+  using StepWork = optimize::StepsByLanes;
 
   // Plain: one thread an element, or the step's cooperative kernel.
   using ProjectVertices = PlainKernels::ProjectVertices;
   using LabelSheet = PlainKernels::LabelSheet;
   using Walks = PlainKernels::Walks;
   using PassWork = PlainKernels::PassWork;
-  using StepWork = PlainKernels::StepWork;
 
   // Of stages that are its own from end to end.
   using LeafPasses = WholeStage;

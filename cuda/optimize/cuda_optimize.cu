@@ -1,6 +1,7 @@
 // CUDA's optimize_mesh.
 #include "cuda/cuda_backend.h"
 #include "cuda/optimize/optimize_kernels.cuh"
+#include "cuda/optimize/steps_by_lanes.cuh"
 #include "cuda/relax/label_cooperative.cuh"
 #include "cuda/runtime/executor_cuda.cuh"
 #include "stages/optimize/optimize_body.h"

@@ -94,24 +94,31 @@ __device__ inline void search_together(const SearchVertex& search, uint32_t v) {
   if (lane == 0) search.move_onto_sheet(v, landing.vertex, landing.point, here);
 }
 
-/// The whole of PlainSearchPlaces.
+/// The whole of PlainSearchPlaces. Chosen vertices are listed in any order, so that each has a warp: they are
+/// independent. Three words of `count`, one a round: how many were chosen?
 __global__ void __launch_bounds__(kThreads, kBlocks)
-    search_in_rounds(SearchVertex search, View<uint32_t> poor, double least_quality, int64_t locked, int rounds) {
+    search_in_rounds(SearchVertex search, View<uint32_t> poor, View<uint32_t> chosen, uint32_t* count,
+                     double least_quality, int64_t locked, int rounds) {
   const auto grid = cooperative_groups::this_grid();
-  const int lane = threadIdx.x & 31;
+  const bool is_first = blockIdx.x == 0 && threadIdx.x == 0;
+  if (is_first) count[0] = 0;
   for (int round = 0; round < rounds; ++round) {
+    uint32_t* const count_now = count + round % 3;
     for_each_of_grid(poor.size, [&](int64_t v) { poor[v] = 0; });
     grid.sync();
     for_each_of_grid(search.mesh.triangles.size,
                      MarkPoor{search.mesh.triangles, search.position, least_quality, locked, poor});
+    if (is_first) count[(round + 1) % 3] = 0;
     grid.sync();
     search.round = round;
     const MayMove may_move{search.mesh, poor, uint64_t(round)};
-    const int64_t warps = (poor.size + 31) / 32;
-    for_each_of_grid(32 * warps, [&](int64_t v) {
-      unsigned left = __ballot_sync(kWholeWarp, v < poor.size && may_move(v));
-      for (; left; left &= left - 1) search_together(search, uint32_t(v - lane + __ffs(int(left)) - 1));
+    for_each_of_grid(poor.size, [&](int64_t v) {
+      if (may_move(v)) chosen[atomic_fetch_add(*count_now, 1u)] = uint32_t(v);
     });
+    grid.sync();
+    const uint32_t movers = atomic_load(*count_now);
+    if (movers == 0) return;
+    for_each_of_grid(32 * int64_t(movers), [&](int64_t i) { search_together(search, chosen[i / 32]); });
     grid.sync();
   }
 }
@@ -167,8 +174,10 @@ struct SearchPlacesInOneLaunch {
   static void run(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
     const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};
-    device_steps::launch_together(exec, device_steps::search_in_rounds, mesh.triangles.size, search, poor,
-                                  options.least_quality, options.locked, options.rounds);
+    Buffer<uint32_t> chosen = exec.make<uint32_t>(poor.size), count = exec.make<uint32_t>(3);
+    constexpr int64_t kMostOfMovers = 4;  // every fourth vertex moves at most, and has a warp
+    device_steps::launch_together(exec, device_steps::search_in_rounds, poor.size * 32 / kMostOfMovers, search, poor,
+                                  chosen.view(), count.data(), options.least_quality, options.locked, options.rounds);
     exec.check("search places");
   }
 };

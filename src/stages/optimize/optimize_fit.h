@@ -27,6 +27,8 @@ struct FitSums {
 
 /// The place between what the samples and the shapes of the triangles ask for.
 struct FitVertex {
+  using Sums = FitSums;
+
   MeshView mesh;
   WalkOntoSheet walk;
   FitOptions options;
@@ -44,15 +46,8 @@ struct FitVertex {
     }
     const double radius = radius_q8(v);
     FitSums sums;
-    for_each_half_edge_around(mesh, uint32_t(v), [&](uint32_t h) {
-      const PointQ8 b = from[mesh.to(h)], c = from[mesh.opposite(h)];
-      sums.corners = sums.corners + to_equilateral_corner(p, b, c, options.smooth.evenness, radius);
-      const Vector n = normal_of(p, b, c), d = unit(n);
-      sums.normal = sums.normal + n;
-      const TrianglePull& asked = triangle_pull[h / 3];
-      sums.planes.add(double(asked.weight[h % 3]), d);
-      sums.pull = sums.pull + double(asked.pull[h % 3]) * d;
-    });
+    for_each_half_edge_around(mesh, uint32_t(v),
+                              [&](uint32_t h) { add(h, p, from[mesh.to(h)], from[mesh.opposite(h)], radius, sums); });
     to[v] = place(v, sums);
   }
 
@@ -61,6 +56,15 @@ struct FitVertex {
   ISOSHELL_HD bool is_locked(int64_t v) const { return v < options.smooth.locked; }
   /// Of the triangle that is to be around the vertex.
   ISOSHELL_HD double radius_q8(int64_t v) const { return options.smooth.size.at(home[v]) * kRadiusOfEdge; }
+  /// What the triangle (p, b, c), whose half-edge from p is h, asks of p.
+  ISOSHELL_HD void add(uint32_t h, PointQ8 p, PointQ8 b, PointQ8 c, double radius, FitSums& sums) const {
+    sums.corners = sums.corners + to_equilateral_corner(p, b, c, options.smooth.evenness, radius);
+    const Vector n = normal_of(p, b, c), d = unit(n);
+    sums.normal = sums.normal + n;
+    const TrianglePull& asked = triangle_pull[h / 3];
+    sums.planes.add(double(asked.weight[h % 3]), d);
+    sums.pull = sums.pull + double(asked.pull[h % 3]) * d;
+  }
   /// Where the vertex goes; its home follows where it is held back.
   ISOSHELL_HD PointQ8 place(int64_t v, const FitSums& sums) const {
     const PointQ8 p = from[v];

@@ -115,20 +115,25 @@ struct PullCorners {
   View<int64_t> rest_sq;
   ISOSHELL_HD void operator()(int64_t i) const {
     FitSample s = sample[i];
-    if (s.triangle == kNone) {
-      rest_sq[i] = 0;
-      return;
-    }
-    Foot foot = foot_on(s.triangle, s.position);
-    const uint32_t before = s.triangle;
-    for (int step = 0; step < 4 && slide(s, foot); ++step) {
-    }
-    if (s.triangle != before) sample[i].triangle = s.triangle;
-    pull(i, s, foot);
+    Foot foot;
+    if (settle(i, s, foot)) pull(i, s, foot);
   }
 
   // The parts of a step.
 
+  /// Lets the sample slide, and finds where its foot is. False where it has no triangle.
+  ISOSHELL_HD bool settle(int64_t i, FitSample& s, Foot& foot) const {
+    if (s.triangle == kNone) {
+      rest_sq[i] = 0;
+      return false;
+    }
+    foot = foot_on(s.triangle, s.position);
+    const uint32_t before = s.triangle;
+    for (int step = 0; step < 4 && slide(s, foot); ++step) {
+    }
+    if (s.triangle != before) sample[i].triangle = s.triangle;
+    return true;
+  }
   ISOSHELL_HD Foot foot_on(uint32_t t, PointQ8 q) const {
     const TriangleIndices i = mesh.triangles[t];
     return foot_on_triangle(q, position[i.a], position[i.b], position[i.c]);
@@ -137,9 +142,36 @@ struct PullCorners {
   ISOSHELL_HD bool is_far(double distance_sq) const { return distance_sq > options.far_q8 * options.far_q8; }
   /// Adds what a sample asks for where it is.
   ISOSHELL_HD void pull(int64_t i, const FitSample& s, const Foot& foot) const {
+    add_to_triangle(s.triangle, asked_of_triangle(i, s, foot));
+  }
+  ISOSHELL_HD void add_to_triangle(uint32_t triangle, const TrianglePull& asked) const {
+    TrianglePull& sum = triangle_pull[triangle];
+    for (int k = 0; k < 3; ++k) {
+      if (asked.weight[k] != 0) atomic_add(sum.weight[k], asked.weight[k]);
+      if (asked.pull[k] != 0) atomic_add(sum.pull[k], asked.pull[k]);
+    }
+  }
+  /// What a sample asks of its triangle, to be added; what it asks of vertices is added here.
+  ISOSHELL_HD TrianglePull asked_of_triangle(int64_t i, const FitSample& s, const Foot& foot) const {
     const double distance_sq = dot(foot.rest, foot.rest);
     rest_sq[i] = int64_t(distance_sq);
-    add(s, foot, distance_sq);
+    TrianglePull asked{};
+    const double w = weight_of(s, distance_sq);
+    if (!(w > 0)) return asked;
+    const TriangleIndices corners = mesh.triangles[s.triangle];
+    const Vector normal = unit(normal_of(position[corners.a], position[corners.b], position[corners.c]));
+    const double along = dot(foot.rest, normal);
+    // Beyond an edge or a corner, unless that is as good as along the normal, or level with the triangle.
+    const bool beyond = distance_sq > 1 && along * along < 0.96 * distance_sq && along * along > 0.04 * distance_sq;
+    for (int k = 0; k < 3; ++k) {
+      if (!(foot.weight[k] > 0)) continue;
+      const double part = w * foot.weight[k];
+      if (beyond)
+        add(vertex_pull[corner(corners, k)], part, foot.rest, distance_sq);
+      else
+        asked.weight[k] = scaled(part), asked.pull[k] = scaled(part * along);
+    }
+    return asked;
   }
 
  private:
@@ -192,26 +224,6 @@ struct PullCorners {
     return w < kLargestWeight ? w : kLargestWeight;
   }
   ISOSHELL_HD static int64_t scaled(double x) { return int64_t(x * kPullScale); }
-  ISOSHELL_HD void add(const FitSample& s, const Foot& foot, double distance_sq) const {
-    const double w = weight_of(s, distance_sq);
-    if (!(w > 0)) return;
-    const TriangleIndices i = mesh.triangles[s.triangle];
-    const Vector normal = unit(normal_of(position[i.a], position[i.b], position[i.c]));
-    const double along = dot(foot.rest, normal);
-    // Beyond an edge or a corner, unless that is as good as along the normal, or level with the triangle.
-    const bool beyond = distance_sq > 1 && along * along < 0.96 * distance_sq && along * along > 0.04 * distance_sq;
-    for (int k = 0; k < 3; ++k) {
-      if (!(foot.weight[k] > 0)) continue;
-      if (beyond)
-        add(vertex_pull[corner(i, k)], w * foot.weight[k], foot.rest, distance_sq);
-      else
-        add(triangle_pull[s.triangle], k, w * foot.weight[k], along);
-    }
-  }
-  ISOSHELL_HD static void add(TrianglePull& sum, int k, double w, double along) {
-    atomic_add(sum.weight[k], scaled(w));
-    atomic_add(sum.pull[k], scaled(w * along));
-  }
   ISOSHELL_HD static void add(VertexPull& sum, double w, Vector rest, double distance_sq) {
     const double part = w / distance_sq;
     atomic_add(sum.weight[0], scaled(part * rest.x * rest.x));

@@ -44,6 +44,8 @@ struct SmoothingSums {
 };
 
 struct SmoothVertex {
+  using Sums = SmoothingSums;
+
   MeshView mesh;
   WalkOntoSheet walk;
   SmoothOptions options;
@@ -58,12 +60,8 @@ struct SmoothVertex {
     }
     const double radius = radius_q8(v);
     SmoothingSums sums;
-    for_each_triangle_around(mesh, uint32_t(v), [&](uint32_t b, uint32_t c) {
-      sums.corners = sums.corners + to_equilateral_corner(p, from[b], from[c], options.evenness, radius);
-      const Vector n = normal_of(p, from[b], from[c]);
-      sums.normal = sums.normal + n;
-      sums.planes.add(n);
-    });
+    for_each_half_edge_around(mesh, uint32_t(v),
+                              [&](uint32_t h) { add(h, p, from[mesh.to(h)], from[mesh.opposite(h)], radius, sums); });
     to[v] = place(v, sums);
     if (options.onto_sheet) lay_onto_sheet(v);
   }
@@ -73,6 +71,13 @@ struct SmoothVertex {
   ISOSHELL_HD bool is_locked(int64_t v) const { return v < options.locked; }
   /// Of the triangle that is to be around the vertex.
   ISOSHELL_HD double radius_q8(int64_t v) const { return options.size.at(home[v]) * kRadiusOfEdge; }
+  /// What the triangle (p, b, c), whose half-edge from p this is, asks of p.
+  ISOSHELL_HD void add(uint32_t, PointQ8 p, PointQ8 b, PointQ8 c, double radius, SmoothingSums& sums) const {
+    sums.corners = sums.corners + to_equilateral_corner(p, b, c, options.evenness, radius);
+    const Vector n = normal_of(p, b, c);
+    sums.normal = sums.normal + n;
+    sums.planes.add(n);
+  }
   /// Where the vertex goes along the mesh.
   ISOSHELL_HD PointQ8 place(int64_t v, const SmoothingSums& sums) const {
     const PointQ8 p = from[v];
