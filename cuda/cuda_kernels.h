@@ -99,6 +99,7 @@ struct CudaKernels {
 
   // Plain: one thread an element, or the step's cooperative kernel.
   using ProjectVertices = PlainKernels::ProjectVertices;
+  using ListTrianglesAround = PlainKernels::ListTrianglesAround;
   using LabelSheet = PlainKernels::LabelSheet;
   using Walks = PlainKernels::Walks;
   using PassWork = PlainKernels::PassWork;

@@ -20,7 +20,8 @@ struct PlainLeafPasses;
 }
 namespace sheet_steps {
 struct PlainJoinComponents;
-}
+struct PlainListTrianglesAround;
+}  // namespace sheet_steps
 namespace relax_sheet {
 class PlainPassWork;
 }
@@ -46,6 +47,7 @@ struct PlainKernels {
   using FindOutside = PlainFindOutside;                     ///< flood from the border: sheet_flood_body.h
   using JoinComponents = sheet_steps::PlainJoinComponents;  ///< of the boundary: sheet_components_body.h
   using ProjectVertices = PlainProjectVertices;             ///< onto the nearest triangles: sheet_project_body.h
+  using ListTrianglesAround = sheet_steps::PlainListTrianglesAround;  ///< each vertex: sheet_body.h
 
   // relax_on_sheet, triangulate_dual, optimize_mesh
   using LabelSheet = PlainLabelSheet;  ///< nearest seed of every vertex: label_body.h

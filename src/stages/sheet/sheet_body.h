@@ -123,24 +123,27 @@ void cut_into_blocks(Exec& exec, Sheet& sheet) {
   exec.for_each("place blocks", leaves, PlaceBlock{sheet.corners.leaf_key.view(), sheet.blocks.centre.view()});
 }
 
-template <class Exec>
-void list_triangles_around(Exec& exec, SurfaceMesh& sheet) {
-  const int64_t vertices = sheet.vertex_count();
-  Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
-  exec.fill(count.view(), 0u);
-  exec.for_each("count triangles around", sheet.triangles.size(),
-                CountTrianglesAround{sheet.triangles.view(), count.view()});
-  sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
-  exec.fill(sheet.vertex_first.view().part(vertices, 1), int64_t(0));
-  exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
-  exec.exclusive_scan(sheet.vertex_first.view());
-  sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
-  exec.for_each(
-      "list triangles around", sheet.triangles.size(),
-      TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(), sheet.vertex_triangles.view()});
-  exec.for_each("sort triangles around", vertices,
-                SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
-}
+/// Fills vertex_first and vertex_triangles.
+struct PlainListTrianglesAround {
+  template <class Exec>
+  static void run(Exec& exec, SurfaceMesh& sheet) {
+    const int64_t vertices = sheet.vertex_count();
+    Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
+    exec.fill(count.view(), 0u);
+    exec.for_each("count triangles around", sheet.triangles.size(),
+                  CountTrianglesAround{sheet.triangles.view(), count.view()});
+    sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
+    exec.fill(sheet.vertex_first.view().part(vertices, 1), int64_t(0));
+    exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
+    exec.exclusive_scan(sheet.vertex_first.view());
+    sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
+    exec.for_each(
+        "list triangles around", sheet.triangles.size(),
+        TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(), sheet.vertex_triangles.view()});
+    exec.for_each("sort triangles around", vertices,
+                  SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
+  }
+};
 
 /// The boundary of the sites' closed, well-composed solid.
 template <class Exec>
@@ -182,7 +185,7 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, Compone
   exec.for_each("split quads", mesh.quads.size(),
                 SplitQuads{mesh.quads.view(), sheet.position.view(), sheet.triangles.view()});
   mesh.quads = {};
-  list_triangles_around(exec, sheet);
+  Exec::Kernels::ListTrianglesAround::run(exec, sheet);
   sheet.normal = exec.template make<Normal8>(sheet.vertex_count());
   exec.for_each("normals", sheet.vertex_count(),
                 FindNormal{sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
