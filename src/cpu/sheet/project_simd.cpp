@@ -35,7 +35,7 @@ class SiteRows {
     int64_t first[8] = {};  ///< site of each word
   };
   const Leaf& leaf_of(Voxel l) {
-    Leaf& leaf = leaf_[(l.x & 1) << 2 | (l.y & 1) << 1 | (l.z & 1)];
+    Leaf& leaf = leaf_[(l.x & 3) << 4 | (l.y & 3) << 2 | (l.z & 3)];
     if (leaf.at != l) load(l, leaf);
     return leaf;
   }
@@ -53,7 +53,7 @@ class SiteRows {
   }
 
   const VoxelSetView sites_;
-  Leaf leaf_[8];  ///< neighbours have different places
+  Leaf leaf_[64];  ///< those around a run have different places
 };
 
 constexpr int kMostNear = 1024;                ///< triangles near a run
@@ -218,13 +218,24 @@ class ProjectRuns {
       ++feet_;
     }
   }
+  static bool is_less(int64_t distance_sq, uint32_t triangle, const NearestTriangle& best) {
+    return (distance_sq < best.distance_sq_q16) | ((distance_sq == best.distance_sq_q16) & (triangle < best.triangle));
+  }
   void settle() {
     lanes_.find(feet_);
-    for (int k = 0; k < feet_; ++k) {
-      NearestTriangle& best = best_[vertex_[k]];
-      const auto d = int64_t(lanes_.distance_sq[k]);
-      if ((d < best.distance_sq_q16) | ((d == best.distance_sq_q16) & (triangle_[k] < best.triangle)))
-        best = {d, triangle_[k], lanes_.foot.at(k)};
+    for (int k = 0; k < feet_;) {
+      const int vertex = vertex_[k];
+      NearestTriangle best;
+      int at = k;
+      for (; k < feet_ && vertex_[k] == vertex; ++k) {  // by choices: branches would be guessed wrong most of the time
+        const auto d = int64_t(lanes_.distance_sq[k]);
+        const bool is_nearer = is_less(d, triangle_[k], best);
+        best.distance_sq_q16 = is_nearer ? d : best.distance_sq_q16;
+        best.triangle = is_nearer ? triangle_[k] : best.triangle;
+        at = is_nearer ? k : at;
+      }
+      best.point = lanes_.foot.at(at);
+      if (is_less(best.distance_sq_q16, best.triangle, best_[vertex])) best_[vertex] = best;
     }
     feet_ = 0;
   }
