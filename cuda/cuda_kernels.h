@@ -98,6 +98,7 @@ struct CudaKernels {
   using SearchPlaces = optimize::SearchPlacesInOneLaunch;
 
   // Plain: one thread an element, or the step's cooperative kernel.
+  using SortKeys = PlainKernels::SortKeys;
   using ProjectVertices = PlainKernels::ProjectVertices;
   using ListTrianglesAround = PlainKernels::ListTrianglesAround;
   using LabelSheet = PlainKernels::LabelSheet;

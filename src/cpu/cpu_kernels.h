@@ -14,10 +14,13 @@ class WalksAhead;
 struct CpuBuildShell;
 struct CpuListSiteTriangles;
 struct CpuListTrianglesAround;
+struct CpuSortKeys;
 struct LeafSimd;
 struct ProjectLanes;
 
 struct CpuKernels {
+  /// sort_keys.h: buckets by the first vertex, which hold a few keys each.
+  using SortKeys = CpuSortKeys;
   /// leaf_simd.h: separable passes over rows of eight voxels, a row a vector, instead of all sites for each voxel.
   using LeafPasses = LeafSimd;
   /// cpu_backend.h: the stage itself, which is instantiated once.

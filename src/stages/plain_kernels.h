@@ -14,6 +14,7 @@ struct PlainFindOutside;
 struct PlainLabelSheet;
 struct PlainListSiteTriangles;
 struct PlainProjectVertices;
+struct PlainSortKeys;
 struct PlainWalks;
 namespace shell_steps {
 struct PlainLeafPasses;
@@ -36,6 +37,9 @@ struct PlainUndoHarm;
 }  // namespace optimize
 
 struct PlainKernels {
+  // measure_topology, snap_surface
+  using SortKeys = PlainSortKeys;  ///< by two numbers of vertices: soup_keys.h
+
   // sample_sites
   using ListSiteTriangles = PlainListSiteTriangles;  ///< the triangles that meet each site: samples_body.h
 
