@@ -57,7 +57,9 @@ HandleCutter::HandleCutter(const int32_t extent_vox[3])
       left_(solid_),
       rank_(size_t(extent_[0] * extent_[1] * extent_[2])),
       waiting_(kRanks),
-      known_(size_t(1) << kKnownBits) {}
+      known_(size_t(1) << kKnownBits) {
+  for (int n = 0; n < 9; ++n) row_[n] = ((n / 3 - 1) * extent_[1] + n % 3 - 1) * extent_[2];
+}
 
 void HandleCutter::add(int64_t voxel, int rank) {
   solid_.set(voxel);

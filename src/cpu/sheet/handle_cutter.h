@@ -75,9 +75,7 @@ class HandleCutter {
   template <class Visit>
   void take_around(int64_t voxel, Visit visit);
   /// The middle of three voxels along z: nine rows around a voxel, 3 (x + 1) + y + 1.
-  int64_t row(int64_t voxel, int number) const {
-    return voxel + ((number / 3 - 1) * extent_[1] + number % 3 - 1) * extent_[2];
-  }
+  int64_t row(int64_t voxel, int number) const { return voxel + row_[number]; }
   bool may_grow(int64_t voxel);
   void expect(int64_t voxel) const;
   int64_t visit_component(int64_t start);
@@ -91,6 +89,7 @@ class HandleCutter {
   void close(const Cut& cut);
 
   int64_t extent_[3];
+  int64_t row_[9];  ///< steps to the rows around
   BitPlane solid_, grown_;
   BitPlane left_;  ///< solid voxels that are neither grown nor waiting; in between, those that are left to be looked at
   std::vector<uint8_t> rank_;
