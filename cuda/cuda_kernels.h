@@ -101,7 +101,9 @@ struct CudaKernels {
   using StepWork = optimize::StepsByLanes;
 
   // Plain: one thread an element, or the step's cooperative kernel.
+  using SortKeys = PlainKernels::SortKeys;
   using ProjectVertices = PlainKernels::ProjectVertices;
+  using ListTrianglesAround = PlainKernels::ListTrianglesAround;
   using LabelSheet = PlainKernels::LabelSheet;
   using Walks = PlainKernels::Walks;
   using PassWork = PlainKernels::PassWork;

@@ -80,7 +80,7 @@ struct SheetOptions {
 /// Closes the sites by r, floods from outside, repairs the solid until it is well-composed, and lays its boundary onto
 /// the surface. Handles beyond `genus` are cut where their thinnest part lies farthest outside: the solid is grown anew
 /// by simple points, from inside to outside, and what can not be added is left out. That needs closing_vox 0 and a box
-/// around the sites of at most 2^29 voxels, two bytes each; in larger ones handles stay. Throws: nothing_to_mesh when
+/// around the sites of at most 2^29 voxels, 1.5 bytes each; in larger ones handles stay. Throws: nothing_to_mesh when
 /// no component is left, out_of_memory when the box passes the CPU's limit.
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                   const SheetOptions& options, Context& context);

@@ -12,14 +12,23 @@ class CpuStepSimd;
 class LabelSimd;
 class WalksAhead;
 struct CpuBuildShell;
+struct CpuListSiteTriangles;
+struct CpuListTrianglesAround;
+struct CpuSortKeys;
 struct LeafSimd;
 struct ProjectLanes;
 
 struct CpuKernels {
+  /// sort_keys.h: buckets by the first vertex, which hold a few keys each.
+  using SortKeys = CpuSortKeys;
   /// leaf_simd.h: separable passes over rows of eight voxels, a row a vector, instead of all sites for each voxel.
   using LeafPasses = LeafSimd;
   /// cpu_backend.h: the stage itself, which is instantiated once.
   using BuildShell = CpuBuildShell;
+  /// list_site_triangles.h: where a triangle meets a leaf is found once, not for counting and again for listing.
+  using ListSiteTriangles = CpuListSiteTriangles;
+  /// list_triangles_around.h: no atomics where a thread runs alone, and lists that need no sorting then.
+  using ListTrianglesAround = CpuListTrianglesAround;
   /// project_simd.h: runs of vertices share the triangles that they meet, which are taken in lanes.
   using ProjectVertices = ProjectLanes;
   /// label_simd.h: all vertices of a leaf are compared with one seed after the other, in lanes.
@@ -33,7 +42,6 @@ struct CpuKernels {
   using StepWork = CpuStepSimd;
 
   // Plain: they take little of a run's time, or leave nothing to share between elements.
-  using ListSiteTriangles = PlainKernels::ListSiteTriangles;
   using FindOutside = PlainKernels::FindOutside;
   using JoinComponents = PlainKernels::JoinComponents;
   using SplitCells = PlainKernels::SplitCells;

@@ -18,7 +18,8 @@ class BackendTable {
   virtual SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const = 0;
   virtual Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const = 0;
   virtual Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const = 0;
-  /// From the sheet of all `walls`, which are the sites or what cut_false_handles makes of them.
+  /// From the sheet of all `solid_voxels`, which are the sites or what cut_false_handles makes of them. One that is a
+  /// single component and has more handles than a genus that is given, so will not be used, has its topology only.
   virtual Sheet build_sheet(const LatticeSurface&, const SiteSet& solid_voxels, const SiteSet&, const SiteSamples&,
                             const SheetOptions&, Context&) const = 0;
   /// Result: the sites less those that close handles beyond `genus`, with the solid voxels around these. Empty when

@@ -14,13 +14,15 @@ struct PlainFindOutside;
 struct PlainLabelSheet;
 struct PlainListSiteTriangles;
 struct PlainProjectVertices;
+struct PlainSortKeys;
 struct PlainWalks;
 namespace shell_steps {
 struct PlainLeafPasses;
 }
 namespace sheet_steps {
 struct PlainJoinComponents;
-}
+struct PlainListTrianglesAround;
+}  // namespace sheet_steps
 namespace relax_sheet {
 class PlainPassWork;
 }
@@ -35,6 +37,9 @@ struct PlainUndoHarm;
 }  // namespace optimize
 
 struct PlainKernels {
+  // measure_topology, snap_surface
+  using SortKeys = PlainSortKeys;  ///< by two numbers of vertices: soup_keys.h
+
   // sample_sites
   using ListSiteTriangles = PlainListSiteTriangles;  ///< the triangles that meet each site: samples_body.h
 
@@ -46,6 +51,7 @@ struct PlainKernels {
   using FindOutside = PlainFindOutside;                     ///< flood from the border: sheet_flood_body.h
   using JoinComponents = sheet_steps::PlainJoinComponents;  ///< of the boundary: sheet_components_body.h
   using ProjectVertices = PlainProjectVertices;             ///< onto the nearest triangles: sheet_project_body.h
+  using ListTrianglesAround = sheet_steps::PlainListTrianglesAround;  ///< each vertex: sheet_body.h
 
   // relax_on_sheet, triangulate_dual, optimize_mesh
   using LabelSheet = PlainLabelSheet;  ///< nearest seed of every vertex: label_body.h

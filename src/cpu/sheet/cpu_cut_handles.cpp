@@ -15,7 +15,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kMaxBoxVoxels = int64_t(1) << 29;
-constexpr int64_t kBytesPerVoxel = 3;  ///< of the box: HandleCutter's two and its queues
+constexpr int64_t kBytesPerVoxel = 3;  ///< of the box: HandleCutter's and its queues
 
 // Ranks: what is inside by its layer, deepest first; then sites, those with their centres farthest inside first.
 constexpr int kInsideRanks = 96;
@@ -67,11 +67,27 @@ void for_each_face(const Box::Extent& extent, Each each) {
   each(Voxel{0, 0, 1}, z), each(Voxel{0, 0, -1}, -z);
 }
 
+/// The voxels of the solid in the box.
+BitPlane voxels_inside(const HandleCutter& cutter, const Box& box, const SolidView& solid) {
+  const Box::Extent extent = box.extent();
+  BitPlane inside(int64_t(extent.vox[0]) * extent.vox[1] * extent.vox[2]);
+  for (int32_t lx = box.first.x; lx <= box.last.x; ++lx)
+    for (int32_t ly = box.first.y; ly <= box.last.y; ++ly)
+      for (int32_t lz = box.first.z; lz <= box.last.z; ++lz) {
+        const SolidLeaf leaf = solid.at({lx, ly, lz});
+        for (int32_t x = 0; x < 8; ++x)
+          for (int32_t y = 0; y < 8; ++y)
+            if (const uint64_t row = leaf.word(x) >> 8 * y & 255)
+              inside.set_from(cutter.index_of(box.inside({8 * lx + x, 8 * ly + y, 8 * lz})), row);
+      }
+  return inside;
+}
+
 /// Enters the solid with its ranks.
 class SolidEntry {
  public:
   SolidEntry(HandleCutter& cutter, const Box& box, const SolidView& solid)
-      : cutter_(cutter), box_(box), solid_(solid) {}
+      : cutter_(cutter), box_(box), inside_(voxels_inside(cutter, box, solid)) {}
 
   void add(const VoxelSetView& sites, const SiteSamples& samples) {
     std::vector<int64_t> front(size_t(sites.first[sites.leaf_key.size]));
@@ -88,7 +104,7 @@ class SolidEntry {
       std::vector<int64_t> next;
       for (const int64_t v : front)
         for_each_face(box_.extent(), [&](Voxel, int64_t step) {
-          if (cutter_.is_solid(v + step) || !is_inside(v + step)) return;
+          if (!is_to_add(v + step)) return;
           cutter_.add(v + step, rank_of_layer(layer));
           next.push_back(v + step);
         });
@@ -97,17 +113,14 @@ class SolidEntry {
   }
 
  private:
-  bool is_inside(int64_t voxel) const {
-    const Voxel v = box_.outside(cutter_.voxel_of(voxel));
-    return solid_.at(leaf_of_voxel(v)).word(v.x & 7) >> (offset_in_leaf(v) & 63) & 1;
-  }
+  bool is_to_add(int64_t voxel) const { return inside_[voxel] && !cutter_.is_solid(voxel); }
 
   /// 1 when most normals of sites point away from what is inside, -1 when the input is inside out.
   int side_of_normals(const std::vector<int64_t>& sites, const SiteSamples& samples) const {
     int64_t away = 0;
     for (size_t site = 0; site < sites.size(); ++site)
       for_each_face(box_.extent(), [&](Voxel face, int64_t step) {
-        if (cutter_.is_solid(sites[site] + step) || !is_inside(sites[site] + step)) return;
+        if (!is_to_add(sites[site] + step)) return;
         const Normal8 n = samples.sample[int64_t(site)].normal;
         away -= face.x * n.x + face.y * n.y + face.z * n.z;
       });
@@ -116,7 +129,7 @@ class SolidEntry {
 
   HandleCutter& cutter_;
   const Box& box_;
-  const SolidView solid_;
+  const BitPlane inside_;
 };
 
 /// The sites less the cuts, with the solid that surrounds those: a wall again.

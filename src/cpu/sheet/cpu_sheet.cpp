@@ -2,6 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/sheet/list_triangles_around.h"
 #include "cpu/sheet/project_simd.h"
 #include "stages/sheet/sheet_body.h"
 #include "stages/sheet/sheet_volume_body.h"

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "cpu/sheet/bit_plane.h"
 #include "isoshell/lattice.h"
 
 namespace isoshell {
@@ -26,7 +27,8 @@ inline bool is_simple(uint32_t solid) {
   return c.solid == 1 && c.empty == 1;
 }
 
-/// A box of voxels whose outermost layer stays empty. Two bytes a voxel, and up to sixteen for each that waits.
+/// A box of voxels whose outermost layer stays empty, less than 2^32. A byte and three bits a voxel, and up to eight
+/// bytes for each that waits.
 class HandleCutter {
  public:
   static constexpr int kRanks = 256;
@@ -41,7 +43,7 @@ class HandleCutter {
 
   /// Makes a voxel solid. Growing takes the lowest rank it can reach.
   void add(int64_t voxel, int rank);
-  bool is_solid(int64_t voxel) const { return cells_[size_t(voxel)] & kSolid; }
+  bool is_solid(int64_t voxel) const { return solid_[voxel]; }
 
   /// Grows every component from its lowest rank, then closes the cuts that reach the lowest ranks, one a handle.
   /// Result: what a queue a rank gives, first in, first out. `check` is called now and then and may throw.
@@ -50,15 +52,13 @@ class HandleCutter {
   /// Closes all cuts that reach a rank below this.
   void close_cuts_below(int rank);
 
-  bool is_grown(int64_t voxel) const { return cells_[size_t(voxel)] & kGrown; }
+  bool is_grown(int64_t voxel) const { return grown_[voxel]; }
   /// Solid voxels that were left out, ascending.
   std::vector<int64_t> cuts() const;
 
  private:
-  enum Flag : uint16_t { kSolid = 1, kGrown = 2, kWaiting = 4, kVisited = 8 };
-  static constexpr int kRankShift = 8;
   struct Queue {
-    std::vector<int64_t> voxels;
+    std::vector<uint32_t> voxels;
     size_t first = 0;  ///< those before it have left
     void drop_left() {
       voxels.erase(voxels.begin(), voxels.begin() + std::ptrdiff_t(first));
@@ -68,18 +68,15 @@ class HandleCutter {
 
   static constexpr size_t kMostLeft = 1 << 12;
 
-  bool is(int64_t voxel, int flags, int of) const { return (cells_[size_t(voxel)] & of) == flags; }
-  int rank_of(int64_t voxel) const { return cells_[size_t(voxel)] >> kRankShift; }
-  void set(int64_t voxel, int flags) { cells_[size_t(voxel)] |= uint16_t(flags); }
-  void clear(int64_t voxel, int flags) { cells_[size_t(voxel)] &= uint16_t(~flags); }
-  /// Calls visit(index) for the neighbours whose flags among `of` are these, ascending.
+  int rank_of(int64_t voxel) const { return rank_[size_t(voxel)]; }
+  /// The 27 voxels of `plane` around one and itself, as contacts_of() has them.
+  uint32_t around(const BitPlane& plane, int64_t voxel) const;
+  /// Takes out of `left_` what is left around a voxel and calls visit(index), ascending.
   template <class Visit>
-  void for_each_around(int64_t voxel, int flags, int of, Visit visit) const;
-  template <class Visit>
-  void for_each_solid_without(int flag, Visit visit) const;
-  uint32_t grown_around(int64_t voxel) const;
+  void take_around(int64_t voxel, Visit visit);
+  /// The middle of three voxels along z: nine rows around a voxel, 3 (x + 1) + y + 1.
+  int64_t row(int64_t voxel, int number) const { return voxel + row_[number]; }
   bool may_grow(int64_t voxel);
-  const uint16_t* row(int64_t voxel, int number) const;
   void expect(int64_t voxel) const;
   int64_t visit_component(int64_t start);
   void grow_from(int64_t start, const std::function<void()>& check);
@@ -92,7 +89,10 @@ class HandleCutter {
   void close(const Cut& cut);
 
   int64_t extent_[3];
-  std::vector<uint16_t> cells_;  ///< flags and rank of each voxel: who looks at one needs the other next
+  int64_t row_[9];  ///< steps to the rows around
+  BitPlane solid_, grown_;
+  BitPlane left_;  ///< solid voxels that are neither grown nor waiting; in between, those that are left to be looked at
+  std::vector<uint8_t> rank_;
   std::vector<Queue> waiting_;   ///< per rank
   std::vector<uint32_t> known_;  ///< neighbourhoods met lately, times two, plus one where the voxel is simple
   int lowest_waiting_ = 0;

@@ -1,8 +1,7 @@
 // The CPU's sample_sites.
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
-#include "cpu/executor_tbb.h"
-#include "stages/sites/samples_body.h"
+#include "cpu/sites/list_site_triangles.h"
 
 namespace isoshell {
 

@@ -1,6 +1,6 @@
 // The CPU's measure_topology, snap_surface and make_surface_mesh.
 #include "cpu/cpu_backend.h"
-#include "cpu/executor_tbb.h"
+#include "cpu/surface/sort_keys.h"
 #include "stages/surface/surface_body.h"
 #include "stages/surface/surface_mesh_body.h"
 #include "stages/surface/topology_body.h"

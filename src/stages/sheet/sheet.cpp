@@ -24,17 +24,25 @@ Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const Sit
                   const SheetOptions& options, Context& context) {
   require_sheet_options(sites, options);
   const BackendTable& backend = backend_for(context);
-  Sheet sheet = backend.build_sheet(surface, sites, sites, samples, options, context);
-  const int64_t fewest = std::max<int64_t>(0, options.genus);
-  if (options.genus == kNoGenus || sheet.topology.genus <= fewest || options.closing_vox > 0) return sheet;
-  const SiteSet solid_voxels = backend.cut_false_handles(sites, samples, options.genus, context);
-  if (solid_voxels.voxels.voxel_count() == 0) return sheet;
-  Sheet cut = backend.build_sheet(surface, solid_voxels, sites, samples, options, context);
-  const int64_t handles = sheet.topology.genus - cut.topology.genus;
-  const bool is_right = options.genus == kUnknownGenus ? handles > 0 : cut.topology.genus == options.genus;
-  if (cut.topology.components != sheet.topology.components || !is_right) return sheet;
-  cut.topology.cut_handles = handles;
-  return cut;
+  const auto build = [&](const SiteSet& solid_voxels, int64_t genus) {
+    SheetOptions at_most = options;
+    at_most.genus = genus;
+    return backend.build_sheet(surface, solid_voxels, sites, samples, at_most, context);
+  };
+  const int64_t genus = options.closing_vox > 0 ? kNoGenus : options.genus;
+  Sheet sheet = build(sites, genus);
+  if (genus == kNoGenus || sheet.topology.genus <= std::max<int64_t>(0, genus)) return sheet;
+  const SiteSet solid_voxels = backend.cut_false_handles(sites, samples, genus, context);
+  if (solid_voxels.voxels.voxel_count() > 0) {
+    Sheet cut = build(solid_voxels, genus == kUnknownGenus ? sheet.topology.genus - 1 : genus);
+    const int64_t handles = sheet.topology.genus - cut.topology.genus;
+    const bool is_right = genus == kUnknownGenus ? handles > 0 : cut.topology.genus == genus;
+    if (cut.topology.components == sheet.topology.components && is_right) {
+      cut.topology.cut_handles = handles;
+      return cut;
+    }
+  }
+  return sheet.position.empty() ? build(sites, kNoGenus) : std::move(sheet);
 }
 
 SiteSet coarsen_sites(const SiteSet& sites, Context& context) {

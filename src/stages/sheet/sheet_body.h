@@ -1,6 +1,8 @@
 // build_sheet (see stages.h), written once over an executor: from sites to a closed 2-manifold on the surface.
 #pragma once
 
+#include <algorithm>
+
 #include "isoshell/error.h"
 #include "isoshell/stages.h"
 #include "stages/sheet/sheet_closing_body.h"
@@ -121,24 +123,27 @@ void cut_into_blocks(Exec& exec, Sheet& sheet) {
   exec.for_each("place blocks", leaves, PlaceBlock{sheet.corners.leaf_key.view(), sheet.blocks.centre.view()});
 }
 
-template <class Exec>
-void list_triangles_around(Exec& exec, SurfaceMesh& sheet) {
-  const int64_t vertices = sheet.vertex_count();
-  Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
-  exec.fill(count.view(), 0u);
-  exec.for_each("count triangles around", sheet.triangles.size(),
-                CountTrianglesAround{sheet.triangles.view(), count.view()});
-  sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
-  exec.fill(sheet.vertex_first.view().part(vertices, 1), int64_t(0));
-  exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
-  exec.exclusive_scan(sheet.vertex_first.view());
-  sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
-  exec.for_each(
-      "list triangles around", sheet.triangles.size(),
-      TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(), sheet.vertex_triangles.view()});
-  exec.for_each("sort triangles around", vertices,
-                SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
-}
+/// Fills vertex_first and vertex_triangles.
+struct PlainListTrianglesAround {
+  template <class Exec>
+  static void run(Exec& exec, SurfaceMesh& sheet) {
+    const int64_t vertices = sheet.vertex_count();
+    Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
+    exec.fill(count.view(), 0u);
+    exec.for_each("count triangles around", sheet.triangles.size(),
+                  CountTrianglesAround{sheet.triangles.view(), count.view()});
+    sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
+    exec.fill(sheet.vertex_first.view().part(vertices, 1), int64_t(0));
+    exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
+    exec.exclusive_scan(sheet.vertex_first.view());
+    sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
+    exec.for_each(
+        "list triangles around", sheet.triangles.size(),
+        TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(), sheet.vertex_triangles.view()});
+    exec.for_each("sort triangles around", vertices,
+                  SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
+  }
+};
 
 /// The boundary of the sites' closed, well-composed solid.
 template <class Exec>
@@ -149,11 +154,17 @@ QuadMesh boundary_of_sites(Exec& exec, const SiteSet& sites, int32_t closing_vox
   return list_boundary(exec, solid);
 }
 
+/// Euler: V - E + F = 2 components - 2 genus; a quad has two edges of its own.
+inline int64_t genus_of(int64_t components, int64_t vertices, int64_t quads) {
+  return components - (vertices - quads) / 2;
+}
+
 /// Drops small components, splits the quads and finds what belongs to each vertex.
 template <class Exec>
-Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMesh laid,
+Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, Components found, LaidMesh laid,
                    int64_t min_component_area_q16) {
-  const ComponentCount components = drop_small_components(exec, mesh, laid, min_component_area_q16);
+  const ComponentCount components = drop_small_components(exec, found, mesh, laid, min_component_area_q16);
+  found = {};
   mesh.edges = {};
   if (components.kept == 0)
     throw Error(ErrorCode::nothing_to_mesh, "sheet",
@@ -174,15 +185,13 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMes
   exec.for_each("split quads", mesh.quads.size(),
                 SplitQuads{mesh.quads.view(), sheet.position.view(), sheet.triangles.view()});
   mesh.quads = {};
-  list_triangles_around(exec, sheet);
+  Exec::Kernels::ListTrianglesAround::run(exec, sheet);
   sheet.normal = exec.template make<Normal8>(sheet.vertex_count());
   exec.for_each("normals", sheet.vertex_count(),
                 FindNormal{sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
                            laid.smooth.view(), mesh.lattice_normal.view(), sheet.normal.view()});
-  // Euler: V - E + F = 2 components - 2 genus, and E = 3 F / 2.
-  const int64_t euler = sheet.vertex_count() - sheet.triangles.size() / 2;
   sheet.topology.components = components.kept;
-  sheet.topology.genus = components.kept - euler / 2;
+  sheet.topology.genus = genus_of(components.kept, sheet.vertex_count(), sheet.triangles.size() / 2);
   sheet.topology.dropped_components = components.dropped;
   sheet.topology.bridged_vertices = exec.sum(sheet.vertex_count(), IsBridge{sheet.source_triangle.view()});
   return sheet;
@@ -195,10 +204,18 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
                        const SiteSamples& samples, const SheetOptions& options) {
   using namespace sheet_steps;
   QuadMesh mesh = boundary_of_sites(exec, solid_voxels, options.closing_vox);
+  Components components = find_components(exec, mesh);
+  if (options.genus != kNoGenus && components.roots.size() == 1) {  // of several, small ones may go with their handles
+    Sheet unfinished;
+    unfinished.topology.components = 1;
+    unfinished.topology.genus = genus_of(1, mesh.corners.voxel_count(), mesh.quads.size());
+    if (unfinished.topology.genus > std::max<int64_t>(0, options.genus)) return unfinished;
+  }
   const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
                                          samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
-  Sheet sheet = finish_sheet(exec, surface.frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+  Sheet sheet = finish_sheet(exec, surface.frame, std::move(mesh), std::move(components), std::move(laid),
+                             options.min_component_area_q16);
   if (surface.topology.closed && surface.topology.oriented) find_off_surface(exec, surface, sheet);
   return sheet;
 }
@@ -207,8 +224,10 @@ template <class Exec>
 Sheet build_proxy_body(Exec& exec, const SiteSet& sites, const LatticeFrame& frame, const SheetOptions& options) {
   using namespace sheet_steps;
   QuadMesh mesh = boundary_of_sites(exec, sites, options.closing_vox);
+  Components components = find_components(exec, mesh);
   LaidMesh laid = lay_smooth(exec, mesh);
-  Sheet sheet = finish_sheet(exec, frame, std::move(mesh), std::move(laid), options.min_component_area_q16);
+  Sheet sheet = finish_sheet(exec, frame, std::move(mesh), std::move(components), std::move(laid),
+                             options.min_component_area_q16);
   if (options.move_in)
     exec.for_each("move in", sheet.vertex_count(), MoveIn{sheet.normal.view(), sheet.position.view()});
   return sheet;

@@ -166,25 +166,40 @@ struct ComponentCount {
   int64_t kept = 0, dropped = 0;
 };
 
+/// Which component each vertex belongs to.
+struct Components {
+  Buffer<uint32_t> root;   ///< per vertex
+  Buffer<uint32_t> roots;  ///< one a component
+};
+template <class Exec>
+Components find_components(Exec& exec, const QuadMesh& mesh) {
+  using namespace sheet_steps;
+  const int64_t vertices = mesh.corners.voxel_count();
+  Components found;
+  found.root = exec.template make<uint32_t>(vertices);
+  exec.for_each("components", vertices, StartAlone{found.root.view()});
+  Exec::Kernels::JoinComponents::run(exec, mesh, found.root.view());
+  exec.for_each("flatten components", vertices, PointAtRoot{found.root.view()});
+  found.roots = exec.select(vertices, IsRoot{found.root.view()});
+  return found;
+}
+
 /// Removes the components whose area is below the limit, and closes the gaps in every numbering.
 template <class Exec>
-ComponentCount drop_small_components(Exec& exec, QuadMesh& mesh, LaidMesh& laid, int64_t min_area_q16) {
+ComponentCount drop_small_components(Exec& exec, const Components& components, QuadMesh& mesh, LaidMesh& laid,
+                                     int64_t min_area_q16) {
   using namespace sheet_steps;
   const int64_t vertices = laid.position.size();
-  Buffer<uint32_t> root = exec.template make<uint32_t>(vertices);
-  exec.for_each("components", vertices, StartAlone{root.view()});
-  Exec::Kernels::JoinComponents::run(exec, mesh, root.view());
-  exec.for_each("flatten components", vertices, PointAtRoot{root.view()});
-  const Buffer<uint32_t> roots = exec.select(vertices, IsRoot{root.view()});
-  if (min_area_q16 <= 0) return {roots.size(), 0};
+  const View<const uint32_t> root = components.root.view(), roots = components.roots.view();
+  if (min_area_q16 <= 0) return {roots.size, 0};
 
   Buffer<int64_t> area = exec.template make<int64_t>(vertices);
   exec.fill(area.view(), int64_t(0));
   exec.for_each("areas", (mesh.quads.size() + AddAreas::kRun - 1) / AddAreas::kRun,
-                AddAreas{mesh.quads.view(), laid.position.view(), root.view(), area.view()});
-  const int64_t kept = exec.sum(roots.size(), IsLargeEnough{roots.view(), area.view(), min_area_q16});
-  if (kept < roots.size()) keep_components(exec, mesh, laid, {root.view(), area.view(), min_area_q16});
-  return {kept, roots.size() - kept};
+                AddAreas{mesh.quads.view(), laid.position.view(), root, area.view()});
+  const int64_t kept = exec.sum(roots.size, IsLargeEnough{roots, area.view(), min_area_q16});
+  if (kept < roots.size) keep_components(exec, mesh, laid, {root, area.view(), min_area_q16});
+  return {kept, roots.size - kept};
 }
 
 }  // namespace isoshell

@@ -13,7 +13,7 @@ constexpr int64_t kFarOffSurfaceQ8 = 4 * kOneVoxelQ8;  ///< points farther from 
 
 namespace sheet_steps {
 
-constexpr int32_t kOffSurfaceCellVox = 8;  ///< smaller ones are mostly empty
+constexpr int32_t kOffSurfaceCellVox = 4;  ///< smaller ones are mostly empty
 
 /// Nearest sheet vertex of a point that the sheet misses, kNone for others.
 struct FindOffSurface {

@@ -15,35 +15,35 @@ constexpr int64_t kBridgeDistanceQ8 = 2 * kOneVoxelQ8;  ///< vertices farther fr
 
 namespace sheet_steps {
 
-/// Whether the neighbour of the corner at `offset` through a face lies in its leaf.
-ISOSHELL_HD inline bool stays_in_leaf(int offset, int face) {
-  const int along = offset >> (face < 2 ? 6 : face < 4 ? 3 : 0) & 7;
-  return along != (face & 1 ? 7 : 0);
-}
-/// How many vertices later it comes then; both are active.
-ISOSHELL_HD inline int vertices_later(const LeafMask& mask, int offset, int face) {
-  const int x = offset >> 6, bit = offset & 63;
-  const uint64_t before = (uint64_t(1) << bit) - 1;
-  if (face == 0) return -popcount64(mask.word[x - 1] & ~before) - popcount64(mask.word[x] & before);
-  if (face == 1) return popcount64(mask.word[x] & ~before) + popcount64(mask.word[x + 1] & before);
-  if (face == 2) return -popcount64(mask.word[x] >> (bit - 8) & 255);
-  if (face == 3) return popcount64(mask.word[x] >> bit & 255);
-  return face == 4 ? -1 : 1;
-}
-
-/// Calls visit(neighbour) for the vertices that lattice edges of the boundary join to v, the corner at `offset` of a
-/// leaf.
-template <class Visit>
-ISOSHELL_HD inline void for_each_neighbour(const VoxelSetView& corners, int64_t leaf, int offset, int64_t v,
-                                           uint8_t edges, Visit visit) {
-  for (int f = 0; f < 6; ++f) {
-    if (!(edges >> f & 1)) continue;
-    if (stays_in_leaf(offset, f))
-      visit(uint32_t(v + vertices_later(corners.mask[leaf], offset, f)));
-    else
-      visit(uint32_t(find_voxel(corners, step_through(voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset), f))));
+/// Vertex numbers of the corners of a leaf and of those beyond its faces, with the ranks of all words at hand.
+class CornersAround {
+ public:
+  ISOSHELL_HD CornersAround(const VoxelSetView& corners, int64_t leaf) {
+    load(corners, uint32_t(leaf), 0);
+    const Voxel l = leaf_of_key(corners.leaf_key[leaf]);
+    for (int f = 0; f < 6; ++f) load(corners, find_leaf(corners, step_through(l, f)), 1 + f);
   }
-}
+  /// Of the corner through a face of the one at `offset`; any number where there is none.
+  ISOSHELL_HD uint32_t through(int face, int offset) const {
+    const int shift = face < 2 ? 6 : face < 4 ? 3 : 0, axis = 7 << shift, step = face & 1 ? 1 << shift : -(1 << shift);
+    const int to = (offset & ~axis) | ((offset + step) & axis);
+    const bool stays = (offset & axis) != (face & 1 ? axis : 0);
+    const int n = stays ? 0 : 1 + face;
+    return first_[n][to >> 6] + uint32_t(popcount64(word_[n][to >> 6] & ((uint64_t(1) << (to & 63)) - 1)));
+  }
+
+ private:
+  ISOSHELL_HD void load(const VoxelSetView& corners, uint32_t leaf, int n) {
+    uint32_t at = leaf == kNone ? 0 : uint32_t(corners.first[leaf]);
+    for (int w = 0; w < 8; ++w) {
+      word_[n][w] = leaf == kNone ? 0 : corners.mask[leaf].word[w];
+      first_[n][w] = at;
+      at += uint32_t(popcount64(word_[n][w]));
+    }
+  }
+  uint32_t first_[7][8];  ///< of the leaf itself, then through each face
+  uint64_t word_[7][8];
+};
 
 /// Six coordinates fit 32 bits, twice; so does what rounding needs.
 ISOSHELL_HD inline int32_t rounded_mean(int32_t sum, int32_t count) {
@@ -62,16 +62,19 @@ struct SmoothCorners {
   View<const PointQ8> from;
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t leaf) const {
-    for_each_active(corners, leaf, [&](int offset, int64_t v) { smooth(leaf, offset, v); });
+    const CornersAround around(corners, leaf);
+    for_each_active(corners, leaf, [&](int offset, int64_t v) { smooth(around, offset, v); });
   }
-  ISOSHELL_HD void smooth(int64_t leaf, int offset, int64_t v) const {
+  /// Edges that are not there add zeros: which of the six are is not to be foreseen, and costs more than it spares.
+  ISOSHELL_HD void smooth(const CornersAround& around, int offset, int64_t v) const {
+    const uint8_t on = edges[v];
     PointQ8 sum = {0, 0, 0};
-    int32_t count = 0;
-    for_each_neighbour(corners, leaf, offset, v, edges[v], [&](uint32_t n) {
-      sum = sum_of(sum, from[n]);
-      ++count;
-    });
-    to[v] = mean_of(sum, count);
+    for (int f = 0; f < 6; ++f) {
+      const int32_t is_on = on >> f & 1;
+      const PointQ8 n = from[is_on ? int64_t(around.through(f, offset)) : v];
+      sum = sum_of(sum, {is_on * n.x, is_on * n.y, is_on * n.z});
+    }
+    to[v] = mean_of(sum, popcount64(on));
   }
 };
 

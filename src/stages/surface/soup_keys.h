@@ -32,6 +32,14 @@ struct KeyedLess {
   }
 };
 
+/// Sorts keys whose upper words are below `numbers`.
+struct PlainSortKeys {
+  template <class Exec>
+  static void run(Exec& exec, View<KeyedIndex> keys, int64_t) {
+    exec.sort(keys, KeyedLess{});
+  }
+};
+
 struct MarkUsedVertices {
   SoupView soup;
   View<uint32_t> used;
@@ -83,12 +91,14 @@ struct KeyTriangles {
     keys[i] = {uint64_t(s.a) << 32 | s.b, uint64_t(s.c) << 32 | uint64_t(i)};
   }
 };
-/// Triangles as sorted rotations of point numbers. `rest` holds the third corner, then the triangle's index.
+/// Triangles as sorted rotations of point numbers, which are below `points`. `rest` holds the third corner, then the
+/// triangle's index.
 template <class Exec>
-Buffer<KeyedIndex> sorted_triangles(Exec& exec, const SoupView& soup, View<const uint32_t> point_of_vertex) {
+Buffer<KeyedIndex> sorted_triangles(Exec& exec, const SoupView& soup, View<const uint32_t> point_of_vertex,
+                                    int64_t points) {
   Buffer<KeyedIndex> keys = exec.template make<KeyedIndex>(soup.triangles.size);
   exec.for_each("key triangles", keys.size(), KeyTriangles{soup, point_of_vertex, keys.view()});
-  exec.sort(keys.view(), KeyedLess{});
+  Exec::Kernels::SortKeys::run(exec, keys.view(), points);
   return keys;
 }
 ISOSHELL_HD inline bool same_corners(const KeyedIndex& a, const KeyedIndex& b) {

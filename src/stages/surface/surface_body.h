@@ -82,7 +82,7 @@ LatticeSurface snap_surface_body(Exec& exec, const SoupView& soup, const Lattice
   exec.for_each("store points", at.size(),
                 StorePoints{at.view(), number.view(), point_of_vertex.view(), surface.points.view()});
 
-  const Buffer<KeyedIndex> keys = sorted_triangles(exec, soup, point_of_vertex.view());
+  const Buffer<KeyedIndex> keys = sorted_triangles(exec, soup, point_of_vertex.view(), surface.points.size());
   const Buffer<uint32_t> kept = exec.select(keys.size(), IsFirstTriangle{keys.view()});
   surface.triangles = exec.template make<TriangleIndices>(kept.size());
   surface.source_face = exec.template make<uint32_t>(kept.size());

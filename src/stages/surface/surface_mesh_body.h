@@ -8,6 +8,7 @@
 #include "core/buckets.h"
 #include "isoshell/error.h"
 #include "stages/halfedge/surface_borders_body.h"
+#include "stages/halfedge/triangles_around.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
 
@@ -85,16 +86,6 @@ void order_triangles(Exec& exec, const SurfaceTriangles& from, const std::vector
     for (int64_t t = by_smallest.first[a]; t < by_smallest.first[a + 1]; ++t)
       surface.triangles[t] = {uint32_t(a), by_smallest.items[t].b, by_smallest.items[t].c};
   });
-}
-
-inline void list_triangles_around(SurfaceMesh& surface) {
-  Buckets<uint32_t> around =
-      sort_into_buckets<uint32_t>(surface.vertex_count(), surface.triangles.size(), [&](int64_t t, auto put) {
-        const TriangleIndices i = surface.triangles[t];
-        for (const uint32_t v : {i.a, i.b, i.c}) put(v, uint32_t(t));
-      });
-  surface.vertex_first = std::move(around.first);
-  surface.vertex_triangles = std::move(around.items);
 }
 
 /// Along the sum of the area vectors around a vertex; where they cancel, of the first triangle that has area.

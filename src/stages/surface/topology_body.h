@@ -103,7 +103,7 @@ WeldedMesh weld(Exec& exec, const SoupView& soup) {
   Buffer<uint32_t> welded = exec.template make<uint32_t>(soup.vertices.size);
   exec.for_each("store welded", at.size(), StoreWelded{starts, number.view(), welded.view(), mesh.vertex.view()});
 
-  const Buffer<KeyedIndex> keys = sorted_triangles(exec, soup, welded.view());
+  const Buffer<KeyedIndex> keys = sorted_triangles(exec, soup, welded.view(), mesh.vertex.size());
   const IsRepeat is_repeat{keys.view()};
   const Buffer<uint32_t> kept = exec.select(keys.size(), IsFaceToKeep{is_repeat});
   mesh.repeats = exec.sum(keys.size(), is_repeat);
@@ -188,7 +188,7 @@ EdgeRuns edges_of(Exec& exec, const WeldedMesh& mesh) {
   EdgeRuns edges;
   edges.half = exec.template make<KeyedIndex>(3 * mesh.faces.size());
   exec.for_each("key edges", mesh.faces.size(), KeyEdges{mesh.faces.view(), edges.half.view()});
-  exec.sort(edges.half.view(), KeyedLess{});
+  Exec::Kernels::SortKeys::run(exec, edges.half.view(), mesh.vertex.size());
   edges.first = exec.select(edges.half.size(), StartsEdge{edges.half.view()});
   return edges;
 }
