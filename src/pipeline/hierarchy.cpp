@@ -117,12 +117,10 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const SeedOptions& option
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seed}, context);
     const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
     seeds = {};
-    if (relaxed) {
-      seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
-      const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
-      if (halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
-    }
+    if (relaxed) seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
+    const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
     proxies.drop_before(level + 1);
+    if (relaxed && halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
   }
   if (seeds.size() > 0)
     return relax_on_sheet(prepared.sheet, std::move(seeds), for_finest_level(relax, tolerance_asked), context);
