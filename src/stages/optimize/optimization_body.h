@@ -97,7 +97,6 @@ class Optimization {
     samples_of_sheet_ = std::min(surface_.vertex_count(), kSamplesPerTriangle * smallest);
     const int64_t count = samples_of_sheet_ + surface_.missed.size();
     sample_ = exec_.template make<FitSample>(count);
-    rest_sq_ = exec_.template make<int64_t>(count);
     triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
     vertex_pull_ = exec_.template make<VertexPull>(vertices_);
     exec_.for_each("attach samples", count,
@@ -114,7 +113,9 @@ class Optimization {
     options.damping = damping;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
     work_.begin(exec_, view());
-    work_.sort(exec_, mesh_.triangles.size(), sample_.view().part(0, samples_of_sheet_));
+    rest_sq_ = {};  // what takes its place while samples are sorted is one of the largest lists
+    work_.sort(exec_, mesh_.triangles.size(), samples_of_sheet_, sample_);
+    rest_sq_ = exec_.template make<int64_t>(sample_.size());
     for (int s = 0; s < steps; ++s) {
       exec_.fill(triangle_pull_.view(), TrianglePull{});
       exec_.fill(vertex_pull_.view(), VertexPull{});
