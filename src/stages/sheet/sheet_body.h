@@ -66,8 +66,7 @@ struct FindNormal {
   View<const uint32_t> first;
   View<const uint32_t> around;
   View<const PointQ8> smooth;
-  View<const Normal8> lattice_normal;
-  View<Normal8> normal;
+  View<Normal8> normal;  ///< as given that of the lattice
   ISOSHELL_HD void operator()(int64_t v) const {
     Vec64 sum = {0, 0, 0}, any = {0, 0, 0};
     for (int64_t i = first[v]; i < first[v + 1]; ++i) {
@@ -75,7 +74,7 @@ struct FindNormal {
       sum = sum + n;
       if (is_zero(any)) any = n;
     }
-    if (is_zero(sum)) sum = {lattice_normal[v].x, lattice_normal[v].y, lattice_normal[v].z};
+    if (is_zero(sum)) sum = {normal[v].x, normal[v].y, normal[v].z};
     normal[v] = normal8(is_zero(sum) ? any : sum);
   }
   ISOSHELL_HD static bool is_zero(Vec64 n) { return n.x == 0 && n.y == 0 && n.z == 0; }
@@ -165,10 +164,10 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, LaidMes
                 SplitQuads{mesh.quads.view(), sheet.position.view(), sheet.triangles.view()});
   mesh.quads = {};
   list_triangles_around(exec, sheet);
-  sheet.normal = exec.template make<Normal8>(sheet.vertex_count());
+  sheet.normal = std::move(mesh.lattice_normal);
   exec.for_each("normals", sheet.vertex_count(),
                 FindNormal{sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
-                           laid.smooth.view(), mesh.lattice_normal.view(), sheet.normal.view()});
+                           laid.smooth.view(), sheet.normal.view()});
   // Euler: V - E + F = 2 components - 2 genus, and E = 3 F / 2.
   const int64_t euler = sheet.vertex_count() - sheet.triangles.size() / 2;
   sheet.topology.components = components.kept;
