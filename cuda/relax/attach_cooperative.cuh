@@ -1,4 +1,4 @@
-// Cooperative kernel of attach_to_sheet: a warp a seed. Lanes share the rows of cells around it; one then
+// Cooperative kernel of attach_to_sheet: a warp a seed. Lanes share the vertices of the blocks around it; one then
 // looks at the triangles of its vertex.
 #pragma once
 
@@ -8,18 +8,18 @@
 namespace isoshell {
 namespace attach_cooperative {
 
-/// nearest_point by a warp: the same rings of cells, a lane a row. Every lane gets the answer.
-__device__ inline NearestPoint nearest_point(const PointGridView& grid, PointQ8 p, int lane) {
-  NearestPoint nearest{p};
-  for (int32_t number = 0;; ++number) {
-    const CellRing ring(grid, {p, p}, number);
-    const int32_t across = ring.to[1] - ring.from[1] + 1, rows = (ring.to[0] - ring.from[0] + 1) * across;
-    for (int32_t row = lane; row < rows; row += 32)
-      ring.visit_in_row(grid, ring.from[0] + row / across, ring.from[1] + row % across, nearest);
+/// NearestVertex of a warp, the same in all its lanes.
+struct NearestOfWarp {
+  NearestVertex nearest;
+  int lane;
+  __device__ int64_t bound_q16() const { return nearest.bound_q16(); }
+  __device__ void operator()(const GridPoint& block) {
+    if (!nearest.may_be_in(block.id)) return;
+    const View<const int64_t>& first = nearest.grid.first;
+    for (int64_t v = first[block.id] + lane; v < first[block.id + 1]; v += 32) nearest.consider(uint32_t(v));
     warp_min_pair(nearest.distance_sq_q16, nearest.id);
-    if (ring.reaches(nearest.bound_q16())) return nearest;
   }
-}
+};
 
 }  // namespace attach_cooperative
 
@@ -28,7 +28,9 @@ struct CooperativeKernel<attach_seeds::AttachSeed> : CooperativeKernelOf<attach_
   struct Shared {};
   static __device__ void run(const attach_seeds::AttachSeed& step, int64_t i, Shared&, int lane) {
     const PointQ8 p = step.where_from(i);
-    const uint32_t vertex = attach_cooperative::nearest_point(step.vertices, p, lane).id;
+    attach_cooperative::NearestOfWarp search{{step.vertices, p}, lane};
+    visit_around(step.vertices.blocks, BoxQ8{p, p}, search);
+    const uint32_t vertex = search.nearest.id;
     if (lane != 0) return;
     step.home[i] = vertex;
     step.normal[i] = step.walk.normal[vertex];

@@ -14,7 +14,7 @@ struct PatchSource {
   View<const PointQ8> position;
   View<const Normal8> normal;
   View<const TriangleIndices> triangles;
-  View<const int64_t> vertex_first;
+  View<const uint32_t> vertex_first;
   View<const uint32_t> vertex_triangles;
   EdgeLengthsView lengths;
   label::PatchesView surface_patches;

@@ -64,7 +64,7 @@ struct SurfaceMesh {
   Buffer<PointQ8> position;    ///< per vertex
   Buffer<Normal8> normal;      ///< outward, per vertex
   Buffer<TriangleIndices> triangles;
-  Buffer<int64_t> vertex_first;       ///< vertex_count + 1 offsets into vertex_triangles
+  Buffer<uint32_t> vertex_first;      ///< vertex_count + 1 offsets into vertex_triangles, which are below 2^32
   Buffer<uint32_t> vertex_triangles;  ///< ascending per vertex
   Buffer<uint32_t> border_before;     ///< per vertex the one before it on its border, kNone off borders; empty: closed
   VertexBlocks blocks;                ///< each of one patch

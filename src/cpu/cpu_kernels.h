@@ -35,7 +35,7 @@ struct CpuKernels {
   using LabelSheet = LabelSimd;
   /// walk_ahead.h: memory is asked for some walks ahead, and the triangles where walks end are taken in lanes.
   using Walks = WalksAhead;
-  /// pass_simd.h: bounds, last labels and moments of triangles are kept from pass to pass; cells are cut in lanes.
+  /// pass_simd.h: bounds and last labels are kept from pass to pass; triangles are measured and cells cut in lanes.
   using PassWork = CpuPassSimd;
   /// optimize_simd.h: the triangles around each vertex are listed once, samples are sorted by triangle, sums go in
   /// lanes.

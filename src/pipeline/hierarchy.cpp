@@ -118,12 +118,10 @@ RelaxedSeeds relax_by_levels(const Prepared& prepared, const LevelOptions& optio
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seeds.seed}, context);
     const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
     seeds = {};
-    if (relaxed) {
-      seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
-      const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
-      if (halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
-    }
+    if (relaxed) seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
+    const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
     proxies.drop_before(level + 1);
+    if (relaxed && halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
   }
   if (is_in_vain()) return {};
   RelaxOptions finest = options.relax;

@@ -67,9 +67,9 @@ TEST_CASE("seeds: attached to the sheet they sit on it, at home at the vertex th
   sheet.position = Buffer<PointQ8>(4);
   sheet.normal = Buffer<Normal8>(4);
   sheet.triangles = Buffer<TriangleIndices>(4);
-  sheet.vertex_first = Buffer<int64_t>(5);
+  sheet.vertex_first = Buffer<uint32_t>(5);
   sheet.vertex_triangles = Buffer<uint32_t>(12);
-  int64_t at = 0;
+  uint32_t at = 0;
   for (uint32_t v = 0; v < 4; ++v) {
     sheet.position[v] = corner[v];
     sheet.normal[v] = {int8_t(v), 0, 127};

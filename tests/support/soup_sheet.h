@@ -91,13 +91,13 @@ inline Sheet sheet_of_soup(const TriangleSoup& soup, int32_t resolution, int64_t
   }
   sheet.normal = Buffer<Normal8>(count);
   sheet.source_triangle = Buffer<uint32_t>(count);
-  std::vector<int64_t> first{0};
+  std::vector<uint32_t> first{0};
   std::vector<uint32_t> lists;
   for (int64_t i = 0; i < count; ++i) {
     sheet.normal[i] = normal8(normal[size_t(i)]);
     sheet.source_triangle[i] = 0;
     lists.insert(lists.end(), around[size_t(i)].begin(), around[size_t(i)].end());
-    first.push_back(int64_t(lists.size()));
+    first.push_back(uint32_t(lists.size()));
   }
   sheet.vertex_first = to_buffer(first);
   sheet.vertex_triangles = to_buffer(lists);

@@ -245,14 +245,18 @@ void CpuStepSimd::smooth(CpuExecutor& exec, const SmoothVertex& step) {
   if (step.options.onto_sheet) WalksAhead::to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
 }
 
-void CpuStepSimd::sort(CpuExecutor&, int64_t triangles, View<FitSample> samples) {
-  const auto place = [&](const FitSample& s) { return s.triangle == kNone ? size_t(triangles) : size_t(s.triangle); };
-  std::vector<uint32_t> end(size_t(triangles) + 1);
-  for (const FitSample& s : samples) ++end[place(s)];
-  for (size_t t = 1; t < end.size(); ++t) end[t] += end[t - 1];
-  Buffer<FitSample> sorted(samples.size);
-  for (int64_t i = samples.size - 1; i >= 0; --i) sorted[--end[place(samples[i])]] = samples[i];
-  std::copy(sorted.begin(), sorted.end(), samples.begin());
+void CpuStepSimd::sort(CpuExecutor& exec, int64_t triangles, int64_t of_sheet, Buffer<FitSample>& samples) {
+  Buffer<uint32_t> end(triangles + 1);  // of the places of each triangle, and of samples without one
+  const auto of = [&](int64_t i) -> uint32_t& { return end[std::min<int64_t>(samples[i].triangle, triangles)]; };
+  const bool alone = loops_run_alone();
+  exec.fill(end.view(), 0u);
+  exec.for_each("count samples", of_sheet, [&](int64_t i) { alone ? void(++of(i)) : atomic_add(of(i), 1u); });
+  exec.inclusive_scan(end.view());
+  Buffer<FitSample> sorted(samples.size());
+  exec.for_each("sort samples", of_sheet,
+                [&](int64_t i) { sorted[alone ? --of(i) : atomic_take_one_below(of(i))] = samples[i]; });
+  std::copy(samples.begin() + of_sheet, samples.end(), sorted.begin() + of_sheet);
+  samples = std::move(sorted);
 }
 
 void CpuStepSimd::pull(CpuExecutor& exec, const PullCorners& step) {

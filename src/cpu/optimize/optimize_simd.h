@@ -22,7 +22,7 @@ class CpuStepSimd {
   void begin(CpuExecutor& exec, const optimize::MeshView& mesh);
   void smooth(CpuExecutor& exec, const optimize::SmoothVertex& step);
   /// By triangle.
-  void sort(CpuExecutor& exec, int64_t triangles, View<optimize::FitSample> samples);
+  void sort(CpuExecutor& exec, int64_t triangles, int64_t of_sheet, Buffer<optimize::FitSample>& samples);
   void pull(CpuExecutor& exec, const optimize::PullCorners& step);
   void fit(CpuExecutor& exec, const optimize::FitVertex& step);
 

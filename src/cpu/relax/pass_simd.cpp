@@ -1,9 +1,10 @@
-// A cell gets the moments of the vertices that it labels, each with the triangles that are its own; then triangles
-// between cells move pieces from one to another.
+// A cell gets the moments of the triangles whose first corner it labels; then triangles between cells move pieces from
+// one to another.
 #include "cpu/relax/pass_simd.h"
 
 #include "cpu/relax/cut_simd.h"
 #include "cpu/relax/three_cell_simd.h"
+#include "cpu/relax/triangle_simd.h"
 
 namespace isoshell {
 namespace {
@@ -15,19 +16,15 @@ struct FillBlockPatch {
   View<const PointQ8> position;
   EdgeLengthsView lengths;
   View<const int64_t> first;
-  View<BlockPatches::Triangle> triangles;
-  View<PieceSum> of_vertex;
+  View<uint32_t> triangles, mass;
   void operator()(int64_t block) const {
     int64_t at = first[block];
-    const PointQ8 origin = patch.blocks.centre[block];
-    for (int64_t v = patch.blocks.first[block]; v < patch.blocks.first[block + 1]; ++v) of_vertex[v] = {};
     patch.visit(block, [&](TriangleIndices t, uint32_t index) {
-      const PointQ8 a = position[t.a], b = position[t.b], c = position[t.c];
-      const Vec64 n = cross(difference(b, a), difference(c, a));
-      const uint32_t area2 = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
-      triangles[at++] = {index, area2};
-      PieceSum& sum = of_vertex[std::min({t.a, t.b, t.c})];
-      sum = sum + piece_sum(area2, local(a, origin), local(b, origin), local(c, origin));
+      if (lengths.vary()) {
+        const Vec64 n = cross(difference(position[t.b], position[t.a]), difference(position[t.c], position[t.a]));
+        mass[at] = lengths.mass(uint32_t(isqrt(uint64_t(dot(n, n)))), t);
+      }
+      triangles[at++] = index;
     });
   }
 };
@@ -68,8 +65,7 @@ class BlockSums {
 struct SumBlockSimd {
   VertexBlocksView blocks;
   View<const int64_t> first;
-  View<const BlockPatches::Triangle> triangles;
-  View<const PieceSum> of_vertex;
+  View<const uint32_t> triangles, mass;
   View<const PointQ8> position;
   View<const TriangleIndices> corners;
   View<const uint32_t> label;
@@ -82,19 +78,20 @@ struct SumBlockSimd {
     if (state[0].converged) return;
     const PointQ8 origin = blocks.centre[block];
     BlockSums sums(origin, seed, cell);
-    add_vertices(block, sums);
+    TriangleSimd these;
     CutSimd lanes;
     ThreeCellSimd meeting;
-    constexpr int64_t kChunk = 256;
-    for (int64_t begin = first[block]; begin < first[block + 1]; begin += kChunk) {
-      CutTriangles<kChunk> cut;
-      list_cut(begin, std::min(begin + kChunk, first[block + 1]), cut);
+    for (int64_t begin = first[block]; begin < first[block + 1]; begin += TriangleSimd::kLanes) {
+      load(begin, std::min(begin + TriangleSimd::kLanes, first[block + 1]), origin, these);
+      add_whole(these, sums);
+      CutTriangles cut;
+      list_cut(these, cut);
       for (int i = 0; i < cut.two_count; ++i) {
-        add_lane(triangles[cut.two[i]], origin, lanes);
+        add_lane(these, cut.two[i], origin, lanes);
         if (lanes.count == CutSimd::kLanes) empty(lanes, sums);
       }
       for (int i = 0; i < cut.three_count; ++i) {
-        add_lane(triangles[cut.three[i]], origin, meeting);
+        add_lane(these, cut.three[i], origin, meeting);
         if (meeting.count == ThreeCellSimd::kLanes) empty(meeting, sums);
       }
     }
@@ -104,70 +101,73 @@ struct SumBlockSimd {
   }
 
  private:
-  void add_vertices(int64_t block, BlockSums& sums) const {
-    int64_t v = blocks.first[block];
-    const int64_t end = blocks.first[block + 1];
-    while (v < end) {
-      const uint32_t id = label[v];
-      PieceSum run = of_vertex[v++];
-      for (; v < end && label[v] == id; ++v) run = run + of_vertex[v];
+  void load(int64_t begin, int64_t end, PointQ8 origin, TriangleSimd& to) const {
+    to.count = int(end - begin);
+    for (int i = 0; i < to.count; ++i) {
+      const TriangleIndices t = corners[triangles[begin + i]];
+      const uint32_t vertices[3] = {t.a, t.b, t.c};
+      for (int k = 0; k < 3; ++k) {
+        to.corner[k].set(i, local(position[vertices[k]], origin));
+        to.label[k][i] = label[vertices[k]];
+      }
+    }
+    to.measure();
+    if (!mass.empty()) std::copy(&mass[begin], &mass[begin] + to.count, to.area2);
+  }
+
+  /// Every triangle goes to the cell of its first corner.
+  static void add_whole(const TriangleSimd& of, BlockSums& sums) {
+    for (int i = 0; i < of.count;) {
+      const uint32_t id = of.label[0][i];
+      PieceSum run = of.whole(i++);
+      for (; i < of.count && of.label[0][i] == id; ++i) run = run + of.whole(i);
       sums.add(id, run);
     }
   }
 
   /// Triangles between two cells, and between three.
-  template <int64_t kMost>
   struct CutTriangles {
     int two_count = 0, three_count = 0;
-    int64_t two[kMost], three[kMost];
+    int two[TriangleSimd::kLanes], three[TriangleSimd::kLanes];
   };
   /// Without a branch that would be guessed wrong.
-  template <class Cut>
-  void list_cut(int64_t begin, int64_t end, Cut& cut) const {
-    for (int64_t t = begin; t < end; ++t) {
-      const TriangleIndices corner = corners[triangles[t].index];
-      const uint32_t a = label[corner.a], b = label[corner.b], c = label[corner.c];
+  static void list_cut(const TriangleSimd& of, CutTriangles& cut) {
+    for (int i = 0; i < of.count; ++i) {
+      const uint32_t a = of.label[0][i], b = of.label[1][i], c = of.label[2][i];
       const int same = (a == b) + (b == c) + (c == a);
-      cut.two[cut.two_count] = t;
+      cut.two[cut.two_count] = i;
       cut.two_count += same == 1;
-      cut.three[cut.three_count] = t;
+      cut.three[cut.three_count] = i;
       cut.three_count += same == 0;
     }
   }
 
-  Local here(uint32_t vertex, PointQ8 origin) const { return local(position[vertex], origin); }
-
-  void add_lane(const BlockPatches::Triangle& of, PointQ8 origin, ThreeCellSimd& lanes) const {
+  void add_lane(const TriangleSimd& of, int from, PointQ8 origin, ThreeCellSimd& lanes) const {
     const int i = lanes.count++;
-    const TriangleIndices t = corners[of.index];
-    const uint32_t vertices[3] = {t.a, t.b, t.c}, smallest = std::min({t.a, t.b, t.c});
     for (int k = 0; k < 3; ++k) {
-      const uint32_t id = label[vertices[k]];
-      lanes.corner[k].set(i, here(vertices[k], origin));
+      const uint32_t id = of.label[k][from];
+      lanes.corner[k].set(i, of.corner[k].at(from));
       lanes.seed[k].set(i, local(seed[id], origin));
       lanes.cell[k][i] = id;
-      lanes.has_all[k][i] = vertices[k] == smallest ? 1 : 0;
+      lanes.has_all[k][i] = k == 0 ? 1 : 0;
     }
-    lanes.area2[i] = of.area2;
+    lanes.area2[i] = of.area2[from];
   }
 
-  void add_lane(const BlockPatches::Triangle& of, PointQ8 origin, CutSimd& lanes) const {
+  void add_lane(const TriangleSimd& of, int from, PointQ8 origin, CutSimd& lanes) const {
     const int i = lanes.count++;
-    const TriangleIndices t = corners[of.index];
-    const uint32_t a = label[t.a], b = label[t.b], c = label[t.c];
-    const uint32_t p = b == c ? t.a : (c == a ? t.b : t.c), q = b == c ? t.b : (c == a ? t.c : t.a),
-                   r = b == c ? t.c : (c == a ? t.a : t.b);
-    const uint32_t alone = b == c ? a : (c == a ? b : c), other = b == c ? b : a;
-    lanes.p.set(i, here(p, origin));
-    lanes.q.set(i, here(q, origin));
-    lanes.r.set(i, here(r, origin));
+    const uint32_t a = of.label[0][from], b = of.label[1][from], c = of.label[2][from];
+    const int p = b == c ? 0 : (c == a ? 1 : 2), q = p == 2 ? 0 : p + 1, r = 3 - p - q;
+    const uint32_t alone = of.label[p][from], other = of.label[q][from];
+    lanes.p.set(i, of.corner[p].at(from));
+    lanes.q.set(i, of.corner[q].at(from));
+    lanes.r.set(i, of.corner[r].at(from));
     lanes.seed.set(i, local(seed[alone], origin));
     lanes.other_seed.set(i, local(seed[other], origin));
-    lanes.area2[i] = of.area2;
-    const bool all_is_at_p = p < q && p < r;
-    lanes.all_is_at_p[i] = all_is_at_p ? 1 : 0;
-    lanes.from[i] = all_is_at_p ? alone : other;
-    lanes.to[i] = all_is_at_p ? other : alone;
+    lanes.area2[i] = of.area2[from];
+    lanes.all_is_at_p[i] = p == 0 ? 1 : 0;
+    lanes.from[i] = p == 0 ? alone : other;
+    lanes.to[i] = p == 0 ? other : alone;
   }
 
   static void empty(CutSimd& lanes, BlockSums& sums) {
@@ -193,14 +193,16 @@ CpuPassSimd::CpuPassSimd(CpuExecutor& exec, const SurfaceMesh& surface, const Se
   const int64_t blocks = surface.blocks.count();
   const VisitPatch visit{surface.blocks.view(), surface.triangles.view(), surface.vertex_first.view(),
                          surface.vertex_triangles.view()};
-  patches_ = {Buffer<int64_t>(blocks + 1), Buffer<BlockPatches::Triangle>(surface.triangles.size()),
-              Buffer<PieceSum>(surface.vertex_count())};
+  const EdgeLengthsView lengths = lengths_of(surface);
+  const int64_t triangles = surface.triangles.size();
+  patches_ = {Buffer<int64_t>(blocks + 1), Buffer<uint32_t>(triangles),
+              Buffer<uint32_t>(lengths.vary() ? triangles : 0)};
   exec.fill(patches_.first.view().part(blocks, 1), int64_t(0));
   exec.for_each("count patch triangles", blocks, CountPatch{visit, patches_.first.view()});
   exec.exclusive_scan(patches_.first.view());
   exec.for_each("fill patches", blocks,
-                FillBlockPatch{visit, surface.position.view(), lengths_of(surface), patches_.first.view(),
-                               patches_.triangles.view(), patches_.of_vertex.view()});
+                FillBlockPatch{visit, surface.position.view(), lengths, patches_.first.view(),
+                               patches_.triangles.view(), patches_.mass.view()});
 }
 
 void CpuPassSimd::measure(CpuExecutor& exec, const SeedSet& seeds, View<CellSum> cells, View<SplitSum> block_energy,
@@ -208,8 +210,8 @@ void CpuPassSimd::measure(CpuExecutor& exec, const SeedSet& seeds, View<CellSum>
   labels_.label(exec, seeds, label_.view());
   exec.for_each("sum cells", surface_.blocks.count(),
                 SumBlockSimd{surface_.blocks.view(), patches_.first.view(), patches_.triangles.view(),
-                             patches_.of_vertex.view(), surface_.position.view(), surface_.triangles.view(),
-                             label_.view(), seeds.position.view(), cells, block_energy, state});
+                             patches_.mass.view(), surface_.position.view(), surface_.triangles.view(), label_.view(),
+                             seeds.position.view(), cells, block_energy, state});
 }
 
 }  // namespace isoshell

@@ -8,16 +8,11 @@
 
 namespace isoshell {
 
-/// Triangles by the block of their smallest vertex, and the moments about the block's origin of each vertex's
-/// triangles.
+/// Triangles by the block of their smallest vertex.
 struct BlockPatches {
-  /// Its corners are read from the surface: the list would else be the largest one while seeds relax.
-  struct Triangle {
-    uint32_t index, area2;
-  };
   Buffer<int64_t> first;  ///< block_count + 1
-  Buffer<Triangle> triangles;
-  Buffer<PieceSum> of_vertex;  ///< sum over the triangles whose smallest vertex it is
+  Buffer<uint32_t> triangles;
+  Buffer<uint32_t> mass;  ///< EdgeLengthsView::mass of each, which divides; empty where lengths do not vary
 };
 
 /// relax_sheet::PlainPassWork in lanes.

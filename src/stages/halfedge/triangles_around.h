@@ -1,6 +1,7 @@
 // The triangles around each vertex of a surface, on the host.
 #pragma once
 
+#include <algorithm>
 #include <utility>
 
 #include "core/buckets.h"
@@ -14,7 +15,8 @@ inline void list_triangles_around(SurfaceMesh& surface) {
         const TriangleIndices i = surface.triangles[t];
         for (const uint32_t v : {i.a, i.b, i.c}) put(v, uint32_t(t));
       });
-  surface.vertex_first = std::move(around.first);
+  surface.vertex_first = Buffer<uint32_t>(around.first.size());
+  std::copy(around.first.begin(), around.first.end(), surface.vertex_first.begin());
   surface.vertex_triangles = std::move(around.items);
 }
 

@@ -97,9 +97,6 @@ class Optimization {
     samples_of_sheet_ = std::min(surface_.vertex_count(), kSamplesPerTriangle * smallest);
     const int64_t count = samples_of_sheet_ + surface_.missed.size();
     sample_ = exec_.template make<FitSample>(count);
-    rest_sq_ = exec_.template make<int64_t>(count);
-    triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
-    vertex_pull_ = exec_.template make<VertexPull>(vertices_);
     exec_.for_each("attach samples", count,
                    AttachSample{view(), mesh_.position.view(), surface_.position.view(), surface_.normal.view(),
                                 label.view(), surface_.missed.view(), surface_.missed_vertex.view(), sample_.view()});
@@ -114,7 +111,7 @@ class Optimization {
     options.damping = damping;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
     work_.begin(exec_, view());
-    work_.sort(exec_, mesh_.triangles.size(), sample_.view().part(0, samples_of_sheet_));
+    sort_samples();
     for (int s = 0; s < steps; ++s) {
       exec_.fill(triangle_pull_.view(), TrianglePull{});
       exec_.fill(vertex_pull_.view(), VertexPull{});
@@ -190,9 +187,7 @@ class Optimization {
   /// Most of the memory, which the test for intersections needs.
   void drop_samples() {
     sample_ = {};
-    rest_sq_ = {};
-    triangle_pull_ = {};
-    vertex_pull_ = {};
+    drop_pulls();
   }
 
   /// Looks for better places for the corners of triangles below kGoodQuality.
@@ -237,6 +232,20 @@ class Optimization {
   }
 
  private:
+  /// The sorted copy is one of the largest lists: it has the place of what the next step finds anew.
+  void sort_samples() {
+    drop_pulls();
+    work_.sort(exec_, mesh_.triangles.size(), samples_of_sheet_, sample_);
+    rest_sq_ = exec_.template make<int64_t>(sample_.size());
+    triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());
+    vertex_pull_ = exec_.template make<VertexPull>(vertices_);
+  }
+  void drop_pulls() {
+    rest_sq_ = {};
+    triangle_pull_ = {};
+    vertex_pull_ = {};
+  }
+
   MeshView view() { return connections_.view(mesh_); }
   FixedView fixed() const { return {seeds_.fixed.joined.view(), fixed_valence_.view()}; }
 

@@ -71,9 +71,9 @@ struct PlainStepWork {
     else
       exec.for_each("smooth", step.to.size, step);
   }
-  /// Before they are pulled: samples may take another order.
+  /// Before they are pulled: samples may take another order, but for off-surface points, which come after the sheet's.
   template <class Exec>
-  void sort(Exec&, int64_t /*triangles*/, View<FitSample>) {}
+  void sort(Exec&, int64_t /*triangles*/, int64_t /*of_sheet*/, Buffer<FitSample>&) {}
   template <class Exec>
   void pull(Exec& exec, const PullCorners& step) {
     exec.for_each("pull corners", step.sample.size, step);

@@ -3,16 +3,14 @@
 
 #include "isoshell/stages.h"
 #include "stages/sheet/sheet_walk.h"
-#include "stages/sparse/point_grid_body.h"
+#include "stages/sparse/vertex_grid_body.h"
 #include "voxel/proxy_depth.h"
 
 namespace isoshell {
 namespace attach_seeds {
 
-constexpr int32_t kCellVox = 4;  ///< edge of the grid's cells: about 16 sheet vertices each
-
 struct AttachSeed {
-  PointGridView vertices;
+  VertexGridView vertices;
   WalkOntoSheet walk;
   int halvings;
   View<PointQ8> position;
@@ -20,7 +18,7 @@ struct AttachSeed {
   View<uint32_t> home;
   ISOSHELL_HD void operator()(int64_t i) const {
     const PointQ8 p = where_from(i);
-    const uint32_t vertex = nearest_point(vertices, p).id;
+    const uint32_t vertex = nearest_vertex(vertices, p).id;
     home[i] = vertex;
     normal[i] = walk.normal[vertex];
     position[i] = walk.closest_around(vertex, p);
@@ -36,8 +34,7 @@ struct AttachSeed {
 
 template <class Exec>
 void attach_to_sheet_body(Exec& exec, const SurfaceMesh& surface, SeedSet& seeds, int halvings) {
-  PointGrid grid = make_point_grid(exec, surface.extent_vox, attach_seeds::kCellVox, surface.vertex_count());
-  fill_point_grid(exec, grid, surface.position.view());
+  const VertexGrid grid(exec, surface);
   const WalkOntoSheet walk = walk_onto(surface);
   exec.for_each("attach seeds", seeds.size(),
                 attach_seeds::AttachSeed{grid.view(), walk, halvings, seeds.position.view(), seeds.normal.view(),

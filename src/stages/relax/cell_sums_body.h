@@ -38,7 +38,7 @@ struct Patches {
 struct VisitPatch {
   VertexBlocksView blocks;
   View<const TriangleIndices> triangles;
-  View<const int64_t> vertex_first;
+  View<const uint32_t> vertex_first;
   View<const uint32_t> vertex_triangles;
 
   template <class Visit>

@@ -7,7 +7,7 @@
 #include "isoshell/stages.h"
 #include "stages/labels/label_body.h"
 #include "stages/sheet/sheet_graph.h"
-#include "stages/sparse/point_grid_body.h"
+#include "stages/sparse/vertex_grid_body.h"
 #include "voxel/atomic.h"
 
 namespace isoshell {
@@ -79,14 +79,14 @@ struct FindRange {
 };
 
 struct CopyLength {
-  PointGridView vertices;
+  VertexGridView vertices;
   View<const uint32_t> from;
   View<const PointQ8> position;
   int halvings;
   View<uint32_t> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     const PointQ8 p = position[v];
-    to[v] = from[nearest_point(vertices, {p.x << halvings, p.y << halvings, p.z << halvings}).id];
+    to[v] = from[nearest_vertex(vertices, {p.x << halvings, p.y << halvings, p.z << halvings}).id];
   }
 };
 
@@ -211,9 +211,7 @@ int64_t seed_shares_body(Exec& exec, const SurfaceMesh& surface) {
 
 template <class Exec>
 EdgeLengths transfer_edge_lengths_body(Exec& exec, const SurfaceMesh& from, int halvings, const SurfaceMesh& to) {
-  constexpr int32_t kCellVox = 4;
-  PointGrid grid = make_point_grid(exec, from.extent_vox, kCellVox, from.vertex_count());
-  fill_point_grid(exec, grid, from.position.view());
+  const VertexGrid grid(exec, from);
   Buffer<uint32_t> at = exec.template make<uint32_t>(to.vertex_count());
   exec.for_each("copy lengths", to.vertex_count(),
                 lengths::CopyLength{grid.view(), from.lengths.at.view(), to.position.view(), halvings, at.view()});

@@ -38,25 +38,18 @@ struct CountTrianglesAround {
   }
 };
 
-struct WidenCount {
-  View<const uint32_t> count;
-  View<int64_t> first;
-  ISOSHELL_HD void operator()(int64_t v) const { first[v] = count[v]; }
-};
-
-/// Each triangle takes a place at each of its corners, in any order; `left` counts the places that are free.
+/// Each triangle takes a place at each of its corners, in any order: `end` of a vertex falls to its first place.
 struct TakePlaces {
   View<const TriangleIndices> triangles;
-  View<const int64_t> first;
-  View<uint32_t> left, around;
+  View<uint32_t> end, around;
   ISOSHELL_HD void operator()(int64_t t) const {
     const uint32_t corner[3] = {triangles[t].a, triangles[t].b, triangles[t].c};
-    for (const uint32_t v : corner) around[first[v] + atomic_take_one_below(left[v])] = uint32_t(t);
+    for (const uint32_t v : corner) around[atomic_take_one_below(end[v])] = uint32_t(t);
   }
 };
 
 struct SortAround {
-  View<const int64_t> first;
+  View<const uint32_t> first;
   View<uint32_t> around;
   ISOSHELL_HD void operator()(int64_t v) const {
     for (int64_t i = first[v] + 1; i < first[v + 1]; ++i) {
@@ -72,11 +65,10 @@ struct SortAround {
 /// those cancel too, of the first triangle that has area.
 struct FindNormal {
   View<const TriangleIndices> triangles;
-  View<const int64_t> first;
+  View<const uint32_t> first;
   View<const uint32_t> around;
   View<const PointQ8> smooth;
-  View<const Normal8> lattice_normal;
-  View<Normal8> normal;
+  View<Normal8> normal;  ///< as given that of the lattice
   ISOSHELL_HD void operator()(int64_t v) const {
     Vec64 sum = {0, 0, 0}, any = {0, 0, 0};
     for (int64_t i = first[v]; i < first[v + 1]; ++i) {
@@ -84,7 +76,7 @@ struct FindNormal {
       sum = sum + n;
       if (is_zero(any)) any = n;
     }
-    if (is_zero(sum)) sum = {lattice_normal[v].x, lattice_normal[v].y, lattice_normal[v].z};
+    if (is_zero(sum)) sum = {normal[v].x, normal[v].y, normal[v].z};
     normal[v] = normal8(is_zero(sum) ? any : sum);
   }
   ISOSHELL_HD static bool is_zero(Vec64 n) { return n.x == 0 && n.y == 0 && n.z == 0; }
@@ -127,19 +119,15 @@ void cut_into_blocks(Exec& exec, Sheet& sheet) {
 struct PlainListTrianglesAround {
   template <class Exec>
   static void run(Exec& exec, SurfaceMesh& sheet) {
-    const int64_t vertices = sheet.vertex_count();
-    Buffer<uint32_t> count = exec.template make<uint32_t>(vertices);
-    exec.fill(count.view(), 0u);
-    exec.for_each("count triangles around", sheet.triangles.size(),
-                  CountTrianglesAround{sheet.triangles.view(), count.view()});
-    sheet.vertex_first = exec.template make<int64_t>(vertices + 1);
-    exec.fill(sheet.vertex_first.view().part(vertices, 1), int64_t(0));
-    exec.for_each("widen", vertices, WidenCount{count.view(), sheet.vertex_first.view()});
-    exec.exclusive_scan(sheet.vertex_first.view());
-    sheet.vertex_triangles = exec.template make<uint32_t>(3 * sheet.triangles.size());
-    exec.for_each(
-        "list triangles around", sheet.triangles.size(),
-        TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), count.view(), sheet.vertex_triangles.view()});
+    const int64_t vertices = sheet.vertex_count(), triangles = sheet.triangles.size();
+    sheet.vertex_first = exec.template make<uint32_t>(vertices + 1);
+    exec.fill(sheet.vertex_first.view(), 0u);
+    exec.for_each("count triangles around", triangles,
+                  CountTrianglesAround{sheet.triangles.view(), sheet.vertex_first.view()});
+    exec.inclusive_scan(sheet.vertex_first.view());
+    sheet.vertex_triangles = exec.template make<uint32_t>(3 * triangles);
+    exec.for_each("list triangles around", triangles,
+                  TakePlaces{sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view()});
     exec.for_each("sort triangles around", vertices,
                   SortAround{sheet.vertex_first.view(), sheet.vertex_triangles.view()});
   }
@@ -170,10 +158,11 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, Compone
     throw Error(ErrorCode::nothing_to_mesh, "sheet",
                 "all " + std::to_string(components.dropped) + " components are smaller than " +
                     std::to_string(min_component_area_q16 >> 16) + " square voxels; lower the limit");
-  if (mesh.quads.size() * 2 >= int64_t(kNone))
+  constexpr int64_t kMostTriangles = int64_t(kNone) / 3;  // their corners are counted in 32 bits
+  if (mesh.quads.size() * 2 >= kMostTriangles)
     throw Error(ErrorCode::out_of_memory, "sheet",
                 "the sheet has " + std::to_string(mesh.quads.size() * 2) + " triangles; at most " +
-                    std::to_string(kNone) + " can be numbered; lower the resolution");
+                    std::to_string(kMostTriangles) + " can be numbered; lower the resolution");
 
   Sheet sheet;
   sheet.frame = frame;
@@ -186,10 +175,10 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, Compone
                 SplitQuads{mesh.quads.view(), sheet.position.view(), sheet.triangles.view()});
   mesh.quads = {};
   Exec::Kernels::ListTrianglesAround::run(exec, sheet);
-  sheet.normal = exec.template make<Normal8>(sheet.vertex_count());
+  sheet.normal = std::move(mesh.lattice_normal);
   exec.for_each("normals", sheet.vertex_count(),
                 FindNormal{sheet.triangles.view(), sheet.vertex_first.view(), sheet.vertex_triangles.view(),
-                           laid.smooth.view(), mesh.lattice_normal.view(), sheet.normal.view()});
+                           laid.smooth.view(), sheet.normal.view()});
   sheet.topology.components = components.kept;
   sheet.topology.genus = genus_of(components.kept, sheet.vertex_count(), sheet.triangles.size() / 2);
   sheet.topology.dropped_components = components.dropped;

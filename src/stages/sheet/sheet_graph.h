@@ -7,7 +7,7 @@ namespace isoshell {
 
 struct SheetGraph {
   View<const TriangleIndices> triangles;
-  View<const int64_t> first;
+  View<const uint32_t> first;
   View<const uint32_t> incident;
   View<const uint32_t> border_before;
 

@@ -4,7 +4,7 @@
 
 #include "isoshell/stages.h"
 #include "stages/sheet/sheet_walk.h"
-#include "stages/sparse/point_grid_body.h"
+#include "stages/sparse/vertex_grid_body.h"
 
 namespace isoshell {
 
@@ -13,16 +13,14 @@ constexpr int64_t kFarOffSurfaceQ8 = 4 * kOneVoxelQ8;  ///< points farther from 
 
 namespace sheet_steps {
 
-constexpr int32_t kOffSurfaceCellVox = 4;  ///< smaller ones are mostly empty
-
 /// Nearest sheet vertex of a point that the sheet misses, kNone for others.
 struct FindOffSurface {
-  PointGridView vertices;
+  VertexGridView vertices;
   WalkOntoSheet sheet;
   View<const PointQ8> point;
   View<uint32_t> near;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const NearestPoint v = nearest_point(vertices, point[i]);
+    const NearestVertex v = nearest_vertex(vertices, point[i]);
     near[i] = kNone;
     if (v.distance_sq_q16 <= kOffSurfaceQ8 * kOffSurfaceQ8) return;
     const int64_t off = distance_sq_q16(point[i], sheet.closest_around(v.id, point[i]));
@@ -50,8 +48,7 @@ struct CopyOffSurface {
 template <class Exec>
 void find_off_surface(Exec& exec, const LatticeSurface& surface, SurfaceMesh& sheet) {
   using namespace sheet_steps;
-  PointGrid grid = make_point_grid(exec, sheet.extent_vox, kOffSurfaceCellVox, sheet.vertex_count());
-  fill_point_grid(exec, grid, View<const PointQ8>(sheet.position.view()));
+  const VertexGrid grid(exec, sheet);
   const WalkOntoSheet walk = walk_onto(sheet);
   Buffer<uint32_t> near = exec.template make<uint32_t>(surface.points.size());
   exec.for_each("find missed points", surface.points.size(),

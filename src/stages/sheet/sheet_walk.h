@@ -14,7 +14,7 @@ struct WalkOntoSheet {
   View<const PointQ8> position;
   View<const Normal8> normal;
   View<const TriangleIndices> triangles;
-  View<const int64_t> vertex_first;
+  View<const uint32_t> vertex_first;
   View<const uint32_t> vertex_triangles;
   View<const uint32_t> border_before;
 
