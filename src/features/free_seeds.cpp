@@ -102,6 +102,13 @@ int64_t FreeSeeds::fewest(const SeedSet& fixed) const {
   return count_places(fixed.fixed) + kFewestOfClosed * std::count(on_border.begin(), on_border.end(), 0);
 }
 
+int64_t FreeSeeds::closed_parts(const SeedSet& fixed) const {
+  const Counts on_border = fixed_of(fixed);
+  int64_t parts = 0;
+  for (size_t p = 0; p < patches_.size(); ++p) parts += on_border[p] == 0 ? 2 - patches_[p].euler / 2 : 0;
+  return parts;
+}
+
 FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) const {
   const Counts on_border = fixed_of(fixed);
   const int64_t places = count_places(fixed.fixed), least = fewest(fixed) - places;

@@ -23,6 +23,8 @@ class FreeSeeds {
   Counts counts(const SeedSet& fixed, int64_t vertices) const;
   /// Places that it takes at least.
   int64_t fewest(const SeedSet& fixed) const;
+  /// Closed patches without fixed seeds, and the handles of these.
+  int64_t closed_parts(const SeedSet& fixed) const;
   /// As many as have the finer counts once there is a seed on each of their dual's edges, where `fixed` are those of
   /// the coarser level.
   Counts coarser(const SeedSet& fixed, const Counts& finer) const;

@@ -204,6 +204,8 @@ bool MeshRegion::collapse(uint32_t gone, uint32_t into) {
   std::vector<uint32_t> both;
   std::set_intersection(here.begin(), here.end(), there.begin(), there.end(), std::back_inserter(both));
   if (both.size() != sides.size()) return false;
+  const size_t of_tetrahedron = both.size() + 1;  // two triangles with the same corners would be left of it
+  if (here.size() == of_tetrahedron && there.size() == of_tetrahedron) return false;
   std::vector<std::pair<uint32_t, uint32_t>> fused;  // ends of edges of which one was on a curve
   for (const Side& s : sides) {
     const RegionTriangle& t = triangles_[s.triangle];

@@ -14,6 +14,7 @@ namespace isoshell {
 namespace {
 
 constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
+constexpr int64_t kFewestPerPart = 12;           ///< seeds of a level; with fewer its dual is no mesh
 constexpr int32_t kLastPasses = 10;              ///< of the finest level, on all triangles of the surface
 
 RelaxOptions for_finest_patches(const PatchOptions& options) {
@@ -31,7 +32,8 @@ class PatchLevels {
       const SeedSet fixed = seeds_on_curves(cut, level);
       FreeSeeds::Counts free =
           level == 0 ? free_seeds_.counts(fixed, options.seeds.count) : free_seeds_.coarser(fixed, counts_.back());
-      if (level > 0 && std::accumulate(free.begin(), free.end(), fixed.size()) < kFewestSeeds) break;
+      const int64_t fewest = std::max(kFewestSeeds, kFewestPerPart * free_seeds_.closed_parts(fixed));
+      if (level > 0 && std::accumulate(free.begin(), free.end(), fixed.size()) < fewest) break;
       counts_.push_back(std::move(free));
     }
     const auto add_surfaces = [&]() -> std::string {

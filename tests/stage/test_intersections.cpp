@@ -213,14 +213,16 @@ namespace {
 /// What find_intersections says of triangles on a lattice of 2048 voxels a side.
 std::pair<int64_t, std::vector<uint32_t>> found_in(const std::vector<TriangleIndices>& triangles,
                                                    const std::vector<PointQ8>& position, int64_t spacing_vox,
-                                                   Context& context) {
+                                                   Context& context, const std::vector<uint32_t>& has_moved = {}) {
   PlainExecutor exec(context, "test");
   const Buffer<TriangleIndices> t = to_buffer(triangles);
   const Buffer<PointQ8> p = to_buffer(position);
+  const Buffer<uint32_t> moved = to_buffer(has_moved);
   Buffer<uint32_t> marked(p.size());
   const int32_t extent_vox[3] = {2048, 2048, 2048};
   const int64_t pairs = run_with_threads(context, [&] {
-    return optimize::find_intersections(exec, {t.view(), p.view()}, extent_vox, spacing_vox, marked.view());
+    return optimize::find_intersections(exec, {t.view(), p.view()}, extent_vox, spacing_vox, marked.view(),
+                                        moved.view());
   });
   return {pairs, {marked.begin(), marked.end()}};
 }
@@ -259,6 +261,30 @@ TEST_CASE("intersections: triangles of all sizes find each other", "[optimize][s
       context.threads = threads;
       CHECK(found_in(triangles, position, spacing_vox, context) == expected);
     }
+}
+
+TEST_CASE("intersections: after some vertices have moved, their triangles find what intersects", "[optimize][stage]") {
+  std::vector<TriangleIndices> triangles;
+  std::vector<PointQ8> position;
+  add_tube(60, 512, triangles, position);
+  for (uint64_t seed = 0; seed < 20; ++seed) {  // of all sizes, apart from each other and from the tube
+    const auto first = uint32_t(position.size());
+    const auto x = int32_t(20000 * (seed + 1)), size = int32_t(300 << seed % 6);
+    position.insert(position.end(), {{x, 90000, 1000}, {x + size, 90000, 1000}, {x, 90000 + size, 1000}});
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  Context context;
+  REQUIRE(found_in(triangles, position, 2, context).first == 0);
+  std::vector<uint32_t> has_moved(position.size(), 0);
+  for (size_t v = 0; v < position.size(); v += 7) {
+    has_moved[v] = 1;
+    position[v] = {position[v].x + 700, position[v].y - int32_t(v % 3) * 600, position[v].z + 300};
+  }
+  for (size_t v = position.size() - 1; v > position.size() - 31; v -= 5)
+    has_moved[v] = 1, position[v] = {9000, 1200, 900};
+  const auto expected = found_in(triangles, position, 2, context);
+  CHECK(expected.first > 20);
+  CHECK(found_in(triangles, position, 2, context, has_moved) == expected);
 }
 
 TEST_CASE("intersections: one huge triangle beside a rod of 100,000 small ones", "[optimize][stage]") {

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "features/mesh_region.h"
 #include "features/widen_angles.h"
 #include "isoshell/mesh_topology.h"
 #include "support/catch.h"
@@ -167,4 +168,20 @@ TEST_CASE("wide angles: where triangles intersect, what is near them stays, and 
   for (const PointQ8 p : wide.mesh.position) places.insert(place_of(p));
   for (const PointQ8 p : joined.mesh.position)
     if (length(point(p) - point(wrong)) < made.cut.longest_edge_q8) CHECK(places.count(place_of(p)) == 1);
+}
+
+TEST_CASE("wide angles: no edge of a tetrahedron collapses, which would leave the same triangle twice",
+          "[widen_angles][stage]") {
+  Context context;
+  const Made made = hardly_relaxed(feature_plate(), context);
+  const CutLookup lookup(made.cut);
+  std::vector<RegionVertex> vertices(4);
+  const WorldPoint at[4] = {{0, 0, 0}, {512, 0, 0}, {0, 512, 0}, {0, 0, 512}};
+  for (size_t v = 0; v < 4; ++v) vertices[v].position = at[v];
+  std::vector<RegionTriangle> triangles;
+  for (const auto& corner : {std::array<uint32_t, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})
+    triangles.push_back({corner, {kNone, kNone, kNone}});
+  MeshRegion region(lookup, std::move(vertices), std::move(triangles));
+  for (uint32_t u = 0; u < 4; ++u)
+    for (uint32_t v = 0; v < 4; ++v) CHECK((u == v || !region.collapse(u, v)));
 }

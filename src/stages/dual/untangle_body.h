@@ -1,6 +1,8 @@
 // untangle_sheet (see stages.h), written once over an executor.
 #pragma once
 
+#include <utility>
+
 #include "isoshell/stages.h"
 #include "stages/halfedge/intersections.h"
 #include "stages/sheet/sheet_walk.h"
@@ -43,9 +45,10 @@ template <class Exec>
 int64_t untangle_sheet_body(Exec& exec, Sheet& sheet, SeedSet& seeds) {
   using namespace untangle;
   Buffer<uint32_t> marked = exec.template make<uint32_t>(sheet.vertex_count());
+  Buffer<uint32_t> moved;
   for (int round = 0;; ++round) {
     const int64_t pairs = optimize::find_intersections(exec, {sheet.triangles.view(), sheet.position.view()},
-                                                       sheet.extent_vox, 1, marked.view());
+                                                       sheet.extent_vox, 1, marked.view(), moved.view());
     if (pairs == 0 || round == kRounds) {
       const WalkOntoSheet walk = walk_onto(sheet);
       exec.for_each("follow the sheet", seeds.size(), FollowSheet{walk, seeds.home.view(), seeds.position.view()});
@@ -53,6 +56,8 @@ int64_t untangle_sheet_body(Exec& exec, Sheet& sheet, SeedSet& seeds) {
     }
     exec.for_each("take back", sheet.corners.leaf_count(),
                   TakeBack{sheet.corners.view(), marked.view(), round >= kHalvingRounds, sheet.position.view()});
+    std::swap(marked, moved);
+    if (marked.empty()) marked = exec.template make<uint32_t>(sheet.vertex_count());
   }
 }
 

@@ -76,25 +76,39 @@ struct GatherMiddle {
   ISOSHELL_HD void operator()(int64_t i) const { out[i] = middle[triangle[i]]; }
 };
 
-/// Counts the triangles of a class that a triangle of it, or of a smaller one, intersects, each pair once, and marks
-/// the corners of both.
+/// Which triangles look for others: all, or those with a corner that has moved.
+struct LooksForOthers {
+  View<const TriangleIndices> triangles;
+  View<const uint32_t> has_moved;  ///< per vertex 1 or 0; empty: all look
+  ISOSHELL_HD bool operator()(int64_t t) const {
+    if (has_moved.size == 0) return true;
+    const TriangleIndices i = triangles[t];
+    return has_moved[i.a] || has_moved[i.b] || has_moved[i.c];
+  }
+};
+
+/// Counts the triangles of a class that a triangle intersects, each pair once, and marks the corners of both. Where all
+/// look for others, only those of the class and of smaller ones look here.
 struct FindIntersections {
   TrianglesView mesh;
+  LooksForOthers looks;
   ExtentClass extents;
   PointGridView middles;          ///< of the class
   View<const uint32_t> triangle;  ///< the class's triangles, by number in the grid; empty: all of the mesh
   View<uint32_t> marked;
   View<int64_t> found;
   ISOSHELL_HD void operator()(int64_t t) const {
+    if (!looks(t)) return;
     const CornersOfTriangle here = mesh[t];
     const BoxQ8 box = box_of(here);
     const int32_t extent = extent_of(box);
-    if (extent > extents.most) return;
-    const bool is_of_class = extents.holds(extent);
+    const bool all_look = looks.has_moved.size == 0;
+    if (all_look && extent > extents.most) return;
+    const bool is_seen_by_class = !all_look || extents.holds(extent);
     int64_t count = 0;
     const auto test = [&](const GridPoint& middle) {
       const uint32_t other = triangle.size > 0 ? triangle[middle.id] : middle.id;
-      if (is_of_class && int64_t(other) >= t) return;
+      if (is_seen_by_class && int64_t(other) >= t && looks(other)) return;
       const CornersOfTriangle there = mesh[other];
       if (!boxes_meet(box, box_of(there)) || !triangles_intersect(here, there)) return;
       ++count;
@@ -123,15 +137,16 @@ struct FoundHere {
 };
 
 /// Boxes up to so many times the usual edge are ordinary; each class of larger ones reaches twice as far as the last.
-constexpr int64_t kOrdinaryExtent = 4;
+constexpr int64_t kOrdinaryExtent = 2;
 
 /// Pairs of triangles that intersect; `marked` becomes 1 at the corners of those triangles, 0 elsewhere. `extent_vox`:
-/// see SurfaceMesh; `spacing_vox`: about the length of an edge. Triangles look for others of their own class
-/// and of larger ones, so that few large ones do not widen the search of all. Cost: O(triangles) where edges are of
-/// even length, and again for each class that some larger ones are in.
+/// see SurfaceMesh; `spacing_vox`: about the length of an edge. `has_moved`: per vertex 1 or 0, where no others can be
+/// of triangles that intersect now; empty: all can. Triangles look for others of their own class and of larger ones, so
+/// that few large ones do not widen the search of all. Cost: O(triangles) where edges are of even length, and again for
+/// each class that some larger ones are in.
 template <class Exec>
 int64_t find_intersections(Exec& exec, const TrianglesView& mesh, const int32_t extent_vox[3], int64_t spacing_vox,
-                           View<uint32_t> marked) {
+                           View<uint32_t> marked, View<const uint32_t> has_moved = {}) {
   const int64_t triangles = mesh.triangles.size;
   Buffer<PointQ8> middle = exec.template make<PointQ8>(triangles);
   Buffer<uint32_t> largest_extent = exec.template make<uint32_t>(1);
@@ -144,8 +159,9 @@ int64_t find_intersections(Exec& exec, const TrianglesView& mesh, const int32_t 
                               int64_t cell_vox) {
     PointGrid grid = make_point_grid(exec, extent_vox, cell_vox, middles.size);
     fill_point_grid(exec, grid, middles);
-    exec.for_each("find intersections", triangles,
-                  FindIntersections{mesh, extents, grid.view(), of_class, marked, found.view()});
+    exec.for_each(
+        "find intersections", triangles,
+        FindIntersections{mesh, {mesh.triangles, has_moved}, extents, grid.view(), of_class, marked, found.view()});
   };
   const auto largest = int32_t(exec.value(View<const uint32_t>(largest_extent.view()), 0));
   const int64_t ordinary = kOrdinaryExtent * spacing_vox * kOneVoxelQ8;
