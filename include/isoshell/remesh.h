@@ -182,8 +182,7 @@ struct Prepared {
 /// Unites the components of one that is: what lies in solid goes, surfaces of hollows stay unless only outer ones are
 /// wanted. Then chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by
 /// halves until the sheet's components and genus are the input's, at most to four times the first choice (never beyond
-/// a given resolution), until two finer grids in a row brought nothing, or until the input's own triangles can be the
-/// surface: where creases may be kept, no shell is wanted and no frame is followed. Throws: nothing_to_mesh, usage,
+/// a given resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage,
 /// out_of_memory, interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report, Context& context);
 /// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.

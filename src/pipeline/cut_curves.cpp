@@ -231,7 +231,7 @@ bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
 
 SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
                             const Prepared& p, RemeshReport& report, Context& context) {
-  if (!failed.input || failed.found.empty()) return nullptr;
+  if (!failed.input) return nullptr;
   const CutInput& input = *failed.input;
   SharedCut cut;
   reason_against([&] {
@@ -242,8 +242,7 @@ SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, con
 }
 
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
-               bool only_own_triangles, const RemeshOptions& options, Prepared& p, RemeshReport& report,
-               Context& context) {
+               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {
   CreaseReport creases;
   FeatureReport& found = report.features;
   std::vector<LostCurve> all;
@@ -255,10 +254,10 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     report_found(mesh, network, is_open, found);
     warn_of_branches(mesh, network, report);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
-    if (found.curves == 0 && !is_open && !only_own_triangles) return "";
+    if (found.curves == 0 && !is_open) return "";
     all = describe(mesh, network);
     const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
-    if (!against.empty() && (is_open || only_own_triangles)) return against;
+    if (!against.empty() && is_open) return against;
     if (!against.empty()) {
       p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, options, p, report, context);
       return p.cut ? "" : against;

@@ -33,12 +33,10 @@ using SharedCut = std::shared_ptr<const CutSurface>;
 /// Of a surface that the options leave open.
 bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
 
-/// Cuts the surface along the curves of its mesh: p.cut, which stays empty where there are none. Where only the own
-/// triangles will do these are p.cut without curves, too, and the sheet never is. False where there are
+/// Cuts the surface along the curves of its mesh: p.cut, which stays empty where there are none. False where there are
 /// curves that could not be kept, as the report says. `known` are the mesh's creases, where those were found.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
-               bool only_own_triangles, const RemeshOptions& options, Prepared& p, RemeshReport& report,
-               Context& context);
+               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
 
 /// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason. Null where that
 /// cannot be.

@@ -24,7 +24,6 @@
 #include "pipeline/crease_search.h"
 #include "pipeline/cut_curves.h"
 #include "pipeline/feature_report.h"
-#include "pipeline/finer_grid.h"
 #include "pipeline/flag_gaps.h"
 #include "pipeline/given_lines.h"
 #include "pipeline/new_crossings.h"
@@ -224,33 +223,25 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
     }
     const size_t lost_lines = report.features.lost.size();
-    if (cut_along(mesh, curves, std::move(searched.creases), source.only_own_triangles, options, p, report, context) ||
-        curves.seams.empty())
+    if (cut_along(mesh, curves, std::move(searched.creases), options, p, report, context) || curves.seams.empty())
       return;
     keep_lost_seams(report.features.lost, lost_lines);
     const int64_t seams_apart = report.features.seams;  // from creases and borders
     report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
                              " are not kept: " + report.features.given_up + "; triangles lie across seams";
     curves.seams.clear();
-    cut_along(mesh, curves, {}, source.only_own_triangles, options, p, report, context);
+    cut_along(mesh, curves, {}, options, p, report, context);
   });
 }
 
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
-                                                const PatchOptions& in_patches, std::optional<Prepared>& finer,
-                                                RemeshReport& report, Context& context) {
+                                                const PatchOptions& in_patches, RemeshReport& report,
+                                                Context& context) {
   MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
+  if (!made_here.why_not.empty())
+    made_here = mesh_on_sheet_instead(std::move(made_here), p, options, in_patches, made, report, context);
   if (!made_here.why_not.empty()) {
-    if (is_on_own_triangles(p)) finer = finer_grid_after_all(p, options, report, context);
-    made_here =
-        mesh_on_sheet_instead(std::move(made_here), finer ? *finer : p, options, in_patches, made, report, context);
-  }
-  const Prepared& on = finer ? *finer : p;
-  if (!made_here.why_not.empty()) {
-    if (p.cut->curves.empty())
-      report.features.patches = 0;
-    else
-      give_up(report, p.cut->source->if_lost, made_here.why_not);
+    give_up(report, p.cut->source->if_lost, made_here.why_not);
     return {};
   }
   const CutSurface& cut = *made_here.cut;
@@ -262,11 +253,11 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
     report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
                               std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
   if (cut.source->is_sheet) {
-    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(on.sheet, mesh); });
-    flag_gaps(on, {at.data(), int64_t(at.size())}, mesh, report.gaps);
+    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(p.sheet, mesh); });
+    flag_gaps(p, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
                               report.features.on_sheet);
-    if (is_on_own_triangles(p)) warn_of_topology(on, on.surface.topology, options, report);
+    if (is_on_own_triangles(p)) warn_of_topology(p, p.surface.topology, options, report);
   } else {
     report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
     report.topology_agrees = report.topology_compared;
@@ -276,8 +267,7 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
   measure_edges(cut, made_here.joined, report.sizing);
   report.features.vertices = made_here.joined.on_curves;
   report.features.segments = int64_t(mesh.features.curve_edges.size());
-  report.features.kept = !cut.curves.empty();
-  report.post_done = true;
+  report.features.kept = report.post_done = true;
   report_kept(cut, report);
   return std::move(mesh);
 }

@@ -12,7 +12,6 @@ namespace isoshell {
 struct PatchSource {
   const TriangleSoup* soup = nullptr;                      ///< null: not known, as in a run that resumes
   std::vector<std::array<WorldPoint, 2>> interfaces = {};  ///< edges where parts met, which are curves beside creases
-  bool only_own_triangles = false;                         ///< not the sheet, and where there are no curves, too
 };
 
 /// Finds the creases and borders that the options ask for, and the seams of the attributes of `source`, and cuts the
@@ -43,10 +42,8 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
 /// curve counted once, where that is possible. Where triangles intersect, curves get more seeds there, and all seeds
 /// are relaxed again. Where that does not end it the same is tried on the sheet, with the curves laid onto it. None
 /// where that fails, too: cells are no disks, or patches touch along edges that are on no curve: report.features says
-/// so. With borders that are kept triangles may intersect where the input's do. `finer`: what p is on a finer grid,
-/// where the sheet is needed after all, and that of p does not show the input's topology.
+/// so. With borders that are kept triangles may intersect where the input's do.
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
-                                                const PatchOptions& in_patches, std::optional<Prepared>& finer,
-                                                RemeshReport& report, Context& context);
+                                                const PatchOptions& in_patches, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -1,6 +1,8 @@
 // prepare (see remesh.h): repairs and unites what was given, chooses the grid, voxelises, builds the sheet. The grid is
 // made finer while the sheet lacks the input's topology.
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
@@ -8,7 +10,6 @@
 #include "isoshell/repair.h"
 #include "pipeline/check_options.h"
 #include "pipeline/choose_grid.h"
-#include "pipeline/finer_grid.h"
 #include "pipeline/joined_parts.h"
 #include "pipeline/patches.h"
 #include "pipeline/prepare_surface.h"
@@ -21,6 +22,32 @@ namespace isoshell {
 namespace {
 
 constexpr int32_t kCoarsestGrid = 8;
+
+bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
+
+/// How far the sheet's topology is from the input's; 0 when they agree, or when the input's is not known.
+int64_t topology_gap(const Prepared& p) {
+  const InputTopology& input = p.surface.topology;
+  if (!can_compare(input)) return 0;
+  return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
+}
+
+/// None when the run finds it.
+std::optional<int32_t> asked_closing(const RemeshOptions& options, const InputTopology& input,
+                                     const LatticeFrame& frame) {
+  if (options.closing_world) {
+    const double r = std::ceil(*options.closing_world / frame.voxel_size / 2);
+    if (r > kMaxClosingVox && options.boundary == Boundary::keep) return kMaxClosingVox;  // caps close wider gaps
+    if (r > kMaxClosingVox) {
+      std::ostringstream text;
+      text << "a gap of " << *options.closing_world << " is " << 2 * r << " voxels wide on this grid; at most "
+           << 2 * kMaxClosingVox << " can be closed: lower the resolution";
+      throw Error(ErrorCode::usage, "close-gaps", text.str());
+    }
+    return int32_t(r);
+  }
+  return !options.closing_vox && input.closed ? 0 : options.closing_vox;
+}
 
 /// A surface of slivers alone gives a sheet around a line, not a mesh that anyone asked for.
 void check_area(const InputTopology& input) {
@@ -43,6 +70,25 @@ InputTopology topology_of_union(InputTopology input, const UnionReport& unite) {
   return input;
 }
 
+/// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
+/// yet.
+bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
+  if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) {
+    report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
+    return true;
+  }
+  const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
+                           std::to_string(estimate.bytes >> 20) + " MiB, more than the limit of " +
+                           std::to_string(context.memory_limit_bytes >> 20) + " MiB";
+  if (!refining) {
+    const char* remedy = estimate.resolution > kCoarsestGrid ? "; lower --resolution or raise --max-memory"
+                                                             : ", which its faces take; raise --max-memory";
+    throw Error(ErrorCode::out_of_memory, "memory", what + remedy);
+  }
+  report.warnings.push_back("the grid was not refined further: " + what);
+  return false;
+}
+
 void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options, RemeshReport& report,
             Context& context) {
   if (options.want_shell || options.method == Method::shell) {
@@ -52,8 +98,15 @@ void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options
     note_digest(options, report, context, "shell", p.shell);
   }
   report.input = p.surface.topology;
+  report.frame = p.surface.frame;
   report.band_vox = options.band_vox;
-  report_sheet(p, report);
+  report.closing_vox = p.closing_vox;
+  report.grown_vox = p.grown.distance_vox;
+  report.sites = p.sites.voxels.voxel_count();
+  report.sheet_vertices = p.sheet.vertex_count();
+  report.sheet = p.sheet.topology;
+  report.topology_compared = can_compare(report.input);
+  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
   timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
   cut_into_patches(options, source, p, report, context);
   note_digest(options, report, context, "surface", p.surface);
@@ -66,41 +119,26 @@ void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options
 /// Lengths are first found on the grid that even cells would have.
 int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
                                int32_t usual, RemeshReport& report, Context& context) {
-  memory_allows(soup, input, options, usual, false, report, context);
-  Prepared p = prepare_on_grid(soup, input, usual, options, report, context);
+  memory_allows(estimate_run(soup, input, options, usual), false, report, context);
+  const auto [lo, hi] = bounding_box(soup);
+  const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
+  LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
+  surface.topology = input;
+  Prepared p = prepare_surface(std::move(surface), asked_closing(options, input, frame), options, report, context);
   RemeshReport unsaid;
   timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
   if (p.sheet.lengths.at.empty()) return usual;
-  const double cell_world = smallest_cell_vox(options, p, context) * p.surface.frame.voxel_size;
-  int32_t resolution = resolution_for_cell(p.surface.frame.voxel_size * (usual - 1), cell_world,
-                                           vertex_target(options, input.area_world));
+  const double cell_world = smallest_cell_vox(options, p, context) * frame.voxel_size;
+  int32_t resolution =
+      resolution_for_cell(frame.voxel_size * (usual - 1), cell_world, vertex_target(options, input.area_world));
   while (resolution > usual && context.memory_limit_bytes > 0 &&
          estimate_run(soup, input, options, resolution).bytes > context.memory_limit_bytes)
     resolution = std::max(usual, resolution - resolution / 8);
   return resolution;
 }
 
-/// Finishes a sheet that does not show the input's topology where the run can take the input's own triangles, which
-/// have it: no finer grid is needed then. Not where the shell is to show it, too, or another frame is followed, which
-/// takes the sheet. Result: whether it can.
-bool finish_on_own_triangles(Prepared& p, PatchSource source, const RemeshOptions& options, RemeshReport& report,
-                             Context& context) {
-  if (options.want_shell || options.method == Method::shell || options.previous) return false;
-  source.only_own_triangles = true;
-  RemeshReport tried = report;
-  finish(p, source, options, tried, context);
-  if (is_on_own_triangles(p)) {
-    report = std::move(tried);
-    return true;
-  }
-  p.cut = nullptr;
-  report.times = std::move(tried.times);
-  return false;
-}
-
-/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest, or the first one on which
-/// the run can take the input's own triangles: these need no sheet, but points that stay apart on the lattice. The soup
-/// is that of `source`, repaired.
+/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest. The soup is that of `source`,
+/// repaired.
 Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const PatchSource& source,
                               const RemeshOptions& options, RemeshReport& report, Context& context) {
   const auto [lo, hi] = bounding_box(soup);
@@ -109,16 +147,33 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
   const int32_t first = free_grid && wants_lengths(options)
                             ? resolution_for_lengths(soup, input, options, usual, report, context)
                             : usual;
-  memory_allows(soup, input, options, first, false, report, context);
-  Prepared best = prepare_on_grid(soup, input, first, options, report, context);
-  if (topology_gap(best) > 0 && may_refine(options, input)) {
-    const auto is_finished = [&](Prepared& p) {
-      return topology_gap(p) > 0 && finish_on_own_triangles(p, source, options, report, context);
-    };
-    if (is_finished(best)) return best;
-    if (std::optional<Prepared> finer = finer_grid(soup, best, is_finished, options, report, context))
-      best = std::move(*finer);
-    if (is_on_own_triangles(best)) return best;
+  // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
+  const bool reachable = can_compare(input) && shows_all_parts(options, input);
+  const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
+
+  Prepared best;
+  int64_t best_gap = INT64_MAX;
+  int fruitless = 0;
+  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
+       resolution += std::max(1, resolution / 2)) {
+    if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
+    const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
+    LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
+    surface.topology = input;
+    Prepared p;
+    try {
+      p = prepare_surface(std::move(surface), asked_closing(options, input, frame), options, report, context);
+    } catch (const Error& error) {  // what is there is better than nothing
+      if (error.code() != ErrorCode::out_of_memory || best_gap == INT64_MAX) throw;
+      report.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
+      break;
+    }
+    const int64_t gap = topology_gap(p);
+    fruitless = gap < best_gap ? 0 : fruitless + 1;
+    if (gap < best_gap) {
+      best_gap = gap;
+      best = std::move(p);
+    }
   }
   finish(best, source, options, report, context);
   if (!is_on_own_triangles(best)) warn_of_topology(best, input, options, report);
@@ -154,7 +209,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const InputTopology& given = measured.topology;
   report.dirt = measured.dirt;
   check_area(given);
-  memory_allows(soup, given, options, kCoarsestGrid, false, report, context);  // repair comes first
+  memory_allows(estimate_run(soup, given, options, kCoarsestGrid), false, report, context);  // repair comes first
   TriangleSoup changed;
   const TriangleSoup* current = &soup;
   InputTopology input = given;

@@ -245,20 +245,18 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   Attempt best{{}, std::exchange(report, {})};
   const GiveBack give_back{best, seeds, report};
   best.made.seeds = std::move(seeds);
-  std::optional<Prepared> finer;
-  if (p.cut && (best.made.seeds.fixed.count > 0 || p.cut->curves.empty())) {
-    if (std::optional<TriangleMesh> mesh = triangulate_patches(
-            p, best.made, options, patch_options(p, options, optimize), finer, best.report, context)) {
+  if (p.cut && best.made.seeds.fixed.count > 0) {
+    if (std::optional<TriangleMesh> mesh =
+            triangulate_patches(p, best.made, options, patch_options(p, options, optimize), best.report, context)) {
       follow_previous(options, *mesh, best.report);
       note_digest(options, best.report, context, "mesh", *mesh);
       return std::move(*mesh);
     }
-    const Prepared& on = finer ? *finer : p;
     best.report.post = {};
-    if (is_on_own_triangles(p)) warn_of_topology(on, on.surface.topology, options, best.report);
-    best.made.seeds = relax_without_creases(on, options, best.report, context);
+    if (is_on_own_triangles(p)) warn_of_topology(p, p.surface.topology, options, best.report);
+    best.made.seeds = relax_without_creases(p, options, best.report, context);
   }
-  return triangulate_on_sheet(finer ? *finer : p, options, optimize, best, context);
+  return triangulate_on_sheet(p, options, optimize, best, context);
 }
 
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context) {
