@@ -4,6 +4,8 @@
 // those of one triangle ask for is added up within a warp first.
 #pragma once
 
+#include <utility>
+
 #include "cuda/relax/group_walk.cuh"
 #include "cuda/runtime/executor_cuda.cuh"
 #include "stages/optimize/optimize_steps.h"
@@ -181,18 +183,20 @@ class StepsByLanes {
   }
   void smooth(CudaExecutor& exec, const SmoothVertex& step) { run(exec, "smooth", step); }
   void fit(CudaExecutor& exec, const FitVertex& step) { run(exec, "fit", step); }
-  /// By triangle, once: few slide to another one later.
-  void sort(CudaExecutor& exec, int64_t triangles, View<FitSample> samples) {
-    if (is_sorted_ || samples.empty()) return;
+  /// Those of the sheet by triangle, once: few slide to another one later.
+  void sort(CudaExecutor& exec, int64_t triangles, int64_t of_sheet, Buffer<FitSample>& samples) {
+    if (is_sorted_ || of_sheet == 0) return;
     is_sorted_ = true;
     int bits = 1;
     while (triangles >> bits) ++bits;
-    Buffer<uint64_t> key = exec.make<uint64_t>(samples.size);
-    exec.for_each("key samples", samples.size, step_lanes::KeySample{samples, uint32_t(triangles), key.view()});
+    Buffer<uint64_t> key = exec.make<uint64_t>(of_sheet);
+    exec.for_each("key samples", of_sheet, step_lanes::KeySample{samples.view(), uint32_t(triangles), key.view()});
     sort_keys_async(exec.device(), key.view(), bits);
-    Buffer<FitSample> sorted = exec.make<FitSample>(samples.size);
-    exec.for_each("gather samples", samples.size, step_lanes::GatherSample{key.view(), samples, sorted.view()});
-    exec.copy(View<const FitSample>(sorted.view()), samples);
+    Buffer<FitSample> sorted = exec.make<FitSample>(samples.size());
+    exec.for_each("gather samples", of_sheet, step_lanes::GatherSample{key.view(), samples.view(), sorted.view()});
+    const int64_t others = samples.size() - of_sheet;
+    exec.copy(View<const FitSample>(samples.view()).part(of_sheet, others), sorted.view().part(of_sheet, others));
+    samples = std::move(sorted);
   }
   void pull(CudaExecutor& exec, const PullCorners& step) {
     using namespace step_lanes;
