@@ -4,12 +4,6 @@
 #include <algorithm>
 #include <fstream>
 
-#ifdef __linux__
-#include <link.h>
-#include <sys/mman.h>
-#include <unistd.h>
-#endif
-
 namespace isoshell::tool {
 namespace {
 
@@ -36,21 +30,6 @@ int64_t idle_file_bytes(const std::string& group) {
   return 0;
 }
 
-#ifdef __linux__
-/// Of segments that are only read: what is written to, or was when it was relocated, is in others.
-int give_back_read_only(dl_phdr_info* library, size_t, void*) {
-  const auto page = uintptr_t(sysconf(_SC_PAGESIZE));
-  for (int i = 0; i < library->dlpi_phnum; ++i) {
-    const ElfW(Phdr)& segment = library->dlpi_phdr[i];
-    if (segment.p_type != PT_LOAD || segment.p_flags != PF_R) continue;
-    const uintptr_t at = library->dlpi_addr + segment.p_vaddr;
-    const uintptr_t begin = (at + page - 1) / page * page, end = (at + segment.p_memsz) / page * page;
-    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
-  }
-  return 0;
-}
-#endif
-
 }  // namespace
 
 int64_t default_memory_limit_bytes(const std::string& group) {
@@ -67,12 +46,6 @@ void limit_memory(Context& context, const DeviceInfo& device) {
   if (context.memory_limit_bytes > 0) return;
   context.memory_limit_bytes =
       device.backend == "cuda" ? std::max<int64_t>(device.free_bytes / 5 * 4, 1) : default_memory_limit_bytes();
-}
-
-void give_back_linker_pages() {
-#ifdef __linux__
-  dl_iterate_phdr(give_back_read_only, nullptr);
-#endif
 }
 
 }  // namespace isoshell::tool

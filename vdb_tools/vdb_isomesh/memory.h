@@ -16,8 +16,4 @@ int64_t default_memory_limit_bytes(const std::string& group = "/sys/fs/cgroup");
 /// Gives a context without a limit that of the command: four fifths of what is free there, on its device or here.
 void limit_memory(Context& context, const DeviceInfo& device);
 
-/// Gives back what the dynamic linker read of the libraries: names of symbols, 25 MB of OpenVDB's, which nothing needs
-/// again. Pages that something does need come from the file anew.
-void give_back_linker_pages();
-
 }  // namespace isoshell::tool
