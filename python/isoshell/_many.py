@@ -60,7 +60,7 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
         An iterator of the results.
 
     Raises:
-        Error: for an argument that cannot be, by this call; otherwise as remesh() does, by the result that is asked for.
+        Error: for an argument that cannot be, by this call; otherwise as remesh() does, where a result is asked for.
     """
     given: dict[str, Any] = dict(options)
     measure_all = takes_stats(given)

@@ -108,7 +108,8 @@ def test_what_the_iterable_raises_is_raised():
 @pytest.mark.parametrize("sources, options, words", [
     ("a.ply", {}, "sources"), (7, {}, "sources"), ([], {"workers": 0}, "workers"), ([], {"workers": 2.5}, "workers"),
     ([], {"workers": True}, "workers"), ([], {"on_error": "ignore"}, "on_error"), ([], {"vertices": 3}, "vertices"),
-    ([], {"verticse": 7}, "did you mean vertices"), ([], {"device": "tpu"}, "device"), ([], {"report": "a.html"}, "report"),
+    ([], {"verticse": 7}, "did you mean vertices"), ([], {"device": "tpu"}, "device"),
+    ([], {"report": "a.html"}, "report"),
     ([], {"save_shell": "a.vdb"}, "save_shell"), ([], {"stats": "a.json"}, "stats"),
     ([], {"progress": lambda stage, fraction: None}, "progress"), ([], {"output": "a.ply"}, "output"),
 ])
