@@ -1,14 +1,13 @@
-// Meshes a second with many contexts side by side on one device: every thread has its own and remeshes in a loop.
-//   bench_contexts MESH [MESH ...] [--threads N[,N...]] [--runs N] [--vertices K]
-// Every mesh is held against the CPU's; exit status 1 when one differs or a run fails.
-#include <atomic>
+// Meshes a second by remesh_many: contexts side by side on one device, or on the CPU with a thread each.
+//   bench_contexts MESH [MESH ...] [--device cpu|cuda] [--threads N[,N...]] [--runs N] [--vertices K]
+// Every mesh is held against that of a run alone on the CPU; exit status 1 when one differs or a run fails.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "isoshell/isoshell.h"
@@ -19,6 +18,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
+  Backend backend = Backend::cuda;
   std::vector<int> threads = {1, 2, 4, 8, 16, 32};
   int runs = 20;  ///< a thread
   int64_t vertices = 4000;
@@ -33,6 +33,7 @@ Arguments parse(int argc, char** argv) {
       continue;
     }
     const char* value = i + 1 < argc ? argv[++i] : "";
+    if (word == "--device") a.backend = std::strcmp(value, "cpu") == 0 ? Backend::cpu : Backend::cuda;
     if (word == "--runs") a.runs = std::atoi(value);
     if (word == "--vertices") a.vertices = std::atoll(value);
     if (word == "--threads") {
@@ -44,11 +45,29 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-std::string mesh_digest(const TriangleSoup& soup, int64_t vertices, Context& context) {
+RemeshOptions options_for(int64_t vertices) {
   RemeshOptions options;
   options.vertices = vertices;
   options.want_digests = true;
-  return remesh(soup, options, context).report.digests["mesh"];
+  return options;
+}
+
+/// How many results are not as they should be; says why the first one is not.
+int count_failed(const std::vector<TriangleSoup>& soups, const std::vector<std::string>& expected,
+                 const RemeshOptions& options, int workers, int64_t runs, Context& context) {
+  int failed = 0;
+  ManyRequest request;
+  request.workers = workers;
+  request.next = [&, next = int64_t(0)]() mutable -> std::optional<TriangleSoup> {
+    if (next == runs) return {};
+    return soups[size_t(next++) % soups.size()];
+  };
+  request.take = [&](ManyResult result) {
+    if (!result.error && result.made.report.digests["mesh"] == expected[size_t(result.index) % soups.size()]) return;
+    if (failed++ == 0) std::printf("%s\n", result.error ? result.error->what() : "another mesh than alone");
+  };
+  remesh_many(request, options, context);
+  return failed;
 }
 
 }  // namespace
@@ -56,39 +75,25 @@ std::string mesh_digest(const TriangleSoup& soup, int64_t vertices, Context& con
 int main(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
   if (a.meshes.empty()) return 2;
+  const RemeshOptions options = options_for(a.vertices);
   std::vector<TriangleSoup> soups;
   std::vector<std::string> expected;
   for (const std::string& mesh : a.meshes) {
     soups.push_back(read_mesh(mesh));
     Context cpu;
     cpu.backend = Backend::cpu;
-    expected.push_back(mesh_digest(soups.back(), a.vertices, cpu));
+    expected.push_back(remesh(soups.back(), options, cpu).report.digests["mesh"]);
   }
   bool all_right = true;
   for (const int threads : a.threads) {
-    std::atomic<int> next{0}, failed{0};
-    const auto work = [&] {
-      Context context;
-      context.backend = Backend::cuda;
-      for (int run; (run = next++) < threads * a.runs;) {
-        const size_t mesh = size_t(run) % soups.size();
-        try {
-          failed += mesh_digest(soups[mesh], a.vertices, context) != expected[mesh];
-        } catch (const std::exception& e) {
-          if (failed++ == 0) std::printf("%s\n", e.what());
-        }
-      }
-    };
+    Context context;
+    context.backend = a.backend;
+    const int64_t runs = int64_t(threads) * a.runs;
     const auto start = std::chrono::steady_clock::now();
-    std::vector<std::thread> pool;
-    for (int t = 0; t < threads; ++t) pool.emplace_back(work);
-    for (std::thread& t : pool) t.join();
+    const int failed = count_failed(soups, expected, options, threads, runs, context);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    Context device;
-    device.backend = Backend::cuda;
-    std::printf("%2d contexts, %4d runs: %6.1f meshes a second, %d failed, %lld MiB of the device free\n", threads,
-                threads * a.runs, threads * a.runs / seconds, failed.load(),
-                (long long)(device_info(device).free_bytes >> 20));
+    std::printf("%2d contexts, %4lld runs: %6.1f meshes a second, %d failed, %lld MiB of the device free\n", threads,
+                (long long)runs, double(runs) / seconds, failed, (long long)(device_info(context).free_bytes >> 20));
     std::fflush(stdout);
     all_right &= failed == 0;
   }

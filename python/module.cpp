@@ -5,6 +5,7 @@
 #include "device_arrays.h"
 #include "errors.h"
 #include "keywords.h"
+#include "many.h"
 #include "mesh_info.h"
 #include "report.h"
 #include "result.h"
@@ -26,6 +27,7 @@ NB_MODULE(_isoshell, m) {
   bind_result(m);
   bind_run(m);
   bind_sequence(m);
+  bind_many(m);
   bind_stages(m);
   bind_report(m);
   bind_mesh_info(m);

@@ -18,11 +18,12 @@ vertices = int(sys.argv[3]) if len(sys.argv) > 3 else 4096
 target.mkdir(parents=True, exist_ok=True)
 
 index = {}
-for path in sorted(p for p in source.iterdir() if p.suffix.lower() in FORMATS):
-    try:
-        result = isoshell.remesh(path, vertices=vertices, require="closed,manifold", allow_intersections=True)
-    except isoshell.Error as error:
-        index[path.name] = {"left_out": str(error), "code": error.code.name}
+paths = sorted(p for p in source.iterdir() if p.suffix.lower() in FORMATS)
+results = isoshell.remesh_many(paths, vertices=vertices, require="closed,manifold", allow_intersections=True,
+                               on_error="return")
+for path, result in zip(paths, results):
+    if isinstance(result, isoshell.Error):
+        index[path.name] = {"left_out": str(result), "code": result.code.name}
         continue
     low, high = result.vertices.min(axis=0), result.vertices.max(axis=0)
     scaled = (result.vertices - (low + high) / 2) / (high - low).max()

@@ -35,6 +35,14 @@ def of_a_sequence(array: "np.ndarray[Any, Any]") -> int:
     return len(frames.errors) + len(next(files).vertices)
 
 
+def of_many(arrays: "list[np.ndarray[Any, Any]]") -> int:
+    made = isoshell.remesh_many(["a.ply", *zip(arrays, arrays)], workers=2, vertices=100, device="cpu")
+    first: isoshell.Result = next(made)
+    made.close()
+    kept = isoshell.remesh_many(iter([Path("a.ply")]), on_error="return")
+    return len(first.faces) + sum(len(one.vertices) if isinstance(one, isoshell.Result) else one.code for one in kept)
+
+
 def code_of_failure(path: str) -> int:
     try:
         isoshell.remesh(path, output="out.ply", force=True).save("other.obj", overwrite=True)

@@ -1,0 +1,175 @@
+"""Many sources side by side: the results of remesh(), in the order of the sources."""
+
+import _thread
+import gc
+import subprocess
+import sys
+import threading
+import time
+
+import isoshell
+import numpy as np
+import pytest
+from conftest import make_ball, write_obj
+from isoshell import ErrorCode
+
+SMALL = {"vertices": 60, "resolution": 24}
+
+
+def ball_at(i):
+    """A source that is unlike those of other numbers."""
+    vertices, faces = make_ball()
+    return vertices * (1, 1, 1 + 0.1 * i), faces
+
+
+def bad_source():
+    vertices, faces = make_ball()
+    return vertices, faces + 1000
+
+
+def digests_alone(numbers):
+    return [isoshell.remesh(ball_at(i), **SMALL).digest for i in numbers]
+
+
+@pytest.mark.parametrize("workers", [None, 1, 3])
+def test_results_come_in_the_order_of_the_sources_and_are_those_of_remesh(workers):
+    made = isoshell.remesh_many([ball_at(i) for i in range(8)], workers=workers, **SMALL)
+    assert [result.digest for result in made] == digests_alone(range(8))
+
+
+def test_no_sources_give_no_results():
+    assert list(isoshell.remesh_many([], **SMALL)) == []
+
+
+def test_sources_are_whatever_remesh_takes(tmp_path):
+    vertices, faces = make_ball()
+    labels = np.linalg.norm(np.indices((12, 12, 12)) - 5.5, axis=0) < 4
+    color = isoshell.Mesh(vertices, faces, of_vertices={"heat": vertices[:, 0].astype(np.float32)})
+    sources = [write_obj(tmp_path / "ball.obj", vertices, faces), (vertices, faces), color, isoshell.Volume(labels),
+               isoshell.Points(vertices, normals=vertices)]
+    made = list(isoshell.remesh_many(sources, stats=True, **SMALL))
+    assert [result.digest for result in made] == [isoshell.remesh(source, **SMALL).digest for source in sources]
+    assert "heat" in made[2].attributes
+    assert all(result.report["digests"]["mesh"] == result.digest for result in made)
+
+
+def test_sources_are_read_as_they_are_needed():
+    read = []
+
+    def endless():
+        while True:
+            read.append(len(read))
+            yield ball_at(read[-1])
+
+    made = isoshell.remesh_many(endless(), workers=2, **SMALL)
+    assert read == []
+    for number in range(10):
+        next(made)
+        time.sleep(0.05)  # slower than the workers
+        assert len(read) - number <= 9
+    made.close()
+    assert list(made) == []
+
+
+def test_an_error_is_raised_where_its_result_would_come_and_names_the_source():
+    made = isoshell.remesh_many([ball_at(0), ball_at(1), bad_source(), ball_at(3)], workers=2, **SMALL)
+    assert [next(made).digest, next(made).digest] == digests_alone([0, 1])
+    with pytest.raises(isoshell.Error, match="source 2: .*1000") as caught:
+        next(made)
+    assert caught.value.code == ErrorCode.UNREADABLE_INPUT or caught.value.code == ErrorCode.USAGE
+    assert list(made) == []
+
+
+def test_errors_are_returned_in_the_place_of_results_where_that_is_asked_for(tmp_path):
+    sources = [ball_at(0), bad_source(), tmp_path / "none.ply", 7, ball_at(4)]
+    made = list(isoshell.remesh_many(sources, on_error="return", **SMALL))
+    assert [made[0].digest, made[4].digest] == digests_alone([0, 4])
+    for source, error in zip(sources[1:4], made[1:4]):
+        with pytest.raises(isoshell.Error) as caught:
+            isoshell.remesh(source, **SMALL)
+        assert isinstance(error, isoshell.Error)
+        assert (str(error), error.code, error.stage) == (str(caught.value), caught.value.code, caught.value.stage)
+
+
+def test_the_error_of_a_missed_requirement_has_the_result():
+    made, = isoshell.remesh_many([ball_at(0)], on_error="return", require="genus=1", **SMALL)
+    assert made.code == ErrorCode.GATE_FAILED and len(made.result.vertices) == 60
+
+
+def test_what_the_iterable_raises_is_raised():
+    def broken():
+        yield ball_at(0)
+        raise RuntimeError("no more of these")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        list(isoshell.remesh_many(broken(), **SMALL))
+
+
+@pytest.mark.parametrize("sources, options, words", [
+    ("a.ply", {}, "sources"), (7, {}, "sources"), ([], {"workers": 0}, "workers"), ([], {"workers": 2.5}, "workers"),
+    ([], {"workers": True}, "workers"), ([], {"on_error": "ignore"}, "on_error"), ([], {"vertices": 3}, "vertices"),
+    ([], {"verticse": 7}, "did you mean vertices"), ([], {"device": "tpu"}, "device"),
+    ([], {"report": "a.html"}, "report"),
+    ([], {"save_shell": "a.vdb"}, "save_shell"), ([], {"stats": "a.json"}, "stats"),
+    ([], {"progress": lambda stage, fraction: None}, "progress"), ([], {"output": "a.ply"}, "output"),
+])
+def test_arguments_that_cannot_be_are_refused_by_the_call(sources, options, words):
+    with pytest.raises(isoshell.Error, match=words) as caught:
+        isoshell.remesh_many(sources, **options)
+    assert caught.value.code == ErrorCode.USAGE
+
+
+def test_warnings_of_a_run_come_with_its_result():
+    vertices, faces = make_ball()
+    flipped = faces.copy()
+    flipped[::7] = flipped[::7, ::-1]
+    made = isoshell.remesh_many([(vertices, faces), (vertices, flipped)], **SMALL)
+    next(made)
+    with pytest.warns(isoshell.RunWarning) as caught:
+        result = next(made)
+    assert [str(w.message) for w in caught] == [w.replace("--", "") for w in result.report["warnings"]]
+    assert caught[0].filename == __file__
+
+
+def thread_count():
+    with open("/proc/self/status") as file:
+        return int(next(line for line in file if line.startswith("Threads:")).split()[1])
+
+
+@pytest.mark.parametrize("end", ["close", "let go of", "never begun"])
+def test_an_iterator_that_ends_early_stops_its_workers(nefertiti, end):
+    list(isoshell.remesh_many([ball_at(0)], workers=1, **SMALL))  # threads of the library that stay
+    before = thread_count()
+    made = isoshell.remesh_many((ball_at(0) if i == 0 else nefertiti for i in range(20)), workers=12, vertices=3000)
+    if end != "never begun":
+        next(made)
+        assert thread_count() > before
+    if end == "close":
+        made.close()
+    del made
+    gc.collect()
+    assert thread_count() < before + 12
+
+
+def test_a_key_interrupts_and_stops_the_workers(nefertiti):
+    pressed = []
+
+    def press():
+        time.sleep(0.6)
+        pressed.append(time.monotonic())
+        _thread.interrupt_main()
+
+    thread = threading.Thread(target=press)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        list(isoshell.remesh_many([nefertiti] * 4, vertices=400000))
+    waited = time.monotonic() - pressed[0]
+    thread.join()
+    assert waited < 5  # below one second on a machine that does nothing else
+
+
+def test_a_process_that_leaves_an_iterator_behind_ends_in_order(nefertiti):
+    code = (f"import isoshell; made = isoshell.remesh_many([{str(nefertiti)!r}] * 9, workers=3, vertices=2000); "
+            "print(len(next(made).vertices))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "2000\n", "")
