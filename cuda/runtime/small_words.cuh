@@ -93,8 +93,9 @@ __global__ void __launch_bounds__(kThreads)
 }
 
 /// The numbers of the bits that are set, ascending; a word a thread.
-__global__ inline void __launch_bounds__(kThreads)
-    list_bits(View<const uint32_t> words, uint32_t* out, uint32_t* total, HostBell bell) {
+template <class Word>
+__global__ void __launch_bounds__(kThreads)
+    list_bits(View<const Word> words, uint32_t* out, uint32_t* total, HostBell bell) {
   uint32_t word = int64_t(threadIdx.x) < words.size ? words[threadIdx.x] : 0, all;
   uint32_t at = block_sum_before(uint32_t(__popc(word)), all);
   for (; word; word &= word - 1) out[at++] = 32 * threadIdx.x + uint32_t(__ffs(int(word))) - 1;
