@@ -1,4 +1,6 @@
 // Makes SheetPatches: one warp a patch, its foreign vertices gathered in a hash table.
+#include <utility>
+
 #include "cuda/relax/seed_buckets.cuh"
 #include "cuda/relax/sheet_patches.cuh"
 #include "cuda/runtime/warp.cuh"
@@ -7,7 +9,9 @@ namespace isoshell::cuda_relax {
 namespace {
 
 constexpr int kWarps = 2;
-constexpr int kHashSlots = 2048;
+// Of the table of foreign vertices. Few patches need the large one; where none does, four times as many warps find
+// room.
+constexpr int kUsualSlots = 512, kMostSlots = 2048;
 
 struct PatchSource {
   VertexBlocksView blocks;
@@ -51,32 +55,35 @@ struct PatchSource {
   }
 };
 
-/// Vertices of a patch beyond its own, each once. Too many leave `taken` above the limit.
+/// Vertices of a patch beyond its own, each once. Too many leave `taken` at the limit.
+template <int kSlots>
 struct ForeignVertices {
-  uint32_t vertex[kHashSlots];
-  uint16_t place[kHashSlots];
+  static constexpr int kLimit = kSlots / 2;
+  static_assert(kMostSlots / 2 >= kMaxPatchVertices, "all vertices of a patch have room");
+  uint32_t vertex[kSlots];
+  uint16_t place[kSlots];
   int taken, triangles;
 
   __device__ void clear(int lane) {
-    for (int i = lane; i < kHashSlots; i += 32) vertex[i] = kNone;
+    for (int i = lane; i < kSlots; i += 32) vertex[i] = kNone;
     if (lane == 0) taken = triangles = 0;
     __syncwarp();
   }
-  __device__ static uint32_t slot_of(uint32_t v) { return (v * 2654435761u) >> 21; }
+  __device__ static uint32_t slot_of(uint32_t v) { return ((v * 2654435761u) >> 16) * kSlots >> 16; }
   __device__ void insert(uint32_t v) {
-    for (uint32_t slot = slot_of(v);; slot = (slot + 1) & (kHashSlots - 1)) {
+    for (uint32_t slot = slot_of(v);; slot = (slot + 1) & (kSlots - 1)) {
       const uint32_t seen = atomicCAS(&vertex[slot], kNone, v);
       if (seen == v) return;
       if (seen == kNone) {
         atomicAdd(&taken, 1);
         return;
       }
-      if (*static_cast<volatile int*>(&taken) >= kMaxPatchVertices) return;
+      if (*static_cast<volatile int*>(&taken) >= kLimit) return;
     }
   }
   __device__ int place_of(uint32_t v) const {
     uint32_t slot = slot_of(v);
-    while (vertex[slot] != v) slot = (slot + 1) & (kHashSlots - 1);
+    while (vertex[slot] != v) slot = (slot + 1) & (kSlots - 1);
     return place[slot];
   }
   __device__ void insert_corners(TriangleIndices t, int64_t own_end) {
@@ -118,12 +125,13 @@ __device__ inline int64_t round_up(int64_t count) {
   return (count + kPlacesAtOnce - 1) / kPlacesAtOnce * kPlacesAtOnce;
 }
 
+template <int kSlots>
 __global__ void count_patches(PatchSource source, PatchCounts counts, int* misfits) {
-  __shared__ ForeignVertices all[kWarps];
+  __shared__ ForeignVertices<kSlots> all[kWarps];
   const int lane = threadIdx.x & 31;
   const int64_t number = int64_t(blockIdx.x) * kWarps + (threadIdx.x >> 5);
   if (number >= source.patches) return;
-  ForeignVertices& foreign = all[threadIdx.x >> 5];
+  ForeignVertices<kSlots>& foreign = all[threadIdx.x >> 5];
   const PatchSource::Part part = source.part(number);
   foreign.gather(source, part, lane);
   if (lane) return;
@@ -131,7 +139,8 @@ __global__ void count_patches(PatchSource source, PatchCounts counts, int* misfi
   counts.vertices[number] = round_up(count);
   counts.triangles[number] = round_up(foreign.triangles);
   counts.owned[number] = (part.end - part.begin + 31) / 32 * 32;
-  if (count > kMaxPatchVertices || foreign.triangles > kMaxPatchTriangles) atomicAdd(misfits, 1);
+  const bool fits = foreign.taken < foreign.kLimit && count <= kMaxPatchVertices;
+  if (!fits || foreign.triangles > kMaxPatchTriangles) atomicAdd(misfits, 1);
 }
 
 struct PatchTarget {
@@ -146,10 +155,11 @@ struct PatchTarget {
 };
 
 /// Fills one patch, by one warp.
+template <int kSlots>
 class FillPatch {
  public:
-  __device__ FillPatch(const PatchSource& source, const PatchTarget& to, int64_t number, ForeignVertices& foreign,
-                       PieceExchange& exchange)
+  __device__ FillPatch(const PatchSource& source, const PatchTarget& to, int64_t number,
+                       ForeignVertices<kSlots>& foreign, PieceExchange& exchange)
       : source_(source),
         to_(to),
         number_(number),
@@ -192,7 +202,7 @@ class FillPatch {
 
   /// In the order of the hash table, which keeps their places for the triangles.
   __device__ void copy_foreign_vertices() {
-    for (int base = 0; base < kHashSlots; base += 32) {
+    for (int base = 0; base < kSlots; base += 32) {
       const uint32_t v = foreign_.vertex[base + lane_];
       const unsigned used = __ballot_sync(~0u, v != kNone);
       const int place = places_ + lanes_before(used);
@@ -276,7 +286,7 @@ class FillPatch {
   const PatchSource& source_;
   const PatchTarget& to_;
   const int64_t number_;
-  ForeignVertices& foreign_;
+  ForeignVertices<kSlots>& foreign_;
   PieceExchange& exchange_;
   const int lane_;
   const PatchSource::Part part_;
@@ -288,12 +298,45 @@ class FillPatch {
   PieceSum total_{0, 0, 0, 0, 0};
 };
 
+template <int kSlots>
 __global__ void fill_patches(PatchSource source, PatchTarget to) {
-  __shared__ ForeignVertices foreign[kWarps];
+  __shared__ ForeignVertices<kSlots> foreign[kWarps];
   __shared__ PieceExchange exchange[kWarps];
   const int warp = int(threadIdx.x) >> 5;
   const int64_t number = int64_t(blockIdx.x) * kWarps + warp;
-  if (number < source.patches) FillPatch(source, to, number, foreign[warp], exchange[warp]).run();
+  if (number < source.patches) FillPatch<kSlots>(source, to, number, foreign[warp], exchange[warp]).run();
+}
+
+template <int kSlots>
+SheetPatches make_with_slots(CudaExecutor& exec, const PatchSource& source, const FixedSeeds& fixed) {
+  const int64_t count = source.patches;
+  const unsigned blocks = unsigned((count + kWarps - 1) / kWarps);
+  SheetPatches out;
+  Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),
+                  owned = exec.make<int64_t>(count + 1);
+  Buffer<int> misfits = exec.make<int>(1);
+  for (Buffer<int64_t>* counts : {&vertices, &triangles, &owned}) exec.fill(counts->view(), int64_t(0));
+  exec.fill(misfits.view(), 0);
+  const PatchCounts counts{vertices.data(), triangles.data(), owned.data()};
+  count_patches<kSlots><<<blocks, kWarps * 32, 0, exec.stream()>>>(source, counts, misfits.data());
+  exec.check("count patches");
+  const int64_t copies = exec.exclusive_scan(vertices.view());
+  const int64_t triangle_places = exec.exclusive_scan(triangles.view());
+  const int64_t owned_slots = exec.exclusive_scan(owned.view());
+  out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
+  if (!out.fits) return out;
+  out.patch = exec.make<Patch>(count);
+  out.vertex = exec.make<PatchVertex>(copies);
+  out.normal = exec.make<uint32_t>(copies);
+  out.triangle = exec.make<PackedTriangle>(triangle_places);
+  out.owned = exec.make<PieceBytes>(owned_slots);
+  if (fixed.count > 0) out.fixed = exec.make<uint32_t>(copies);
+  fill_patches<kSlots><<<blocks, kWarps * 32, 0, exec.stream()>>>(
+      source, {counts, out.patch.data(), out.vertex.data(), out.normal.data(), out.triangle.data(), out.owned.data(),
+               out.fixed.data(), misfits.data()});
+  exec.check("fill patches");
+  out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
+  return out;
 }
 
 }  // namespace
@@ -315,33 +358,8 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, 
                            fixed.count > 0 ? fixed.of_vertex.view() : View<const uint32_t>{},
                            patch_first.data(),
                            count};
-  const unsigned blocks = unsigned((count + kWarps - 1) / kWarps);
-  SheetPatches out;
-  Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),
-                  owned = exec.make<int64_t>(count + 1);
-  Buffer<int> misfits = exec.make<int>(1);
-  for (Buffer<int64_t>* counts : {&vertices, &triangles, &owned}) exec.fill(counts->view(), int64_t(0));
-  exec.fill(misfits.view(), 0);
-  const PatchCounts counts{vertices.data(), triangles.data(), owned.data()};
-  count_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(source, counts, misfits.data());
-  exec.check("count patches");
-  const int64_t copies = exec.exclusive_scan(vertices.view());
-  const int64_t triangle_places = exec.exclusive_scan(triangles.view());
-  const int64_t owned_slots = exec.exclusive_scan(owned.view());
-  out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
-  if (!out.fits) return out;
-  out.patch = exec.make<Patch>(count);
-  out.vertex = exec.make<PatchVertex>(copies);
-  out.normal = exec.make<uint32_t>(copies);
-  out.triangle = exec.make<PackedTriangle>(triangle_places);
-  out.owned = exec.make<PieceBytes>(owned_slots);
-  if (fixed.count > 0) out.fixed = exec.make<uint32_t>(copies);
-  fill_patches<<<blocks, kWarps * 32, 0, exec.stream()>>>(
-      source, {counts, out.patch.data(), out.vertex.data(), out.normal.data(), out.triangle.data(), out.owned.data(),
-               out.fixed.data(), misfits.data()});
-  exec.check("fill patches");
-  out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
-  return out;
+  SheetPatches usual = make_with_slots<kUsualSlots>(exec, source, fixed);
+  return usual.fits ? std::move(usual) : make_with_slots<kMostSlots>(exec, source, fixed);
 }
 
 }  // namespace isoshell::cuda_relax

@@ -79,12 +79,14 @@ class Optimization {
     work_.begin(exec_, view());
     for (int left = steps - 1; left >= 0; --left) {
       options.onto_sheet = left % kStepsOffSheet == 0;
-      exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
-      work_.smooth(
-          exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), moved_home_.view(), moved_.view()});
+      if (options.onto_sheet) exec_.copy(View<const uint32_t>(seeds_.home.view()), moved_home_.view());
+      const View<uint32_t> home = options.onto_sheet ? moved_home_.view() : seeds_.home.view();
+      work_.smooth(exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), home, moved_.view()});
       if (options.onto_sheet) restore_harmed(least_quality, on_sheet_.view());
-      take_step();
-      if (options.onto_sheet) exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
+      take_positions();
+      if (!options.onto_sheet) continue;
+      std::swap(seeds_.home, moved_home_);
+      exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     }
   }
 
@@ -129,7 +131,8 @@ class Optimization {
       work_.fit(exec_, {view(), walk_, options, mesh_.position.view(), previous_.view(), triangle_pull_.view(),
                         vertex_pull_.view(), moved_home_.view(), moved_.view()});
       restore_harmed(least_quality, mesh_.position.view());
-      take_step();
+      take_positions();
+      std::swap(seeds_.home, moved_home_);
     }
   }
 
@@ -309,10 +312,9 @@ class Optimization {
         RestoreHarmed{before, seeds_.home.view(), harmed_.view(), moved_.view(), moved_home_.view()});
   }
 
-  void take_step() {
+  void take_positions() {
     std::swap(previous_, mesh_.position);
     std::swap(mesh_.position, moved_);
-    std::swap(seeds_.home, moved_home_);
   }
 
   Exec& exec_;

@@ -48,10 +48,12 @@ struct FitVertex {
     FitSums sums;
     for_each_half_edge_around(mesh, uint32_t(v),
                               [&](uint32_t h) { add(h, p, from[mesh.to(h)], from[mesh.opposite(h)], radius, sums); });
-    to[v] = place(v, sums);
+    finish(v, sums);
   }
 
   // The parts of a step.
+
+  ISOSHELL_HD void finish(int64_t v, const FitSums& sums) const { to[v] = place(v, sums); }
 
   ISOSHELL_HD bool is_locked(int64_t v) const { return v < options.smooth.locked; }
   /// Of the triangle that is to be around the vertex.

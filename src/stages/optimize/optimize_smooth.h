@@ -62,11 +62,15 @@ struct SmoothVertex {
     SmoothingSums sums;
     for_each_half_edge_around(mesh, uint32_t(v),
                               [&](uint32_t h) { add(h, p, from[mesh.to(h)], from[mesh.opposite(h)], radius, sums); });
-    to[v] = place(v, sums);
-    if (options.onto_sheet) lay_onto_sheet(v);
+    finish(v, sums);
   }
 
   // The parts of a step.
+
+  ISOSHELL_HD void finish(int64_t v, const SmoothingSums& sums) const {
+    to[v] = place(v, sums);
+    if (options.onto_sheet) lay_onto_sheet(v);
+  }
 
   ISOSHELL_HD bool is_locked(int64_t v) const { return v < options.locked; }
   /// Of the triangle that is to be around the vertex.
