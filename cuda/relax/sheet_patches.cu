@@ -55,7 +55,7 @@ struct PatchSource {
   }
 };
 
-/// Vertices of a patch beyond its own, each once. Too many leave `taken` at the limit.
+/// Vertices of a patch beyond its own, each once. Too many leave `taken` at the limit or above.
 template <int kSlots>
 struct ForeignVertices {
   static constexpr int kLimit = kSlots / 2;
@@ -359,7 +359,8 @@ SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, 
                            patch_first.data(),
                            count};
   SheetPatches usual = make_with_slots<kUsualSlots>(exec, source, fixed);
-  return usual.fits ? std::move(usual) : make_with_slots<kMostSlots>(exec, source, fixed);
+  const bool has_room = usual.fits || !usual.patch.empty();  // else the table may have been too small
+  return has_room ? std::move(usual) : make_with_slots<kMostSlots>(exec, source, fixed);
 }
 
 }  // namespace isoshell::cuda_relax

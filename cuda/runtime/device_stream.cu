@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/parallel_ranges.h"
+#include "core/watched.h"
 #include "cuda/runtime/device_stream.h"
 #include "cuda/runtime/host_bell.cuh"
 #include "isoshell/device_info.h"
@@ -186,6 +187,8 @@ DeviceStream& DeviceStream::of(Context& context) {
   DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());
   require_success(cudaSetDevice(stream.device()), "cudaSetDevice");
   stream.limit_ = context.memory_limit_bytes;
+  stream.threads_ = context.threads;
+  stream.user_ = std::this_thread::get_id();
   return stream;
 }
 
@@ -268,10 +271,31 @@ void DeviceStream::free(void* data, int64_t bytes) noexcept {
 
 void DeviceStream::copy_to_host(void* to, const void* from, int64_t bytes) {
   if (bytes <= 0) return;
-  if (bytes <= kPinnedBytes) return copy_few_to_host(to, from, bytes);
-  if (bytes > kStagedBytes) return copy_many_to_host(static_cast<char*>(to), static_cast<const char*>(from), bytes);
+  if (is_used_here()) {
+    if (bytes <= kPinnedBytes) return copy_few_to_host(to, from, bytes);
+    if (bytes > kStagedBytes && has_staging())
+      return copy_many_to_host(static_cast<char*>(to), static_cast<const char*>(from), bytes);
+  }
   require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
   synchronize();
+}
+
+/// Whether the calling thread runs the stream's stages, on its device: pinned words and staging are for one thread.
+bool DeviceStream::is_used_here() const {
+  int current = -1;
+  return user_.load() == std::this_thread::get_id() && cudaGetDevice(&current) == cudaSuccess && current == device();
+}
+
+/// False where the host has no more pinned memory.
+bool DeviceStream::has_staging() {
+  for (Staging& s : staging_) {
+    if (!s.copied) require_success(cudaEventCreateWithFlags(&s.copied, cudaEventDisableTiming), "cudaEventCreate");
+    if (s.pinned || cudaMallocHost(&s.pinned, size_t(kStagedBytes)) == cudaSuccess) continue;
+    cudaGetLastError();
+    s.pinned = nullptr;
+    return false;
+  }
+  return true;
 }
 
 void DeviceStream::copy_few_to_host(void* to, const void* from, int64_t bytes) {
@@ -285,11 +309,8 @@ void DeviceStream::copy_few_to_host(void* to, const void* from, int64_t bytes) {
 
 /// Piece by piece through pinned memory. The driver's way is bound by one thread that touches new pages.
 void DeviceStream::copy_many_to_host(char* to, const char* from, int64_t bytes) {
-  for (Staging& s : staging_) {
-    if (s.pinned) continue;
-    require_success(cudaEventCreateWithFlags(&s.copied, cudaEventDisableTiming), "cudaEventCreate");
-    require_success(cudaMallocHost(&s.pinned, size_t(kStagedBytes)), "cudaMallocHost");
-  }
+  Context limits;
+  limits.threads = threads_;
   const int64_t pieces = (bytes + kStagedBytes - 1) / kStagedBytes;
   const auto size = [&](int64_t piece) { return std::min(kStagedBytes, bytes - piece * kStagedBytes); };
   for (int64_t piece = 0; piece <= pieces; ++piece) {
@@ -305,8 +326,10 @@ void DeviceStream::copy_many_to_host(char* to, const char* from, int64_t bytes) 
     require_success(cudaEventSynchronize(s.copied), "cudaEventSynchronize");
     char* const out = to + (piece - 1) * kStagedBytes;
     constexpr int64_t kBytesAtATime = 1 << 16;
-    for_ranges(size(piece - 1), kBytesAtATime, [&](int64_t begin, int64_t end) {
-      std::memcpy(out + begin, static_cast<const char*>(s.pinned) + begin, size_t(end - begin));
+    run_with_threads(limits, [&] {
+      for_ranges(size(piece - 1), kBytesAtATime, [&](int64_t begin, int64_t end) {
+        std::memcpy(out + begin, static_cast<const char*>(s.pinned) + begin, size_t(end - begin));
+      });
     });
   }
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <unordered_map>
 #include <vector>
 
@@ -43,6 +44,7 @@ class DeviceStream final : public Memory {
   MemorySpace space() const override { return MemorySpace::cuda; }
   void* allocate(int64_t bytes) override;
   void free(void* data, int64_t bytes) noexcept override;
+  /// From any thread. The one that runs the context's stages has ways that are faster than the driver's.
   void copy_to_host(void* to, const void* from, int64_t bytes) override;
 
   void copy_to_device(void* to, const void* from, int64_t bytes);
@@ -73,6 +75,8 @@ class DeviceStream final : public Memory {
 
  private:
   void* take(int64_t bytes);
+  bool is_used_here() const;
+  bool has_staging();
   void copy_few_to_host(void* to, const void* from, int64_t bytes);
   void copy_many_to_host(char* to, const char* from, int64_t bytes);
 
@@ -85,10 +89,13 @@ class DeviceStream final : public Memory {
   uint32_t bells_ = 0;  ///< so far
   struct Staging {
     void* pinned = nullptr;
-    cudaEvent_t copied;
+    cudaEvent_t copied = nullptr;
   };
   Staging staging_[2];  ///< for large copies to the host; made for the first one
-  int64_t limit_ = 0;   ///< of the context that uses the stream, in bytes; 0 means none
+  // Of the context that uses the stream.
+  int64_t limit_ = 0;  ///< in bytes; 0 means none
+  int threads_ = 0;
+  std::atomic<std::thread::id> user_{};  ///< who runs its stages
   std::atomic<int64_t> held_bytes_{0};
   std::mutex kept_mutex_;                                 ///< Buffers are freed on any thread
   std::unordered_map<int64_t, std::vector<void*>> kept_;  ///< by their sizes

@@ -27,10 +27,10 @@ struct ManyRequest {
 };
 
 /// Remeshes what `next` gives, each surface as remesh() does with these options, to the same bytes. `context` says
-/// where and how, as it does for Workers, and its `cancel` ends all; its memory limit is that of each run. No surface
-/// is asked for before there is room for it, so memory stays bounded, however many come. For other work on many inputs,
-/// as whole runs from file to file, see Workers. Result: how many there were. Throws: interrupted, no_device, and what
-/// `next` and `take` throw.
+/// where and how, as it does for Workers, and its `cancel` ends all at the next look; its memory limit is that of each
+/// run. No surface is asked for before there is room for it, so memory stays bounded, however many come. For other work
+/// on many inputs, as whole runs from file to file, see Workers. Result: how many there were. Throws: interrupted,
+/// no_device, and what `next` and `take` throw.
 int64_t remesh_many(const ManyRequest& request, const RemeshOptions& options, Context& context);
 
 }  // namespace isoshell

@@ -3,7 +3,6 @@
 
 #include <condition_variable>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
@@ -34,15 +33,10 @@ class Workers {
   /// Has a worker call `work(Context&)`. Result: what that returns or throws; std::future_error of what was dropped.
   template <class Work>
   std::future<std::invoke_result_t<Work&, Context&>> begin(Work work) {
-    const auto promise = std::make_shared<std::promise<std::invoke_result_t<Work&, Context&>>>();
-    add([promise, work = std::move(work)](Context& context) mutable {
-      try {
-        promise->set_value(work(context));
-      } catch (...) {
-        promise->set_exception(std::current_exception());
-      }
-    });
-    return promise->get_future();
+    using Task = std::packaged_task<std::invoke_result_t<Work&, Context&>(Context&)>;
+    const auto task = std::make_shared<Task>(std::move(work));
+    add([task](Context& context) { (*task)(context); });
+    return task->get_future();
   }
 
  private:

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "pipeline/attempt.h"
+#include "isoshell/error.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/crease_search.h"
 #include "pipeline/timed.h"
@@ -27,13 +27,15 @@ void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshRep
   const std::shared_ptr<CreaseSearch> search = prepared.creases;
   if (!search || !search->goes_on()) return;
   RelaxedMeanwhile made{level_options(prepared, options), {}};
-  const std::string why_not = reason_against([&]() -> std::string {
+  try {
     made.relaxed = timed(report, "relax", context, [&] {
       return relax_by_levels(prepared, made.options, context, [&] { return search->has_found_curves(); });
     });
-    return made.relaxed.seeds.size() > 0 ? "" : "there are creases";
-  });
-  if (why_not.empty()) prepared.relaxed = std::make_shared<RelaxedMeanwhile>(std::move(made));
+  } catch (const Error& error) {  // what may not be needed at all may fail for want of room or memory
+    const bool wants_room = dynamic_cast<const NoRoom*>(&error) || error.code() == ErrorCode::out_of_memory;
+    if (!wants_room) throw;
+  }
+  if (made.relaxed.seeds.size() > 0) prepared.relaxed = std::make_shared<RelaxedMeanwhile>(std::move(made));
 }
 
 RelaxedSeeds relaxed_by_levels(const Prepared& prepared, const RemeshOptions& options, Context& context) {

@@ -149,7 +149,8 @@ struct SplitCell {
         --euler[h];
         if (last > v && label[last] == id && mark[last] == side) ++euler[h];
       });
-      if (graph.is_on_border(v) && graph.border_before[v] > v && label[graph.border_before[v]] == id) --euler[h];
+      const uint32_t before = graph.is_on_border(v) ? graph.border_before[v] : 0;
+      if (before > v && label[before] == id && mark[before] == side) --euler[h];
     }
     cells.size[id] = size[0];
     cells.euler[id] = euler[0];
