@@ -13,28 +13,87 @@
 namespace isoshell {
 namespace lengths {
 
+/// The neighbours of all vertices, listed. The steps visit them again and again, and find them slowly among triangles.
+struct NeighboursView {
+  View<const uint32_t> first;
+  View<const uint32_t> listed;
+  View<const uint32_t> border_before;
+
+  template <class Visit>
+  ISOSHELL_HD void for_each(uint32_t v, Visit visit) const {
+    for (uint32_t n = first[v]; n < first[v + 1]; ++n) visit(listed[n]);
+    if (is_on_border(v)) visit(border_before[v]);
+  }
+  ISOSHELL_HD bool is_on_border(uint32_t v) const { return border_before.size > 0 && border_before[v] != kNone; }
+};
+struct ListNeighbours {
+  SheetGraph graph;
+  View<uint32_t> out;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    uint32_t at = graph.first[v];
+    graph.for_each_corner(uint32_t(v), [&](uint32_t next, uint32_t) { out[at++] = next; });
+  }
+};
+class Neighbours {
+ public:
+  template <class Exec>
+  Neighbours(Exec& exec, const SurfaceMesh& surface)
+      : surface_(surface), listed_(exec.template make<uint32_t>(surface.vertex_triangles.size())) {
+    exec.for_each("list neighbours", surface.vertex_count(), ListNeighbours{graph_of(surface), listed_.view()});
+  }
+  NeighboursView view() const { return {surface_.vertex_first.view(), listed_.view(), surface_.border_before.view()}; }
+
+ private:
+  const SurfaceMesh& surface_;
+  Buffer<uint32_t> listed_;
+};
+
+/// How much lengths may grow on the way between neighbours: the same there and back.
+struct Slope {
+  View<const PointQ8> position;
+  int64_t slope_q16;
+  ISOSHELL_HD uint32_t between(uint32_t u, uint32_t v) const {
+    const int64_t way = int64_t(isqrt(uint64_t(distance_sq_q16(position[u], position[v]))));
+    const int64_t growth = way * slope_q16 >> 16;
+    return growth < UINT32_MAX ? uint32_t(growth) : UINT32_MAX;
+  }
+};
+struct ListGrowth {
+  NeighboursView neighbours;
+  Slope slope;
+  View<uint32_t> out;
+  ISOSHELL_HD void operator()(int64_t v) const {
+    for (uint32_t n = neighbours.first[v]; n < neighbours.first[v + 1]; ++n)
+      out[n] = slope.between(uint32_t(v), neighbours.listed[n]);
+  }
+};
+
 /// Lowers the lengths of a block's own vertices until they obey the limit towards one another and towards the vertices
 /// of other blocks, whose lengths are those of the round before; then wakes the blocks that this concerns. The limit is
 /// a shortest path over the sheet's edges: it has one fixed point, in whatever order blocks come to it.
 struct LimitBlock {
-  SheetGraph graph;
+  NeighboursView neighbours;
+  View<const uint32_t> growth_to;  ///< on the way to each that is listed
+  Slope slope;
   View<const int64_t> block_first;
-  View<const PointQ8> position;
-  int64_t slope_q16;
   View<const uint32_t> from;
   View<uint32_t> to;
   View<const uint32_t> awake;
   View<uint32_t> wake;
 
-  ISOSHELL_HD uint32_t beyond(uint32_t length, uint32_t u, uint32_t v) const {
-    const int64_t way = int64_t(isqrt(uint64_t(distance_sq_q16(position[u], position[v]))));
-    const int64_t reached = length + (way * slope_q16 >> 16);
-    return reached < UINT32_MAX ? uint32_t(reached) : UINT32_MAX;
+  /// visit(u, growth) for every neighbour u of v.
+  template <class Visit>
+  ISOSHELL_HD void for_each_neighbour(uint32_t v, Visit visit) const {
+    for (uint32_t n = neighbours.first[v]; n < neighbours.first[v + 1]; ++n) visit(neighbours.listed[n], growth_to[n]);
+    if (neighbours.is_on_border(v)) visit(neighbours.border_before[v], slope.between(neighbours.border_before[v], v));
+  }
+  ISOSHELL_HD uint32_t beyond(uint32_t length, uint32_t growth) const {
+    return length < UINT32_MAX - growth ? length + growth : UINT32_MAX;
   }
   ISOSHELL_HD bool lower(uint32_t v, int64_t begin, int64_t end) const {
     uint32_t least = to[v];
-    graph.for_each_neighbour(v, [&](uint32_t u) {
-      const uint32_t here = beyond(u >= begin && u < end ? to[u] : from[u], u, v);
+    for_each_neighbour(v, [&](uint32_t u, uint32_t growth) {
+      const uint32_t here = beyond(u >= begin && u < end ? to[u] : from[u], growth);
       least = here < least ? here : least;
     });
     const bool lowered = least < to[v];
@@ -59,8 +118,8 @@ struct LimitBlock {
     }
     for (int64_t v = begin; v < end; ++v) {
       if (to[v] == from[v]) continue;
-      graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) {
-        if ((u < begin || u >= end) && beyond(to[v], uint32_t(v), u) < from[u]) atomic_or(wake[block_of(u)], 1u);
+      for_each_neighbour(uint32_t(v), [&](uint32_t u, uint32_t growth) {
+        if ((u < begin || u >= end) && beyond(to[v], growth) < from[u]) atomic_or(wake[block_of(u)], 1u);
       });
     }
   }
@@ -102,13 +161,13 @@ struct StartNormal {
 };
 /// The mean of a vertex and its neighbours.
 struct MeanNormal {
-  SheetGraph graph;
+  NeighboursView neighbours;
   View<const PointQ8> from;
   View<PointQ8> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     PointQ8 sum = from[v];
     int32_t count = 1;
-    graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) {
+    neighbours.for_each(uint32_t(v), [&](uint32_t u) {
       sum = {sum.x + from[u].x, sum.y + from[u].y, sum.z + from[u].z};
       ++count;
     });
@@ -127,12 +186,12 @@ struct UnitNormal {
 };
 /// How much the normal turns a voxel, the root of the mean square over the edges of a vertex, in 1/65536.
 struct TurnOfNormal {
-  SheetGraph graph;
+  NeighboursView neighbours;
   View<const PointQ8> position, normal;
   View<uint32_t> out;
   ISOSHELL_HD void operator()(int64_t v) const {
     uint64_t turn_sq = 0, way_sq = 0;
-    graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) {
+    neighbours.for_each(uint32_t(v), [&](uint32_t u) {
       turn_sq += uint64_t(distance_sq_q16(normal[u], normal[v]));
       way_sq += uint64_t(distance_sq_q16(position[u], position[v]));
     });
@@ -141,12 +200,12 @@ struct TurnOfNormal {
   }
 };
 struct MeanValue {
-  SheetGraph graph;
+  NeighboursView neighbours;
   View<const uint32_t> from;
   View<uint32_t> to;
   ISOSHELL_HD void operator()(int64_t v) const {
     uint64_t sum = from[v], count = 1;
-    graph.for_each_neighbour(uint32_t(v), [&](uint32_t u) { sum += from[u], ++count; });
+    neighbours.for_each(uint32_t(v), [&](uint32_t u) { sum += from[u], ++count; });
     to[v] = uint32_t((sum + count / 2) / count);
   }
 };
@@ -165,10 +224,10 @@ EdgeLengths with_range(Exec& exec, Buffer<uint32_t> at) {
 
 /// The means, so many times.
 template <class Exec>
-void smooth_values(Exec& exec, const SheetGraph& graph, int32_t rounds, Buffer<uint32_t>& values) {
+void smooth_values(Exec& exec, const NeighboursView& neighbours, int32_t rounds, Buffer<uint32_t>& values) {
   Buffer<uint32_t> smooth = exec.template make<uint32_t>(values.size());
   for (int32_t r = 0; r < rounds; ++r) {
-    exec.for_each("mean values", values.size(), MeanValue{graph, values.view(), smooth.view()});
+    exec.for_each("mean values", values.size(), MeanValue{neighbours, values.view(), smooth.view()});
     std::swap(values, smooth);
   }
 }
@@ -180,6 +239,10 @@ template <class Exec>
 EdgeLengths limit_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buffer<uint32_t> raw, int64_t slope_q16) {
   using namespace lengths;
   const int64_t blocks = surface.blocks.count(), vertices = surface.vertex_count();
+  const Neighbours neighbours(exec, surface);
+  const Slope slope{surface.position.view(), slope_q16};
+  Buffer<uint32_t> growth = exec.template make<uint32_t>(neighbours.view().listed.size);
+  exec.for_each("list growth", vertices, ListGrowth{neighbours.view(), slope, growth.view()});
   Buffer<uint32_t> next = exec.template make<uint32_t>(vertices);
   Buffer<uint32_t> awake = exec.template make<uint32_t>(blocks), wake = exec.template make<uint32_t>(blocks);
   exec.fill(awake.view(), 1u);
@@ -187,8 +250,8 @@ EdgeLengths limit_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buff
     exec.fill(wake.view(), 0u);
     exec.copy(View<const uint32_t>(raw.view()), next.view());
     exec.for_each("limit lengths", blocks,
-                  LimitBlock{graph_of(surface), surface.blocks.first.view(), surface.position.view(), slope_q16,
-                             raw.view(), next.view(), awake.view(), wake.view()});
+                  LimitBlock{neighbours.view(), growth.view(), slope, surface.blocks.first.view(), raw.view(),
+                             next.view(), awake.view(), wake.view()});
     std::swap(raw, next);
     std::swap(awake, wake);
   } while (exec.sum(blocks, IsAwake{awake.view()}) > 0);
@@ -199,7 +262,7 @@ EdgeLengths limit_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buff
 template <class Exec>
 EdgeLengths smooth_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buffer<uint32_t> at, int32_t rounds) {
   using namespace lengths;
-  smooth_values(exec, graph_of(surface), rounds, at);
+  smooth_values(exec, Neighbours(exec, surface).view(), rounds, at);
   return with_range(exec, std::move(at));
 }
 
@@ -222,17 +285,18 @@ template <class Exec>
 Buffer<uint32_t> measure_curvature_body(Exec& exec, const SurfaceMesh& surface, int32_t rounds) {
   using namespace lengths;
   const int64_t vertices = surface.vertex_count();
-  const SheetGraph graph = graph_of(surface);
+  const Neighbours neighbours(exec, surface);
   Buffer<PointQ8> normal = exec.template make<PointQ8>(vertices), mean = exec.template make<PointQ8>(vertices);
   exec.for_each("start normals", vertices, StartNormal{surface.normal.view(), normal.view()});
   for (int32_t r = 0; r < rounds; ++r) {
-    exec.for_each("mean normals", vertices, MeanNormal{graph, normal.view(), mean.view()});
+    exec.for_each("mean normals", vertices, MeanNormal{neighbours.view(), normal.view(), mean.view()});
     std::swap(normal, mean);
   }
   exec.for_each("unit normals", vertices, UnitNormal{normal.view()});
   Buffer<uint32_t> turn = exec.template make<uint32_t>(vertices);
-  exec.for_each("turn of normals", vertices, TurnOfNormal{graph, surface.position.view(), normal.view(), turn.view()});
-  smooth_values(exec, graph, rounds * 2 / 3, turn);
+  exec.for_each("turn of normals", vertices,
+                TurnOfNormal{neighbours.view(), surface.position.view(), normal.view(), turn.view()});
+  smooth_values(exec, neighbours.view(), rounds * 2 / 3, turn);
   return turn;
 }
 
