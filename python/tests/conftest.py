@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import _thread
 import os
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 from typing import Callable
 
@@ -16,6 +19,24 @@ SOURCE = Path(__file__).resolve().parents[2]
 COMMAND = os.environ.get("VDB_ISOMESH", "").split() or [sys.executable, "-m", "isoshell"]
 
 Mesh = tuple[np.ndarray, np.ndarray]
+
+
+def seconds_until_interrupted(run: Callable[[], object]) -> float:
+    """How long a run goes on after a key has interrupted it, which it does as KeyboardInterrupt."""
+    pressed = []
+
+    def press() -> None:
+        time.sleep(0.6)
+        pressed.append(time.monotonic())
+        _thread.interrupt_main()
+
+    thread = threading.Thread(target=press)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    waited = time.monotonic() - pressed[0]
+    thread.join()
+    return waited
 
 
 def make_ball(rings: int = 12) -> Mesh:
