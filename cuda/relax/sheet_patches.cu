@@ -103,13 +103,11 @@ struct ForeignVertices {
 };
 
 /// How many patches the vertices of a block make.
-struct CountBlockPatches {
+struct PatchesOfBlock {
   View<const int64_t> first;
-  View<int64_t> parts;
   int max_own;
-  __device__ void operator()(int64_t block) const {
-    const int64_t own = block + 1 < first.size ? first[block + 1] - first[block] : 0;
-    parts[block] = (own + max_own - 1) / max_own;
+  __device__ int64_t operator()(int64_t block) const {
+    return (first[block + 1] - first[block] + max_own - 1) / max_own;
   }
 };
 
@@ -307,6 +305,22 @@ __global__ void fill_patches(PatchSource source, PatchTarget to) {
   if (number < source.patches) FillPatch<kSlots>(source, to, number, foreign[warp], exchange[warp]).run();
 }
 
+struct PatchTotals {
+  int64_t vertices, triangles, owned, misfits;
+};
+__global__ void give_totals(PatchCounts first, int64_t patches, const int* misfits, PatchTotals* to, HostBell bell) {
+  *to = {first.vertices[patches], first.triangles[patches], first.owned[patches], *misfits};
+  ring(bell);
+}
+PatchTotals totals(CudaExecutor& exec, const PatchCounts& first, int64_t patches, const int* misfits) {
+  DeviceStream& device = exec.device();
+  PatchTotals* const total = static_cast<PatchTotals*>(device.pinned());
+  give_totals<<<1, 1, 0, exec.stream()>>>(first, patches, misfits, total, device.next_bell());
+  exec.check("count patches");
+  device.wait_for_bell();
+  return *total;
+}
+
 template <int kSlots>
 SheetPatches make_with_slots(CudaExecutor& exec, const PatchSource& source, const FixedSeeds& fixed) {
   const int64_t count = source.patches;
@@ -315,22 +329,20 @@ SheetPatches make_with_slots(CudaExecutor& exec, const PatchSource& source, cons
   Buffer<int64_t> vertices = exec.make<int64_t>(count + 1), triangles = exec.make<int64_t>(count + 1),
                   owned = exec.make<int64_t>(count + 1);
   Buffer<int> misfits = exec.make<int>(1);
-  for (Buffer<int64_t>* counts : {&vertices, &triangles, &owned}) exec.fill(counts->view(), int64_t(0));
   exec.fill(misfits.view(), 0);
   const PatchCounts counts{vertices.data(), triangles.data(), owned.data()};
   count_patches<kSlots><<<blocks, kWarps * 32, 0, exec.stream()>>>(source, counts, misfits.data());
   exec.check("count patches");
-  const int64_t copies = exec.exclusive_scan(vertices.view());
-  const int64_t triangle_places = exec.exclusive_scan(triangles.view());
-  const int64_t owned_slots = exec.exclusive_scan(owned.view());
-  out.fits = exec.value(View<const int>(misfits.view()), 0) == 0;
+  for (Buffer<int64_t>* number : {&vertices, &triangles, &owned}) exclusive_scan_async(exec.device(), number->view());
+  const PatchTotals total = totals(exec, counts, count, misfits.data());
+  out.fits = total.misfits == 0;
   if (!out.fits) return out;
   out.patch = exec.make<Patch>(count);
-  out.vertex = exec.make<PatchVertex>(copies);
-  out.normal = exec.make<uint32_t>(copies);
-  out.triangle = exec.make<PackedTriangle>(triangle_places);
-  out.owned = exec.make<PieceBytes>(owned_slots);
-  if (fixed.count > 0) out.fixed = exec.make<uint32_t>(copies);
+  out.vertex = exec.make<PatchVertex>(total.vertices);
+  out.normal = exec.make<uint32_t>(total.vertices);
+  out.triangle = exec.make<PackedTriangle>(total.triangles);
+  out.owned = exec.make<PieceBytes>(total.owned);
+  if (fixed.count > 0) out.fixed = exec.make<uint32_t>(total.vertices);
   fill_patches<kSlots><<<blocks, kWarps * 32, 0, exec.stream()>>>(
       source, {counts, out.patch.data(), out.vertex.data(), out.normal.data(), out.triangle.data(), out.owned.data(),
                out.fixed.data(), misfits.data()});
@@ -344,9 +356,8 @@ SheetPatches make_with_slots(CudaExecutor& exec, const PatchSource& source, cons
 SheetPatches make_sheet_patches(CudaExecutor& exec, const SurfaceMesh& surface, const FixedSeeds& fixed, int max_own) {
   const Buffer<int64_t>& block_first = surface.blocks.first;
   Buffer<int64_t> patch_first = exec.make<int64_t>(block_first.size());
-  exec.for_each("count patches of blocks", block_first.size(),
-                CountBlockPatches{block_first.view(), patch_first.view(), max_own});
-  const int64_t count = exec.exclusive_scan(patch_first.view());
+  const int64_t count =
+      exec.exclusive_scan_of(block_first.size() - 1, PatchesOfBlock{block_first.view(), max_own}, patch_first.view());
   const PatchSource source{surface.blocks.view(),
                            surface.position.view(),
                            surface.normal.view(),

@@ -2,16 +2,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstring>
 #include <iterator>
 #include <mutex>
 #include <string>
 #include <vector>
 
-#include "core/parallel_ranges.h"
-#include "core/watched.h"
 #include "cuda/runtime/device_stream.h"
-#include "cuda/runtime/host_bell.cuh"
 #include "isoshell/device_info.h"
 #include "isoshell/error.h"
 
@@ -82,28 +78,6 @@ DeviceStream* take_idle_stream(DevicePool& pool) {
   return taken;
 }
 
-DeviceStream* take_stream(int device) {
-  DevicePool& pool = pool_of(device);
-  if (DeviceStream* const idle = take_idle_stream(pool)) return idle;
-  int processors = 0;
-  require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
-                  "cudaDeviceGetAttribute");
-  cudaStream_t stream;
-  require_success(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
-  cudaEvent_t event;
-  require_success(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreate");
-  void* pinned;
-  require_success(cudaMallocHost(&pinned, DeviceStream::kPinnedBytes + sizeof(uint32_t)), "cudaMallocHost");
-  return new DeviceStream(pool, processors, stream, event, pinned);
-}
-
-__global__ void write_to_host(const uint8_t* from, int64_t bytes, uint8_t* to, HostBell bell) {
-  for (int64_t i = threadIdx.x; i < bytes; i += blockDim.x) to[i] = from[i];
-  __threadfence_system();
-  __syncthreads();
-  if (threadIdx.x == 0) ring(bell);
-}
-
 __global__ void probe() {}
 
 /// The build may hold machine code for other chips only, and the driver may be too old to make it from PTX.
@@ -120,16 +94,6 @@ void require_code(int device) {
                   cudaGetErrorString(status) +
                   "): update the driver, build with CMAKE_CUDA_ARCHITECTURES for its chip, or use --device cpu");
 }
-
-void return_stream(void* stream) {
-  auto* idle = static_cast<DeviceStream*>(stream);
-  if (idle->held_bytes() > 0) idle->release_kept();  // the next context takes another stream
-  DevicePool& pool = pool_of(idle->device());
-  const std::lock_guard<std::mutex> lock(pool.idle_mutex);
-  pool.idle.push_back(idle);
-}
-
-constexpr int64_t kStagedBytes = int64_t(1) << 20;  ///< of a copy to the host, at once
 
 /// Size of the block that serves this many bytes: four sizes from one power of two to the next, so that blocks fit
 /// again. Large blocks are as asked.
@@ -177,12 +141,35 @@ void require_success(cudaError_t status, const char* call) {
               std::string(call) + " failed: " + describe_error(status));
 }
 
+DeviceStream* DeviceStream::borrow(int device) {
+  DevicePool& pool = pool_of(device);
+  if (DeviceStream* const idle = take_idle_stream(pool)) return idle;
+  int processors = 0;
+  require_success(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
+                  "cudaDeviceGetAttribute");
+  cudaStream_t stream;
+  require_success(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
+  cudaEvent_t event;
+  require_success(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreate");
+  void* pinned;
+  require_success(cudaMallocHost(&pinned, kPinnedBytes + sizeof(uint32_t)), "cudaMallocHost");
+  return new DeviceStream(pool, processors, stream, event, pinned);
+}
+
+void DeviceStream::give_back(void* stream) noexcept {
+  auto* idle = static_cast<DeviceStream*>(stream);
+  if (idle->held_bytes() > 0) idle->release_kept();  // the next context takes another stream
+  DevicePool& pool = pool_of(idle->device());
+  const std::lock_guard<std::mutex> lock(pool.idle_mutex);
+  pool.idle.push_back(idle);
+}
+
 DeviceStream& DeviceStream::of(Context& context) {
   const auto* mine = static_cast<const DeviceStream*>(context.backend_state.get());
   if (!mine || mine->device() != context.device) {
     require_success(cudaSetDevice(context.device), "cudaSetDevice");
     require_code(context.device);
-    context.backend_state = std::shared_ptr<void>(take_stream(context.device), return_stream);
+    context.backend_state = std::shared_ptr<void>(borrow(context.device), give_back);
   }
   DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());
   require_success(cudaSetDevice(stream.device()), "cudaSetDevice");
@@ -269,71 +256,6 @@ void DeviceStream::free(void* data, int64_t bytes) noexcept {
   kept_[rounded(bytes)].push_back(data);
 }
 
-void DeviceStream::copy_to_host(void* to, const void* from, int64_t bytes) {
-  if (bytes <= 0) return;
-  if (is_used_here()) {
-    if (bytes <= kPinnedBytes) return copy_few_to_host(to, from, bytes);
-    if (bytes > kStagedBytes && has_staging())
-      return copy_many_to_host(static_cast<char*>(to), static_cast<const char*>(from), bytes);
-  }
-  require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
-  synchronize();
-}
-
-/// Whether the calling thread runs the stream's stages, on its device: pinned words and staging are for one thread.
-bool DeviceStream::is_used_here() const {
-  int current = -1;
-  return user_.load() == std::this_thread::get_id() && cudaGetDevice(&current) == cudaSuccess && current == device();
-}
-
-/// False where the host has no more pinned memory.
-bool DeviceStream::has_staging() {
-  for (Staging& s : staging_) {
-    if (!s.copied) require_success(cudaEventCreateWithFlags(&s.copied, cudaEventDisableTiming), "cudaEventCreate");
-    if (s.pinned || cudaMallocHost(&s.pinned, size_t(kStagedBytes)) == cudaSuccess) continue;
-    cudaGetLastError();
-    s.pinned = nullptr;
-    return false;
-  }
-  return true;
-}
-
-void DeviceStream::copy_few_to_host(void* to, const void* from, int64_t bytes) {
-  constexpr int64_t kMostThreads = 256;
-  write_to_host<<<1, unsigned(std::min(bytes, kMostThreads)), 0, stream_>>>(
-      static_cast<const uint8_t*>(from), bytes, static_cast<uint8_t*>(pinned_), next_bell());
-  require_success(cudaGetLastError(), "write to the host");
-  wait_for_bell();
-  std::memcpy(to, pinned_, size_t(bytes));
-}
-
-/// Piece by piece through pinned memory. The driver's way is bound by one thread that touches new pages.
-void DeviceStream::copy_many_to_host(char* to, const char* from, int64_t bytes) {
-  Context limits;
-  limits.threads = threads_;
-  const int64_t pieces = (bytes + kStagedBytes - 1) / kStagedBytes;
-  const auto size = [&](int64_t piece) { return std::min(kStagedBytes, bytes - piece * kStagedBytes); };
-  for (int64_t piece = 0; piece <= pieces; ++piece) {
-    if (piece < pieces) {
-      const Staging& s = staging_[piece % 2];
-      require_success(
-          cudaMemcpyAsync(s.pinned, from + piece * kStagedBytes, size_t(size(piece)), cudaMemcpyDeviceToHost, stream_),
-          "cudaMemcpyAsync");
-      require_success(cudaEventRecord(s.copied, stream_), "cudaEventRecord");
-    }
-    if (piece == 0) continue;
-    const Staging& s = staging_[(piece - 1) % 2];
-    require_success(cudaEventSynchronize(s.copied), "cudaEventSynchronize");
-    char* const out = to + (piece - 1) * kStagedBytes;
-    constexpr int64_t kBytesAtATime = 1 << 16;
-    run_with_threads(limits, [&] {
-      for_ranges(size(piece - 1), kBytesAtATime, [&](int64_t begin, int64_t end) {
-        std::memcpy(out + begin, static_cast<const char*>(s.pinned) + begin, size_t(end - begin));
-      });
-    });
-  }
-}
-
 void DeviceStream::copy_to_device(void* to, const void* from, int64_t bytes) {
   if (bytes <= 0) return;
   require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyHostToDevice, stream_), "cudaMemcpyAsync");
@@ -351,6 +273,32 @@ void DeviceStream::wait_for_bell() {
       if (has_rung()) return;
   synchronize();  // says what failed, where something did
   if (!has_rung()) throw Error(ErrorCode::internal, "cuda", "a kernel ended without an answer");
+}
+
+/// Kernels of the stream that use the ones before have been enqueued: memory is freed and cleared in its order.
+void DeviceStream::make_tiles(int64_t tiles) {
+  static_assert(sizeof(SumState) == sizeof(TileState), "a tile's place in front is room for it");
+  constexpr int64_t kFewest = 1024;
+  tile_count_ = std::max(tiles, kFewest);
+  if (tiles_) cudaFreeAsync(tiles_ - 1, stream_);
+  tiles_ = nullptr;
+  const size_t bytes = size_t(tile_count_ + 1) * sizeof(TileState);
+  void* const room = take(int64_t(bytes));
+  if (!room)
+    throw Error(ErrorCode::out_of_memory, "memory",
+                "out of device memory for a scan's " + std::to_string(tiles) + " tiles; use --device cpu");
+  require_success(cudaMemsetAsync(room, 0, bytes, stream_), "clear tiles");
+  tiles_ = static_cast<TileState*>(room) + 1;
+}
+
+ScanTiles DeviceStream::next_scan(int64_t tiles) {
+  if (!tiles_ || tiles > tile_count_) make_tiles(tiles);
+  return {tiles_, ++scans_};
+}
+
+SumState* DeviceStream::sum_state() {
+  if (!tiles_) make_tiles(0);
+  return reinterpret_cast<SumState*>(tiles_ - 1);
 }
 
 void DeviceStream::wait_for(const DeviceStream& other) {

@@ -32,6 +32,20 @@ struct HostBell {
   uint32_t number;
 };
 
+/// What a tile of a scan tells later ones, and tiles of a scan with a number of its own; see scan_kernels.cuh.
+struct alignas(16) TileState {
+  uint64_t sum, mark;
+};
+struct ScanTiles {
+  TileState* state;
+  uint64_t number;
+};
+/// What the blocks of a sum leave for one another: zero between two sums.
+struct SumState {
+  unsigned long long sum;
+  unsigned blocks_done;
+};
+
 /// Memory of one device, allocated and freed in the order of one stream, from a pool that keeps what is freed. Small
 /// blocks that were freed are handed out again without asking the driver: a run takes a thousand of them. Lives as long
 /// as the process: contexts borrow it, and Buffers may outlive them.
@@ -44,7 +58,8 @@ class DeviceStream final : public Memory {
   MemorySpace space() const override { return MemorySpace::cuda; }
   void* allocate(int64_t bytes) override;
   void free(void* data, int64_t bytes) noexcept override;
-  /// From any thread. The one that runs the context's stages has ways that are faster than the driver's.
+  /// From any thread. The one that runs the context's stages has ways that are faster than the driver's; what others
+  /// copy holds up nothing that the stream goes on to do.
   void copy_to_host(void* to, const void* from, int64_t bytes) override;
 
   void copy_to_device(void* to, const void* from, int64_t bytes);
@@ -61,6 +76,10 @@ class DeviceStream final : public Memory {
   /// For the next kernel. wait_for_bell waits until it rings, so for everything in the stream before it.
   HostBell next_bell() { return {bell_, ++bells_}; }
   void wait_for_bell();
+  /// For the next kernel that scans so many tiles.
+  ScanTiles next_scan(int64_t tiles);
+  /// For the next kernel that sums.
+  SumState* sum_state();
   /// Work that is enqueued from now on starts after all that is in `other`, a stream of the same device. The host does
   /// not wait.
   void wait_for(const DeviceStream& other);
@@ -74,19 +93,28 @@ class DeviceStream final : public Memory {
   void release_kept() noexcept;
 
  private:
+  /// One of the device, the current one, that no context uses. It is given back as what it was borrowed as.
+  static DeviceStream* borrow(int device);
+  static void give_back(void* stream) noexcept;
   void* take(int64_t bytes);
+  bool is_users_thread() const;
   bool is_used_here() const;
   bool has_staging();
+  void copy_beside(void* to, const void* from, int64_t bytes) const;
   void copy_few_to_host(void* to, const void* from, int64_t bytes);
   void copy_many_to_host(char* to, const char* from, int64_t bytes);
+  void make_tiles(int64_t tiles);
 
   DevicePool& pool_;
   int processors_;
   cudaStream_t stream_;
   cudaEvent_t event_;  ///< for others to wait for
   void* pinned_;
-  uint32_t* bell_;      ///< behind them
-  uint32_t bells_ = 0;  ///< so far
+  uint32_t* bell_;              ///< behind them
+  uint32_t bells_ = 0;          ///< so far
+  TileState* tiles_ = nullptr;  ///< behind a SumState; not counted as held
+  int64_t tile_count_ = 0;
+  uint64_t scans_ = 0;  ///< so far
   struct Staging {
     void* pinned = nullptr;
     cudaEvent_t copied = nullptr;

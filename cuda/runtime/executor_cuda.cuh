@@ -2,6 +2,7 @@
 // that return a value to the host wait for the stream, all others only enqueue.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -12,7 +13,7 @@
 #include "cuda/runtime/cub.cuh"
 #include "cuda/runtime/device_stream.h"
 #include "cuda/runtime/primitives.h"
-#include "cuda/runtime/small_words.cuh"
+#include "cuda/runtime/scan_kernels.cuh"
 #include "cuda/runtime/warp.cuh"
 #include "isoshell/error.h"
 
@@ -35,22 +36,11 @@ __global__ void fill_values(View<T> out, T value) {
   if (i < out.size) out[i] = value;
 }
 
-/// One ballot a warp: bit l of words[w] says whether element 32 w + l is kept.
-template <class Keep>
-__global__ void mark_kept(int64_t count, Keep keep, View<uint32_t> words) {
-  const int64_t i = thread_number();
-  const uint32_t word = __ballot_sync(kWholeWarp, i < count && bool(keep(i)));
-  if ((threadIdx.x & 31) == 0 && i < count) words[i >> 5] = word;
-}
-
-template <class Term>
-__global__ void sum_terms(int64_t count, Term term, int64_t* total) {
-  int64_t part = 0;
-  for (int64_t i = thread_number(); i < count; i += int64_t(gridDim.x) * blockDim.x) part += int64_t(term(i));
-  part = warp_sum(part);
-  if ((threadIdx.x & 31) == 0 && part != 0)
-    atomicAdd(reinterpret_cast<unsigned long long*>(total), (unsigned long long)part);
-}
+template <class T>
+struct ValueAt {
+  View<const T> values;
+  __device__ T operator()(int64_t i) const { return values[i]; }
+};
 
 }  // namespace cuda_steps
 
@@ -120,22 +110,18 @@ class CudaExecutor {
 
   template <class T>
   T exclusive_scan(View<T> counts) {
+    return exclusive_scan_of(counts.size, cuda_steps::ValueAt<T>{counts}, counts);
+  }
+
+  template <class T, class Term>
+  T exclusive_scan_of(int64_t count, Term term, View<T> out) {
     stop_if_cancelled();
-    if (counts.empty()) return 0;
-    if (counts.size <= small_words::kMost) {
-      T* const total = static_cast<T*>(stream_.pinned());
-      small_words::exclusive_scan<<<1, small_words::kThreads, 0, stream()>>>(counts, total, stream_.next_bell());
-      check("scan");
-      stream_.wait_for_bell();
-      return *total;
+    if (count <= 0) {
+      fill(out, T(0));
+      return 0;
     }
-    Buffer<T> last = make<T>(1);
-    copy(View<const T>(counts).part(counts.size - 1, 1), last.view());
-    exclusive_scan_async(stream_, counts);
     T* const total = static_cast<T*>(stream_.pinned());
-    small_words::give_sum<<<1, 1, 0, stream()>>>(last.data(), counts.data + counts.size - 1, total,
-                                                 stream_.next_bell());
-    check("scan");
+    launch_scan<false>(count, term, out, total, stream_.next_bell());
     stream_.wait_for_bell();
     return *total;
   }
@@ -143,7 +129,8 @@ class CudaExecutor {
   template <class T>
   void inclusive_scan(View<T> counts) {
     stop_if_cancelled();
-    inclusive_scan_async(stream_, counts);
+    if (counts.empty()) return;
+    launch_scan<true>(counts.size, cuda_steps::ValueAt<T>{counts}, counts, static_cast<T*>(nullptr), HostBell{});
   }
 
   template <class T, class Less = std::less<T>>
@@ -152,54 +139,39 @@ class CudaExecutor {
     stop_if_cancelled();  // before some thirty launches
     if (keys.size < 2) return;
     if constexpr (std::is_same_v<T, uint64_t> && std::is_same_v<Less, std::less<T>>) {
-      sort_keys_async(stream_, keys);
-    } else {
-      size_t bytes = 0;
-      require_success(cub::DeviceMergeSort::SortKeys(nullptr, bytes, keys.data, keys.size, less, stream()), "sort");
-      Buffer<uint8_t> scratch = make<uint8_t>(int64_t(bytes));
-      require_success(cub::DeviceMergeSort::SortKeys(scratch.data(), bytes, keys.data, keys.size, less, stream()),
-                      "sort");
+      constexpr int64_t kFewerLaunchesToMerge = 1 << 17;
+      if (keys.size > kFewerLaunchesToMerge) return sort_keys_async(stream_, keys);
     }
-    check("sort");
+    size_t bytes = 0;
+    require_success(cub::DeviceMergeSort::SortKeys(nullptr, bytes, keys.data, keys.size, less, stream()), "sort");
+    Buffer<uint8_t> scratch = make<uint8_t>(int64_t(bytes));
+    require_success(cub::DeviceMergeSort::SortKeys(scratch.data(), bytes, keys.data, keys.size, less, stream()),
+                    "sort");
   }
 
   template <class Keep>
   Buffer<uint32_t> select(int64_t count, Keep keep) {
     stop_if_cancelled();
     if (count <= 0) return {};
-    if (count <= small_words::kMost) return select_of_few(count, keep);
-    const Buffer<uint32_t> words = mark_kept(count, keep);
-    Buffer<uint32_t> rank = make<uint32_t>(words.size() + 1);
-    rank_kept_async(stream_, words.view(), rank.view());
-    Buffer<uint32_t> out = make<uint32_t>(value(View<const uint32_t>(rank.view()), words.size()));
-    if (!out.empty()) list_kept_async(stream_, words.view(), rank.view(), out.view());
-    return out;
+    constexpr int64_t kMostWithRoomForAll = 1 << 16;
+    return count <= kMostWithRoomForAll ? select_with_room_for_all(count, keep) : select_in_two_steps(count, keep);
   }
 
   template <class Term>
   int64_t sum(int64_t count, Term term) {
     stop_if_cancelled();
     if (count <= 0) return 0;
-    if (count <= small_words::kMost) {
-      int64_t* const few = static_cast<int64_t*>(stream_.pinned());
-      small_words::sum<<<1, small_words::kThreads, 0, stream()>>>(count, term, few, stream_.next_bell());
-      check("sum");
-      stream_.wait_for_bell();
-      return *few;
-    }
-    Buffer<int64_t> total = make<int64_t>(1);
-    sum_into(total.view(), count, term);
-    return value(View<const int64_t>(total.view()), 0);
+    int64_t* const total = static_cast<int64_t*>(stream_.pinned());
+    launch_sum(count, term, total, stream_.next_bell());
+    stream_.wait_for_bell();
+    return *total;
   }
 
   template <class Term>
   void sum_into(View<int64_t> out, int64_t count, Term term) {
-    fill(out, int64_t(0));
-    if (count <= 0) return;
-    const unsigned most = 1024;
-    const unsigned blocks = cuda_steps::blocks_for(count) < most ? cuda_steps::blocks_for(count) : most;
-    cuda_steps::sum_terms<<<blocks, cuda_steps::kThreads, 0, stream()>>>(count, term, out.data);
-    check("sum");
+    stop_if_cancelled();
+    if (count <= 0) return fill(out, int64_t(0));
+    launch_sum(count, term, out.data, HostBell{});
   }
 
   /// Whether steps may use a product as it lies: made in this stream, so in the order of its work.
@@ -237,36 +209,52 @@ class CudaExecutor {
     return copy;
   }
 
-  /// A bit each.
-  template <class Keep>
-  Buffer<uint32_t> mark_kept(int64_t count, Keep keep) {
-    Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32);
-    cuda_steps::mark_kept<<<cuda_steps::blocks_for(count), cuda_steps::kThreads, 0, stream()>>>(count, keep,
-                                                                                                words.view());
-    check("select");
-    return words;
+  ScanTiles tiles_for(int64_t count) { return stream_.next_scan(scan_kernels::tiles_for(count)); }
+
+  template <bool kInclusive, class T, class Term>
+  void launch_scan(int64_t count, Term term, View<T> out, T* total, HostBell bell) {
+    const auto kernel = scan_kernels::are_few(count)
+                            ? scan_kernels::scan<scan_kernels::per_thread(true), kInclusive, T, Term>
+                            : scan_kernels::scan<scan_kernels::per_thread(false), kInclusive, T, Term>;
+    kernel<<<scan_kernels::tiles_for(count), scan_kernels::kThreads, 0, stream()>>>(count, term, out, tiles_for(count),
+                                                                                    total, bell);
+    check("scan");
   }
 
   template <class Keep>
-  Buffer<uint32_t> select_of_few(int64_t count, Keep keep) {
-    constexpr int64_t kMostOfOneBlock = 2048;  // it asks of all of them itself
-    Buffer<uint32_t> room = make<uint32_t>(count);
+  Buffer<uint32_t> select_with_room_for_all(int64_t count, Keep keep) {
+    Buffer<uint32_t> out = make<uint32_t>(count);
     uint32_t* const total = static_cast<uint32_t*>(stream_.pinned());
-    if (count <= kMostOfOneBlock) {
-      small_words::select<<<1, small_words::kThreads, 0, stream()>>>(count, keep, room.data(), total,
-                                                                     stream_.next_bell());
-    } else {
-      const Buffer<uint32_t> words = mark_kept(count, keep);
-      small_words::list_bits<<<1, small_words::kThreads, 0, stream()>>>(words.view(), room.data(), total,
-                                                                        stream_.next_bell());
-    }
+    const auto kernel = scan_kernels::are_few(count) ? scan_kernels::select<scan_kernels::per_thread(true), Keep>
+                                                     : scan_kernels::select<scan_kernels::per_thread(false), Keep>;
+    kernel<<<scan_kernels::tiles_for(count), scan_kernels::kThreads, 0, stream()>>>(
+        count, keep, out.data(), tiles_for(count), total, stream_.next_bell());
     check("select");
     stream_.wait_for_bell();
-    const int64_t kept = *total;
-    if (kept == count) return room;
-    Buffer<uint32_t> out = make<uint32_t>(kept);
-    copy(View<const uint32_t>(room.view()).part(0, kept), out.view());
+    out.shorten(*total);
     return out;
+  }
+
+  template <class Keep>
+  Buffer<uint32_t> select_in_two_steps(int64_t count, Keep keep) {
+    Buffer<uint32_t> words = make<uint32_t>((count + 31) / 32), rank = make<uint32_t>(words.size());
+    uint32_t* const total = static_cast<uint32_t*>(stream_.pinned());
+    scan_kernels::mark_kept<scan_kernels::per_thread(false)>
+        <<<scan_kernels::tiles_for(count), scan_kernels::kThreads, 0, stream()>>>(
+            count, keep, words.view(), rank.data(), tiles_for(count), total, stream_.next_bell());
+    check("select");
+    stream_.wait_for_bell();
+    Buffer<uint32_t> out = make<uint32_t>(*total);
+    if (!out.empty()) list_kept_async(stream_, words.view(), rank.view(), out.view());
+    return out;
+  }
+
+  template <class Term>
+  void launch_sum(int64_t count, Term term, int64_t* out, HostBell bell) {
+    constexpr int64_t kMostBlocks = 1024;
+    const unsigned blocks = unsigned(std::min(kMostBlocks, int64_t(blocks_for(count, scan_kernels::kThreads))));
+    scan_kernels::sum<<<blocks, scan_kernels::kThreads, 0, stream()>>>(count, term, stream_.sum_state(), out, bell);
+    check("sum");
   }
 
   Context& context_;

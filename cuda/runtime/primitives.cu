@@ -1,10 +1,9 @@
-// Scans, sorts and compaction.
-#include <climits>
-#include <string>
+// See primitives.h.
+#include <algorithm>
 
 #include "cuda/runtime/cub.cuh"
 #include "cuda/runtime/primitives.h"
-#include "isoshell/error.h"
+#include "cuda/runtime/scan_kernels.cuh"
 
 namespace isoshell {
 namespace {
@@ -35,40 +34,10 @@ void run_cub(DeviceStream& stream, const char* name, Algorithm algorithm) {
   require_success(algorithm(scratch.data(), bytes), name);
 }
 
-/// Scans of CUB before 2.7 (CUDA 12.0 to 12.6) take an int, and would cut a longer count off without a word.
-void require_scannable(int64_t count) {
-#if CUB_VERSION < 200700
-  if (count > INT_MAX)
-    throw Error(ErrorCode::internal, "cuda",
-                "a scan of " + std::to_string(count) + " elements: this build's CUDA scans at most " +
-                    std::to_string(INT_MAX) + "; build with CUDA 12.8 or newer, or use --device cpu");
-#else
-  (void)count;
-#endif
-}
-
-template <class T>
-void exclusive_scan(DeviceStream& stream, View<T> values) {
-  if (values.empty()) return;
-  require_scannable(values.size);
-  run_cub(stream, "exclusive scan", [&](void* scratch, size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, values.data, values.data, values.size, stream.stream());
-  });
-}
-template <class T>
-void inclusive_scan(DeviceStream& stream, View<T> values) {
-  if (values.empty()) return;
-  require_scannable(values.size);
-  run_cub(stream, "inclusive scan", [&](void* scratch, size_t& bytes) {
-    return cub::DeviceScan::InclusiveSum(scratch, bytes, values.data, values.data, values.size, stream.stream());
-  });
-}
-
-__global__ void count_kept(View<const uint32_t> words, View<uint32_t> rank) {
-  const int64_t w = int64_t(blockIdx.x) * blockDim.x + threadIdx.x;
-  if (w < words.size) rank[w] = uint32_t(__popc(words[w]));
-  if (w == words.size) rank[w] = 0;
-}
+struct ValueAt {
+  View<const int64_t> values;
+  __device__ int64_t operator()(int64_t i) const { return values[i]; }
+};
 
 __global__ void list_kept(View<const uint32_t> words, View<const uint32_t> rank, View<uint32_t> out) {
   const int64_t i = int64_t(blockIdx.x) * blockDim.x + threadIdx.x, w = i >> 5;
@@ -81,10 +50,16 @@ constexpr int kThreads = 256;
 
 }  // namespace
 
-void exclusive_scan_async(DeviceStream& stream, View<int64_t> values) { exclusive_scan(stream, values); }
-void exclusive_scan_async(DeviceStream& stream, View<uint32_t> values) { exclusive_scan(stream, values); }
-void inclusive_scan_async(DeviceStream& stream, View<int64_t> values) { inclusive_scan(stream, values); }
-void inclusive_scan_async(DeviceStream& stream, View<uint32_t> values) { inclusive_scan(stream, values); }
+void exclusive_scan_async(DeviceStream& stream, View<int64_t> values) {
+  const int64_t count = values.size - 1;
+  const bool few = scan_kernels::are_few(count);
+  const auto kernel = few ? scan_kernels::scan<scan_kernels::per_thread(true), false, int64_t, ValueAt>
+                          : scan_kernels::scan<scan_kernels::per_thread(false), false, int64_t, ValueAt>;
+  const unsigned tiles = scan_kernels::tiles_for(std::max<int64_t>(count, 1));
+  kernel<<<tiles, scan_kernels::kThreads, 0, stream.stream()>>>(count, ValueAt{values}, values, stream.next_scan(tiles),
+                                                                nullptr, HostBell{});
+  require_success(cudaGetLastError(), "scan");
+}
 
 void sort_keys_async(DeviceStream& stream, View<uint64_t> keys, int bits) {
   if (keys.size < 2) return;
@@ -97,12 +72,6 @@ void sort_keys_async(DeviceStream& stream, View<uint64_t> keys, int bits) {
     require_success(cudaMemcpyAsync(keys.data, both.Current(), size_t(keys.size) * sizeof(uint64_t),
                                     cudaMemcpyDeviceToDevice, stream.stream()),
                     "cudaMemcpyAsync");
-}
-
-void rank_kept_async(DeviceStream& stream, View<const uint32_t> words, View<uint32_t> rank) {
-  count_kept<<<blocks_for(words.size + 1, kThreads), kThreads, 0, stream.stream()>>>(words, rank);
-  require_success(cudaGetLastError(), "count kept");
-  exclusive_scan_async(stream, rank);
 }
 
 void list_kept_async(DeviceStream& stream, View<const uint32_t> words, View<const uint32_t> rank, View<uint32_t> out) {

@@ -312,7 +312,6 @@ SiteSet voxelize_on_device(CudaExecutor& exec, const LatticeSurface& surface) {
     set.mask = exec.make<LeafMask>(leaves);
     set.first = exec.make<int64_t>(leaves + 1);
     require_success(cudaMemsetAsync(set.mask.data(), 0, size_t(set.mask.size_bytes()), exec.stream()), "clear masks");
-    require_success(cudaMemsetAsync(set.first.data() + leaves, 0, sizeof(int64_t), exec.stream()), "clear");
     mark_voxels_of_leaves<<<small_blocks, kWarps * 32, 0, exec.stream()>>>(small, set.view(), set.mask.data());
     if (marks.counted() > 0)
       mark_voxels_of_leaves<<<large_blocks, kWarps * 32, 0, exec.stream()>>>(large, set.view(), set.mask.data());

@@ -58,14 +58,17 @@ class Buffer {
   Buffer() = default;
   /// Array of `size` elements, not initialised.
   explicit Buffer(int64_t size, Memory& memory = host_memory())
-      : data_(static_cast<T*>(memory.allocate(size * int64_t(sizeof(T))))), size_(size), memory_(&memory) {}
+      : data_(static_cast<T*>(memory.allocate(size * int64_t(sizeof(T))))),
+        size_(size),
+        room_(size),
+        memory_(&memory) {}
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
     Buffer(std::move(other)).swap(*this);
     return *this;
   }
   ~Buffer() {
-    if (data_) memory_->free(data_, size_ * int64_t(sizeof(T)));
+    if (data_) memory_->free(data_, room_ * int64_t(sizeof(T)));
   }
 
   int64_t size() const { return size_; }
@@ -73,6 +76,8 @@ class Buffer {
   MemorySpace space() const { return memory().space(); }
   Memory& memory() const { return memory_ ? *memory_ : host_memory(); }
   int64_t size_bytes() const { return size_ * int64_t(sizeof(T)); }
+  /// Keeps the first `size` elements, and the memory of all.
+  void shorten(int64_t size) { size_ = size < size_ ? size : size_; }
   /// A copy in host memory.
   Buffer to_host() const {
     static_assert(kHasNoPadding<T>, "nothing writes padding: give it members");
@@ -95,11 +100,13 @@ class Buffer {
   void swap(Buffer& other) {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
+    std::swap(room_, other.room_);
     std::swap(memory_, other.memory_);
   }
 
   T* data_ = nullptr;
   int64_t size_ = 0;
+  int64_t room_ = 0;  ///< elements that were allocated
   Memory* memory_ = nullptr;
 };
 

@@ -63,6 +63,14 @@ class TbbExecutor {
     return total;
   }
 
+  template <class T, class Term>
+  T exclusive_scan_of(int64_t count, Term term, View<T> out) {
+    for_each("terms", count, [=](int64_t i) { out[i] = T(term(i)); });
+    const T total = exclusive_scan(out.part(0, count));
+    if (out.size > count) out[count] = total;
+    return total;
+  }
+
   template <class T>
   void inclusive_scan(View<T> counts) {
     check_cancel(context_, stage_);

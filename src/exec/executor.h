@@ -8,6 +8,9 @@
 //   template <class T> T value(View<const T> values, int64_t i);     // one element, on the host: waits for the steps
 //   template <class Step> void for_each(const char* name, int64_t count, Step step);   // step(int64_t i), any order
 //   template <class T> T exclusive_scan(View<T> counts);             // in place; returns the total
+//   template <class T, class Term> T exclusive_scan_of(int64_t count, Term term, View<T> out);
+//                                                                    // out[i]: the sum of term(j), j < i; returns the
+//                                                                    // total, which out[count] gets where it exists
 //   template <class T> void inclusive_scan(View<T> counts);          // in place
 //   template <class T, class Less> void sort(View<T> keys, Less less);   // less must be a total order on the values
 //   template <class Keep> Buffer<uint32_t> select(int64_t count, Keep keep); // ascending i with keep(i)

@@ -37,6 +37,8 @@ class ExecutorOperations {
   virtual std::vector<uint64_t> for_each(int64_t count) = 0;
   virtual std::vector<int64_t> exclusive_scan(std::vector<int64_t> counts, int64_t& total) = 0;
   virtual std::vector<uint32_t> exclusive_scan(std::vector<uint32_t> counts, uint32_t& total) = 0;
+  /// Of i % 1000 - 499, with the sum of all behind.
+  virtual std::vector<int64_t> exclusive_scan_of(int64_t count, int64_t& total) = 0;
   virtual std::vector<int64_t> inclusive_scan(std::vector<int64_t> counts) = 0;
   virtual std::vector<uint32_t> inclusive_scan(std::vector<uint32_t> counts) = 0;
   virtual std::vector<uint64_t> sort(std::vector<uint64_t> keys) = 0;

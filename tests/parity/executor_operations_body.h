@@ -88,6 +88,11 @@ class OperationsOf : public ExecutorOperations {
   std::vector<uint32_t> exclusive_scan(std::vector<uint32_t> counts, uint32_t& total) override {
     return scanned(counts, total);
   }
+  std::vector<int64_t> exclusive_scan_of(int64_t count, int64_t& total) override {
+    auto out = exec_.template make<int64_t>(count + 1);
+    total = exec_.exclusive_scan_of(count, CentredRest{}, out.view());
+    return here(out);
+  }
   std::vector<int64_t> inclusive_scan(std::vector<int64_t> counts) override { return scanned(counts); }
   std::vector<uint32_t> inclusive_scan(std::vector<uint32_t> counts) override { return scanned(counts); }
   std::vector<uint64_t> sort(std::vector<uint64_t> keys) override { return sorted(keys, Smaller<uint64_t>()); }

@@ -111,6 +111,18 @@ TEST_CASE("executor operations: scans add up in both widths", "[parity][executor
   }
 }
 
+TEST_CASE("executor operations: a scan of terms gives the sum of all, too", "[parity][executor_operations]") {
+  Operations operations;
+  for (int64_t n : kSizes) {
+    CAPTURE(n);
+    std::vector<int64_t> expected(size_t(n) + 1, 0);
+    for (int64_t i = 0; i < n; ++i) expected[size_t(i) + 1] = expected[size_t(i)] + i % 1000 - 499;
+    int64_t total = 1;
+    CHECK(operations->exclusive_scan_of(n, total) == expected);
+    CHECK(total == expected.back());
+  }
+}
+
 TEST_CASE("executor operations: sort orders keys of one, two and three words, repeats included",
           "[parity][executor_operations]") {
   Operations operations;

@@ -197,8 +197,8 @@ class Partition {
   void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused, bool to_middles = false) {
     const int64_t count = cell.size();
     Buffer<int64_t> first = exec_.template make<int64_t>(count + 1);
-    exec_.for_each("size splits", count + 1, SizeOfRequested{cell.view(), cells_.size.view(), first.view()});
-    Buffer<uint32_t> queue = exec_.template make<uint32_t>(exec_.exclusive_scan(first.view()));
+    Buffer<uint32_t> queue = exec_.template make<uint32_t>(
+        exec_.exclusive_scan_of(count, SizeOfRequested{cell.view(), cells_.size.view()}, first.view()));
     Buffer<Half> half = exec_.template make<Half>(count);
     if (mark_.empty()) {
       mark_ = exec_.template make<uint8_t>(surface_.vertex_count());

@@ -44,8 +44,7 @@ struct KeyOfDisconnectedVertex {
 };
 struct SizeOfDisconnectedPiece {
   View<const uint32_t> root, size;
-  View<int64_t> out;
-  ISOSHELL_HD void operator()(int64_t i) const { out[i] = i < root.size ? size[root[i]] : 0; }
+  ISOSHELL_HD int64_t operator()(int64_t i) const { return size[root[i]]; }
 };
 
 template <class Exec>
@@ -61,10 +60,9 @@ DisconnectedPieces list_disconnected_pieces(Exec& exec, const Pieces& pieces, Vi
                 KeyOfDisconnectedVertex{pieces.piece.view(), vertex.view(), disconnected_pieces.member.view()});
   exec.sort(disconnected_pieces.member.view());
   disconnected_pieces.first = exec.template make<int64_t>(disconnected_pieces.count() + 1);
-  exec.for_each(
-      "size strays", disconnected_pieces.count() + 1,
-      SizeOfDisconnectedPiece{disconnected_pieces.root.view(), pieces.size.view(), disconnected_pieces.first.view()});
-  exec.exclusive_scan(disconnected_pieces.first.view());
+  exec.exclusive_scan_of(disconnected_pieces.count(),
+                         SizeOfDisconnectedPiece{disconnected_pieces.root.view(), pieces.size.view()},
+                         disconnected_pieces.first.view());
   return disconnected_pieces;
 }
 

@@ -161,8 +161,7 @@ struct SplitCell {
 
 struct SizeOfRequested {
   View<const uint32_t> cell, size;
-  View<int64_t> out;
-  ISOSHELL_HD void operator()(int64_t i) const { out[i] = i < cell.size ? size[cell[i]] : 0; }
+  ISOSHELL_HD int64_t operator()(int64_t i) const { return size[cell[i]]; }
 };
 
 /// Gives the new half of split i to cell new_id[i].

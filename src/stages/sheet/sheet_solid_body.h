@@ -81,10 +81,9 @@ ISOSHELL_HD inline uint32_t without_mask(const SolidView& solid, Voxel leaf, uin
   return wanted;
 }
 
-struct CountWanted {
+struct WantedBy {
   View<const uint32_t> wanted;
-  View<int64_t> count;
-  ISOSHELL_HD void operator()(int64_t i) const { count[i] = popcount64(wanted[i]); }
+  ISOSHELL_HD int64_t operator()(int64_t i) const { return popcount64(wanted[i]); }
 };
 
 struct ListWanted {
@@ -124,8 +123,7 @@ bool give_masks(Exec& exec, Solid& solid, View<const uint32_t> wanted) {
   const SolidView old = solid.view();
   const int64_t leaves = old.set.leaf_key.size;
   Buffer<int64_t> first = exec.template make<int64_t>(leaves);
-  exec.for_each("count leaves without masks", leaves, CountWanted{wanted, first.view()});
-  const int64_t more = exec.exclusive_scan(first.view());
+  const int64_t more = exec.exclusive_scan_of(leaves, WantedBy{wanted}, first.view());
   if (more == 0) return false;
   Buffer<uint64_t> key = exec.template make<uint64_t>(leaves + more);
   exec.for_each("list leaves", leaves, ListWanted{old.set.leaf_key, wanted, first.view(), key.view()});

@@ -39,15 +39,14 @@ struct Tile {
   uint32_t triangle, block;
 };
 
-struct CountTiles {
+struct TilesOf {
   SurfaceView surface;
   BlockGrid grid;
-  View<int64_t> count;
-  ISOSHELL_HD void operator()(int64_t t) const {
+  ISOSHELL_HD int64_t operator()(int64_t t) const {
     int64_t blocks = 0;
     for_each_run<kMaxBlocksPerAxis>(surface.triangle(t), grid.range(), kBlockShift,
                                     [&](int, Voxel, int32_t run) { blocks += run; });
-    count[t] = blocks;
+    return blocks;
   }
 };
 
@@ -69,8 +68,8 @@ template <class Exec>
 Buffer<Tile> find_tiles(Exec& exec, const LatticeSurface& surface, const BlockGrid& grid) {
   const int64_t triangles = surface.triangles.size();
   Buffer<int64_t> first = exec.template make<int64_t>(triangles);
-  exec.for_each("count tiles", triangles, CountTiles{view_of(surface), grid, first.view()});
-  Buffer<Tile> tiles = exec.template make<Tile>(exec.exclusive_scan(first.view()));
+  Buffer<Tile> tiles =
+      exec.template make<Tile>(exec.exclusive_scan_of(triangles, TilesOf{view_of(surface), grid}, first.view()));
   exec.for_each("fill tiles", triangles, FillTiles{view_of(surface), grid, first.view(), tiles.view()});
   return tiles;
 }

@@ -61,12 +61,6 @@ Buffer<uint32_t> referenced_vertices(Exec& exec, const SoupView& soup) {
 }
 
 template <class Starts>
-struct MarkRuns {
-  View<uint32_t> number;
-  Starts starts;
-  ISOSHELL_HD void operator()(int64_t i) const { number[i] = starts(i) ? 1 : 0; }
-};
-template <class Starts>
 struct NumberRuns {
   View<uint32_t> number;
   Starts starts;
@@ -75,8 +69,7 @@ struct NumberRuns {
 /// Numbers runs of equal neighbours: number[i] is the count of starts(j), j <= i, less one. Returns the number of runs.
 template <class Exec, class Starts>
 int64_t number_runs(Exec& exec, View<uint32_t> number, Starts starts) {
-  exec.for_each("mark runs", number.size, MarkRuns<Starts>{number, starts});
-  const int64_t runs = int64_t(exec.exclusive_scan(number));
+  const int64_t runs = int64_t(exec.exclusive_scan_of(number.size, starts, number));
   exec.for_each("number runs", number.size, NumberRuns<Starts>{number, starts});
   return runs;
 }
