@@ -18,5 +18,8 @@ struct RunEstimate {
 /// Throws: usage, nothing_to_mesh as choosing the grid does.
 RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
                          int32_t resolution = 0);
+/// The same, of a soup whose bounding box is known.
+RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
+                         const RemeshOptions& options, int32_t resolution = 0);
 
 }  // namespace isoshell

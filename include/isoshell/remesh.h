@@ -173,7 +173,7 @@ struct Prepared {
   int32_t closing_vox = 0;
   std::optional<int64_t> vertices;            ///< as many as the sizing field asks for; without it as the options say
   GrownSolid grown;                           ///< for the stages that follow
-  std::shared_ptr<CreaseSearch> creases;      ///< looked for while a device makes the sheet; null once it is prepared
+  std::shared_ptr<CreaseSearch> creases;      ///< looked for while a device makes the sheet
   std::shared_ptr<const CutSurface> cut;      ///< the input's own triangles in patches; null where no features are kept
   std::shared_ptr<RelaxedMeanwhile> relaxed;  ///< on a device while creases were looked for, in case there are none
 };

@@ -1,11 +1,12 @@
 // See crease_search.h.
 #include "pipeline/crease_search.h"
 
+#include <memory>
+#include <system_error>
 #include <utility>
 
 #include "core/watched.h"
 #include "features/weld_for_features.h"
-#include "isoshell/to_host.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
@@ -21,6 +22,40 @@ std::optional<FoundCreases> creases_unless_refused(const FeatureMesh& mesh, cons
     return {};
   }
 }
+
+/// What is read of a surface, in the buffers of another one.
+class SurfaceOnDevice {
+ public:
+  explicit SurfaceOnDevice(const LatticeSurface& surface)
+      : frame_(surface.frame),
+        memory_(&surface.points.memory()),
+        points_(surface.points.view()),
+        triangles_(surface.triangles.view()) {}
+
+  /// On the host. Says in any case when the buffers are not read any more.
+  LatticeSurface copy(std::promise<void> copied) const {
+    const auto say_copied = [](std::promise<void>* done) { done->set_value(); };
+    const std::unique_ptr<std::promise<void>, decltype(say_copied)> at_the_end(&copied, say_copied);
+    LatticeSurface here;
+    here.frame = frame_;
+    here.points = copy_of(points_);
+    here.triangles = copy_of(triangles_);
+    return here;
+  }
+
+ private:
+  template <class T>
+  Buffer<T> copy_of(View<const T> from) const {
+    Buffer<T> here(from.size);
+    memory_->copy_to_host(here.data(), from.data, here.size_bytes());
+    return here;
+  }
+
+  LatticeFrame frame_;
+  Memory* memory_;
+  View<const PointQ8> points_;
+  View<const TriangleIndices> triangles_;
+};
 
 }  // namespace
 
@@ -38,16 +73,23 @@ FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& contex
   return mesh;
 }
 
-CreaseSearch::CreaseSearch(LatticeSurface surface, const CurveOptions& options, const Context& context) {
-  // Where there is no thread for it, result() does the work.
-  constexpr auto own_thread_if_any = std::launch::async | std::launch::deferred;
-  result_ = std::async(own_thread_if_any, [this, surface = std::move(surface), options, &context] {
-    SearchedSurface found{feature_mesh_of(surface, context), {}};
+CreaseSearch::CreaseSearch(const LatticeSurface& surface, const CurveOptions& options, const Context& context) {
+  std::promise<void> copied;
+  copied_ = copied.get_future();
+  const SurfaceOnDevice on_device(surface);
+  result_ = std::async(std::launch::async, [this, copied = std::move(copied), on_device, options, &context]() mutable {
+    const LatticeSurface here = on_device.copy(std::move(copied));
+    SearchedSurface found{feature_mesh_of(here, context), {}};
     check_cancel(context, "features");
     found.creases = run_with_threads(context, [&] { return creases_unless_refused(found.mesh, options); });
     has_found_curves_ = found.creases && !found.creases->curve_edges.empty();
     return found;
   });
+}
+
+void CreaseSearch::free_meanwhile(SearchedSurface found) {
+  freed_ = std::async(std::launch::async | std::launch::deferred,
+                      [found = std::move(found)]() mutable { const auto ends_here = std::move(found); });
 }
 
 std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const LatticeSurface& surface,
@@ -56,8 +98,12 @@ std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, 
   const bool is_known = !options.features.lines && !wants_lengths(options);
   if (surface.points.space() == MemorySpace::host || !is_wanted || !is_known) return nullptr;
   const double edge_world = usual_edge_length(options, surface.topology.area_world);
-  return timed(report, "features", context, [&] {
-    return std::make_shared<CreaseSearch>(to_host(surface), curve_options(options, edge_world), context);
+  return timed(report, "features", context, [&]() -> std::shared_ptr<CreaseSearch> {
+    try {
+      return std::make_shared<CreaseSearch>(surface, curve_options(options, edge_world), context);
+    } catch (const std::system_error&) {
+      return nullptr;
+    }
   });
 }
 

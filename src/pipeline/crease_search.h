@@ -26,21 +26,33 @@ struct SearchedSurface {
 /// A search on a thread of its own. Its end waits for it.
 class CreaseSearch {
  public:
-  CreaseSearch(LatticeSurface surface, const CurveOptions& options, const Context& context);
+  /// The surface lies on a device, and its buffers stay until wait_until_copied(). Throws std::system_error where there
+  /// is no thread.
+  CreaseSearch(const LatticeSurface& surface, const CurveOptions& options, const Context& context);
+  void wait_until_copied() const { copied_.wait(); }
   /// Whether it goes on, on a thread of its own.
-  bool goes_on() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout; }
+  bool goes_on() const {
+    return has_result() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout;
+  }
+  /// Whether result() was not called yet.
+  bool has_result() const { return result_.valid(); }
   /// Whether it is known that there are curves. Does not wait.
   bool has_found_curves() const { return has_found_curves_; }
   /// Waits. Throws what the search threw. To be called once.
   SearchedSurface result() { return result_.get(); }
+  /// Frees what the search found, on a thread of its own: giving pages back takes as long as some stages do.
+  void free_meanwhile(SearchedSurface found);
 
  private:
+  std::future<void> copied_;
   std::atomic<bool> has_found_curves_{false};
   std::future<SearchedSurface> result_;  // ends before what it writes to
+  std::future<void> freed_;
 };
 
 /// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a
-/// device. Null elsewhere, and where the edge length depends on the sheet. Reports the time of the beginning alone.
+/// device. Null elsewhere, where the edge length depends on the sheet, and where there is no thread. Reports the time
+/// of the beginning alone.
 std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const LatticeSurface& surface,
                                                   RemeshReport& report, Context& context);
 

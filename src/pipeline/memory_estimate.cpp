@@ -21,10 +21,15 @@ constexpr double kFixedBytes = 64 << 20;  // lookup tables, thread-local scratch
 
 }  // namespace
 
-RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& asked,
+RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
                          int32_t resolution) {
+  return estimate_run(soup, bounding_box(soup), input, options, resolution);
+}
+
+RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
+                         const RemeshOptions& asked, int32_t resolution) {
   const RemeshOptions options = checked(asked);
-  const auto [lo, hi] = bounding_box(soup);
+  const auto [lo, hi] = box;
   RunEstimate e;
   e.resolution = resolution > 0 ? resolution : first_resolution(options, input.area_world, lo, hi);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, e.resolution);

@@ -123,8 +123,8 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
 }
 
 /// What the search found that began with the surface, or the surface alone.
-SearchedSurface searched_surface(Prepared& p, const Context& context) {
-  if (const std::shared_ptr<CreaseSearch> search = std::move(p.creases)) return search->result();
+SearchedSurface searched_surface(const Prepared& p, const Context& context) {
+  if (p.creases && p.creases->has_result()) return p.creases->result();
   return {feature_mesh_of(*OnHost(p.surface), context), {}};
 }
 
@@ -223,8 +223,10 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
     }
     const size_t lost_lines = report.features.lost.size();
-    if (cut_along(mesh, curves, std::move(searched.creases), options, p, report, context) || curves.seams.empty())
+    if (cut_along(mesh, curves, std::move(searched.creases), options, p, report, context) || curves.seams.empty()) {
+      if (p.creases) p.creases->free_meanwhile(std::move(searched));
       return;
+    }
     keep_lost_seams(report.features.lost, lost_lines);
     const int64_t seams_apart = report.features.seams;  // from creases and borders
     report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +

@@ -139,9 +139,10 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& in
 
 /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest. The soup is that of `source`,
 /// repaired.
-Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& input, const PatchSource& source,
-                              const RemeshOptions& options, RemeshReport& report, Context& context) {
-  const auto [lo, hi] = bounding_box(soup);
+Prepared prepare_on_best_grid(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
+                              const PatchSource& source, const RemeshOptions& options, RemeshReport& report,
+                              Context& context) {
+  const auto [lo, hi] = box;
   const bool free_grid = !options.resolution && !options.voxel_size_world;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
   const int32_t first = free_grid && wants_lengths(options)
@@ -156,7 +157,8 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const InputTopology& inp
   int fruitless = 0;
   for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
        resolution += std::max(1, resolution / 2)) {
-    if (!memory_allows(estimate_run(soup, input, options, resolution), best_gap < INT64_MAX, report, context)) break;
+    if (!memory_allows(estimate_run(soup, box, input, options, resolution), best_gap < INT64_MAX, report, context))
+      break;
     const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
     LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
     surface.topology = input;
@@ -209,7 +211,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   const InputTopology& given = measured.topology;
   report.dirt = measured.dirt;
   check_area(given);
-  memory_allows(estimate_run(soup, given, options, kCoarsestGrid), false, report, context);  // repair comes first
+  const WorldBox box = bounding_box(soup);
+  memory_allows(estimate_run(soup, box, given, options, kCoarsestGrid), false, report, context);  // repair comes first
   TriangleSoup changed;
   const TriangleSoup* current = &soup;
   InputTopology input = given;
@@ -248,7 +251,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   }
   report.unite.cut_faces += cut_faces;
   if (cut_faces > 0 && report.unite.joined_components == 0) report.unite.joined_components = input.components;
-  Prepared prepared = prepare_on_best_grid(*current, input, source, options, report, context);
+  Prepared prepared = prepare_on_best_grid(*current, current == &soup ? box : bounding_box(changed), input, source,
+                                           options, report, context);
   report.input = given;
   return prepared;
 }

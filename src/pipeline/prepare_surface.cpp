@@ -156,7 +156,9 @@ class Preparation {
 
 Prepared prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox, const RemeshOptions& options,
                          RemeshReport& report, Context& context) {
-  return Preparation(options, report, context).from(std::move(surface), closing_vox);
+  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+  if (p.creases) p.creases->wait_until_copied();
+  return p;
 }
 
 }  // namespace isoshell

@@ -74,7 +74,7 @@ TEST_CASE("creases: a search on a thread of its own finds what one without finds
   const TriangleSoup soup = crossing_boxes();
   const LatticeSurface surface = snap_surface(soup, frame_of(soup, 200), context);
   const CurveOptions options{CreaseMode::automatic, 40, .1};
-  SearchedSurface found = CreaseSearch(to_host(surface), options, context).result();
+  SearchedSurface found = CreaseSearch(surface, options, context).result();
   const FeatureMesh mesh = feature_mesh_of(surface, context);
   check_same(found.mesh, mesh);
   REQUIRE(found.creases);
@@ -87,10 +87,10 @@ TEST_CASE("creases: a search leaves it to others to refuse, and stops when it is
   TestContext context;
   const TriangleSoup soup = crossing_boxes();
   const LatticeSurface surface = snap_surface(soup, frame_of(soup, 200), context);
-  CHECK_FALSE(CreaseSearch(to_host(surface), {CreaseMode::automatic, 40, 0}, context).result().creases);
-  { const CreaseSearch unused(to_host(surface), {CreaseMode::automatic, 40, .1}, context); }
+  CHECK_FALSE(CreaseSearch(surface, {CreaseMode::automatic, 40, 0}, context).result().creases);
+  { const CreaseSearch unused(surface, {CreaseMode::automatic, 40, .1}, context); }
   context.cancel = true;
-  CHECK_THROWS_AS(CreaseSearch(to_host(surface), {CreaseMode::automatic, 40, .1}, context).result(), Error);
+  CHECK_THROWS_AS(CreaseSearch(surface, {CreaseMode::automatic, 40, .1}, context).result(), Error);
 }
 
 TEST_CASE("creases: the search begins early on a device alone, at the edge length of the run", "[curves][unit]") {
