@@ -19,6 +19,7 @@ struct CudaBuildShell;
 struct FindOutsideByBlocks;
 struct JoinComponentsByLeaves;
 struct ListSiteTrianglesByMasks;
+struct ProjectByLeaves;
 namespace dual {
 struct SplitCellsByBlocks;
 }
@@ -87,6 +88,8 @@ struct CudaKernels {
   using BuildShell = CudaBuildShell;
   /// sheet_flood.cuh: a block of threads floods a block of leaves, and the host looks every eighth round only.
   using FindOutside = FindOutsideByBlocks;
+  /// project_leaves.cuh: a block of threads a leaf of corners, which lists the triangles near it once.
+  using ProjectVertices = ProjectByLeaves;
   /// sheet_components.cuh: joins inside every leaf in shared memory first, so that few go through global memory.
   using JoinComponents = JoinComponentsByLeaves;
   /// split_cells.cuh: a block of threads a cell; cells are few and large.
@@ -97,12 +100,12 @@ struct CudaKernels {
   using UndoHarm = optimize::UndoHarmInOneLaunch;
   /// optimize_kernels.cuh: the same, and a warp a vertex: a lane tries each place.
   using SearchPlaces = optimize::SearchPlacesInOneLaunch;
-  /// steps_by_lanes.cuh: smoothing and fit by eight lanes a vertex, one a triangle around it.
+  /// steps_by_lanes.cuh: smoothing and fit of small meshes by eight lanes a vertex, one a triangle around it; samples
+  /// of one triangle are added up within a warp.
   using StepWork = optimize::StepsByLanes;
 
   // Plain: one thread an element, or the step's cooperative kernel.
   using SortKeys = PlainKernels::SortKeys;
-  using ProjectVertices = PlainKernels::ProjectVertices;
   using ListTrianglesAround = PlainKernels::ListTrianglesAround;
   using LabelSheet = PlainKernels::LabelSheet;
   using Walks = PlainKernels::Walks;

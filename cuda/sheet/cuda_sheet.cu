@@ -1,6 +1,7 @@
 // CUDA's build_sheet and six_volume_vox.
 #include "cuda/cuda_backend.h"
 #include "cuda/runtime/executor_cuda.cuh"
+#include "cuda/sheet/project_leaves.cuh"
 #include "cuda/sheet/sheet_components.cuh"
 #include "cuda/sheet/sheet_cooperative.cuh"
 #include "cuda/sheet/sheet_flood.cuh"

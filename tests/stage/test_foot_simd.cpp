@@ -50,8 +50,8 @@ int64_t projected_elsewhere(const TriangleSoup& soup, int32_t resolution, int32_
   const auto step = [&](int k) {
     return sheet_steps::ProjectVertex{view, may_bridge, smooth.view(), point[k].view(), triangle[k].view()};
   };
-  CpuKernels::ProjectVertices::run(exec, step(0));
-  PlainKernels::ProjectVertices::run(exec, step(1));
+  CpuKernels::ProjectVertices::run(exec, sites.voxels.view(), step(0));
+  PlainKernels::ProjectVertices::run(exec, sites.voxels.view(), step(1));
   int64_t elsewhere = 0;
   for (int64_t i = 0; i < count; ++i)
     elsewhere += point[0][i] != point[1][i] || triangle[0][i] != triangle[1][i] ? 1 : 0;

@@ -259,7 +259,7 @@ class ProjectRuns {
 
 }  // namespace
 
-void ProjectLanes::run(CpuExecutor& exec, const sheet_steps::ProjectVertex& step) {
+void ProjectLanes::run(CpuExecutor& exec, const VoxelSetView&, const sheet_steps::ProjectVertex& step) {
   constexpr int64_t kChunk = 2048;
   const int64_t vertices = step.position.size;
   exec.for_each("project", (vertices + kChunk - 1) / kChunk, [&step, vertices](int64_t chunk) {

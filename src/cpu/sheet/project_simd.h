@@ -7,7 +7,7 @@
 namespace isoshell {
 
 struct ProjectLanes {
-  static void run(CpuExecutor& exec, const sheet_steps::ProjectVertex& step);
+  static void run(CpuExecutor& exec, const VoxelSetView& corners, const sheet_steps::ProjectVertex& step);
 };
 
 }  // namespace isoshell

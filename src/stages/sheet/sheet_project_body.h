@@ -198,10 +198,10 @@ LaidMesh lay_smooth(Exec& exec, QuadMesh& mesh) {
   return laid;
 }
 
-/// Runs the step for all vertices.
+/// Runs the step for all vertices, which are the mesh's corners.
 struct PlainProjectVertices {
   template <class Exec>
-  static void run(Exec& exec, const sheet_steps::ProjectVertex& step) {
+  static void run(Exec& exec, const VoxelSetView&, const sheet_steps::ProjectVertex& step) {
     exec.for_each("project", step.position.size, step);
   }
 };
@@ -216,7 +216,8 @@ LaidMesh lay_onto_surface(Exec& exec, QuadMesh& mesh, const SitedSurfaceView& su
   laid.source_triangle = exec.template make<uint32_t>(vertices);
   smooth_corners(exec, mesh, kSheetSmoothingSteps, laid.smooth, laid.position);
   Exec::Kernels::ProjectVertices::run(
-      exec, ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
+      exec, mesh.corners.view(),
+      ProjectVertex{surface, may_bridge, laid.smooth.view(), laid.position.view(), laid.source_triangle.view()});
   smooth_bridges(exec, mesh, laid.source_triangle.view(), laid.position.view());
   return laid;
 }
