@@ -175,8 +175,8 @@ struct SearchPlacesInOneLaunch {
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
     const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};
     Buffer<uint32_t> chosen = exec.make<uint32_t>(poor.size), count = exec.make<uint32_t>(3);
-    constexpr int64_t kMostOfMovers = 4;  // every fourth vertex moves at most, and has a warp
-    device_steps::launch_together(exec, device_steps::search_in_rounds, poor.size * 32 / kMostOfMovers, search, poor,
+    constexpr int64_t kMoversAtOnce = 4;  // a warp each: rarely more than every fourth vertex moves
+    device_steps::launch_together(exec, device_steps::search_in_rounds, poor.size * 32 / kMoversAtOnce, search, poor,
                                   chosen.view(), count.data(), options.least_quality, options.locked, options.rounds);
     exec.check("search places");
   }

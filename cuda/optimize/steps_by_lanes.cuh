@@ -1,8 +1,7 @@
-// Smoothing and fit (see stages/optimize/optimize_steps.h) on the device. The triangles around every vertex are listed
-// once: who follows half-edges waits for each before the next. A small mesh has eight lanes a vertex, which share its
-// triangles, since a thread a vertex would leave most of the device idle; a large one has a thread a vertex, which is
-// less work in all. Samples are pulled a lane each, and what those of one triangle ask for is added up within a warp
-// first.
+// Smoothing and fit (see stages/optimize/optimize_steps.h) on the device. A small mesh has eight lanes a vertex, which
+// share its triangles, since a thread a vertex would leave most of the device idle. They are listed once: who follows
+// half-edges waits for each before the next. A large mesh has a thread a vertex, as the plain step does. Samples are
+// pulled a lane each, and what those of one triangle ask for is added up within a warp first.
 #pragma once
 
 #include <utility>
@@ -15,9 +14,8 @@ namespace isoshell::optimize {
 namespace step_lanes {
 
 constexpr int kLanes = cuda_relax::kWalkLanes;
-constexpr int kRounds = 2;                        ///< a lane has so many triangles
-constexpr int kPlacesOfLanes = kRounds * kLanes;  ///< for triangles around a vertex
-constexpr int kPlacesOfThread = 8;
+constexpr int kRounds = 2;                  ///< a lane has so many triangles
+constexpr int kPlaces = kRounds * kLanes;   ///< for triangles around a vertex
 constexpr int kVertices = 8;                ///< a block
 constexpr int64_t kMostVertices = 1 << 15;  ///< of a small mesh
 constexpr uint32_t kMany = kNone - 1;
@@ -28,50 +26,23 @@ struct TriangleAround {
   uint32_t b, c;
 };
 
-/// Those of all vertices, in the order of for_each_half_edge_around. Lanes read the places of one vertex side by side,
-/// threads one place of many vertices.
+/// Those of all vertices, in the order of for_each_half_edge_around.
 struct TrianglesAround {
   View<TriangleAround> all;
-  int64_t vertices;
-  bool for_lanes;
-
-  ISOSHELL_HD int places() const { return for_lanes ? kPlacesOfLanes : kPlacesOfThread; }
-  ISOSHELL_HD TriangleAround& at(int64_t v, int place) const {
-    return all[for_lanes ? v * kPlacesOfLanes + place : place * vertices + v];
-  }
+  ISOSHELL_HD TriangleAround& at(int64_t v, int place) const { return all[v * kPlaces + place]; }
 };
 
 struct ListAround {
   MeshView mesh;
   TrianglesAround around;
   ISOSHELL_HD void operator()(int64_t v) const {
-    const int places = around.places();
     int count = 0;
     for_each_half_edge_around(mesh, uint32_t(v), [&](uint32_t h) {
-      if (count < places) around.at(v, count) = {h, mesh.to(h), mesh.opposite(h)};
+      if (count < kPlaces) around.at(v, count) = {h, mesh.to(h), mesh.opposite(h)};
       ++count;
     });
-    if (count > places) around.at(v, 0).half_edge = kMany;
-    for (; count < places; ++count) around.at(v, count) = {kNone, 0, 0};
-  }
-};
-
-/// A step of a large mesh.
-template <class Step>
-struct StepByList {
-  Step step;
-  TrianglesAround around;
-  ISOSHELL_HD void operator()(int64_t v) const {
-    if (step.is_locked(v) || around.at(v, 0).half_edge == kMany) return step(v);
-    const PointQ8 p = step.from[v];
-    const double radius = step.radius_q8(v);
-    typename Step::Sums sums;
-    for (int place = 0; place < kPlacesOfThread; ++place) {
-      const TriangleAround t = around.at(v, place);
-      if (t.half_edge == kNone) break;
-      step.add(t.half_edge, p, step.from[t.b], step.from[t.c], radius, sums);
-    }
-    step.finish(v, sums);
+    if (count > kPlaces) around.at(v, 0).half_edge = kMany;
+    for (; count < kPlaces; ++count) around.at(v, count) = {kNone, 0, 0};
   }
 };
 
@@ -80,7 +51,7 @@ template <class Sums>
 struct Terms {
   static_assert(sizeof(Sums) % sizeof(double) == 0, "nothing but doubles");
   static constexpr int kTerms = sizeof(Sums) / sizeof(double);
-  double of[kTerms][kPlacesOfLanes];
+  double of[kTerms][kPlaces];
 
   __device__ void put(int place, const Sums& sums) {
     const double* const term = reinterpret_cast<const double*>(&sums);
@@ -208,13 +179,11 @@ __global__ void __launch_bounds__(kPullThreads) pull_by_runs(PullCorners step) {
 class StepsByLanes {
  public:
   void begin(CudaExecutor& exec, const MeshView& mesh) {
+    using namespace step_lanes;
     const int64_t vertices = mesh.valence.size;
-    around_.vertices = vertices;
-    around_.for_lanes = vertices <= step_lanes::kMostVertices;
-    listed_ = {};
-    listed_ = exec.make<step_lanes::TriangleAround>(vertices * around_.places());
-    around_.all = listed_.view();
-    exec.for_each("list triangles around", vertices, step_lanes::ListAround{mesh, around_});
+    if (vertices > kMostVertices) return;
+    if (listed_.empty()) listed_ = exec.make<TriangleAround>(vertices * kPlaces);
+    exec.for_each("list triangles around", vertices, ListAround{mesh, {listed_.view()}});
   }
   void smooth(CudaExecutor& exec, const SmoothVertex& step) { run(exec, "smooth", step); }
   void fit(CudaExecutor& exec, const FitVertex& step) { run(exec, "fit", step); }
@@ -245,13 +214,13 @@ class StepsByLanes {
   void run(CudaExecutor& exec, const char* name, const Step& step) {
     using namespace step_lanes;
     const int64_t count = step.to.size;
-    if (!around_.for_lanes) return exec.for_each(name, count, StepByList<Step>{step, around_});
-    step_by_lanes<<<blocks_for(count, kVertices), kVertices * kLanes, 0, exec.stream()>>>(count, step, around_);
+    if (count > kMostVertices) return exec.for_each(name, count, step);
+    step_by_lanes<<<blocks_for(count, kVertices), kVertices * kLanes, 0, exec.stream()>>>(count, step,
+                                                                                          {listed_.view()});
     exec.check(name);
   }
 
   Buffer<step_lanes::TriangleAround> listed_;
-  step_lanes::TrianglesAround around_{};
   bool is_sorted_ = false;
 };
 
