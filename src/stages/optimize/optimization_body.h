@@ -12,6 +12,7 @@
 #include "stages/optimize/optimize_fit.h"
 #include "stages/optimize/optimize_flips.h"
 #include "stages/optimize/optimize_guard.h"
+#include "stages/optimize/optimize_orientation.h"
 #include "stages/optimize/optimize_relocate.h"
 #include "stages/optimize/optimize_search.h"
 #include "stages/optimize/optimize_smooth.h"
@@ -229,6 +230,7 @@ class Optimization {
   }
 
   void finish() {
+    turn_small_components(exec_, surface_, seeds_, mesh_);
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
     exec_.sort(mesh_.triangles.view(), ByIndices{});
     update_seeds();
