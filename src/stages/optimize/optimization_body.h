@@ -229,8 +229,10 @@ class Optimization {
     std::swap(mesh_.position, best);
   }
 
+  /// See optimize_orientation.h.
+  void turn_inside_out() { turn_small_components(exec_, surface_, seeds_, mesh_); }
+
   void finish() {
-    turn_small_components(exec_, surface_, seeds_, mesh_);
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});
     exec_.sort(mesh_.triangles.view(), ByIndices{});
     update_seeds();
