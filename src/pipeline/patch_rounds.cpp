@@ -14,6 +14,7 @@
 #include "features/free_seeds.h"
 #include "measure/crossing_corners.h"
 #include "pipeline/attempt.h"
+#include "pipeline/cut_curves.h"
 #include "pipeline/dual_of_seeds.h"
 #include "pipeline/flat_patches.h"
 #include "pipeline/new_crossings.h"
@@ -25,7 +26,8 @@ namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 10;
-constexpr size_t kMostWork = 2;  ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostWork = 2;      ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostHelpless = 1;  ///< the same of rounds that did not help, where there is another way
 constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
@@ -94,7 +96,7 @@ class PatchRounds {
     Wrong wrong = left_of(*cut, made, mesh_patches(*cut, made));
     if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
-      if (is_hopeless(wrong)) return wrong.said();
+      if (is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
       std::optional<Paths> fewer = drop_creases(*cut->fine, wrong.places());
       if (!fewer) return wrong.said();
@@ -158,6 +160,11 @@ class PatchRounds {
   /// Of so many vertices the whole mesh has twice as many triangles.
   bool is_hopeless(const Wrong& wrong) const {
     return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
+  }
+
+  /// Whether rounds took long and did not help, where the curves can be laid on the sheet instead.
+  bool is_helpless(const CutSurface& cut) const {
+    return cut.source->input && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
   }
 
   /// Result: whether all cells are disks.
@@ -288,6 +295,7 @@ class PatchRounds {
     Wrong failed(*next);
     for (const auto& [patch, place] : failed_here.where) failed.add(patch_in_whole[patch], place);
     Wrong left = left_of(*next, whole, std::move(failed));
+    if (left.where.size() >= wrong.where.size()) helpless_work_ += piece.cut.fine->triangles.size();
     return {next, std::move(whole), std::move(left)};
   }
 
@@ -311,7 +319,8 @@ class PatchRounds {
   RemeshReport& report_;
   Context& context_;
   NewCrossings crossings_;
-  size_t work_ = 0;  ///< triangles of the fine mesh on which patches were made again
+  size_t work_ = 0;           ///< triangles of the fine mesh on which patches were made again
+  size_t helpless_work_ = 0;  ///< of these the ones after which no less was wrong
 };
 
 }  // namespace

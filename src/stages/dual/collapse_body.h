@@ -22,15 +22,21 @@ struct CheapestFirst {
   }
 };
 
-struct MayCollapse {
+/// Once per half-edge: a cost takes turns around both ends.
+struct FindCosts {
   CollapseCost cost;
-  ISOSHELL_HD bool operator()(int64_t h) const { return cost(uint32_t(h)) != CollapseCost::kNever; }
+  View<int64_t> out;
+  ISOSHELL_HD void operator()(int64_t h) const { out[h] = cost(uint32_t(h)); }
+};
+struct MayCollapse {
+  View<const int64_t> cost;
+  ISOSHELL_HD bool operator()(int64_t h) const { return cost[h] != CollapseCost::kNever; }
 };
 struct MakeCandidate {
-  CollapseCost cost;
+  View<const int64_t> cost;
   View<const uint32_t> half_edge;
   View<Candidate> out;
-  ISOSHELL_HD void operator()(int64_t i) const { out[i] = {cost(half_edge[i]), half_edge[i]}; }
+  ISOSHELL_HD void operator()(int64_t i) const { out[i] = {cost[half_edge[i]], half_edge[i]}; }
 };
 
 /// One step for all candidates: each choice depends on those before it, and few are made. Chosen edges have no
@@ -267,9 +273,12 @@ void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const CollapseO
                             seeds.home.view(),
                             lengths_of(surface),
                             {seeds.fixed.joined.view(), fixed_valence.view()}};
-    const Buffer<uint32_t> half_edges = exec.select(3 * mesh.triangles.size(), MayCollapse{cost});
+    Buffer<int64_t> costs = exec.template make<int64_t>(3 * mesh.triangles.size());
+    exec.for_each("find costs", costs.size(), FindCosts{cost, costs.view()});
+    const Buffer<uint32_t> half_edges = exec.select(costs.size(), MayCollapse{costs.view()});
     Buffer<Candidate> candidates = exec.template make<Candidate>(half_edges.size());
-    exec.for_each("make candidates", candidates.size(), MakeCandidate{cost, half_edges.view(), candidates.view()});
+    exec.for_each("make candidates", candidates.size(),
+                  MakeCandidate{costs.view(), half_edges.view(), candidates.view()});
     exec.sort(candidates.view(), CheapestFirst{});
     Buffer<uint8_t> taken = exec.template make<uint8_t>(before);
     Buffer<uint32_t> merged_into = exec.template make<uint32_t>(before);

@@ -12,6 +12,7 @@
 #include "stages/optimize/optimize_fit.h"
 #include "stages/optimize/optimize_flips.h"
 #include "stages/optimize/optimize_guard.h"
+#include "stages/optimize/optimize_orientation.h"
 #include "stages/optimize/optimize_relocate.h"
 #include "stages/optimize/optimize_search.h"
 #include "stages/optimize/optimize_smooth.h"
@@ -227,6 +228,9 @@ class Optimization {
     report.self_intersections = fewest;
     std::swap(mesh_.position, best);
   }
+
+  /// See optimize_orientation.h.
+  void turn_inside_out() { turn_small_components(exec_, surface_, seeds_, mesh_); }
 
   void finish() {
     exec_.for_each("rotate triangles", mesh_.triangles.size(), RotateTriangle{mesh_.triangles.view()});

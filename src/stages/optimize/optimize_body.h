@@ -88,6 +88,7 @@ OptimizeReport optimize_mesh_body(Exec& exec, const SurfaceMesh& surface, const 
       work.undo_intersections(report);
     }
   }
+  if (!options.for_seeds) work.turn_inside_out();
   work.finish();
   return report;
 }
