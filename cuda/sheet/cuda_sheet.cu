@@ -16,10 +16,11 @@ Shell CudaBuildShell::run(CudaExecutor& exec, const SiteSet& sites, const ShellO
 }
 
 Sheet CudaBackend::build_sheet(const LatticeSurface& surface, const SiteSet& solid_voxels, const SiteSet& sites,
-                               const SiteSamples& samples, const SheetOptions& options, Context& context) const {
+                               const SiteSamples& samples, SiteSamples* spent, const SheetOptions& options,
+                               Context& context) const {
   CudaExecutor exec(context, "sheet");
   return build_sheet_body(exec, *OnDevice<LatticeSurface>(exec, surface), *OnDevice<SiteSet>(exec, solid_voxels),
-                          *OnDevice<SiteSet>(exec, sites), *OnDevice<SiteSamples>(exec, samples), options);
+                          *OnDevice<SiteSet>(exec, sites), *OnDevice<SiteSamples>(exec, samples), spent, options);
 }
 
 SiteSet CudaBackend::coarsen_sites(const SiteSet& sites, Context& context) const {

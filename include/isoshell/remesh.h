@@ -75,6 +75,7 @@ struct RemeshOptions {
   bool color_features = false;  ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
   bool outer_only = false;      ///< drop what lies inside of a closed surface
   bool want_shell = false;      ///< build the shell even when the method does not need it, to keep it
+  bool want_samples = true;     ///< keep Prepared::samples when the sheet is made, though it and no shell reads them
   bool want_digests = false;    ///< fill RemeshReport::digests
 };
 
@@ -167,9 +168,9 @@ struct RelaxedMeanwhile;
 struct Prepared {
   LatticeSurface surface;
   SiteSet sites;
-  SiteSamples samples;
-  Shell shell;  ///< empty unless the method or want_shell asks for it
-  Sheet sheet;  ///< with edge lengths where they vary
+  SiteSamples samples;  ///< empty where want_samples, the shell and digests let them go
+  Shell shell;          ///< empty unless the method or want_shell asks for it
+  Sheet sheet;          ///< with edge lengths where they vary
   int32_t closing_vox = 0;
   std::optional<int64_t> vertices;            ///< as many as the sizing field asks for; without it as the options say
   GrownSolid grown;                           ///< for the stages that follow

@@ -84,6 +84,9 @@ struct SheetOptions {
 /// no component is left, out_of_memory when the box passes the CPU's limit.
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                   const SheetOptions& options, Context& context);
+/// The same where nothing reads the samples afterwards: they are freed before the sheet takes most memory.
+Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, SiteSamples&& samples,
+                  const SheetOptions& options, Context& context);
 
 /// Sites of the lattice with voxels of twice the edge: those that hold a site. The same as voxelize on that lattice.
 SiteSet coarsen_sites(const SiteSet& sites, Context& context);

@@ -9,9 +9,9 @@
 
 namespace isoshell {
 
-template <class T>
+template <class T, class Offset = int64_t>
 struct Buckets {
-  Buffer<int64_t> first;  ///< count + 1 offsets into items
+  Buffer<Offset> first;  ///< count + 1 offsets into items
   Buffer<T> items;
 
   int64_t count() const { return first.size() - 1; }
@@ -29,15 +29,15 @@ inline void offsets_from_counts(View<int64_t> counts) {
 }
 
 /// `list(i, put)` calls put(bucket, item) for the items of source i, the same ones whenever it is called. Equal items
-/// are not told apart. Cost: O(items), and a sort of each bucket.
-template <class T, class List>
-Buckets<T> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
-  Buckets<T> out;
-  out.first = Buffer<int64_t>(buckets + 1);
-  std::fill(out.first.begin(), out.first.end(), int64_t(0));
+/// are not told apart, and `Offset` counts them all. Cost: O(items), and a sort of each bucket.
+template <class T, class Offset = int64_t, class List>
+Buckets<T, Offset> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
+  Buckets<T, Offset> out;
+  out.first = Buffer<Offset>(buckets + 1);
+  std::fill(out.first.begin(), out.first.end(), Offset(0));
   const bool is_alone = loops_run_alone();  // atomics cost more than all the rest
-  const auto add = [&](int64_t bucket, int64_t more) {
-    int64_t& first = out.first[bucket];
+  const auto add = [&](int64_t bucket, Offset more) {
+    Offset& first = out.first[bucket];
     return is_alone ? first += more : __atomic_add_fetch(&first, more, __ATOMIC_RELAXED);
   };
   // From the last one on: buckets that are filled from their ends then are nearly in the order of sources.
@@ -45,10 +45,10 @@ Buckets<T> sort_into_buckets(int64_t buckets, int64_t sources, List list) {
     for_each_index(int64_t(0), sources, [&](int64_t i) { list(sources - 1 - i, put); });
   };
   for_each_source([&](int64_t bucket, const T&) { add(bucket, 1); });
-  int64_t total = 0;
-  for (int64_t& f : out.first) f = total += f;  // where buckets end, until they are filled from there on
-  out.items = Buffer<T>(total);
-  for_each_source([&](int64_t bucket, const T& item) { out.items[add(bucket, -1)] = item; });
+  Offset total = 0;
+  for (Offset& f : out.first) f = total += f;  // where buckets end, until they are filled from there on
+  out.items = Buffer<T>(int64_t(total));
+  for_each_source([&](int64_t bucket, const T& item) { out.items[add(bucket, Offset(-1))] = item; });
   for_each_index(int64_t(0), buckets,
                  [&](int64_t b) { std::sort(out.items.begin() + out.first[b], out.items.begin() + out.first[b + 1]); });
   return out;

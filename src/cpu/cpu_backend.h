@@ -16,7 +16,7 @@ class CpuBackend final : public BackendTable {
   Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const override;
   Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const override;
   Sheet build_sheet(const LatticeSurface&, const SiteSet& solid_voxels, const SiteSet&, const SiteSamples&,
-                    const SheetOptions&, Context&) const override;
+                    SiteSamples* spent, const SheetOptions&, Context&) const override;
   SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const override;
   SiteSet coarsen_sites(const SiteSet&, Context&) const override;
   Sheet build_proxy(const SiteSet&, const LatticeFrame&, const SheetOptions&, Context&) const override;

@@ -37,26 +37,36 @@ class Preparation {
     join_components(p);
     mark_hollows(p);
     if (!shows_handles) {
+      let_samples_go(p);
       const int32_t grown = growth_for_edge(edge_vox(p));
       p.closing_vox = 2 * grown;
       grow(p, grown);
       return p;
     }
+    const bool is_open = !p.surface.topology.closed;
     if (closing_vox) {
       p.closing_vox = *closing_vox;
-      p.sheet = sheet(p, p.closing_vox);
+      p.sheet = is_open || keeps_samples() ? sheet(p, p.closing_vox) : last_sheet(p);
     } else {
       close_leaks(p);
     }
-    const bool is_open = !p.surface.topology.closed;
     if (is_open && is_crust(p))
       keep_sides_apart(p);
     else if (is_open || p.surface.first_cap != kNone)  // a flap's cap may lie on it
       thicken_flaps(p);
+    let_samples_go(p);
     return p;
   }
 
  private:
+  /// They are a quarter of what there is where the sheet takes most.
+  bool keeps_samples() const {
+    return options_.want_samples || options_.want_digests || options_.want_shell || options_.method == Method::shell;
+  }
+  void let_samples_go(Prepared& p) const {
+    if (!keeps_samples()) p.samples = {};
+  }
+
   /// Surfaces that pass through each other bound one solid, whose genus none of them tells.
   void join_components(Prepared& p) {
     InputTopology& input = p.surface.topology;
@@ -125,12 +135,19 @@ class Preparation {
     timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest, context_); });
   }
 
-  Sheet sheet(const Prepared& p, int32_t closing_vox) {
+  SheetOptions sheet_options(const Prepared& p, int32_t closing_vox) const {
     const InputTopology& input = p.surface.topology;
-    const int64_t smallest = smallest_component_q16(options_, input, p.surface.frame);
     const int64_t genus = !input.closed || !input.oriented ? kNoGenus : input.genus < 0 ? kUnknownGenus : input.genus;
+    return {closing_vox, smallest_component_q16(options_, input, p.surface.frame), genus};
+  }
+  Sheet sheet(const Prepared& p, int32_t closing_vox) {
+    return timed(report_, "sheet", context_,
+                 [&] { return build_sheet(p.surface, p.sites, p.samples, sheet_options(p, closing_vox), context_); });
+  }
+  /// Frees the samples on the way.
+  Sheet last_sheet(Prepared& p) {
     return timed(report_, "sheet", context_, [&] {
-      return build_sheet(p.surface, p.sites, p.samples, {closing_vox, smallest, genus}, context_);
+      return build_sheet(p.surface, p.sites, std::move(p.samples), sheet_options(p, p.closing_vox), context_);
     });
   }
 

@@ -259,8 +259,10 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   return triangulate_on_sheet(p, options, optimize, best, context);
 }
 
-RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context) {
+RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& asked, Context& context) {
   RemeshResult result;
+  RemeshOptions options = asked;
+  options.want_samples = false;
   Prepared prepared = prepare(soup, options, result.report, context);
   if (options.method == Method::sheet) prepared.samples = {};  // made the sheet, and are not read again
   SeedSet seeds = relax(prepared, options, result.report, context);

@@ -228,6 +228,7 @@ class Run {
   Prepared prepare_from(Input& input) {
     RemeshOptions options = options_.values;
     options.features = possible_features(options, request_);
+    options.want_samples = measures_all();  // by find_risks
     if (!input.stage) return prepare(input.soup, options, record_.report, context_);
     if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
     return prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, record_.report, context_);

@@ -20,8 +20,9 @@ class BackendTable {
   virtual Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const = 0;
   /// From the sheet of all `solid_voxels`, which are the sites or what cut_false_handles makes of them. One that is a
   /// single component and has more handles than a genus that is given, so will not be used, has its topology only.
+  /// `spent` is null, or names the same samples: then they are freed once a sheet that will be used has read them.
   virtual Sheet build_sheet(const LatticeSurface&, const SiteSet& solid_voxels, const SiteSet&, const SiteSamples&,
-                            const SheetOptions&, Context&) const = 0;
+                            SiteSamples* spent, const SheetOptions&, Context&) const = 0;
   /// Result: the sites less those that close handles beyond `genus`, with the solid voxels around these. Empty when
   /// the box around the sites is too large.
   virtual SiteSet cut_false_handles(const SiteSet&, const SiteSamples&, int64_t genus, Context&) const = 0;

@@ -132,7 +132,7 @@ TEST_CASE("kernels: sheets are those of the plain set", "[kernels][parity][cuda]
     for (const SheetOptions& options : {SheetOptions{0, 0}, SheetOptions{2, 0}, SheetOptions{0, 300 << 16}}) {
       INFO(shape.name << ", closing " << options.closing_vox);
       const Lattice l = lattice_of(shape.soup, 60, context);
-      const Sheet plain = build_sheet_body(exec, l.surface, l.sites, l.sites, l.samples, options);
+      const Sheet plain = build_sheet_body(exec, l.surface, l.sites, l.sites, l.samples, nullptr, options);
       CHECK(hash_arrays(build_sheet(l.surface, l.sites, l.samples, options, context)) == hash_arrays(plain));
     }
 }

@@ -231,6 +231,7 @@ struct PullSamples {
 
 void CpuStepSimd::begin(CpuExecutor& exec, const MeshView& mesh) {
   const int64_t vertices = mesh.outgoing.size;
+  around_ = {};
   around_ = {Buffer<uint32_t>(vertices + 1), Buffer<TrianglesAround::Triangle>(mesh.twin.size)};
   around_.first[vertices] = 0;
   exec.for_each("count triangles around", vertices, CountTrianglesAround{mesh, around_.first.view()});
@@ -245,18 +246,24 @@ void CpuStepSimd::smooth(CpuExecutor& exec, const SmoothVertex& step) {
   if (step.options.onto_sheet) WalksAhead::to_targets(exec, "lay onto sheet", step.walk, step.home, LayOntoSheet{step});
 }
 
+/// Run by run, each of which is a part of the sheet at first and stays about there: that takes memory for one run, and
+/// breaks few triangles' samples apart.
 void CpuStepSimd::sort(CpuExecutor& exec, int64_t triangles, int64_t of_sheet, Buffer<FitSample>& samples) {
-  Buffer<uint32_t> end(triangles + 1);  // of the places of each triangle, and of samples without one
-  const auto of = [&](int64_t i) -> uint32_t& { return end[std::min<int64_t>(samples[i].triangle, triangles)]; };
+  constexpr int64_t kRuns = 16;
+  const int64_t longest = (of_sheet + kRuns - 1) / kRuns;
   const bool alone = loops_run_alone();
-  exec.fill(end.view(), 0u);
-  exec.for_each("count samples", of_sheet, [&](int64_t i) { alone ? void(++of(i)) : atomic_add(of(i), 1u); });
-  exec.inclusive_scan(end.view());
-  Buffer<FitSample> sorted(samples.size());
-  exec.for_each("sort samples", of_sheet,
-                [&](int64_t i) { sorted[alone ? --of(i) : atomic_take_one_below(of(i))] = samples[i]; });
-  std::copy(samples.begin() + of_sheet, samples.end(), sorted.begin() + of_sheet);
-  samples = std::move(sorted);
+  Buffer<uint32_t> end(triangles + 1);  // of the places of each triangle, and of samples without one
+  Buffer<FitSample> sorted(longest);
+  for (int64_t begin = 0; begin < of_sheet; begin += longest) {
+    const View<FitSample> run = samples.view().part(begin, std::min(longest, of_sheet - begin));
+    const auto of = [&](int64_t i) -> uint32_t& { return end[std::min<int64_t>(run[i].triangle, triangles)]; };
+    exec.fill(end.view(), 0u);
+    exec.for_each("count samples", run.size, [&](int64_t i) { alone ? void(++of(i)) : atomic_add(of(i), 1u); });
+    exec.inclusive_scan(end.view());
+    exec.for_each("sort samples", run.size,
+                  [&](int64_t i) { sorted[alone ? --of(i) : atomic_take_one_below(of(i))] = run[i]; });
+    exec.copy(View<const FitSample>(sorted.view()).part(0, run.size), run);
+  }
 }
 
 void CpuStepSimd::pull(CpuExecutor& exec, const PullCorners& step) {

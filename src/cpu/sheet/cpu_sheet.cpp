@@ -11,10 +11,12 @@
 namespace isoshell {
 
 Sheet CpuBackend::build_sheet(const LatticeSurface& surface, const SiteSet& solid_voxels, const SiteSet& sites,
-                              const SiteSamples& samples, const SheetOptions& options, Context& context) const {
+                              const SiteSamples& samples, SiteSamples* spent, const SheetOptions& options,
+                              Context& context) const {
   CpuExecutor exec(context, "sheet");
   return run_with_threads(context, [&] {
-    return build_sheet_body(exec, *OnHost(surface), *OnHost(solid_voxels), *OnHost(sites), *OnHost(samples), options);
+    return build_sheet_body(exec, *OnHost(surface), *OnHost(solid_voxels), *OnHost(sites), *OnHost(samples), spent,
+                            options);
   });
 }
 

@@ -113,6 +113,7 @@ class Optimization {
     options.stiffness = kStiffness * double(samples_of_sheet_) / (smallest_fit_ * double(vertices_));
     options.damping = damping;
     exec_.copy(View<const PointQ8>(mesh_.position.view()), previous_.view());
+    drop_pulls();
     work_.begin(exec_, view());
     sort_samples();
     for (int s = 0; s < steps; ++s) {
@@ -239,9 +240,8 @@ class Optimization {
   }
 
  private:
-  /// The sorted copy is one of the largest lists: it has the place of what the next step finds anew.
+  /// Before what the next step finds anew, which is large too.
   void sort_samples() {
-    drop_pulls();
     work_.sort(exec_, mesh_.triangles.size(), samples_of_sheet_, sample_);
     rest_sq_ = exec_.template make<int64_t>(sample_.size());
     triangle_pull_ = exec_.template make<TrianglePull>(mesh_.triangles.size());

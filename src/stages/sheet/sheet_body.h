@@ -190,11 +190,12 @@ Sheet finish_sheet(Exec& exec, const LatticeFrame& frame, QuadMesh mesh, Compone
 
 template <class Exec>
 Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet& solid_voxels, const SiteSet& sites,
-                       const SiteSamples& samples, const SheetOptions& options) {
+                       const SiteSamples& samples, SiteSamples* spent, const SheetOptions& options) {
   using namespace sheet_steps;
   QuadMesh mesh = boundary_of_sites(exec, solid_voxels, options.closing_vox);
   Components components = find_components(exec, mesh);
-  if (options.genus != kNoGenus && components.roots.size() == 1) {  // of several, small ones may go with their handles
+  const bool is_one = components.roots.size() == 1;  // of several, small ones may go with their handles
+  if (options.genus != kNoGenus && is_one) {
     Sheet unfinished;
     unfinished.topology.components = 1;
     unfinished.topology.genus = genus_of(1, mesh.corners.voxel_count(), mesh.quads.size());
@@ -203,6 +204,7 @@ Sheet build_sheet_body(Exec& exec, const LatticeSurface& surface, const SiteSet&
   const SitedSurfaceView surface_view = {surface.points.view(), surface.triangles.view(), sites.voxels.view(),
                                          samples.first.view(), samples.triangles.view()};
   LaidMesh laid = lay_onto_surface(exec, mesh, surface_view, options.closing_vox > 0);
+  if (spent && (options.genus == kNoGenus || is_one)) *spent = {};
   Sheet sheet = finish_sheet(exec, surface.frame, std::move(mesh), std::move(components), std::move(laid),
                              options.min_component_area_q16);
   if (surface.topology.closed && surface.topology.oriented) find_off_surface(exec, surface, sheet);
