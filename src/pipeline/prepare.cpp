@@ -115,22 +115,31 @@ void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options
   note_digest(options, report, context, "sheet", p.sheet);
 }
 
+/// Width of the smallest cells that the lengths ask for, as far as the grid that even cells would have carries them.
+/// They are looked for on that grid, but curvature asks for the smallest ones anyway. None where lengths are even.
+std::optional<double> smallest_cell_world(const TriangleSoup& soup, const InputTopology& input,
+                                          const RemeshOptions& options, const LatticeFrame& usual, RemeshReport& report,
+                                          Context& context) {
+  if (options.adaptivity > 0) return kFewestCellVox * usual.voxel_size;
+  LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, usual, context); });
+  surface.topology = input;
+  Prepared p = prepare_surface(std::move(surface), asked_closing(options, input, usual), options, report, context);
+  RemeshReport unsaid;
+  timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
+  if (p.sheet.lengths.at.empty()) return {};
+  return smallest_cell_vox(options, p, context) * usual.voxel_size;
+}
+
 /// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
-/// Lengths are first found on the grid that even cells would have.
 int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
                                int32_t usual, RemeshReport& report, Context& context) {
   memory_allows(estimate_run(soup, input, options, usual), false, report, context);
   const auto [lo, hi] = bounding_box(soup);
   const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
-  LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
-  surface.topology = input;
-  Prepared p = prepare_surface(std::move(surface), asked_closing(options, input, frame), options, report, context);
-  RemeshReport unsaid;
-  timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
-  if (p.sheet.lengths.at.empty()) return usual;
-  const double cell_world = smallest_cell_vox(options, p, context) * frame.voxel_size;
+  const std::optional<double> cell_world = smallest_cell_world(soup, input, options, frame, report, context);
+  if (!cell_world) return usual;
   int32_t resolution =
-      resolution_for_cell(frame.voxel_size * (usual - 1), cell_world, vertex_target(options, input.area_world));
+      resolution_for_cell(frame.voxel_size * (usual - 1), *cell_world, vertex_target(options, input.area_world));
   while (resolution > usual && context.memory_limit_bytes > 0 &&
          estimate_run(soup, input, options, resolution).bytes > context.memory_limit_bytes)
     resolution = std::max(usual, resolution - resolution / 8);

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kCellOfEdge =
     0.9306048591020996;                 // width of a cell, the root of its area, over the edges: root of sqrt(3) / 2
-constexpr double kFewestCellVox = 3.5;  // narrower cells are no disks of sheet triangles
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
 constexpr int64_t kMostSmoothing = 32;  // of normals
 constexpr int64_t kMostLengthSmoothing = 128;

@@ -7,6 +7,8 @@
 
 namespace isoshell {
 
+constexpr double kFewestCellVox = 3.5;  ///< width of a cell: narrower ones are no disks of sheet triangles
+
 /// Whether lengths may vary.
 bool wants_lengths(const RemeshOptions& options);
 

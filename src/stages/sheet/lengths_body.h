@@ -69,8 +69,8 @@ struct ListGrowth {
 };
 
 /// Lowers the lengths of a block's own vertices until they obey the limit towards one another and towards the vertices
-/// of other blocks, whose lengths are those of the round before; then wakes the blocks that this concerns. The limit is
-/// a shortest path over the sheet's edges: it has one fixed point, in whatever order blocks come to it.
+/// of other blocks, whose lengths are those of the round before; then wakes the vertices of others that this concerns.
+/// The limit is a shortest path over the sheet's edges: it has one fixed point, in whatever order vertices come to it.
 struct LimitBlock {
   NeighboursView neighbours;
   View<const uint32_t> growth_to;  ///< on the way to each that is listed
@@ -78,8 +78,10 @@ struct LimitBlock {
   View<const int64_t> block_first;
   View<const uint32_t> from;
   View<uint32_t> to;
-  View<const uint32_t> awake;
+  View<const uint32_t> awake;  ///< per block
   View<uint32_t> wake;
+  View<uint32_t> due;  ///< per vertex: a neighbour was lowered since it was looked at
+  View<uint32_t> due_next;
 
   /// visit(u, growth) for every neighbour u of v.
   template <class Visit>
@@ -91,14 +93,19 @@ struct LimitBlock {
     return length < UINT32_MAX - growth ? length + growth : UINT32_MAX;
   }
   ISOSHELL_HD bool lower(uint32_t v, int64_t begin, int64_t end) const {
+    if (!due[v]) return false;
+    due[v] = 0;
     uint32_t least = to[v];
     for_each_neighbour(v, [&](uint32_t u, uint32_t growth) {
       const uint32_t here = beyond(u >= begin && u < end ? to[u] : from[u], growth);
       least = here < least ? here : least;
     });
-    const bool lowered = least < to[v];
+    if (least == to[v]) return false;
     to[v] = least;
-    return lowered;
+    for_each_neighbour(v, [&](uint32_t u, uint32_t growth) {
+      if (u >= begin && u < end && beyond(least, growth) < to[u]) due[u] = 1;
+    });
+    return true;
   }
   ISOSHELL_HD int64_t block_of(int64_t v) const {
     int64_t lo = 0, hi = block_first.size - 1;
@@ -119,7 +126,9 @@ struct LimitBlock {
     for (int64_t v = begin; v < end; ++v) {
       if (to[v] == from[v]) continue;
       for_each_neighbour(uint32_t(v), [&](uint32_t u, uint32_t growth) {
-        if ((u < begin || u >= end) && beyond(to[v], growth) < from[u]) atomic_or(wake[block_of(u)], 1u);
+        if ((u >= begin && u < end) || beyond(to[v], growth) >= from[u]) return;
+        atomic_or(due_next[u], 1u);
+        atomic_or(wake[block_of(u)], 1u);
       });
     }
   }
@@ -245,14 +254,18 @@ EdgeLengths limit_edge_lengths_body(Exec& exec, const SurfaceMesh& surface, Buff
   exec.for_each("list growth", vertices, ListGrowth{neighbours.view(), slope, growth.view()});
   Buffer<uint32_t> next = exec.template make<uint32_t>(vertices);
   Buffer<uint32_t> awake = exec.template make<uint32_t>(blocks), wake = exec.template make<uint32_t>(blocks);
+  Buffer<uint32_t> due = exec.template make<uint32_t>(vertices), due_next = exec.template make<uint32_t>(vertices);
   exec.fill(awake.view(), 1u);
+  exec.fill(due.view(), 1u);
+  exec.fill(due_next.view(), 0u);  // what is due is done in its round
   do {
     exec.fill(wake.view(), 0u);
     exec.copy(View<const uint32_t>(raw.view()), next.view());
     exec.for_each("limit lengths", blocks,
                   LimitBlock{neighbours.view(), growth.view(), slope, surface.blocks.first.view(), raw.view(),
-                             next.view(), awake.view(), wake.view()});
+                             next.view(), awake.view(), wake.view(), due.view(), due_next.view()});
     std::swap(raw, next);
+    std::swap(due, due_next);
     std::swap(awake, wake);
   } while (exec.sum(blocks, IsAwake{awake.view()}) > 0);
   return with_range(exec, std::move(raw));
