@@ -3,6 +3,8 @@
 // library itself: every stage takes what lies in host memory. Products that a stage changes keep their names here.
 #pragma once
 
+#include <utility>
+
 #include "isoshell/backend.h"
 #include "isoshell/stages.h"
 #include "isoshell/to_host.h"
@@ -35,6 +37,10 @@ inline Shell build_shell(const SiteSet& sites, const ShellOptions& options, Test
 inline Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                          const SheetOptions& options, TestContext& context) {
   return to_host(build_sheet(surface, sites, samples, options, context.plain()));
+}
+inline Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, SiteSamples&& samples,
+                         const SheetOptions& options, TestContext& context) {
+  return to_host(build_sheet(surface, sites, std::move(samples), options, context.plain()));
 }
 inline SiteSet coarsen_sites(const SiteSet& sites, TestContext& context) {
   return to_host(coarsen_sites(sites, context.plain()));
