@@ -207,7 +207,7 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       !may_keep_borders(options, p))
     return;
   const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(options, p);
-  if (may_be_uncut && !options.previous) relax_meanwhile(options, p, report, context);
+  if (may_be_uncut) relax_meanwhile(options, p, report, context);
   timed(report, "features", context, [&] {
     SearchedSurface searched = searched_surface(p, context);
     FeatureMesh& mesh = searched.mesh;

@@ -7,9 +7,33 @@
 #include "pipeline/choose_grid.h"
 #include "pipeline/crease_search.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_start.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
+
+namespace {
+
+/// Null where the frame begins cold.
+std::shared_ptr<const PreviousFrame> frame_to_begin_with(const Prepared& prepared, const RemeshOptions& options) {
+  if (!options.previous) return nullptr;
+  const bool is_warm = reason_to_begin_cold(*options.previous, vertex_target(options, prepared)).empty();
+  return is_warm ? options.previous : nullptr;
+}
+
+RelaxedSeeds from_previous(const Prepared& prepared, const RemeshOptions& options, Context& context) {
+  return relax_from_previous(prepared.sheet, *options.previous, vertex_target(options, prepared),
+                             relax_options(options), options.tolerance.has_value(), context);
+}
+
+/// What was relaxed meanwhile by these options from this frame, once; no seeds where there is no such.
+RelaxedSeeds take_relaxed(const Prepared& prepared, const LevelOptions& options, const PreviousFrame* previous) {
+  RelaxedMeanwhile* const made = prepared.relaxed.get();
+  if (!made || made->previous.get() != previous || !(made->options == options)) return {};
+  return std::exchange(made->relaxed, {});
+}
+
+}  // namespace
 
 RelaxOptions relax_options(const RemeshOptions& options) {
   RelaxOptions relax;
@@ -26,10 +50,12 @@ LevelOptions level_options(const Prepared& prepared, const RemeshOptions& option
 void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshReport& report, Context& context) {
   const std::shared_ptr<CreaseSearch> search = prepared.creases;
   if (!search || !search->goes_on()) return;
-  RelaxedMeanwhile made{level_options(prepared, options), {}};
+  RelaxedMeanwhile made{level_options(prepared, options), frame_to_begin_with(prepared, options), {}};
   try {
     made.relaxed = timed(report, "relax", context, [&] {
-      return relax_by_levels(prepared, made.options, context, [&] { return search->has_found_curves(); });
+      return made.previous
+                 ? from_previous(prepared, options, context)
+                 : relax_by_levels(prepared, made.options, context, [&] { return search->has_found_curves(); });
     });
   } catch (const Error& error) {  // what may not be needed at all may fail for want of room or memory
     const bool wants_room = dynamic_cast<const NoRoom*>(&error) || error.code() == ErrorCode::out_of_memory;
@@ -40,9 +66,13 @@ void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshRep
 
 RelaxedSeeds relaxed_by_levels(const Prepared& prepared, const RemeshOptions& options, Context& context) {
   const LevelOptions levels = level_options(prepared, options);
-  if (prepared.relaxed && prepared.relaxed->options == levels && prepared.relaxed->relaxed.seeds.size() > 0)
-    return std::exchange(prepared.relaxed->relaxed, {});
-  return relax_by_levels(prepared, levels, context);
+  RelaxedSeeds meanwhile = take_relaxed(prepared, levels, nullptr);
+  return meanwhile.seeds.size() > 0 ? std::move(meanwhile) : relax_by_levels(prepared, levels, context);
+}
+
+RelaxedSeeds relaxed_from_previous(const Prepared& prepared, const RemeshOptions& options, Context& context) {
+  RelaxedSeeds meanwhile = take_relaxed(prepared, level_options(prepared, options), options.previous.get());
+  return meanwhile.seeds.size() > 0 ? std::move(meanwhile) : from_previous(prepared, options, context);
 }
 
 }  // namespace isoshell

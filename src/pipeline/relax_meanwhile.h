@@ -13,6 +13,7 @@ RelaxOptions relax_options(const RemeshOptions& options);
 /// What a run that finds no creases goes on from.
 struct RelaxedMeanwhile {
   LevelOptions options;
+  std::shared_ptr<const PreviousFrame> previous;  ///< that it began with; null where it began by levels
   RelaxedSeeds relaxed;
 };
 
@@ -21,5 +22,7 @@ void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshRep
 
 /// Takes what was relaxed meanwhile, if it is what these options make; else relaxes by levels.
 RelaxedSeeds relaxed_by_levels(const Prepared& prepared, const RemeshOptions& options, Context& context);
+/// The same from the frame before, which options name.
+RelaxedSeeds relaxed_from_previous(const Prepared& prepared, const RemeshOptions& options, Context& context);
 
 }  // namespace isoshell

@@ -54,10 +54,7 @@ SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patch
     relaxed = timed(report, "relax", context,
                     [&] { return relax_in_patches(*p.cut, patch_options(p, options, {}), context); });
   } else if (is_warm) {
-    relaxed = timed(report, "relax", context, [&] {
-      return relax_from_previous(p.sheet, *options.previous, seed_options.count, relax_options(options),
-                                 options.tolerance.has_value(), context);
-    });
+    relaxed = timed(report, "relax", context, [&] { return relaxed_from_previous(p, options, context); });
   } else if (options.method == Method::sheet) {
     relaxed = timed(report, "relax", context, [&] { return relaxed_by_levels(p, options, context); });
   } else {
