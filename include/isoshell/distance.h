@@ -13,7 +13,7 @@ namespace isoshell {
 /// Of points of one mesh to the nearest points of the other one, world units.
 struct OneSidedDistance {
   double mean = 0, rms = 0;  ///< of the area samples
-  double max = 0;            ///< of the area samples and the vertices: a lower bound, the true one may lie between them
+  double max = 0;  ///< of the area samples and the vertices: the true one is not below, and may lie between them
   std::optional<double> at_most;  ///< of all points, where it was asked for: the true largest one is not above
 };
 /// Between the normals at area samples of one mesh and those of the other one there, in degrees; 0 to 90, since it does
@@ -42,9 +42,9 @@ constexpr int64_t kDistanceVertices = 50000;  ///< most vertices of each mesh th
 struct DistanceOptions {
   int64_t samples = kDistanceSamples;  ///< of each mesh
   /// All triangles are searched for the largest distance, not samples alone: OneSidedDistance::at_most bounds what may
-  /// be missing, which is two thousandths unless surfaces run side by side over many triangles, much closer than edges
-  /// are long. Normals are compared with the best aligned of the triangles that are equally near, up to the rounding of
-  /// files in single precision, a ten-millionth of the diagonal.
+  /// be missing, which is two thousandths or a billionth of the diagonal unless surfaces run side by side over many
+  /// triangles, much closer than edges are long. Normals are compared with the best aligned of the triangles that are
+  /// equally near, up to the rounding of files in single precision, a ten-millionth of the diagonal.
   bool exact = false;
 };
 

@@ -30,10 +30,13 @@ struct CoherenceReport {
       0;  ///< motion beside the carried vertices, without those born: root mean square over mean edge length
 };
 
-/// Where points near the surface `before` are when its triangles have moved to where they are in `now`, which has the
-/// same: a point keeps its place in its nearest triangle, and its offset along the normal. In the order of the points.
-/// Cost: a search for each. Throws: usage when the triangles are not the same, or there are none; interrupted.
-std::vector<WorldPoint> carry_with_triangles(const std::vector<WorldPoint>& points, const TriangleSoup& before,
+/// Where vertices of a mesh of the surface `before` are when its triangles have moved to where they are in `now`, which
+/// has the same: a vertex keeps its place in the triangle that it lies on, and its offset along the normal. That
+/// triangle is the nearest one, unless it faces the other way than the vertex does and one that faces its way is under
+/// it, too, half an edge's length farther at most: the other side of a wall may be nearer. Which way is out is what
+/// most of the nearest triangles say. Cost: a search for each, two where walls are close. Throws: usage when the
+/// triangles are not the same, or there are none; interrupted.
+std::vector<WorldPoint> carry_with_triangles(const TriangleMesh& mesh, const TriangleSoup& before,
                                              const TriangleSoup& now, Context& context);
 
 /// Where a surface goes until the next frame, as a function of the place. Result: a function of each point alone.

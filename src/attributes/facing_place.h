@@ -9,12 +9,15 @@ namespace isoshell {
 
 /// The nearest point of the source, unless a triangle that looks along the normal is within half an edge's length
 /// beyond it: then the nearest of such triangles. So two sides of a thin wall stay apart.
-inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, WorldPoint normal, double edge_length) {
+inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, const MeshPoint& nearest, WorldPoint normal,
+                              double edge_length) {
   constexpr double kFarther = 0.5;
-  const MeshPoint nearest = grid.nearest(p);
   if (grid.is_facing(nearest.triangle, normal)) return nearest;
   const MeshPoint facing = grid.nearest_facing(p, normal, std::sqrt(nearest.distance_sq) + kFarther * edge_length);
   return facing.triangle == MeshPoint::kNoTriangle ? nearest : facing;
+}
+inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, WorldPoint normal, double edge_length) {
+  return facing_place(grid, p, grid.nearest(p), normal, edge_length);
 }
 
 /// The value at a place from those at its triangle's corners. Where all are the same, exactly that.

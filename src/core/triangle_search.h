@@ -45,13 +45,37 @@ ISOSHELL_HD inline double box_distance_sq(WorldPoint p, WorldPoint a, WorldPoint
 
 }  // namespace triangle_search
 
-/// In the plane where p lies over the triangle, on the edges elsewhere. Without a triangle's number.
+namespace triangle_search {
+
+/// Where p lies over a triangle that is flat at a: a height and what p has along it are taken upright to one edge, so
+/// that nothing is the small difference of two large products. Infinitely far where p does not lie over it.
+ISOSHELL_HD inline MeshPoint over_flat_triangle(WorldPoint ab, WorldPoint ac, WorldPoint ap) {
+  const double base_sq = dot(ab, ab);
+  if (!(base_sq > 0)) return {};
+  const double foot = dot(ac, ab) / base_sq, along = dot(ap, ab) / base_sq;
+  const WorldPoint height = ac + -foot * ab, beside = ap + -along * ab;
+  const double height_sq = dot(height, height), over = dot(beside, height);
+  if (!(over >= 0 && over <= height_sq && height_sq > 0)) return {};
+  const double c_part = over / height_sq, b_part = along - c_part * foot;
+  if (!(b_part >= 0 && b_part + c_part <= 1)) return {};
+  const WorldPoint rest = beside + -c_part * height;
+  return {dot(rest, rest), b_part, c_part};
+}
+
+}  // namespace triangle_search
+
+/// In the plane where p lies over the triangle, on the edges elsewhere. Without a triangle's number. However flat the
+/// triangle is, the distance is exact up to some 1e-12 of its size.
 ISOSHELL_HD inline MeshPoint nearest_of_triangle(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c) {
   using namespace triangle_search;
+  constexpr double kFlat = 1e-4;  // squared sine of the angle at a
   const WorldPoint ab = b - a, ac = c - a, ap = p - a;
   const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
   const double area_sq = bb * cc - bc * bc, v = cc * pb - bc * pc, w = bb * pc - bc * pb;
-  if (area_sq > 0 && v >= 0 && w >= 0 && v + w <= area_sq) {
+  if (area_sq <= kFlat * bb * cc) {
+    const MeshPoint over = over_flat_triangle(ab, ac, ap);
+    if (over.distance_sq < std::numeric_limits<double>::infinity()) return over;
+  } else if (v >= 0 && w >= 0 && v + w <= area_sq) {
     const WorldPoint rest = ap + (-v / area_sq) * ab + (-w / area_sq) * ac;
     return {dot(rest, rest), v / area_sq, w / area_sq};
   }

@@ -32,8 +32,9 @@ void check_exists(const std::string& path) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) {
-    const bool is_pattern = path.find('#') != std::string::npos || path.find('%') != std::string::npos;
-    refuse(path + ": no such file" + (is_pattern ? "; which frames a pattern stands for is said by frames" : ""));
+    const bool is_pattern = path.find_first_of("#%*") != std::string::npos;
+    refuse(path + ": no such file" +
+           (is_pattern ? "; a pattern of frames, as mesh.####.ply or mesh.%04d.ply, needs --frames, as 1-240" : ""));
   }
   if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
   if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once

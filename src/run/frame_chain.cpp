@@ -59,7 +59,7 @@ std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const TriangleSoup
   previous->vertices = last_->mesh.vertices;
   previous->triangles = last_->mesh.triangles;
   if (have_same_triangles(last_->surface, surface)) {
-    previous->carried = carry_with_triangles(previous->vertices, last_->surface, surface, context);
+    previous->carried = carry_with_triangles(last_->mesh, last_->surface, surface, context);
     return previous;
   }
   TriangleMesh moved = last_->mesh;

@@ -43,17 +43,40 @@ std::vector<WorldPoint> vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-/// carried[i] = carry(i), at once for all.
-template <class Carry>
-std::vector<WorldPoint> carry_all(size_t count, Context& context, Carry carry) {
-  std::vector<WorldPoint> carried(count);
+/// of(i) of each, at once for all.
+template <class Of>
+auto of_all(size_t count, Context& context, Of of) {
+  std::vector<decltype(of(size_t(0)))> all(count);
   run_with_threads(context, [&] {
     for (size_t from = 0; from < count; from += kPointsPerLook) {
       check_cancel(context, "carry");
-      for_each_index(from, std::min(count, from + kPointsPerLook), [&](size_t i) { carried[i] = carry(i); });
+      for_each_index(from, std::min(count, from + kPointsPerLook), [&](size_t i) { all[i] = of(i); });
     }
   });
-  return carried;
+  return all;
+}
+
+/// Whether p lies beside the triangle rather than over it: farther along it than from it.
+bool is_beside(WorldPoint p, const std::vector<WorldPoint>& at, const Triangle& t, const MeshPoint& place) {
+  const double over = dot(p - place_in(at, t, place), unit_normal(at, t));
+  return 2 * over * over < place.distance_sq;
+}
+
+/// Per vertex the place that it lies on. All faces of a file may be turned inside out, or a few: a vertex over one of
+/// those few stays with it, since with a face beside it, it would move to that one's edge.
+std::vector<MeshPoint> places_on(const TriangleMesh& mesh, const TriangleSoup& surface, Context& context) {
+  const TriangleGrid grid(surface.vertices, surface.triangles);
+  const size_t count = mesh.vertices.size();
+  std::vector<MeshPoint> nearest = of_all(count, context, [&](size_t i) { return grid.nearest(mesh.vertices[i]); });
+  const std::vector<WorldPoint> normals = vertex_normals(mesh);
+  size_t facing = 0;
+  for (size_t i = 0; i < count; ++i) facing += grid.is_facing(nearest[i].triangle, normals[i]);
+  const double outward = 2 * facing < count ? -1 : 1, edge_length = mean_edge_length(mesh);
+  return of_all(count, context, [&](size_t i) {
+    const MeshPoint place = facing_place(grid, mesh.vertices[i], nearest[i], outward * normals[i], edge_length);
+    const Triangle& t = surface.triangles[place.triangle];
+    return is_beside(mesh.vertices[i], surface.vertices, t, place) ? nearest[i] : place;
+  });
 }
 
 }  // namespace
@@ -62,17 +85,17 @@ bool have_same_triangles(const TriangleSoup& a, const TriangleSoup& b) {
   return a.vertices.size() == b.vertices.size() && a.triangles == b.triangles;
 }
 
-std::vector<WorldPoint> carry_with_triangles(const std::vector<WorldPoint>& points, const TriangleSoup& before,
+std::vector<WorldPoint> carry_with_triangles(const TriangleMesh& mesh, const TriangleSoup& before,
                                              const TriangleSoup& now, Context& context) {
   require_triangles(before);
   if (!have_same_triangles(before, now))
     throw Error(ErrorCode::usage, "carry", "the surface of this frame has other triangles than that of the one before");
-  const TriangleGrid grid(before.vertices, before.triangles);
-  return carry_all(points.size(), context, [&](size_t i) {
-    const MeshPoint place = grid.nearest(points[i]);
-    const Triangle& t = before.triangles[place.triangle];
-    const double offset = dot(points[i] - place_in(before.vertices, t, place), unit_normal(before.vertices, t));
-    return place_in(now.vertices, t, place) + offset * unit_normal(now.vertices, t);
+  const std::vector<MeshPoint> places = places_on(mesh, before, context);
+  return of_all(places.size(), context, [&](size_t i) {
+    const Triangle& t = before.triangles[places[i].triangle];
+    const WorldPoint offset = mesh.vertices[i] - place_in(before.vertices, t, places[i]);
+    return place_in(now.vertices, t, places[i]) +
+           dot(offset, unit_normal(before.vertices, t)) * unit_normal(now.vertices, t);
   });
 }
 
@@ -93,7 +116,7 @@ std::vector<WorldPoint> carry_onto(const TriangleMesh& mesh, const TriangleSoup&
   const TriangleGrid grid(now.vertices, now.triangles);
   const std::vector<WorldPoint> normals = vertex_normals(mesh);
   const double farther = 2 * mean_edge_length(mesh);
-  return carry_all(mesh.vertices.size(), context, [&](size_t i) {
+  return of_all(mesh.vertices.size(), context, [&](size_t i) {
     const MeshPoint place = facing_place(grid, mesh.vertices[i], normals[i], farther);
     return place_in(now.vertices, now.triangles[place.triangle], place);
   });

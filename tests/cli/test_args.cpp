@@ -166,6 +166,7 @@ TEST_CASE("args: files must say what they are", "[cli][args]") {
   CHECK(contains(refusal({"a.obj", "b.fbx"}), "ply, obj, stl, off"));
   CHECK(contains(refusal({"a.obj", "b"}), "ply, obj, stl, off"));
   CHECK(contains(refusal({"a.obj", "b.vdb"}), "ply, obj, stl, off"));
+  CHECK(contains(refusal({"a.1.obj", "a.2.obj", "a.3.obj", "b.ply"}), "'mesh.####.ply' with --frames"));
   CHECK(contains(refusal({"a.obj", "b.ply", "--stop-after", "shell"}), ".vdb"));
   CHECK(parse({"-", "-", "--input-format", "OBJ", "--output-format", ".STL"}).run->run.output.format == "stl");
   CHECK(parse({"a.obj", "--dry-run"}).run->dry_run);

@@ -44,7 +44,11 @@ TEST_CASE("command: an input that cannot be read exits with 3 and is named", "[c
   Folder folder;
   CHECK(folder.run("gone.off out.ply").status == 3);
   CHECK(contains(folder.run("gone.off out.ply").err, "gone.off: no such file"));
-  CHECK(contains(folder.run("gone.####.off out.ply").err, "which frames a pattern stands for is said by frames"));
+  for (const char* pattern : {"gone.####.off", "gone_%04d.off", "'*.off'"}) {
+    const auto r = folder.run(std::string(pattern) + " out.ply");
+    CHECK(r.status == 3);
+    CHECK(contains(r.err, "a pattern of frames, as mesh.####.ply or mesh.%04d.ply, needs --frames, as 1-240"));
+  }
   CHECK(contains(folder.run(". out.ply --input-format off").err, "is a folder"));
   folder.write("cloud.xyz", "0 0 0\n1 1 1\n");
   CHECK(folder.run("cloud.xyz out.ply").status == 5);

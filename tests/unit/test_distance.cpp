@@ -1,9 +1,11 @@
 // Distances between meshes whose distances are known by hand, or found by looking at every triangle.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/triangle_grid.h"
 #include "core/turn.h"
+#include "core/world_vector.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "support/catch.h"
@@ -29,6 +31,77 @@ MeshDistance distance(const TriangleMesh& mesh, const TriangleMesh& reference, i
 }
 
 constexpr DistanceOptions kExact{20000, true};
+
+/// Numbers from 0 to 1, one after the other.
+class Random {
+ public:
+  explicit Random(uint64_t seed) : seed_(seed) {}
+  double operator()() { return double(random_bits(seed_, next_++) >> 11) / double(uint64_t(1) << 53); }
+  WorldPoint point() { return {(*this)(), (*this)(), (*this)()}; }
+
+ private:
+  uint64_t seed_, next_ = 0;
+};
+
+double to_segment(WorldPoint p, WorldPoint a, WorldPoint b) {
+  const double size_sq = length_sq(b - a), part = size_sq > 0 ? dot(p - a, b - a) / size_sq : 0;
+  return length(p - (a + std::clamp(part, 0., 1.) * (b - a)));
+}
+
+/// By thirds: over segments parallel to the side from a to b the distance has one valley. No plane is asked for, so a
+/// triangle may be as flat as it will.
+double to_triangle(WorldPoint p, WorldPoint a, WorldPoint b, WorldPoint c) {
+  const auto at = [&](double part) { return to_segment(p, a + part * (c - a), b + part * (c - b)); };
+  double from = 0, to = 1;
+  for (int i = 0; i < 100; ++i) {
+    const double third = (to - from) / 3, left = from + third, right = to - third;
+    (at(left) <= at(right) ? to : from) = at(left) <= at(right) ? right : left;
+  }
+  return std::min({at(from), at(0), at(1)});
+}
+
+double to_mesh(WorldPoint p, const TriangleMesh& mesh) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : mesh.triangles)
+    least = std::min(least, to_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
+  return least;
+}
+
+/// A triangle of edges of about 1; its third corner lies so far from the line of two others.
+TriangleMesh flat_triangle(double height, Random& random) {
+  const WorldPoint a = random.point(), along = random.point();
+  std::array<WorldPoint, 3> corners{a, a + along, a + random() * along + height * random.point()};
+  std::rotate(corners.begin(), corners.begin() + int(3 * random()), corners.end());
+  return {{corners.begin(), corners.end()}, {{{0, 1, 2}}}};
+}
+
+/// `count` triangles here and there in a cube, flat ones among them.
+TriangleMesh random_mesh(int count, Random& random) {
+  TriangleMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const TriangleMesh one = flat_triangle(std::pow(10, -12 * random()), random);
+    const auto first = uint32_t(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), one.vertices.begin(), one.vertices.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+/// The farthest of points of a mesh from another one, and how far they are from their neighbours.
+struct Farthest {
+  double distance = 0, step = 0;
+};
+Farthest farthest_sample(const TriangleMesh& mesh, const TriangleMesh& to, int parts) {
+  Farthest found;
+  for (const auto& t : mesh.triangles) {
+    const WorldPoint a = mesh.vertices[t[0]], b = mesh.vertices[t[1]] - a, c = mesh.vertices[t[2]] - a;
+    found.step = std::max(found.step, std::max({length(b), length(c), length(c - b)}) / parts);
+    for (int i = 0; i <= parts; ++i)
+      for (int j = 0; i + j <= parts; ++j)
+        found.distance = std::max(found.distance, to_mesh(a + double(i) / parts * b + double(j) / parts * c, to));
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -252,4 +325,51 @@ TEST_CASE("distance: beside a crease normals are those of the best aligned side,
 
 TEST_CASE("distance: no samples are refused", "[distance][unit]") {
   CHECK_THROWS_AS(distance(square(1, 0), square(1, 0), 0, {0, false}), Error);
+}
+
+TEST_CASE("distance: that to a triangle is the one to its nearest point, however flat it is", "[distance][unit]") {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const TriangleMesh flat = flat_triangle(std::pow(10, -16 * random()), random);
+    const WorldPoint a = flat.vertices[0], b = flat.vertices[1], c = flat.vertices[2];
+    const double b_part = random(), c_part = (1 - b_part) * random();
+    const WorldPoint p = a + b_part * (b - a) + c_part * (c - a) + std::pow(10, -20 * random()) * random.point();
+    const MeshPoint found = nearest_of_triangle(p, a, b, c);
+    const double distance = std::sqrt(found.distance_sq), truth = to_triangle(p, a, b, c);
+    const double at = length(p - (a + found.b_part * (b - a) + found.c_part * (c - a)));
+    INFO(i << ": " << distance << " for " << truth << ", at a point " << at << " away");
+    REQUIRE(std::abs(distance - truth) < 1e-11);
+    REQUIRE(std::abs(at - truth) < 1e-11);
+  }
+}
+
+TEST_CASE("distance: the largest one between random meshes is the true one within the bound, both ways",
+          "[distance][unit]") {
+  Random random(2);
+  for (int i = 0; i < 20; ++i) {
+    const TriangleMesh mesh = random_mesh(1 + i / 2, random), reference = random_mesh(1 + i % 5, random);
+    const MeshDistance d = distance(mesh, reference, 1, {200, true});
+    const auto check = [&](const OneSidedDistance& side, const Farthest& truth) {
+      const double bound = std::max(2e-3 * side.max, 1e-9 * d.diagonal);
+      INFO(i << ": " << side.max << " to " << *side.at_most << " for " << truth.distance << ", step " << truth.step);
+      CHECK(side.max <= truth.distance + truth.step);
+      CHECK(*side.at_most >= truth.distance - 1e-14);
+      CHECK(*side.at_most <= side.max + bound);
+    };
+    check(d.to_reference, farthest_sample(mesh, reference, 24));
+    check(d.from_reference, farthest_sample(reference, mesh, 24));
+  }
+}
+
+TEST_CASE("distance: meshes of flat triangles are no farther from themselves than they were moved",
+          "[distance][unit]") {
+  Random random(3);
+  const TriangleMesh mesh = random_mesh(300, random);
+  for (const double by : {0., 1e-9, 1e-6, 1e-3}) {
+    TriangleMesh moved = mesh;
+    for (WorldPoint& p : moved.vertices) p = p + WorldPoint{0, by, 0};
+    const MeshDistance d = distance(moved, mesh, 0, kExact);
+    CHECK(d.largest() < by + 1e-11);
+    CHECK(*d.to_reference.at_most <= d.to_reference.max + std::max(2e-3 * d.to_reference.max, 1e-9 * d.diagonal));
+  }
 }

@@ -28,6 +28,24 @@ TriangleSoup moved(TriangleSoup soup) {
   return soup;
 }
 
+/// Squares of cells, one from `lo` at its height that faces up, one to `hi` at its height that faces down.
+TriangleSoup facing_sheets(WorldPoint lo, WorldPoint hi, uint32_t cells) {
+  const auto sheet = [&](double z) {
+    TriangleSoup s;
+    const auto along = [&](double from, double to, uint32_t i) { return from + i * (to - from) / cells; };
+    for (uint32_t j = 0; j <= cells; ++j)
+      for (uint32_t i = 0; i <= cells; ++i) s.vertices.push_back({along(lo.x, hi.x, i), along(lo.y, hi.y, j), z});
+    for (uint32_t j = 0; j < cells; ++j)
+      for (uint32_t i = 0; i < cells; ++i) {
+        const uint32_t a = j * (cells + 1) + i, c = a + cells + 2;
+        shapes::add_triangle(s, a, a + 1, c);
+        shapes::add_triangle(s, a, c, c - 1);
+      }
+    return s;
+  };
+  return shapes::together(sheet(lo.z), shapes::inside_out(sheet(hi.z)));
+}
+
 TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
 
 std::string refusal(const std::string& pattern) {
@@ -82,19 +100,51 @@ TEST_CASE("frames: a surface whose vertices have velocities takes points along",
 TEST_CASE("frames: points go along with the triangles under them", "[frames]") {
   CpuContext context;
   const TriangleSoup before = shapes::sphere({1, 2, 3}, 5, 24), now = moved(before);
-  std::vector<WorldPoint> points = before.vertices;
+  TriangleMesh mesh = mesh_of(before);
   for (const auto& t : before.triangles) {
     const WorldPoint &a = before.vertices[t[0]], &b = before.vertices[t[1]], &c = before.vertices[t[2]];
-    points.push_back({(a.x + b.x + 2 * c.x) / 4, (a.y + b.y + 2 * c.y) / 4, (a.z + b.z + 2 * c.z) / 4});
+    mesh.vertices.push_back({(a.x + b.x + 2 * c.x) / 4, (a.y + b.y + 2 * c.y) / 4, (a.z + b.z + 2 * c.z) / 4});
   }
-  const std::vector<WorldPoint> carried = carry_with_triangles(points, before, now, context);
+  const std::vector<WorldPoint> carried = carry_with_triangles(mesh, before, now, context);
   double farthest = 0;
-  for (size_t i = 0; i < points.size(); ++i) farthest = std::max(farthest, apart(carried[i], moved(points[i])));
+  for (size_t i = 0; i < carried.size(); ++i) farthest = std::max(farthest, apart(carried[i], moved(mesh.vertices[i])));
   CHECK(farthest < 1e-12);
   TriangleSoup other = now;
   std::swap(other.triangles[0][0], other.triangles[0][1]);
   CHECK_FALSE(have_same_triangles(before, other));
-  CHECK_THROWS_AS(carry_with_triangles(points, before, other, context), Error);
+  CHECK_THROWS_AS(carry_with_triangles(mesh, before, other, context), Error);
+}
+
+TEST_CASE("frames: vertices go along with the wall that faces their way, though another one is nearer", "[frames]") {
+  TriangleMesh mesh = mesh_of(facing_sheets({1, 1, .001}, {9, 9, .009}, 30));
+  for (size_t v = 0; v < mesh.vertices.size(); v += 3)
+    mesh.vertices[v].z = .01 - mesh.vertices[v].z;  // to the other wall
+  TriangleSoup before = facing_sheets({0, 0, 0}, {10, 10, .01}, 7), now = before;
+  const size_t half = mesh.vertices.size() / 2;
+  const auto goes = [&](size_t i, WorldPoint p) { return i < half ? moved(p) : WorldPoint{p.x, p.y + 1, p.z + 20}; };
+  for (size_t v = 0; v < now.vertices.size(); ++v)
+    now.vertices[v] = v < now.vertices.size() / 2 ? moved(now.vertices[v]) : goes(half, now.vertices[v]);
+  for (const bool turned : {false, true}) {
+    if (turned) before = shapes::inside_out(before), now = shapes::inside_out(now);
+    for (const int threads : {1, 3}) {
+      CpuContext context;
+      context.threads = threads;
+      const std::vector<WorldPoint> carried = carry_with_triangles(mesh, before, now, context);
+      double farthest = 0;
+      for (size_t i = 0; i < carried.size(); ++i)
+        farthest = std::max(farthest, apart(carried[i], goes(i, mesh.vertices[i])));
+      CHECK(farthest < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("frames: over faces that are turned inside out vertices keep their place, nearly", "[frames]") {
+  CpuContext context;
+  const TriangleMesh mesh = mesh_of(facing_sheets({1.07, 1.12, .001}, {8.9, 8.8, 5}, 8));
+  TriangleSoup before = facing_sheets({0, 0, 0}, {10, 10, 5.001}, 30);
+  for (size_t t = 0; t < before.triangles.size(); t += 5) std::swap(before.triangles[t][0], before.triangles[t][1]);
+  const std::vector<WorldPoint> carried = carry_with_triangles(mesh, before, moved(before), context);
+  for (size_t i = 0; i < carried.size(); ++i) CHECK(apart(carried[i], moved(mesh.vertices[i])) < .002);  // their height
 }
 
 TEST_CASE("frames: on another surface vertices stay on their side of a thin wall", "[frames]") {

@@ -260,7 +260,8 @@ void refuse_leftovers(const CLI::App& app) {
     refuse("unknown option " + left + (hint.empty() ? "; see --help" : "; did you mean " + hint + "?"));
   }
   if (!app.remaining().empty())
-    refuse("one argument too many: '" + app.remaining()[0] + "'; there is one INPUT and one OUTPUT");
+    refuse("one argument too many: '" + app.remaining()[0] +
+           "'; there is one INPUT and one OUTPUT, which are patterns as 'mesh.####.ply' with --frames");
 }
 
 /// CLI11 names neither the kind of number nor the remedy, and takes "-1" for the largest unsigned number.
