@@ -318,6 +318,14 @@ GltfAccessor GltfDocument::accessor(int64_t index, const std::string& from) cons
   return a;
 }
 
+int64_t GltfDocument::claimed_count(int64_t index) const {
+  const Json& all = list(json_, "accessors");
+  if (index >= int64_t(all.size()) || !all[size_t(index)].is_object()) return 0;
+  const auto count = all[size_t(index)].find("count");
+  const bool is_number = count != all[size_t(index)].end() && count->is_number_unsigned();
+  return is_number ? int64_t(std::min(count->get<uint64_t>(), uint64_t(bytes_))) : 0;
+}
+
 void GltfDocument::read_sparse(const Json& sparse, GltfAccessor& a) const {
   const std::string place = a.place + ".sparse";
   if (!sparse.is_object()) refuse(place, " is " + short_dump(sparse) + "; it must be an object");
