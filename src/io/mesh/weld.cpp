@@ -14,7 +14,7 @@ namespace {
 
 constexpr int64_t kCornersPerBlock = 1 << 16;
 constexpr int kMostPartBits = 10;
-constexpr int64_t kCornersPerPart = 1 << 14;
+constexpr int64_t kCornersPerPart = 1 << 15;
 constexpr int kMostRecentBits = 12;  // whose table fits the nearest cache
 constexpr uint32_t kNone = 0xffffffff;
 
@@ -104,11 +104,16 @@ struct DealtCorner {
   uint32_t corner, hash;
 };
 // Per corner an earlier one, or itself, at the same position. That of a corner that is among the `dealt`, ascending in
-// a list a block, is the first of all; that of another is among the dealt of its block.
+// each block, is the first of all; that of another is among the dealt of its block.
 struct EarlierCorners {
   Buffer<uint32_t> of;
-  std::vector<std::vector<DealtCorner>> dealt;
+  Buffer<DealtCorner> dealt;         // those of a block begin at its first corner's place
+  std::vector<int64_t> dealt_count;  // per block
 
+  explicit EarlierCorners(int64_t count) : of(count), dealt(count), dealt_count(size_t(block_count_of(count)), 0) {}
+  View<const DealtCorner> dealt_of(size_t block) const {
+    return {dealt.data() + int64_t(block) * kCornersPerBlock, dealt_count[block]};
+  }
   uint32_t first_of(int64_t i) const { return of[of[i]]; }
 };
 
@@ -116,28 +121,28 @@ struct EarlierCorners {
 template <class Corners>
 void find_recent(int64_t block, int64_t count, Corners corners, EarlierCorners& earlier) {
   RecentCorners recent(count, corners);
-  std::vector<DealtCorner>& dealt = earlier.dealt[size_t(block)];
+  int64_t dealt = block * kCornersPerBlock;
   each_in_block(block, count, [&](int64_t i) {
     const auto position = corners[i];
     const uint64_t weak = weak_hash(position);
     const uint32_t found = recent.find(weak, position, i);
     earlier.of[i] = found;
-    if (found == kNone) dealt.push_back({uint32_t(i), uint32_t(strong_hash(weak) >> 32)});
+    if (found == kNone) earlier.dealt[dealt++] = {uint32_t(i), uint32_t(strong_hash(weak) >> 32)};
   });
+  earlier.dealt_count[size_t(block)] = dealt - block * kCornersPerBlock;
 }
 
 template <class Corners>
 Parts<typename Corners::Real> deal(Corners corners, const EarlierCorners& earlier) {
-  int64_t total = 0;
-  for (const std::vector<DealtCorner>& dealt : earlier.dealt) total += int64_t(dealt.size());
+  int64_t total = std::accumulate(earlier.dealt_count.begin(), earlier.dealt_count.end(), int64_t(0));
   int part_bits = 0;
   while (part_bits < kMostPartBits && total >> part_bits > kCornersPerPart) ++part_bits;
-  const size_t part_count = size_t(1) << part_bits, block_count = earlier.dealt.size();
+  const size_t part_count = size_t(1) << part_bits, block_count = earlier.dealt_count.size();
   const auto part_of = [=](const DealtCorner& dealt) { return uint64_t(dealt.hash) >> (32 - part_bits); };
   std::vector<int64_t> at(part_count * block_count, 0);  // block major
   for_each_index(size_t(0), block_count, [&](size_t block) {
     int64_t* const counts = at.data() + block * part_count;
-    for (const DealtCorner& dealt : earlier.dealt[block]) ++counts[part_of(dealt)];
+    for (const DealtCorner& dealt : earlier.dealt_of(block)) ++counts[part_of(dealt)];
   });
   Parts<typename Corners::Real> parts{{}, Buffer<Entry<typename Corners::Real>>(total)};
   total = 0;
@@ -152,7 +157,7 @@ Parts<typename Corners::Real> deal(Corners corners, const EarlierCorners& earlie
   parts.start.push_back(total);
   for_each_index(size_t(0), block_count, [&](size_t block) {
     int64_t* const next = at.data() + block * part_count;
-    for (const DealtCorner& dealt : earlier.dealt[block])
+    for (const DealtCorner& dealt : earlier.dealt_of(block))
       parts.entries[next[part_of(dealt)]++] = {corners[dealt.corner], dealt.corner};
   });
   return parts;
@@ -179,7 +184,7 @@ void find_first(const Parts<Real>& parts, EarlierCorners& earlier) {
 
 template <class Corners>
 EarlierCorners earlier_corners(int64_t count, Corners corners) {
-  EarlierCorners earlier{Buffer<uint32_t>(count), std::vector<std::vector<DealtCorner>>(size_t(block_count_of(count)))};
+  EarlierCorners earlier(count);
   for_each_index(int64_t(0), block_count_of(count),
                  [&](int64_t block) { find_recent(block, count, corners, earlier); });
   find_first(deal(corners, earlier), earlier);
@@ -216,7 +221,7 @@ void weld_corners(const MeshSource& source, int64_t count, Corners corners, Vert
   std::vector<int64_t> start(size_t(block_count) + 1, int64_t(vertices.points.size()));
   std::vector<int64_t> nonfinite(start.size() - 1, 0);
   for_each_index(size_t(0), size_t(block_count), [&](size_t block) {
-    const std::vector<DealtCorner>& dealt = earlier.dealt[block];
+    const View<const DealtCorner> dealt = earlier.dealt_of(block);
     start[block + 1] = std::count_if(dealt.begin(), dealt.end(),
                                      [&](const DealtCorner& d) { return earlier.of[d.corner] == d.corner; });
   });
