@@ -1,5 +1,6 @@
 // glTF files made byte by byte: what they hold is read, what they promise and do not hold is refused.
 #include <cstring>
+#include <map>
 
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -62,6 +63,37 @@ const Attribute* find(const TriangleSoup& soup, const std::string& name) {
 }
 
 }  // namespace
+
+TEST_CASE("glTF: without indices, vertices are the positions in the order of their first corners",
+          "[mesh_file][unit]") {
+  std::string positions;
+  std::map<std::array<float, 3>, uint32_t> known;
+  std::vector<uint32_t> expected;
+  const uint32_t corners = 3 * 70000;  // of several blocks of corners
+  for (uint32_t i = 0; i < corners; ++i) {
+    // Neighbours share positions, and half of all corners one of anywhere; the z of 0 has both signs.
+    const uint32_t p = i % 2 == 0 ? i / 6 : uint32_t(i * 2654435761u) % 50000;
+    const float zero = i % 3 == 0 ? -0.0f : 0.0f;
+    positions += bytes_of<float>({float(p % 251), float(p / 251), zero});
+    expected.push_back(
+        known.emplace(std::array<float, 3>{float(p % 251), float(p / 251), 0}, known.size()).first->second);
+  }
+  const std::string size = std::to_string(positions.size());
+  const TriangleSoup soup = read_text_as(
+      "glb",
+      glb(document(positions.size(),
+                   R"("bufferViews":[{"buffer":0,"byteLength":)" + size +
+                       R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" + std::to_string(corners) +
+                       R"(,"type":"VEC3"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}])"),
+          positions));
+  CHECK(soup.vertices.size() == known.size());
+  Triangles triangles;
+  for (size_t i = 0; i < corners; i += 3) {
+    const std::array<uint32_t, 3> t{expected[i], expected[i + 1], expected[i + 2]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+  CHECK(soup.triangles == triangles);
+}
 
 TEST_CASE("glTF: indices of 8, 16 and 32 bits, and strips and fans without indices, are triangles",
           "[mesh_file][unit]") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
@@ -24,31 +25,43 @@ T load(const char* p) {
   return value;
 }
 
-/// Calls take(number of the value, value) for all components of all elements; the type of values is the accessor's.
-template <class Take>
-void each_value(const GltfElements& e, Take take) {
+/// Calls visit with the number of components, of 1 to 4, as a constant: loops over them are unrolled.
+template <class Visit>
+void with_components(int32_t components, Visit visit) {
+  if (components == 1) visit(std::integral_constant<int64_t, 1>());
+  if (components == 2) visit(std::integral_constant<int64_t, 2>());
+  if (components == 3) visit(std::integral_constant<int64_t, 3>());
+  if (components == 4) visit(std::integral_constant<int64_t, 4>());
+}
+
+/// Puts what `convert` makes of the components of all elements one behind the other. Elements have at most 4.
+template <class Out, class Convert>
+void convert_all(const GltfElements& e, Convert convert, Out* out) {
   if (!e.data) return;
   with_type(e.type, [&](auto number) {
     using T = decltype(number);
     constexpr auto kBytes = int64_t(sizeof(T));
-    if constexpr (kBytes <= 4) {
-      const bool is_packed = e.stride == e.components * kBytes;
-      for_ranges(e.count, kGrain, [&](int64_t begin, int64_t end) {
-        if (is_packed)
-          for (int64_t v = begin * e.components; v < end * e.components; ++v) take(v, load<T>(e.data + v * kBytes));
-        else
-          for (int64_t i = begin; i < end; ++i)
-            for (int64_t c = 0; c < e.components; ++c)
-              take(i * e.components + c, load<T>(e.data + i * e.stride + c * kBytes));
+    if constexpr (kBytes <= 4)
+      with_components(e.components, [&](auto components) {
+        constexpr int64_t kCount = components;
+        const bool is_packed = e.stride == kCount * kBytes;
+        for_ranges(e.count, kGrain, [&](int64_t begin, int64_t end) {
+          if (is_packed)
+            for (int64_t v = begin * kCount; v < end * kCount; ++v) out[v] = convert(load<T>(e.data + v * kBytes));
+          else
+            for (int64_t i = begin; i < end; ++i)
+              for (int64_t c = 0; c < kCount; ++c)
+                out[i * kCount + c] = convert(load<T>(e.data + i * e.stride + c * kBytes));
+        });
       });
-    }
   });
 }
 
 /// Which elements a sparse accessor replaces, all in range.
 std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccessor& a) {
   std::vector<uint32_t> replaced(size_t(a.replaced.count));
-  each_value(a.replaced, [&](int64_t i, auto value) { replaced[size_t(i)] = uint32_t(value); });
+  convert_all(
+      a.replaced, [](auto value) { return uint32_t(value); }, replaced.data());
   for (const uint32_t i : replaced)
     if (i >= a.count)
       document.refuse(a.replaced.place,
@@ -60,10 +73,10 @@ template <class Out, class Convert>
 void read(const GltfDocument& document, const GltfAccessor& a, Convert convert, Out* out) {
   const auto components = size_t(a.components);
   if (!a.data) std::fill_n(out, size_t(a.count) * components, Out(0));
-  each_value(a, [&](int64_t i, auto value) { out[i] = convert(value); });
+  convert_all(a, convert, out);
   const std::vector<uint32_t> replaced = replaced_of(document, a);
   std::vector<Out> values(replaced.size() * components);
-  each_value(a.replacements, [&](int64_t i, auto value) { values[size_t(i)] = convert(value); });
+  convert_all(a.replacements, convert, values.data());
   // One after another: a file may name an element twice.
   for (size_t i = 0; i < replaced.size(); ++i)
     std::copy_n(&values[i * components], components, out + replaced[i] * components);

@@ -26,18 +26,29 @@ uint32_t load_u32(const char* p) {
   return byte(0) | byte(1) | byte(2) | byte(3);
 }
 
+const char* find_char(const char* p, const char* end, char c) {
+  const void* const at = std::memchr(p, c, size_t(end - p));
+  return at ? static_cast<const char*>(at) : end;
+}
+
+/// The quote that ends a string of JSON, or `end`; p is behind the quote that begins it.
+const char* end_of_string(const char* p, const char* end) {
+  for (const char* quote = p;; quote = std::max(quote, p)) {
+    if (quote == p) quote = find_char(p, end, '"');
+    const char* const escape = find_char(p, quote, '\\');
+    if (escape == quote) return quote;
+    if (end - escape <= 2) return end;
+    p = escape + 2;  // what follows a backslash is no end
+  }
+}
+
 /// Whether lists and objects of JSON lie too deep in each other; its parser would not mind.
 bool is_nested_deeply(View<const char> text) {
   int depth = 0;
-  bool is_in_string = false;
-  for (int64_t i = 0; i < text.size && depth <= kMostNesting; ++i) {
-    const char c = text.data[i];
-    if (c == '"') is_in_string = !is_in_string;
-    if (is_in_string) {
-      i += c == '\\';  // what follows is no end
-    } else {
-      depth += (c == '[' || c == '{') - (c == ']' || c == '}');
-    }
+  for (const char* p = text.begin(); p < text.end() && depth <= kMostNesting; ++p) {
+    depth += (*p == '[' || *p == '{') - (*p == ']' || *p == '}');
+    if (*p == '"') p = end_of_string(p + 1, text.end());
+    if (p == text.end()) break;
   }
   return depth > kMostNesting;
 }
@@ -305,6 +316,14 @@ GltfAccessor GltfDocument::accessor(int64_t index, const std::string& from) cons
   const auto sparse = object.find("sparse");
   if (sparse != object.end()) read_sparse(*sparse, a);
   return a;
+}
+
+int64_t GltfDocument::claimed_count(int64_t index) const {
+  const Json& all = list(json_, "accessors");
+  if (index >= int64_t(all.size()) || !all[size_t(index)].is_object()) return 0;
+  const auto count = all[size_t(index)].find("count");
+  const bool is_number = count != all[size_t(index)].end() && count->is_number_unsigned();
+  return is_number ? int64_t(std::min(count->get<uint64_t>(), uint64_t(bytes_))) : 0;
 }
 
 void GltfDocument::read_sparse(const Json& sparse, GltfAccessor& a) const {

@@ -49,6 +49,11 @@ class GltfDocument {
 
   GltfAccessor accessor(int64_t index, const std::string& from) const;
   View<const char> bytes_of_view(int64_t index, const std::string& from) const;
+  /// Of all buffers.
+  int64_t bytes() const { return bytes_; }
+  /// How many elements an accessor says that it has, which is not checked and so no more than a hint of how much memory
+  /// to reserve: from 0 to bytes().
+  int64_t claimed_count(int64_t index) const;
 
  private:
   void read_container();

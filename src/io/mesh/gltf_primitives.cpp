@@ -1,11 +1,8 @@
 #include "io/mesh/gltf_primitives.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
-#include <functional>
 #include <map>
+#include <numeric>
 
 #include "core/parallel_ranges.h"
 
@@ -42,7 +39,7 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
     const std::string key = attributes->dump(-1, ' ', true, Json::error_handler_t::replace);
     const auto [at, is_new] = known.emplace(key, content.vertices.size());
     if (is_new) {
-      const GltfAccessor a = document.accessor(*position, place + ".attributes.POSITION");
+      GltfAccessor a = document.accessor(*position, place + ".attributes.POSITION");
       if (a.components != 3 || a.type == NumberType::u32)
         document.refuse(a.place,
                         " holds no positions; they are VEC3, of componentType 5126 or quantised to 5120 to 5123");
@@ -50,19 +47,20 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
       if (a.count > kMaxSoupVertices - first)
         document.source().refuse("holds more than " + std::to_string(kMaxSoupVertices) +
                                  " vertices, the most that can be read; split the file");
-      content.vertices.push_back({&*attributes, place + ".attributes", &instance.to_world, first, a.count});
-      content.first_vertex.back() += a.count;
+      content.vertices.push_back(
+          {&*attributes, place + ".attributes", &instance.to_world, first, a.count, std::move(a)});
+      content.first_vertex.back() += content.vertices.back().count;
     }
     is_posed |= primitive.contains("targets");
-    content.primitives.push_back({at->second, mode, document.integer(primitive, "indices", place),
-                                  document.integer(primitive, "material", place), place});
+    const auto indices = document.integer(primitive, "indices", place);
+    content.primitives.push_back({at->second, mode, indices, document.integer(primitive, "material", place), place});
+    content.claimed_corners += indices ? document.claimed_count(*indices) : content.vertices[at->second].count;
   }
   content.posed_meshes += is_posed;
 }
 
-/// Corner k of triangle t of a primitive.
+/// Corner k of triangle t of a strip or fan.
 int64_t place_of(int64_t mode, int64_t t, int k) {
-  if (mode == kTriangles) return 3 * t + k;
   if (mode == kFan) return k == 0 ? 0 : t + k;
   return t + (t % 2 == 0 || k == 0 ? k : 3 - k);  // every second triangle of a strip is turned
 }
@@ -74,51 +72,84 @@ bool turns_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || 
 void read_checked_indices(const GltfDocument& document, const GltfAccessor& a, int64_t vertices, uint32_t* out) {
   read_indices(document, a, out);
   const auto is_wrong = [&](uint32_t i) { return i >= vertices; };
-  const bool has_wrong = tbb::parallel_reduce(
-      tbb::blocked_range<int64_t>(0, a.count, kGrain), false,
-      [&](const tbb::blocked_range<int64_t>& r, bool found) {
-        return found || std::any_of(out + r.begin(), out + r.end(), is_wrong);
-      },
-      std::logical_or<bool>());
-  if (!has_wrong) return;
+  const int64_t wrong_ones = sum_over_ranges(a.count, kGrain, [&](int64_t begin, int64_t end) {
+    return int64_t(std::count_if(out + begin, out + end, is_wrong));
+  });
+  if (wrong_ones == 0) return;
   const uint32_t* const wrong = std::find_if(out, out + a.count, is_wrong);
   document.refuse(a.place, ", element " + std::to_string(wrong - out) + ", is " + std::to_string(*wrong) +
                                "; the primitive has " + std::to_string(vertices) + " vertices");
 }
 
-void add_triangles(const GltfDocument& document, const GltfContent& content, const GltfPrimitive& primitive,
-                   std::vector<Triangle>& out) {
-  const GltfVertices& vertices = content.vertices[primitive.vertices];
-  std::optional<GltfAccessor> indices;
-  if (primitive.indices) indices = document.accessor(*primitive.indices, primitive.place + ".indices");
-  const int64_t corners = indices ? indices->count : vertices.count;
-  const bool is_list = primitive.mode == kTriangles;
-  if (is_list && corners % 3 != 0)
-    document.refuse(primitive.place, " has " + std::to_string(corners) + " corners; triangles need a multiple of 3");
-  const int64_t count = is_list ? corners / 3 : std::max<int64_t>(corners - 2, 0);
-  const size_t first = out.size();
-  if (count > kMaxSoupTriangles - int64_t(first))
-    document.source().refuse("holds more than " + std::to_string(kMaxSoupTriangles) +
-                             " triangles, the most that can be read; split the file");
-  out.resize(first + size_t(count));
-  std::vector<uint32_t> of_strip(indices && !is_list ? size_t(corners) : 0);
-  uint32_t* const index = is_list ? reinterpret_cast<uint32_t*>(out.data() + first) : of_strip.data();
-  if (indices) read_checked_indices(document, *indices, vertices.count, index);
-  const bool mirrors = vertices.to_world->mirrors();
-  if (is_list && indices && vertices.first == 0 && !mirrors) return;
-  for_ranges(count, kGrain, [&](int64_t begin, int64_t end) {
-    for (int64_t t = begin; t < end; ++t) {
-      Triangle& triangle = out[first + size_t(t)];
-      for (int k = 0; k < 3; ++k) {
-        const int64_t at = place_of(primitive.mode, t, k);
-        triangle[size_t(k)] = uint32_t(vertices.first + (indices ? index[at] : at));
-      }
-      if (mirrors) std::swap(triangle[1], triangle[2]);
+/// Triangles of primitives one behind the other. As long as they are those of all vertices in order, only their number
+/// is kept.
+class TriangleCollector {
+ public:
+  TriangleCollector(const GltfDocument& document, const GltfContent& content, GltfTriangles& triangles)
+      : document_(document), content_(content), triangles_(triangles), out_(triangles.corners) {}
+
+  void add(const GltfPrimitive& primitive) {
+    const GltfVertices& vertices = content_.vertices[primitive.vertices];
+    std::optional<GltfAccessor> indices;
+    if (primitive.indices) indices = document_.accessor(*primitive.indices, primitive.place + ".indices");
+    const int64_t corners = indices ? indices->count : vertices.count;
+    const bool is_list = primitive.mode == kTriangles;
+    if (is_list && corners % 3 != 0)
+      document_.refuse(primitive.place, " has " + std::to_string(corners) + " corners; triangles need a multiple of 3");
+    const int64_t count = is_list ? corners / 3 : std::max<int64_t>(corners - 2, 0);
+    if (count > kMaxSoupTriangles - triangles_.count)
+      document_.source().refuse("holds more than " + std::to_string(kMaxSoupTriangles) +
+                                " triangles, the most that can be read; split the file");
+    const bool mirrors = vertices.to_world->mirrors();
+    if (is_list && !indices && !mirrors && out_.empty() && vertices.first == 3 * triangles_.count) {
+      triangles_.count += count;
+      return;
     }
-  });
-  if (primitive.mode == kStrip)
-    out.erase(std::remove_if(out.begin() + int64_t(first), out.end(), turns_a_corner), out.end());
-}
+    triangles_.write_out();
+    if (is_list)
+      add_list(vertices, indices, count, mirrors);
+    else
+      add_run(vertices, indices, corners, primitive.mode, mirrors);
+    triangles_.count = int64_t(out_.size());
+  }
+
+ private:
+  void add_list(const GltfVertices& vertices, const std::optional<GltfAccessor>& indices, int64_t count, bool mirrors) {
+    const size_t first = out_.size();
+    out_.resize(first + size_t(count));
+    auto* const corner = reinterpret_cast<uint32_t*>(out_.data() + first);
+    if (indices)
+      read_checked_indices(document_, *indices, vertices.count, corner);
+    else
+      std::iota(corner, corner + 3 * count, 0);
+    if (vertices.first == 0 && !mirrors) return;
+    for_ranges(count, kGrain, [&](int64_t begin, int64_t end) {
+      for (int64_t i = 3 * begin; i < 3 * end; ++i) corner[i] += uint32_t(vertices.first);
+      for (int64_t t = begin; mirrors && t < end; ++t) std::swap(corner[3 * t + 1], corner[3 * t + 2]);
+    });
+  }
+
+  /// Of a strip or fan.
+  void add_run(const GltfVertices& vertices, const std::optional<GltfAccessor>& indices, int64_t corners, int64_t mode,
+               bool mirrors) {
+    std::vector<uint32_t> index(static_cast<size_t>(corners));
+    if (indices)
+      read_checked_indices(document_, *indices, vertices.count, index.data());
+    else
+      std::iota(index.begin(), index.end(), 0);
+    for (int64_t t = 0; t + 2 < corners; ++t) {
+      Triangle triangle;
+      for (int k = 0; k < 3; ++k) triangle[size_t(k)] = uint32_t(vertices.first) + index[size_t(place_of(mode, t, k))];
+      if (mirrors) std::swap(triangle[1], triangle[2]);
+      if (mode == kFan || !turns_a_corner(triangle)) out_.push_back(triangle);
+    }
+  }
+
+  const GltfDocument& document_;
+  const GltfContent& content_;
+  GltfTriangles& triangles_;
+  std::vector<Triangle>& out_;
+};
 
 }  // namespace
 
@@ -135,23 +166,35 @@ std::optional<GltfAccessor> GltfVertices::find(const GltfDocument& document, con
 GltfContent content_of(const GltfDocument& document) {
   GltfContent content;
   content.instances = instances_of(document);
-  content.first_vertex = {0};
+  content.first_vertex = content.first_set = {0};
   for (const GltfInstance& instance : content.instances) {
     content.first_vertex.push_back(content.first_vertex.back());
     add_instance(document, instance, content);
+    content.first_set.push_back(int64_t(content.vertices.size()));
   }
   return content;
+}
+
+void GltfTriangles::write_out() {
+  if (!corners.empty()) return;
+  corners.resize(size_t(count));
+  auto* const first = reinterpret_cast<uint32_t*>(corners.data());
+  std::iota(first, first + 3 * count, 0);
 }
 
 GltfTriangles triangles_of(const GltfDocument& document, const GltfContent& content) {
   GltfTriangles triangles;
   bool has_material = false;
+  const bool has_indices = std::any_of(content.primitives.begin(), content.primitives.end(),
+                                       [](const GltfPrimitive& primitive) { return primitive.indices.has_value(); });
+  if (has_indices) triangles.corners.reserve(size_t(std::min(content.claimed_corners, document.bytes()) / 3));
   for (const GltfPrimitive& primitive : content.primitives) has_material |= primitive.material.has_value();
+  TriangleCollector collector(document, content, triangles);
   for (const GltfPrimitive& primitive : content.primitives) {
-    add_triangles(document, content, primitive, triangles.corners);
+    collector.add(primitive);
     if (primitive.material) document.element("materials", *primitive.material, primitive.place + ".material");
     if (has_material)
-      triangles.material.resize(triangles.corners.size(), primitive.material ? double(*primitive.material) : -1);
+      triangles.material.resize(size_t(triangles.count), primitive.material ? double(*primitive.material) : -1);
   }
   return triangles;
 }

@@ -12,6 +12,7 @@ struct GltfVertices {
   std::string place;
   const GltfTransform* to_world;
   int64_t first, count;
+  GltfAccessor position;
 
   /// The accessor of an attribute, checked to have as many elements as there are positions; none without one.
   std::optional<GltfAccessor> find(const GltfDocument& document, const std::string& semantic) const;
@@ -26,11 +27,16 @@ struct GltfPrimitive {
 
 struct GltfContent {
   std::vector<GltfInstance> instances;
-  std::vector<int64_t> first_vertex;  ///< per instance, and one more
+  std::vector<int64_t> first_vertex, first_set;  ///< per instance, and one more: into all vertices, and `vertices`
   std::vector<GltfVertices> vertices;
   std::vector<GltfPrimitive> primitives;  ///< of triangles
+  int64_t claimed_corners = 0;            ///< of all primitives, as the file says, unchecked
   int64_t other_primitives = 0;           ///< of points and lines, or without positions
   int64_t posed_meshes = 0;               ///< with skins or morph targets
+
+  View<const GltfVertices> vertices_of(size_t instance) const {
+    return {vertices.data() + first_set[instance], first_set[instance + 1] - first_set[instance]};
+  }
 };
 
 /// Reads no element of any accessor.
@@ -38,8 +44,16 @@ GltfContent content_of(const GltfDocument& document);
 
 /// Of all primitives, in order; `material` per triangle, -1 for none. Corners are numbers of vertices of the content.
 struct GltfTriangles {
-  std::vector<Triangle> corners;
-  std::vector<double> material;  ///< empty where no primitive has one
+  int64_t count = 0;
+  std::vector<Triangle> corners;  ///< empty where corner k of triangle t is vertex 3 t + k, of all vertices
+  std::vector<double> material;   ///< empty where no primitive has one
+
+  Triangle at(size_t t) const {
+    const auto first = uint32_t(3 * t);
+    return corners.empty() ? Triangle{first, first + 1, first + 2} : corners[t];
+  }
+  /// So that `corners` is not empty.
+  void write_out();
 };
 GltfTriangles triangles_of(const GltfDocument& document, const GltfContent& content);
 

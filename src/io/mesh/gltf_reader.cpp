@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel_ranges.h"
+#include "io/mesh/face_corners.h"
 #include "io/mesh/gltf_materials.h"
 #include "io/mesh/gltf_primitives.h"
 #include "io/mesh/mesh_readers.h"
@@ -24,42 +25,56 @@ void for_each_index(int64_t count, Work work) {
   });
 }
 
-/// As they are stored, that is, in no more than single precision.
-std::vector<RawPosition<float>> positions_of(const GltfDocument& document, const GltfContent& content) {
-  std::vector<RawPosition<float>> points(size_t(content.first_vertex.back()));
-  for (const GltfVertices& vertices : content.vertices)
-    read_values(document, *vertices.find(document, "POSITION"), true, &points[size_t(vertices.first)].x);
-  return points;
+/// Welds the vertices of an instance as they are stored, that is, in no more than single precision: in the file itself
+/// where one accessor has them as floats. `index` gets those that they become.
+void weld_instance(const GltfDocument& document, View<const GltfVertices> parts, VertexTable& vertices,
+                   uint32_t* index) {
+  if (parts.size == 1) {
+    const GltfAccessor& a = parts[0].position;
+    if (a.data && a.type == NumberType::f32 && a.replaced.count == 0)
+      return weld_corners(document.source(), a.count, StridedCorners{a.data, a.stride}, vertices, index);
+  }
+  int64_t count = 0;
+  for (const GltfVertices& part : parts) count += part.count;
+  Buffer<RawPosition<float>> stored(count);
+  for (const GltfVertices& part : parts)
+    read_values(document, part.position, true, &(stored.data() + (part.first - parts[0].first))->x);
+  weld_corners(document.source(), count, FloatCornerArray{stored.data()}, vertices, index);
 }
 
-/// Vertices of the result, and per vertex of the content which one it is; empty where all are vertices of the result.
-struct Welded {
-  VertexTable vertices;
-  std::vector<uint32_t> vertex_of;
-};
-
-/// Equal positions of an instance become one vertex; those of two instances stay apart.
-Welded weld(const MeshSource& source, const GltfContent& content, const std::vector<RawPosition<float>>& stored) {
-  Welded all{VertexTable(source, 0), std::vector<uint32_t>(stored.size())};
+/// Equal positions of an instance become one vertex; those of two instances stay apart. `index` is empty where all
+/// vertices of the content are vertices of the result.
+WeldedCorners weld(const GltfDocument& document, const GltfContent& content) {
+  WeldedCorners all{VertexTable(document.source(), 0),
+                    std::vector<Triangle>(size_t(content.first_vertex.back() + 2) / 3)};
+  auto* const index = reinterpret_cast<uint32_t*>(all.index.data());
   std::vector<WorldPoint>& points = all.vertices.points;
+  bool is_moved = false;
   for (size_t i = 0; i < content.instances.size(); ++i) {
-    const int64_t first = content.first_vertex[i], count = content.first_vertex[i + 1] - first;
-    WeldedCorners welded = weld_corners(source, count, FloatCornerArray{stored.data() + first});
-    const size_t base = points.size();
-    for_each_index(count, [&](int64_t v) {
-      all.vertex_of[size_t(first + v)] = uint32_t(base) + welded.index[size_t(v / 3)][size_t(v % 3)];
-    });
-    if (base == 0)
-      points = std::move(welded.vertices.points);
-    else
-      points.insert(points.end(), welded.vertices.points.begin(), welded.vertices.points.end());
-    for_each_index(int64_t(points.size() - base), [&](int64_t v) {
-      points[base + size_t(v)] = content.instances[i].to_world.point(points[base + size_t(v)]);
-    });
+    const int64_t base = int64_t(points.size());
+    weld_instance(document, content.vertices_of(i), all.vertices, index + content.first_vertex[i]);
+    const GltfTransform& to_world = content.instances[i].to_world;
+    if (to_world.is_identity) continue;
+    is_moved = true;
+    for_each_index(int64_t(points.size()) - base,
+                   [&](int64_t v) { points[size_t(base + v)] = to_world.point(points[size_t(base + v)]); });
   }
-  if (points.size() == stored.size()) all.vertex_of.clear();
-  all.vertices.count_nonfinite();
+  if (int64_t(points.size()) == content.first_vertex.back()) all.index.clear();
+  if (is_moved) all.vertices.count_nonfinite();
   return all;
+}
+
+/// Those of all triangles, in vertices of the result. What is no longer needed, unless it `is_kept`, is moved.
+std::vector<Triangle> triangles_of_vertices(GltfTriangles& triangles, WeldedCorners& welded, bool is_kept) {
+  if (!welded.index.empty() && triangles.corners.empty()) return is_kept ? welded.index : std::move(welded.index);
+  triangles.write_out();
+  std::vector<Triangle> result = is_kept ? triangles.corners : std::move(triangles.corners);
+  if (welded.index.empty()) return result;
+  const auto* const vertex_of = reinterpret_cast<const uint32_t*>(welded.index.data());
+  for_each_index(int64_t(result.size()), [&](int64_t t) {
+    for (uint32_t& corner : result[size_t(t)]) corner = vertex_of[corner];
+  });
+  return result;
 }
 
 /// What becomes of an attribute of primitives; an empty name: it is not taken.
@@ -84,9 +99,14 @@ Meaning meaning_of(const std::string& semantic) {
 
 class AttributeReader {
  public:
-  AttributeReader(const GltfDocument& document, const GltfContent& content, const std::vector<Triangle>& corners,
-                  const std::vector<uint32_t>& face_of, const Welded& welded, TriangleSoup& soup)
-      : document_(document), content_(content), corners_(corners), face_of_(face_of), welded_(welded), soup_(soup) {}
+  AttributeReader(const GltfDocument& document, const GltfContent& content, const GltfTriangles& triangles,
+                  const std::vector<uint32_t>& face_of, const std::vector<Triangle>& welded, TriangleSoup& soup)
+      : document_(document),
+        content_(content),
+        triangles_(triangles),
+        face_of_(face_of),
+        welded_(welded),
+        soup_(soup) {}
 
   void read() {
     std::vector<std::string> semantics;
@@ -169,26 +189,30 @@ class AttributeReader {
 
   /// A vertex has the value of the first of those that became it.
   void keep_first_of_welded(Attribute& attribute) const {
-    if (welded_.vertex_of.empty()) return;
+    if (welded_.empty()) return;
+    const auto* const vertex_of = reinterpret_cast<const uint32_t*>(welded_.data());
     const auto components = size_t(attribute.components);
     std::vector<double> values(soup_.vertices.size() * components);
-    for (size_t v = welded_.vertex_of.size(); v-- > 0;)
-      std::copy_n(&attribute.values[v * components], components, &values[welded_.vertex_of[v] * components]);
+    for (auto v = size_t(content_.first_vertex.back()); v-- > 0;)
+      std::copy_n(&attribute.values[v * components], components, &values[vertex_of[v] * components]);
     attribute.values = std::move(values);
   }
 
+  /// By the vertices of the content, which are those of the triangles where none were welded.
   void name_corners(Attribute& attribute) const {
+    if (welded_.empty()) return spread_to_corners(soup_.triangles, attribute);
     attribute.index.resize(3 * face_of_.size());
     for_each_index(int64_t(face_of_.size()), [&](int64_t t) {
-      std::copy_n(corners_[face_of_[size_t(t)]].begin(), 3, attribute.index.begin() + 3 * t);
+      const Triangle corners = triangles_.at(face_of_[size_t(t)]);
+      std::copy(corners.begin(), corners.end(), attribute.index.begin() + 3 * t);
     });
   }
 
   const GltfDocument& document_;
   const GltfContent& content_;
-  const std::vector<Triangle>& corners_;
+  const GltfTriangles& triangles_;
   const std::vector<uint32_t>& face_of_;
-  const Welded& welded_;
+  const std::vector<Triangle>& welded_;  ///< the vertices that those of the content became; empty: all are kept
   TriangleSoup& soup_;
 };
 
@@ -203,7 +227,9 @@ void add_materials(const GltfDocument& document, const std::vector<double>& of_c
     const bool is_named = name != object.end() && name->is_string() && !name->get_ref<const std::string&>().empty();
     material.labels.push_back(is_named ? name->get<std::string>() : "material_" + std::to_string(i));
   }
-  for (const uint32_t face : face_of) material.values.push_back(of_corners[face]);
+  material.values.resize(face_of.size());
+  for_each_index(int64_t(face_of.size()),
+                 [&](int64_t t) { material.values[size_t(t)] = of_corners[face_of[size_t(t)]]; });
   soup.attributes.push_back(std::move(material));
   soup.files.gltf_materials = gltf_materials_of(document);
 }
@@ -214,23 +240,19 @@ TriangleSoup read_gltf(const MeshSource& source) {
   const GltfDocument document(source);
   const GltfContent content = content_of(document);
   GltfTriangles triangles = triangles_of(document, content);
-  if (triangles.corners.empty() && content.other_primitives > 0)
+  if (triangles.count == 0 && content.other_primitives > 0)
     source.nothing_to_mesh("holds " + std::to_string(content.other_primitives) +
                            " primitives, none of them triangles with positions; write its surface as triangles");
-  Welded welded = weld(source, content, positions_of(document, content));
-  const bool has_more = !triangles.material.empty() ||
-                        std::any_of(content.vertices.begin(), content.vertices.end(),
-                                    [](const GltfVertices& vertices) { return vertices.attributes->size() > 1; });
-  const auto keep = has_more ? FaceCollector::Keep::faces_too : FaceCollector::Keep::triangles;
+  WeldedCorners welded = weld(document, content);
+  const bool has_attributes = std::any_of(content.vertices.begin(), content.vertices.end(),
+                                          [](const GltfVertices& vertices) { return vertices.attributes->size() > 1; });
+  const bool keeps_corners = has_attributes && !welded.index.empty();
+  const auto keep =
+      keeps_corners || !triangles.material.empty() ? FaceCollector::Keep::faces_too : FaceCollector::Keep::triangles;
   std::vector<FaceCollector> faces(1, FaceCollector(welded.vertices, keep));
-  std::vector<Triangle> of_vertices = has_more ? triangles.corners : std::move(triangles.corners);
-  if (!welded.vertex_of.empty())
-    for_each_index(int64_t(of_vertices.size()), [&](int64_t t) {
-      for (uint32_t& corner : of_vertices[size_t(t)]) corner = welded.vertex_of[corner];
-    });
-  faces[0].adopt(std::move(of_vertices));
+  faces[0].adopt(triangles_of_vertices(triangles, welded, keeps_corners));
   TriangleSoup soup = join_soup(source, std::move(welded.vertices), faces);
-  if (has_more) AttributeReader(document, content, triangles.corners, faces[0].face_of(), welded, soup).read();
+  if (has_attributes) AttributeReader(document, content, triangles, faces[0].face_of(), welded.index, soup).read();
   add_materials(document, triangles.material, faces[0].face_of(), soup);
   soup.dirt.other_primitives = content.other_primitives;
   soup.dirt.posed_meshes = content.posed_meshes;

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
+
+#include "core/parallel_ranges.h"
 
 namespace isoshell {
 namespace {
 
+constexpr int64_t kGrain = 1 << 14;
 constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 std::array<int8_t, 256> values_of_digits() {
@@ -30,22 +34,29 @@ std::optional<std::vector<char>> decoded_data(const std::string& uri) {
   static const std::string kMark = ";base64,";
   const size_t mark = uri.find(kMark);
   if (mark == std::string::npos) return {};
-  size_t begin = mark + kMark.size(), end = uri.size();
-  for (int i = 0; i < 2 && end > begin && uri[end - 1] == '='; ++i) --end;
-  if ((end - begin) % 4 == 1) return {};
-  std::vector<char> bytes;
-  bytes.reserve((end - begin) * 3 / 4);
-  uint32_t bits = 0;
-  int count = 0;
-  for (; begin < end; ++begin) {
-    const int8_t value = kValues[static_cast<unsigned char>(uri[begin])];
-    if (value < 0) return {};
-    bits = bits << 6 | uint32_t(value);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes.push_back(char(bits >> count & 0xff));
-  }
+  const char* const digits = uri.data() + mark + kMark.size();
+  auto count = int64_t(uri.data() + uri.size() - digits);
+  for (int i = 0; i < 2 && count > 0 && digits[count - 1] == '='; ++i) --count;
+  if (count % 4 == 1) return {};
+  std::vector<char> bytes(size_t(count * 3 / 4));
+  // Three bytes of four digits, the last of which may be fewer; negative where one of them is no digit.
+  const auto decode = [&](int64_t first, int64_t have) {
+    int32_t bits = 0, signs = 0;
+    for (int64_t i = 0; i < 4; ++i) {
+      const int32_t value = i < have ? kValues[static_cast<unsigned char>(digits[first + i])] : 0;
+      signs |= value;
+      bits = bits << 6 | (value & 63);
+    }
+    for (int64_t i = 0; i < have - 1; ++i) bytes[size_t(first / 4 * 3 + i)] = char(bits >> (16 - 8 * i) & 0xff);
+    return signs;
+  };
+  std::atomic<bool> is_sound = true;
+  for_ranges(count / 4, kGrain, [&](int64_t begin, int64_t end) {
+    int32_t signs = 0;
+    for (int64_t group = begin; group < end; ++group) signs |= decode(4 * group, 4);
+    if (signs < 0) is_sound = false;
+  });
+  if (decode(count / 4 * 4, count % 4) < 0 || !is_sound) return {};
   return bytes;
 }
 
