@@ -2,6 +2,7 @@
 // threads beside the stream.
 #include <algorithm>
 #include <cstring>
+#include <memory>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
@@ -34,19 +35,13 @@ void DeviceStream::copy_to_host(void* to, const void* from, int64_t bytes) {
   synchronize();
 }
 
-/// In a stream that no context uses at the moment.
-void DeviceStream::copy_beside(void* to, const void* from, int64_t bytes) const {
-  int current = -1;
-  require_success(cudaGetDevice(&current), "cudaGetDevice");
-  require_success(cudaSetDevice(device()), "cudaSetDevice");
-  DeviceStream* const beside = borrow(device());
-  beside->wait_for(*this);
-  const cudaError_t status = cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, beside->stream_);
-  const cudaError_t waited = cudaStreamSynchronize(beside->stream_);
-  give_back(beside);
-  cudaSetDevice(current);
-  require_success(status, "cudaMemcpyAsync");
-  require_success(waited, "cudaStreamSynchronize");
+/// In a stream that no context uses at the moment, or in this one where no other is to be had.
+void DeviceStream::copy_beside(void* to, const void* from, int64_t bytes) {
+  const std::unique_ptr<DeviceStream, decltype(&give_back)> borrowed(borrow_beside(), give_back);
+  DeviceStream& stream = borrowed ? *borrowed : *this;
+  if (borrowed) stream.wait_for(*this);
+  require_success(cudaMemcpyAsync(to, from, size_t(bytes), cudaMemcpyDeviceToHost, stream.stream_), "cudaMemcpyAsync");
+  stream.synchronize();
 }
 
 /// Whether the calling thread runs the stream's stages.

@@ -156,6 +156,17 @@ DeviceStream* DeviceStream::borrow(int device) {
   return new DeviceStream(pool, processors, stream, event, pinned);
 }
 
+DeviceStream* DeviceStream::borrow_beside() const noexcept {
+  if (DeviceStream* const idle = take_idle_stream(pool_)) return idle;
+  int current = -1;
+  if (cudaGetDevice(&current) != cudaSuccess || current != device()) return nullptr;
+  try {
+    return borrow(device());
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
 void DeviceStream::give_back(void* stream) noexcept {
   auto* idle = static_cast<DeviceStream*>(stream);
   if (idle->held_bytes() > 0) idle->release_kept();  // the next context takes another stream

@@ -96,11 +96,13 @@ class DeviceStream final : public Memory {
   /// One of the device, the current one, that no context uses. It is given back as what it was borrowed as.
   static DeviceStream* borrow(int device);
   static void give_back(void* stream) noexcept;
+  /// The same from any thread, whose current device stays. Null where there is none without changing that.
+  DeviceStream* borrow_beside() const noexcept;
   void* take(int64_t bytes);
   bool is_users_thread() const;
   bool is_used_here() const;
   bool has_staging();
-  void copy_beside(void* to, const void* from, int64_t bytes) const;
+  void copy_beside(void* to, const void* from, int64_t bytes);
   void copy_few_to_host(void* to, const void* from, int64_t bytes);
   void copy_many_to_host(char* to, const char* from, int64_t bytes);
   void make_tiles(int64_t tiles);

@@ -51,6 +51,7 @@ constexpr int kThreads = 256;
 }  // namespace
 
 void exclusive_scan_async(DeviceStream& stream, View<int64_t> values) {
+  if (values.empty()) return;
   const int64_t count = values.size - 1;
   const bool few = scan_kernels::are_few(count);
   const auto kernel = few ? scan_kernels::scan<scan_kernels::per_thread(true), false, int64_t, ValueAt>

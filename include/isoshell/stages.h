@@ -84,7 +84,7 @@ struct SheetOptions {
 /// no component is left, out_of_memory when the box passes the CPU's limit.
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples,
                   const SheetOptions& options, Context& context);
-/// The same where nothing reads the samples afterwards: they are freed before the sheet takes most memory.
+/// The same where nothing reads the samples afterwards: they may be freed before the sheet takes most memory.
 Sheet build_sheet(const LatticeSurface& surface, const SiteSet& sites, SiteSamples&& samples,
                   const SheetOptions& options, Context& context);
 
@@ -266,8 +266,8 @@ struct OptimizedMesh : SeededMesh {
 /// tested, the vertices around go back to where they were on the surface, then to where they began. Result: still
 /// closed and 2-manifold, same genus. Fixed vertices stay where they are, with the edges of their borders; they are to
 /// have as many triangles as their angle holds, and copies count as one vertex where intersections are looked for.
-/// A closed component of at most 32 triangles bounds a volume of the same sign as the surface's component that it is on.
-/// Throws: usage when surface or mesh have a border without fixed seeds.
+/// A closed component of at most 32 triangles bounds a volume of the same sign as the surface's component that it is
+/// on. Throws: usage when surface or mesh have a border without fixed seeds.
 OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
                             Context& context);
 

@@ -295,7 +295,8 @@ class PatchRounds {
     Wrong failed(*next);
     for (const auto& [patch, place] : failed_here.where) failed.add(patch_in_whole[patch], place);
     Wrong left = left_of(*next, whole, std::move(failed));
-    if (left.where.size() >= wrong.where.size()) helpless_work_ += piece.cut.fine->triangles.size();
+    const bool has_helped = left.where.size() < wrong.where.size();
+    helpless_work_ = has_helped ? 0 : helpless_work_ + piece.cut.fine->triangles.size();
     return {next, std::move(whole), std::move(left)};
   }
 
@@ -320,7 +321,7 @@ class PatchRounds {
   Context& context_;
   NewCrossings crossings_;
   size_t work_ = 0;           ///< triangles of the fine mesh on which patches were made again
-  size_t helpless_work_ = 0;  ///< of these the ones after which no less was wrong
+  size_t helpless_work_ = 0;  ///< of these the last ones, after which no less was wrong
 };
 
 }  // namespace

@@ -131,17 +131,16 @@ std::optional<double> smallest_cell_world(const TriangleSoup& soup, const InputT
 }
 
 /// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
-int32_t resolution_for_lengths(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
-                               int32_t usual, RemeshReport& report, Context& context) {
-  memory_allows(estimate_run(soup, input, options, usual), false, report, context);
-  const auto [lo, hi] = bounding_box(soup);
-  const LatticeFrame frame = LatticeFrame::around(lo, hi, usual);
+int32_t resolution_for_lengths(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
+                               const RemeshOptions& options, int32_t usual, RemeshReport& report, Context& context) {
+  memory_allows(estimate_run(soup, box, input, options, usual), false, report, context);
+  const LatticeFrame frame = LatticeFrame::around(box.min, box.max, usual);
   const std::optional<double> cell_world = smallest_cell_world(soup, input, options, frame, report, context);
   if (!cell_world) return usual;
   int32_t resolution =
       resolution_for_cell(frame.voxel_size * (usual - 1), *cell_world, vertex_target(options, input.area_world));
   while (resolution > usual && context.memory_limit_bytes > 0 &&
-         estimate_run(soup, input, options, resolution).bytes > context.memory_limit_bytes)
+         estimate_run(soup, box, input, options, resolution).bytes > context.memory_limit_bytes)
     resolution = std::max(usual, resolution - resolution / 8);
   return resolution;
 }
@@ -155,7 +154,7 @@ Prepared prepare_on_best_grid(const TriangleSoup& soup, const WorldBox& box, con
   const bool free_grid = !options.resolution && !options.voxel_size_world;
   const int32_t usual = first_resolution(options, input.area_world, lo, hi);
   const int32_t first = free_grid && wants_lengths(options)
-                            ? resolution_for_lengths(soup, input, options, usual, report, context)
+                            ? resolution_for_lengths(soup, box, input, options, usual, report, context)
                             : usual;
   // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
   const bool reachable = can_compare(input) && shows_all_parts(options, input);

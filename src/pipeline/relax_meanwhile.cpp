@@ -61,7 +61,8 @@ void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshRep
     const bool wants_room = dynamic_cast<const NoRoom*>(&error) || error.code() == ErrorCode::out_of_memory;
     if (!wants_room) throw;
   }
-  if (made.relaxed.seeds.size() > 0) prepared.relaxed = std::make_shared<RelaxedMeanwhile>(std::move(made));
+  if (made.relaxed.seeds.size() > 0 && !search->has_found_curves())
+    prepared.relaxed = std::make_shared<RelaxedMeanwhile>(std::move(made));
 }
 
 RelaxedSeeds relaxed_by_levels(const Prepared& prepared, const RemeshOptions& options, Context& context) {

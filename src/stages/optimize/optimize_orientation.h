@@ -95,7 +95,8 @@ struct IsSmallClosed {
   ComponentsView components;
   int64_t on_borders;
   ISOSHELL_HD int64_t operator()(int64_t v) const {
-    return components.root[v] == v && v >= on_borders && components.triangles[v] <= kMostTurned ? 1 : 0;
+    const int64_t triangles = components.root[v] == v && v >= on_borders ? components.triangles[v] : 0;
+    return triangles > 0 && triangles <= kMostTurned ? 1 : 0;
   }
 };
 
@@ -106,8 +107,8 @@ struct TurnTriangle {
   View<const uint32_t> home;
   ISOSHELL_HD void operator()(int64_t i) const {
     TriangleIndices& t = triangles[i];
-    if (!of_mesh(of_mesh.components.root[t.a])) return;
-    if (of_mesh.components.is_inside_out(t.a) == of_surface.is_inside_out(home[t.a])) return;
+    const uint32_t root = of_mesh.components.root[t.a];
+    if (!of_mesh(root) || of_mesh.components.is_inside_out(root) == of_surface.is_inside_out(home[root])) return;
     const uint32_t b = t.b;
     t.b = t.c;
     t.c = b;
