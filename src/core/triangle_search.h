@@ -43,10 +43,6 @@ ISOSHELL_HD inline double box_distance_sq(WorldPoint p, WorldPoint a, WorldPoint
   return outside_sq(p.x, a.x, b.x, c.x) + outside_sq(p.y, a.y, b.y, c.y) + outside_sq(p.z, a.z, b.z, c.z);
 }
 
-}  // namespace triangle_search
-
-namespace triangle_search {
-
 /// Where p lies over a triangle that is flat at a: a height and what p has along it are taken upright to one edge, so
 /// that nothing is the small difference of two large products. Infinitely far where p does not lie over it.
 ISOSHELL_HD inline MeshPoint over_flat_triangle(WorldPoint ab, WorldPoint ac, WorldPoint ap) {
