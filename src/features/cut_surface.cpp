@@ -63,7 +63,9 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   if (options.vertices > 0 || options.asked.vary())
     vary_edge_lengths(fine, graph, facing, {options.vertices, options.asked.growth, options.asked.field != nullptr});
   check_cancel(context, "features");
-  place_path_seeds(fine, facing);
+  std::vector<WorldPoint> before;
+  for (const WorldPoint& p : options.before) before.push_back(on_lattice(frame, p));
+  place_path_seeds(fine, facing, before);
   fine = refine_mesh(std::move(fine), context, &graph.neighbours);
   begin_loops_at_seeds(fine);
   return flip_flat_edges(std::move(fine), &twins);

@@ -54,9 +54,10 @@ inline size_t patch_count(const CutSurface& cut) {
 }
 
 struct CutOptions {
-  double edge_length_world = 0;  ///< aimed at, everywhere the same
-  int64_t vertices = 0;          ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
-  AskedLengths asked = {};       ///< in proportion to these, or with 0 vertices these
+  double edge_length_world = 0;         ///< aimed at, everywhere the same
+  int64_t vertices = 0;                 ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
+  AskedLengths asked = {};              ///< in proportion to these, or with 0 vertices these
+  std::vector<WorldPoint> before = {};  ///< vertices of another mesh, which stay seeds of curves where they lie on one
 };
 
 /// Snaps a mesh to the lattice, with edges cut into thirds of the edge length aimed at and a vertex wherever a seed

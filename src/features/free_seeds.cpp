@@ -169,6 +169,26 @@ FreeSeeds::Counts FreeSeeds::coarser(const SeedSet& fixed, const Counts& finer) 
   return out;
 }
 
+FreeSeeds::Counts FreeSeeds::as_before(const Counts& wanted, const Counts& before) const {
+  Counts out;
+  int64_t missing = 0;
+  for (size_t p = 0; p < patches_.size(); ++p) {
+    const int64_t slack = std::max<int64_t>(8, wanted[p] / 8), most = patches_[p].inside / 2;
+    out.push_back(std::clamp(before[p], std::min(wanted[p], std::max(kFewestOfClosed, wanted[p] - slack)),
+                             std::max(wanted[p], std::min(most, wanted[p] + slack))));
+    missing += wanted[p] - out.back();
+  }
+  for (; missing != 0; missing += missing > 0 ? -1 : 1) {
+    const int64_t step = missing > 0 ? 1 : -1;
+    const auto share_missing = [&](size_t p) { return double(step * (wanted[p] - out[p])) / double(wanted[p] + 1); };
+    size_t most = 0;
+    for (size_t p = 1; p < out.size(); ++p)
+      if (share_missing(p) > share_missing(most)) most = p;
+    out[most] += step;
+  }
+  return out;
+}
+
 /// A point at random in a triangle, as place_seeds takes it; its home is the corner of the largest weight that is not
 /// on a border.
 FreeSeeds::FreeSeed FreeSeeds::seed_in(uint32_t triangle, uint64_t r) const {

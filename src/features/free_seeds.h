@@ -29,10 +29,14 @@ class FreeSeeds {
   /// the coarser level.
   Counts coarser(const SeedSet& fixed, const Counts& finer) const;
 
+  /// As many in all as are wanted, and in each patch what it had before, as far as that is within a twentieth of what
+  /// is wanted there, or two.
+  Counts as_before(const Counts& wanted, const Counts& before) const;
+
   /// Spread at random, as place_seeds does it: each in a triangle that has a vertex off the border, which is its home.
   SeedSet add(SeedSet fixed, const Counts& counts, uint64_t seed) const;
-  /// Those of a coarser level, or of another mesh, and the middles of its inner edges, the longest first; at random
-  /// where these are too few.
+  /// Those of a coarser level, or of another mesh, the first ones of each patch, and the middles of its inner edges,
+  /// the longest first; at random where these are too few.
   SeedSet add_finer(SeedSet fixed, const Counts& counts, const SeededMesh& coarse, uint64_t seed) const;
 
  private:

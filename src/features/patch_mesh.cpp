@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kRings = 2;                       ///< of triangles around what is changed
 constexpr double kLess = 0.97;                  ///< of the cost that a change must leave
+constexpr double kLessIfSteady = 0.5;           ///< the same of one in a frame that follows another
 constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triangle itself must have for changes to pay
 constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
 constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor
@@ -36,11 +37,11 @@ void sort_unique(std::vector<T>& values) {
 
 }  // namespace
 
-PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, int64_t vertices)
+PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
     : cut_(&cut),
       lookup_(std::make_shared<CutLookup>(cut)),
       hopeless_(std::make_shared<std::unordered_set<uint64_t>>()),
-      wanted_(vertices) {
+      options_(options) {
   const OnHost<SeedSet> seeds(made.seeds);
   const OnHost<DualMesh> open(made.mesh);
   const JoinedMesh joined = join_patches(*open, seeds->fixed);
@@ -210,22 +211,27 @@ std::vector<MeshRegion> PatchMesh::promising(const MeshRegion& region, Reach rea
 
 /// What moves and flips alone leave, where no triangle is poor then, or the best of what a change more leaves, the
 /// nearest ones first. None where that is not enough.
-std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) {
+std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) const {
   MeshRegion relaxed = start;
   relaxed.relax();
   if (!relaxed.is_better_than(start)) relaxed = start;
   if (relaxed.poor() == 0) return relaxed;
   const bool is_enough = relaxed.cost() < kLess * start.cost();
-  if (is_among_worse(start)) return is_enough ? std::make_optional(relaxed) : std::nullopt;
+  const auto relaxed_if_enough = [&] { return is_enough ? std::make_optional(relaxed) : std::nullopt; };
+  if (is_among_worse(start)) return relaxed_if_enough();
+  const auto is_worth_it = [&](const MeshRegion& region) {
+    const bool may_renumber = !options_.is_steady || region.poor() == 0;
+    return region.cost() < (may_renumber ? kLess * start.cost() : kLessIfSteady * relaxed.cost());
+  };
   MeshRegion best = relaxed;
   for (const Reach reach : {Reach::corners, Reach::beyond}) {
     for (MeshRegion& there : promising(relaxed, reach)) {
       there.relax(kHopeless * best.cost());
       if (there.cost() < best.cost() && there.is_better_than(start)) best = std::move(there);
     }
-    if (best.cost() < kLess * start.cost()) return best;
+    if (is_worth_it(best)) return best;
   }
-  return {};
+  return relaxed_if_enough();
 }
 
 /// Takes out those, in their order, around which no triangle is that is around one before.

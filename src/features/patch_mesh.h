@@ -20,17 +20,23 @@ struct JoinedPatches {
   int64_t on_curves = 0;  ///< vertices on curves and corners
 };
 
+/// What becomes of the mesh of patches.
+struct JoinOptions {
+  int64_t vertices;  ///< that it is to have
+  /// In a frame that follows another: vertices come and go only where no triangle is poor then, or that halves a cost.
+  bool is_steady = false;
+};
+
 class PatchMesh {
  public:
-  /// `vertices`: how many there are to be.
-  PatchMesh(const CutSurface& cut, const SeededMesh& made, int64_t vertices);
+  PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options);
 
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
   /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
   /// Result: whether anything was changed. The same for every number of threads.
   bool improve(std::vector<uint32_t> triangles);
-  int64_t surplus() const { return count_ - wanted_; }
+  int64_t surplus() const { return count_ - options_.vertices; }
   /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
   void meet_count(const Context& context);
 
@@ -71,7 +77,7 @@ class PatchMesh {
   static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
   static bool make(MeshRegion& region, const Change& change);
   static std::vector<MeshRegion> promising(const MeshRegion& region, Reach reach);
-  static std::optional<MeshRegion> improved(const MeshRegion& start);
+  std::optional<MeshRegion> improved(const MeshRegion& start) const;
   std::optional<MeshRegion> recounted(const MeshRegion& start) const;
 
   const CutSurface* cut_;
@@ -83,7 +89,8 @@ class PatchMesh {
   std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried
   std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
   std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
-  int64_t count_ = 0, wanted_;
+  int64_t count_ = 0;
+  JoinOptions options_;
 };
 
 }  // namespace isoshell

@@ -8,6 +8,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/world_vector.h"
+#include "features/carried_places.h"
 #include "features/seeds_across.h"
 
 namespace isoshell {
@@ -18,7 +19,10 @@ constexpr double kTooSoon = 0.4;  ///< of a step
 constexpr double kLongest = 1.6;  ///< segment, in edge lengths
 constexpr double kCostOfDistance = 10;
 constexpr double kCostOfFacing = 0.08;
+constexpr double kGainOfStaying = 0.5;
 constexpr int kSweeps = 3;  ///< over the paths that others run along
+
+using PlacesBefore = std::vector<std::vector<PathPoint>>;  ///< per path those of seeds that may stay
 
 /// A place where a seed may be.
 struct Candidate {
@@ -29,8 +33,40 @@ struct Candidate {
   double cost = 0;     ///< of a seed there
 };
 
-/// All vertices, except those that follow too soon, and points between them. A loop ends with its first vertex.
-std::vector<Candidate> list_candidates(const FineMesh& mesh, const CurvePath& path) {
+PlacesBefore places_before(const FineMesh& mesh, const std::vector<WorldPoint>& points) {
+  PlacesBefore places(mesh.paths.size());
+  for (const PlaceOnPath& place : places_on_paths(mesh, points))
+    if (place.path != PlaceOnPath::kNoPath && place.at.edge < mesh.paths[place.path].edge_count())
+      places[place.path].push_back(place.at);
+  return places;
+}
+
+/// The candidate at a place: a vertex of the path where one is near, else a new one, in the stead of one that is near.
+Candidate& candidate_at(const FineMesh& mesh, const CurvePath& path, const std::vector<double>& segments,
+                        PathPoint point, double too_soon, std::vector<Candidate>& candidates) {
+  const double begin = segments[point.edge], end = segments[point.edge + 1];
+  const double at = begin + point.part * (end - begin);
+  const auto next = std::lower_bound(candidates.begin() + 1, candidates.end() - 1, at,
+                                     [](const Candidate& c, double place) { return c.segments < place; });
+  const auto near = at - (next - 1)->segments < next->segments - at ? next - 1 : next;
+  const bool is_near = std::abs(near->segments - at) < too_soon;
+  if (is_near && near->point.part == 0) return *near;
+  if (at - begin < too_soon) point.part = 0;
+  const bool is_at_end = end - at < too_soon;
+  const double part = is_at_end ? 1 : point.part;
+  const uint32_t u = path.vertex[point.edge], v = path.edge_end(point.edge);
+  if (is_at_end) point = {point.edge + 1, 0};
+  const Candidate there{point, mesh.position[u] + part * (mesh.position[v] - mesh.position[u]),
+                        begin + part * (end - begin), (1 - part) * mesh.edge_length[u] + part * mesh.edge_length[v]};
+  if (!is_near) return *candidates.insert(next, there);
+  *near = there;
+  return *near;
+}
+
+/// All vertices, except those that follow too soon, points between them, and places of seeds that may stay. A loop ends
+/// with its first vertex.
+std::vector<Candidate> list_candidates(const FineMesh& mesh, const CurvePath& path,
+                                       const std::vector<PathPoint>& before) {
   const std::vector<double> segments = segments_along(mesh, path);
   const double step = std::min(kStep, segments.back() / (4 * double(path.least_segments)));
   std::vector<Candidate> out;
@@ -48,6 +84,9 @@ std::vector<Candidate> list_candidates(const FineMesh& mesh, const CurvePath& pa
   while (out.size() > 1 && segments.back() < out.back().segments + kTooSoon * step) out.pop_back();
   const uint32_t end = path.edge_end(path.edge_count() - 1);
   out.push_back({{path.edge_count(), 0}, mesh.position[end], segments.back(), mesh.edge_length[end]});
+  for (const PathPoint& point : before)
+    candidate_at(mesh, path, segments, point, kTooSoon * step, out).cost = -kGainOfStaying;
+  if (path.is_loop) out.front().cost = out.back().cost = std::min(out.front().cost, out.back().cost);
   return out;
 }
 
@@ -70,8 +109,9 @@ double cost_of_distance(const std::vector<Candidate>& c, size_t from, size_t to,
   return kCostOfDistance * farthest_sq / (edge * edge);
 }
 
-/// The cheapest way from the first to the last; of two that cost the same the one whose last segment is shorter.
-std::vector<size_t> cheapest(const std::vector<Candidate>& c) {
+/// The cheapest way from the first to the last; of two that cost the same the one whose last segment is shorter. The
+/// bends of a jagged path cost nothing.
+std::vector<size_t> cheapest(const std::vector<Candidate>& c, bool is_jagged) {
   std::vector<double> cost(c.size(), std::numeric_limits<double>::infinity());
   std::vector<size_t> before(c.size(), 0);
   cost[0] = 0;
@@ -83,6 +123,10 @@ std::vector<size_t> cheapest(const std::vector<Candidate>& c) {
       const double of_length = cost_of_length(c, from, to);
       const auto sum_with = [&](double of_distance) { return cost[from] + (of_length + of_distance + c[to].cost); };
       if (!is_better(sum_with(0), from)) return;  // distance does not make it less
+      if (is_jagged) {
+        cost[to] = sum_with(0), before[to] = from;
+        return;
+      }
       const size_t middle = (from + to + 1) / 2;
       if (middle < to && !is_better(sum_with(cost_of_distance(c, from, to, middle, middle + 1)), from)) return;
       const double sum = sum_with(cost_of_distance(c, from, to, from + 1, to));
@@ -129,10 +173,12 @@ std::vector<Candidate> from_cheapest(const std::vector<Candidate>& c) {
   return out;
 }
 
-void place_seeds(const std::vector<Candidate>& candidates, CurvePath& path) {
+void place_seeds(const std::vector<Candidate>& candidates, bool any_stays, CurvePath& path) {
   const auto least = size_t(path.least_segments);
   const auto nearest = std::min(size_t(candidates.back().segments + 0.5), candidates.size() - 1);
-  std::vector<size_t> way = path.is_jagged ? even(candidates, std::max<size_t>(1, nearest)) : cheapest(candidates);
+  const bool is_even = path.is_jagged && !any_stays;
+  std::vector<size_t> way =
+      is_even ? even(candidates, std::max<size_t>(1, nearest)) : cheapest(candidates, path.is_jagged);
   if (way.size() - 1 < least) way = even(candidates, least);
   path.seeds.clear();
   for (const size_t i : way) path.seeds.push_back(candidates[i].point);
@@ -149,18 +195,18 @@ bool are_same(const std::vector<PathPoint>& a, const std::vector<PathPoint>& b) 
 
 /// Places the seeds of paths that run along one another, again where those across changed. `is_placed`: per path
 /// whether its seeds are for those across as they are.
-void sweep_over(const std::vector<size_t>& group, const SeedsAcross& across, std::vector<char>& is_placed,
-                FineMesh& mesh) {
+void sweep_over(const std::vector<size_t>& group, const SeedsAcross& across, const PlacesBefore& before,
+                std::vector<char>& is_placed, FineMesh& mesh) {
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (const size_t p : group) {
       CurvePath& path = mesh.paths[p];
       if (path.is_jagged || is_placed[p]) continue;
-      std::vector<Candidate> candidates = list_candidates(mesh, path);
-      for (Candidate& c : candidates) c.cost = kCostOfFacing * across.cost(mesh, p, c.point, c.position);
-      const std::vector<PathPoint> before = path.seeds;
-      place_seeds(path.is_loop ? from_cheapest(candidates) : candidates, path);
+      std::vector<Candidate> candidates = list_candidates(mesh, path, before[p]);
+      for (Candidate& c : candidates) c.cost += kCostOfFacing * across.cost(mesh, p, c.point, c.position);
+      const std::vector<PathPoint> last = path.seeds;
+      place_seeds(path.is_loop ? from_cheapest(candidates) : candidates, !before[p].empty(), path);
       is_placed[p] = 1;
-      if (!are_same(before, path.seeds)) across.for_each_beside(p, [&](size_t other) { is_placed[other] = 0; });
+      if (!are_same(last, path.seeds)) across.for_each_beside(p, [&](size_t other) { is_placed[other] = 0; });
     }
 }
 
@@ -176,15 +222,20 @@ std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) 
   return out;
 }
 
-void place_path_seeds(FineMesh& mesh, const std::vector<FacingVertices>& facing) {
+void place_path_seeds(FineMesh& mesh, const std::vector<FacingVertices>& facing,
+                      const std::vector<WorldPoint>& before) {
+  const PlacesBefore places = places_before(mesh, before);
   const SeedsAcross across(mesh, facing);
   const auto is_alone = [&](size_t p) { return mesh.paths[p].is_jagged || !across.beside(p); };
   for_each_index(size_t(0), mesh.paths.size(), [&](size_t p) {
-    if (is_alone(p)) place_seeds(list_candidates(mesh, mesh.paths[p]), mesh.paths[p]);
+    if (!is_alone(p)) return;
+    CurvePath& path = mesh.paths[p];
+    const std::vector<Candidate> candidates = list_candidates(mesh, path, places[p]);
+    place_seeds(path.is_loop ? from_cheapest(candidates) : candidates, !places[p].empty(), path);
   });
   const std::vector<std::vector<size_t>> groups = across.groups();
   std::vector<char> is_placed(mesh.paths.size(), 0);
-  for_each_index(size_t(0), groups.size(), [&](size_t g) { sweep_over(groups[g], across, is_placed, mesh); });
+  for_each_index(size_t(0), groups.size(), [&](size_t g) { sweep_over(groups[g], across, places, is_placed, mesh); });
 }
 
 void begin_loops_at_seeds(FineMesh& mesh) {

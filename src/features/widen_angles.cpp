@@ -18,10 +18,10 @@ void improve(PatchMesh& mesh, const Context& context) {
 
 }  // namespace
 
-JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, int64_t vertices,
+JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
                              const Crossings& crossings, Context& context) {
   return run_with_threads(context, [&] {
-    const PatchMesh before(cut, made, vertices);
+    const PatchMesh before(cut, made, options);
     if (before.poor_triangles().empty() && before.surplus() == 0) return before.joined();
     std::vector<PointQ8> wrong;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {

@@ -18,9 +18,14 @@ struct TriangleShape {
   double largest_deg() const { return std::max({angle_deg[0], angle_deg[1], angle_deg[2]}); }
 };
 
+/// As in MeshQuality, from twice the area, and from the sum of the edges and the longest one.
+inline double triangle_quality(double twice_area, double around, double longest) {
+  constexpr double kEquilateral = 3.4641016151377544;  // 6 / sqrt(3)
+  return longest > 0 ? kEquilateral * (twice_area / around) / longest : 0;
+}
+
 inline TriangleShape shape_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
   constexpr double kDegrees = 57.29577951308232;
-  constexpr double kEquilateral = 3.4641016151377544;  // 6 / sqrt(3)
   const WorldPoint side[3] = {b - a, c - b, a - c};
   const double twice_area = length(cross(side[0], side[2]));
   TriangleShape shape;
@@ -30,7 +35,7 @@ inline TriangleShape shape_of(const WorldPoint& a, const WorldPoint& b, const Wo
   }
   shape.longest = std::max({shape.edge[0], shape.edge[1], shape.edge[2]});
   const double around = shape.edge[0] + shape.edge[1] + shape.edge[2];
-  shape.q = shape.longest > 0 ? kEquilateral * (twice_area / around) / shape.longest : 0;
+  shape.q = triangle_quality(twice_area, around, shape.longest);
   shape.area = twice_area / 2;
   return shape;
 }

@@ -21,6 +21,7 @@
 #include "pipeline/patch_defects.h"
 #include "pipeline/resolve_intersections.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_start.h"
 
 namespace isoshell {
 namespace {
@@ -109,6 +110,10 @@ class PatchRounds {
   }
 
  private:
+  OptimizeOptions optimize_options() const {
+    return options_.previous ? for_warm_frame(options_.optimize) : options_.optimize;
+  }
+
   /// What comes of other paths.
   struct Again {
     std::shared_ptr<const CutSurface> cut;
@@ -146,7 +151,7 @@ class PatchRounds {
     int64_t crossing = 0;
     on_patches(cut, inverse(failed.patch), false, made, [&](const CutSurface& part, SeededMesh& mesh) {
       OptimizedMesh optimized = timed(report_, "post", context_, [&] {
-        return optimize_mesh(part.surface, std::move(mesh), options_.optimize, context_);
+        return optimize_mesh(part.surface, std::move(mesh), optimize_options(), context_);
       });
       crossing = optimized.report.self_intersections;
       report_.post.flips += optimized.report.flips;
@@ -196,7 +201,7 @@ class PatchRounds {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
         RemeshReport here;
         here.post.self_intersections = int64_t(all_crossing(mesh).size());
-        resolve_intersections(part.surface, options_.optimize, mesh, here, context_);
+        resolve_intersections(part.surface, optimize_options(), mesh, here, context_);
         report_.seeds_against_intersections += here.seeds_against_intersections;
       });
     });

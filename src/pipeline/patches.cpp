@@ -33,6 +33,7 @@
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_patches.h"
 
 namespace isoshell {
 namespace {
@@ -72,15 +73,15 @@ std::vector<uint32_t> nearest_of_sheet(const Sheet& of, const TriangleMesh& mesh
 }
 
 /// The patches put together, with better angles beside curves; it intersects itself no more than before.
-JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made, int64_t vertices,
-                               const RemeshReport& report, Context& context) {
+JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made,
+                               const PatchOptions& options, const RemeshReport& report, Context& context) {
   const bool may_cross = report.post.self_intersections > 0;  // where the input does
   NewCrossings crossings(p, cut, context);
   const auto wrong_corners = [&](const DualMesh& mesh) {
     const TrianglePairs pairs = crossings.all(mesh, {});
     return corners_of(mesh, may_cross ? crossings.wrong_of(mesh, pairs) : pairs);
   };
-  return join_and_widen(cut, made, vertices, wrong_corners, context);
+  return join_and_widen(cut, made, {options.seeds.count, options.previous != nullptr}, wrong_corners, context);
 }
 
 /// Of each curve that was found what is still one.
@@ -162,8 +163,8 @@ MeshOfPatches mesh_of_patches(const Prepared& p, std::shared_ptr<const CutSurfac
   MeshOfPatches out;
   out.why_not = reason_against([&]() -> std::string {
     if (std::string why = mesh_in_rounds(p, cut, made, options, report, context); !why.empty()) return why;
-    out.joined = timed(report, "angles", context,
-                       [&] { return with_wide_angles(p, *cut, made, options.seeds.count, report, context); });
+    out.joined =
+        timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, options, report, context); });
     out.mesh = to_world(out.joined.mesh, p.surface.frame);
     out.mesh.features = std::move(out.joined.features);
     part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
@@ -182,6 +183,11 @@ MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, con
   });
   if (!cut) return failed;
   in_patches.seeds.count = cut->seeds;
+  if (in_patches.previous) {
+    in_patches.previous = nullptr;
+    report.coherence.began_warm = false;
+    report.coherence.why_cold = kCurvesOnSheet;
+  }
   failed.why_not = reason_against([&] {
     RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
     report.relax = std::move(relaxed.report);

@@ -29,9 +29,11 @@ struct PatchOptions {
   RelaxOptions relax;
   bool tolerance_asked = false;  ///< coarse levels have it, too
   OptimizeOptions optimize;
+  std::shared_ptr<const PreviousFrame> previous = nullptr;  ///< that seeds begin with
 };
 
-/// Fixes seeds on the curves, one for each patch there, and relaxes the others between them, coarse to fine.
+/// Fixes seeds on the curves, one for each patch there, and relaxes the others between them: coarse to fine, or from
+/// where the vertices of the frame before are.
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context);
 
 /// The same from the seeds of a mesh that is there, in host memory, of another number or with others fixed.

@@ -9,6 +9,7 @@
 #include "pipeline/attempt.h"
 #include "pipeline/patches.h"
 #include "pipeline/relax_level.h"
+#include "pipeline/warm_patches.h"
 
 namespace isoshell {
 namespace {
@@ -97,6 +98,7 @@ class PatchLevels {
 }  // namespace
 
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
+  if (options.previous) return relax_patches_from_previous(cut, options, context);
   return PatchLevels(cut, options, context).relax();
 }
 

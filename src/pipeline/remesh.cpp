@@ -24,22 +24,29 @@
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_patches.h"
 #include "pipeline/warm_start.h"
 
 namespace isoshell {
 namespace {
 
-PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize) {
-  return {{p.cut->seeds, options.seed}, relax_options(options), options.tolerance.has_value(), optimize};
+PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize,
+                           bool is_warm) {
+  return {{p.cut->seeds, options.seed},
+          relax_options(options),
+          options.tolerance.has_value(),
+          optimize,
+          is_warm ? options.previous : nullptr};
 }
 
 /// Whether the frame begins with the vertices of the frame before; the report says why one that has one does not.
-bool begins_warm(const Prepared& p, const RemeshOptions& options, bool in_patches, RemeshReport& report) {
+bool begins_warm(const Prepared& p, int64_t seeds, const RemeshOptions& options, bool in_patches,
+                 RemeshReport& report) {
   CoherenceReport& coherence = report.coherence;
   coherence.began_warm = false;
   if (!options.previous) return false;
-  coherence.why_cold = in_patches ? "the surface is cut along curves"
-                                  : reason_to_begin_cold(*options.previous, vertex_target(options, p));
+  coherence.why_cold =
+      in_patches && !is_on_own_triangles(p) ? kCurvesOnSheet : reason_to_begin_cold(*options.previous, seeds);
   return coherence.began_warm = coherence.why_cold.empty();
 }
 
@@ -48,11 +55,11 @@ SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patch
                     Context& context) {
   const RemeshOptions options = checked(asked);
   const SeedOptions seed_options{in_patches ? p.cut->seeds : vertex_target(options, p), options.seed};
-  const bool is_warm = begins_warm(p, options, in_patches, report);
+  const bool is_warm = begins_warm(p, seed_options.count, options, in_patches, report);
   RelaxedSeeds relaxed;
   if (in_patches) {
     relaxed = timed(report, "relax", context,
-                    [&] { return relax_in_patches(*p.cut, patch_options(p, options, {}), context); });
+                    [&] { return relax_in_patches(*p.cut, patch_options(p, options, {}, is_warm), context); });
   } else if (is_warm) {
     relaxed = timed(report, "relax", context, [&] { return relaxed_from_previous(p, options, context); });
   } else if (options.method == Method::sheet) {
@@ -174,10 +181,10 @@ void begin_again_cold(const Prepared& p, RemeshOptions options, const OptimizeOp
       failed > 0 ? "cells of the carried vertices are no disks" : "triangles of the carried vertices intersect";
 }
 
-/// Numbers as in the frame before, and how steady the frame is.
-void follow_previous(const RemeshOptions& options, TriangleMesh& mesh, RemeshReport& report) {
+/// Numbers as in the frame before, where the mesh has not kept them, and how steady the frame is.
+void follow_previous(const RemeshOptions& options, bool has_numbers, TriangleMesh& mesh, RemeshReport& report) {
   if (!options.previous) return;
-  if (!report.coherence.began_warm) number_as_before(*options.previous, mesh);
+  if (!has_numbers) number_as_before(*options.previous, mesh);
   measure_coherence(*options.previous, mesh, report.coherence);
 }
 
@@ -222,7 +229,7 @@ TriangleMesh triangulate_on_sheet(const Prepared& p, const RemeshOptions& option
   measure_edges(meshed.sheet, best.made.seeds, best.made.mesh, best.report.sizing, context);
   TriangleMesh mesh = to_world(best.made.mesh, meshed.surface.frame);
   flag_gaps(meshed, OnHost(best.made.seeds)->home.view(), mesh, best.report.gaps);
-  follow_previous(options, mesh, best.report);
+  follow_previous(options, best.report.coherence.began_warm, mesh, best.report);
   note_digest(options, best.report, context, "mesh", mesh);
   return mesh;
 }
@@ -243,9 +250,10 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   const GiveBack give_back{best, seeds, report};
   best.made.seeds = std::move(seeds);
   if (p.cut && best.made.seeds.fixed.count > 0) {
+    const PatchOptions in_patches = patch_options(p, options, optimize, best.report.coherence.began_warm);
     if (std::optional<TriangleMesh> mesh =
-            triangulate_patches(p, best.made, options, patch_options(p, options, optimize), best.report, context)) {
-      follow_previous(options, *mesh, best.report);
+            triangulate_patches(p, best.made, options, in_patches, best.report, context)) {
+      follow_previous(options, false, *mesh, best.report);
       note_digest(options, best.report, context, "mesh", *mesh);
       return std::move(*mesh);
     }

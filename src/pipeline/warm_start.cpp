@@ -3,13 +3,17 @@
 
 #include <algorithm>
 
+#include "core/world_vector.h"
+#include "measure/triangle_shape.h"
+
 namespace isoshell {
 namespace {
 
 constexpr int32_t kWarmPasses = 16;
 constexpr int32_t kWarmTolerancePpb = 500000;
 constexpr int32_t kWarmSmoothingSteps = 24;
-constexpr int64_t kMostGrowth = 2;  ///< or shrinking of the number of vertices from frame to frame
+constexpr int64_t kMostGrowth = 2;    ///< or shrinking of the number of vertices from frame to frame
+constexpr double kMostSpoiled = 0.1;  ///< of the triangles
 
 SeedSet seeds_at(const std::vector<WorldPoint>& points, const LatticeFrame& frame) {
   const auto count = int64_t(points.size());
@@ -35,6 +39,21 @@ SeedSet with_more(const Sheet& sheet, const PreviousFrame& previous, SeedSet see
   return subdivide_seeds(sheet, mesh, seeds, wanted, context);
 }
 
+double quality_in(const std::vector<WorldPoint>& at, const std::array<uint32_t, 3>& t) {
+  const WorldPoint &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
+  const double edge[3] = {length(b - a), length(c - b), length(a - c)};
+  return triangle_quality(length(doubled_area(a, b, c)), edge[0] + edge[1] + edge[2],
+                          *std::max_element(edge, edge + 3));
+}
+
+/// The share of triangles that are less than half as good where their vertices are now.
+double share_spoiled(const PreviousFrame& previous) {
+  int64_t spoiled = 0;
+  for (const auto& t : previous.triangles)
+    spoiled += 2 * quality_in(previous.carried, t) < quality_in(previous.vertices, t);
+  return double(spoiled) / double(std::max<size_t>(1, previous.triangles.size()));
+}
+
 }  // namespace
 
 std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) {
@@ -43,6 +62,8 @@ std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) 
   if (before > kMostGrowth * wanted || wanted > kMostGrowth * before)
     return "the frame before has " + std::to_string(before) + " vertices, and this one is to have " +
            std::to_string(wanted);
+  if (share_spoiled(previous) > kMostSpoiled)
+    return "the vertices of the frame before do not lie on this one as they did: its surface is another, or far away";
   return "";
 }
 

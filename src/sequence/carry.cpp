@@ -34,15 +34,6 @@ WorldPoint place_in(const std::vector<WorldPoint>& at, const Triangle& t, const 
   return a + place.b_part * (b - a) + place.c_part * (c - a);
 }
 
-std::vector<WorldPoint> vertex_normals(const TriangleMesh& mesh) {
-  std::vector<WorldPoint> normals(mesh.vertices.size(), WorldPoint{0, 0, 0});
-  for (const Triangle& t : mesh.triangles) {
-    const WorldPoint area = doubled_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    for (const uint32_t v : t) normals[v] = normals[v] + area;
-  }
-  return normals;
-}
-
 /// of(i) of each, at once for all.
 template <class Of>
 auto of_all(size_t count, Context& context, Of of) {
@@ -68,7 +59,7 @@ std::vector<MeshPoint> places_on(const TriangleMesh& mesh, const TriangleSoup& s
   const TriangleGrid grid(surface.vertices, surface.triangles);
   const size_t count = mesh.vertices.size();
   std::vector<MeshPoint> nearest = of_all(count, context, [&](size_t i) { return grid.nearest(mesh.vertices[i]); });
-  const std::vector<WorldPoint> normals = vertex_normals(mesh);
+  const std::vector<WorldPoint> normals = outward_normals(mesh.vertices, mesh.triangles);
   size_t facing = 0;
   for (size_t i = 0; i < count; ++i) facing += grid.is_facing(nearest[i].triangle, normals[i]);
   const double outward = 2 * facing < count ? -1 : 1, edge_length = mean_edge_length(mesh);
@@ -114,7 +105,7 @@ std::vector<WorldPoint> carry_with_velocity(const std::vector<WorldPoint>& point
 std::vector<WorldPoint> carry_onto(const TriangleMesh& mesh, const TriangleSoup& now, Context& context) {
   require_triangles(now);
   const TriangleGrid grid(now.vertices, now.triangles);
-  const std::vector<WorldPoint> normals = vertex_normals(mesh);
+  const std::vector<WorldPoint> normals = outward_normals(mesh.vertices, mesh.triangles);
   const double farther = 2 * mean_edge_length(mesh);
   return of_all(mesh.vertices.size(), context, [&](size_t i) {
     const MeshPoint place = facing_place(grid, mesh.vertices[i], normals[i], farther);

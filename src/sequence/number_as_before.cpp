@@ -1,8 +1,8 @@
 // Numbers for the vertices of a mesh that began cold (see previous_frame.h).
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
+#include "core/point_cells.h"
 #include "core/world_vector.h"
 #include "isoshell/previous_frame.h"
 #include "sequence/mean_edge_length.h"
@@ -14,38 +14,6 @@ using Triangle = std::array<uint32_t, 3>;
 
 constexpr uint32_t kNoNumber = 0xffffffff;
 constexpr double kFarthest = 0.5;  ///< mean edge lengths from where a vertex went
-
-/// Points by the cells of a grid.
-class PointCells {
- public:
-  PointCells(const std::vector<WorldPoint>& points, double cell) : cell_(cell) {
-    for (size_t i = 0; i < points.size(); ++i) cells_[key_of(cell_of(points[i]))].push_back(uint32_t(i));
-  }
-  /// Of all points in the cells around p.
-  template <class Visit>
-  void for_each_near(WorldPoint p, Visit visit) const {
-    const std::array<int64_t, 3> middle = cell_of(p);
-    for (int64_t z = -1; z <= 1; ++z)
-      for (int64_t y = -1; y <= 1; ++y)
-        for (int64_t x = -1; x <= 1; ++x) {
-          const auto found = cells_.find(key_of({middle[0] + x, middle[1] + y, middle[2] + z}));
-          if (found == cells_.end()) continue;
-          for (const uint32_t i : found->second) visit(i);
-        }
-  }
-
- private:
-  std::array<int64_t, 3> cell_of(WorldPoint p) const {
-    return {int64_t(std::floor(p.x / cell_)), int64_t(std::floor(p.y / cell_)), int64_t(std::floor(p.z / cell_))};
-  }
-  static uint64_t key_of(const std::array<int64_t, 3>& c) {  // cells that share a key only cost time
-    return uint64_t(c[0]) * 0x9e3779b97f4a7c15ull ^ uint64_t(c[1]) * 0xc2b2ae3d27d4eb4full ^
-           uint64_t(c[2]) * 0x165667b19e3779f9ull;
-  }
-
-  double cell_;
-  std::unordered_map<uint64_t, std::vector<uint32_t>> cells_;
-};
 
 /// Per vertex the number of a vertex of the frame before; the nearest pairs choose first.
 std::vector<uint32_t> nearest_numbers(const PreviousFrame& previous, const TriangleMesh& mesh) {
@@ -63,10 +31,11 @@ std::vector<uint32_t> nearest_numbers(const PreviousFrame& previous, const Trian
   if (!(reach > 0)) return number;
   const PointCells cells(previous.carried, reach);
   std::vector<Pair> pairs;
+  const WorldPoint aside{reach, reach, reach};
   for (size_t v = 0; v < mesh.vertices.size(); ++v)
-    cells.for_each_near(mesh.vertices[v], [&](uint32_t before) {
+    cells.for_each_in(mesh.vertices[v] - aside, mesh.vertices[v] + aside, [&](size_t before) {
       const double d = distance_sq(previous.carried[before], mesh.vertices[v]);
-      if (d < reach * reach && before < mesh.vertices.size()) pairs.push_back({d, before, uint32_t(v)});
+      if (d < reach * reach && before < mesh.vertices.size()) pairs.push_back({d, uint32_t(before), uint32_t(v)});
     });
   std::sort(pairs.begin(), pairs.end());
   std::vector<uint8_t> is_taken(mesh.vertices.size(), 0);

@@ -27,6 +27,12 @@ TriangleSoup twisted(int frame) {
   return soup;
 }
 
+TriangleSoup turned(TriangleSoup soup, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (WorldPoint& p : soup.vertices) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  return soup;
+}
+
 void write_frames(const TemporaryFolder& folder, int frames, TriangleSoup (*frame)(int)) {
   for (int f = 0; f < frames; ++f) {
     const TriangleSoup soup = frame(f);
@@ -171,26 +177,57 @@ TEST_CASE("sequence: parts that become one mesh on with the right topology", "[s
   CHECK(components == std::vector<int64_t>{2, 1, 1});
 }
 
-TEST_CASE("sequence: crisp parts keep their creases, and the numbers of near vertices", "[sequence]") {
+TEST_CASE("sequence: a crisp part that turns keeps its creases, and the vertices on them", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 2, [](int f) {
-    TriangleSoup box = shapes::box({0, 0, 0}, {3, 2, 1});
-    for (WorldPoint& p : box.vertices) p.x += 0.25 * f;
-    return box;
-  });
-  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  write_frames(folder, 4, [](int f) { return turned(shapes::box({0, 0, 0}, {3, 2, 1}), 0.1 * f); });
+  SequenceRequest request = request_in(folder, 4, "out.##.ply");
   request.frame.statistics = folder / "s.##.json";
-  request.after_frame = [&](int64_t f, const RunResult& r) {
-    CHECK(r.record.report.features.kept);
-    CHECK(r.record.report.coherence.why_cold == (f == 0 ? "" : "the surface is cut along curves"));
-  };
+  std::vector<RunResult> made;
+  request.after_frame = [&](int64_t, const RunResult& r) { made.push_back(r); };
   const SequenceResult result = run_sequence(request, context);
-  CHECK(result.warm == 0);
-  CHECK(result.followed == 1);
-  CHECK(result.kept_edges_worst_pct > 95);
-  CHECK(contains(get_file(folder / "s.01.json"), "\"why_cold\": \"the surface is cut along curves\""));
+  CHECK(result.warm == 3);
+  CHECK(result.kept_edges_worst_pct > 99);
+  CHECK(result.born <= 2);
+  for (size_t f = 0; f < 4; ++f) {
+    const FeatureReport& features = made[f].record.report.features;
+    CHECK(features.kept_length_world == Approx(24));
+    CHECK(check_mesh(made[f].mesh).is_closed_manifold());
+    if (f == 0) continue;
+    const auto edge_of = [](const MeshCurveEdge& e) { return e.vertex; };
+    std::set<std::array<uint32_t, 2>> before, now;
+    for (const MeshCurveEdge& e : made[f - 1].mesh.features.curve_edges) before.insert(edge_of(e));
+    for (const MeshCurveEdge& e : made[f].mesh.features.curve_edges) now.insert(edge_of(e));
+    CHECK(now == before);
+  }
+  CHECK(contains(get_file(folder / "s.01.json"), "\"began_warm\": true"));
   CHECK(contains(get_file(folder / "s.00.json"), "\"coherence\": null"));
+}
+
+TEST_CASE("sequence: frames with creases are the same with other threads, and resumed", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 3, [](int f) { return turned(shapes::box({0, 0, 0}, {3, 2, 1}), 0.1 * f); });
+  const SequenceRequest whole = request_in(folder, 3, "out.##.ply");
+  run_sequence(whole, context);
+  context.threads = 1;
+  SequenceRequest part = request_in(folder, 2, "again.##.ply");
+  run_sequence(part, context);
+  part.frames.last = 2;
+  part.resume = true;
+  CHECK(run_sequence(part, context).warm == 1);
+  CHECK(files_of(part) == files_of(whole));
+}
+
+TEST_CASE("sequence: a frame of another shape begins cold", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 2, [](int f) { return f == 0 ? twisted(0) : shapes::box({0, 0, 0}, {3, 2, 1}); });
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  std::string why_cold;
+  request.after_frame = [&](int64_t, const RunResult& r) { why_cold = r.record.report.coherence.why_cold; };
+  CHECK(run_sequence(request, context).warm == 0);
+  CHECK(contains(why_cold, "do not lie on this one as they did"));
 }
 
 TEST_CASE("sequence: without coherence every frame is a run of its own", "[sequence]") {

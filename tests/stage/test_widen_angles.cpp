@@ -59,7 +59,7 @@ TEST_CASE("wide angles: fewer triangles are poor, none is worse than the worst, 
     const Made made = hardly_relaxed(shape, context);
     if (made.mesh.report.failed_cells > 0) continue;
     const JoinedMesh joined = join_patches(made.mesh.mesh, made.mesh.seeds.fixed);
-    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, count_of(made.mesh), no_crossings, context);
+    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, no_crossings, context);
     CHECK(wide.mesh.position.size() == joined.mesh.position.size());
     CHECK(wide.home.size() == wide.mesh.position.size());
     CHECK(int64_t(wide.features.patch.size()) == wide.mesh.triangles.size());
@@ -84,7 +84,7 @@ TEST_CASE("wide angles: curves are the same, in edges between places on them", "
     INFO(shape.name);
     const Made made = hardly_relaxed(shape, context);
     if (made.mesh.report.failed_cells > 0) continue;
-    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, count_of(made.mesh), no_crossings, context);
+    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, no_crossings, context);
     std::map<uint32_t, std::set<Place>> places;  // per curve of the network
     for (const CutCurve& curve : made.cut.curves)
       for (const uint32_t p : curve.place)
@@ -110,8 +110,8 @@ TEST_CASE("wide angles: are the same for every number of threads", "[widen_angle
   one.threads = 1;
   const FeatureShape shape = feature_plate();
   const Made made = hardly_relaxed(shape, many);
-  const JoinedPatches a = join_and_widen(made.cut, made.mesh, count_of(made.mesh), no_crossings, one),
-                      b = join_and_widen(made.cut, made.mesh, count_of(made.mesh), no_crossings, many);
+  const JoinedPatches a = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, no_crossings, one),
+                      b = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, no_crossings, many);
   REQUIRE(a.mesh.position.size() == b.mesh.position.size());
   for (int64_t v = 0; v < a.mesh.position.size(); ++v)
     CHECK(place_of(a.mesh.position[v]) == place_of(b.mesh.position[v]));
@@ -123,7 +123,7 @@ TEST_CASE("wide angles: copies of a mesh that know what was hopeless become what
     INFO(shape.name);
     const Made made = hardly_relaxed(shape, context);
     if (made.mesh.report.failed_cells > 0) continue;
-    PatchMesh first(made.cut, made.mesh, count_of(made.mesh));
+    PatchMesh first(made.cut, made.mesh, {count_of(made.mesh)});
     PatchMesh second = first;
     for (PatchMesh* mesh : {&first, &second})
       while (mesh->improve(mesh->poor_triangles())) continue;
@@ -139,7 +139,7 @@ TEST_CASE("wide angles: a mesh that is refused is as it was", "[widen_angles][st
   const Made made = hardly_relaxed(feature_cylinder(40), context);
   const JoinedMesh joined = join_patches(made.mesh.mesh, made.mesh.seeds.fixed);
   const JoinedPatches kept = join_and_widen(
-      made.cut, made.mesh, count_of(made.mesh),
+      made.cut, made.mesh, {count_of(made.mesh)},
       [](const DualMesh& mesh) { return std::vector<PointQ8>(mesh.position.begin(), mesh.position.end()); }, context);
   REQUIRE(kept.mesh.position.size() == joined.mesh.position.size());
   for (int64_t v = 0; v < kept.mesh.position.size(); ++v)
@@ -160,7 +160,7 @@ TEST_CASE("wide angles: where triangles intersect, what is near them stays, and 
   const PointQ8 wrong = joined.mesh.position[0];
   int calls = 0;
   const JoinedPatches wide = join_and_widen(
-      made.cut, made.mesh, count_of(made.mesh),
+      made.cut, made.mesh, {count_of(made.mesh)},
       [&](const DualMesh&) { return std::vector<PointQ8>(calls++ == 0 ? 1 : 0, wrong); }, context);
   CHECK(calls == 2);
   CHECK(poor_of(wide.mesh) < poor_of(joined.mesh));

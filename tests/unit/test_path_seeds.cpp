@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "features/carried_places.h"
 #include "features/facing_curves.h"
 #include "features/path_seeds.h"
 #include "support/catch.h"
@@ -47,9 +48,9 @@ double distance_to_nearest(const std::vector<double>& seeds, double at) {
   return nearest;
 }
 
-FineMesh with_seeds(FineMesh mesh) {
+FineMesh with_seeds(FineMesh mesh, const std::vector<WorldPoint>& before = {}) {
   const VertexGraph graph = find_vertex_graph(mesh);
-  place_path_seeds(mesh, find_facing_vertices(mesh, graph, kEdge));
+  place_path_seeds(mesh, find_facing_vertices(mesh, graph, kEdge), before);
   return mesh;
 }
 
@@ -90,4 +91,28 @@ TEST_CASE("facing curves: the sides of a strip face each other, and the halves o
     CHECK(first_on_one != second_on_one);
     CHECK(std::abs(f.gap - 0.75 * kEdge) < 1);
   }
+}
+
+TEST_CASE("path seeds: those of the frame before stay where they are, as far as edges have a good length",
+          "[curves][unit]") {
+  std::vector<WorldPoint> before;
+  for (int i = 1; i < 15; ++i) before.push_back({(i + 0.3 * std::sin(double(i))) * kEdge, 0, 0});
+  before.push_back({4.2 * kEdge, 0.09 * kEdge, 0});  // too near to others to stay beside them
+  before.push_back({8.5 * kEdge, 0.11 * kEdge, 0});  // not on the path
+  const std::vector<double> seeds = placed(with_seeds(strip(60, 12), before).paths[0]);
+  REQUIRE(seeds.size() == 16);
+  for (size_t i = 1; i < 15; ++i) CHECK(std::abs(seeds[i] - before[i - 1].x) < 0.03 * kEdge);  // or at a vertex there
+}
+
+TEST_CASE("carried places: a point lies on the nearest path, if any is near", "[curves][unit]") {
+  const FineMesh mesh = strip(60, 4);
+  const std::vector<PlaceOnPath> places = places_on_paths(
+      mesh,
+      {{1.3 * kEdge, 0.05 * kEdge, 0}, {2 * kEdge, 0.95 * kEdge, 0}, {2 * kEdge, kEdge / 2, 0}, {15 * kEdge, 0, 0}});
+  CHECK(places[0].path == 0);
+  CHECK(places[0].at.edge == 5);
+  CHECK(places[0].at.part == Approx(0.2));
+  CHECK(places[1].path == 1);
+  CHECK(places[2].path == PlaceOnPath::kNoPath);
+  CHECK(places[3].at.edge == mesh.paths[0].edge_count());
 }
