@@ -130,19 +130,20 @@ def sequence(_):
     vertices, faces, _, _ = read_mesh(str(ROOT / "tests/data/nefertiti.ply"))
     frames = [(turned(vertices, 45 * np.sin(2 * np.pi * t / 20)), faces) for t in range(20)]
     framed, view, up, film = np.concatenate([v for v, _ in frames[::5]]), (.1, .1, 1.), (0, 1., 0), []
-    colours = np.random.default_rng(3).permutation([(232, 116, 97), (96, 158, 214), (240, 186, 80), (120, 184, 110)] * 17)
+    tones = [(232, 116, 97), (96, 158, 214), (240, 186, 80), (120, 184, 110)]
+    colours = np.random.default_rng(3).permutation(tones * 17)
     for pair in zip(*(isoshell.remesh_sequence(frames, vertices=800, features="off", no_coherence=anew)
                       for anew in (True, False))):
         images = []
         for result in pair:
             number = np.where(result.faces % 12 == 0, result.faces // 12, -1).max(axis=1)
             of_faces = np.where(number[:, None] < 0, (222, 227, 234), colours[number])
-            image = render(result.vertices, result.faces, of_faces, set(), SIZE - 110, np.array(view), np.array(up), 1, True,
-                           framed)
+            image = render(result.vertices, result.faces, of_faces, set(), SIZE - 110, np.array(view), np.array(up), 1,
+                           True, framed)
             images.append(image[:, 45:-45])
         film.append(Image.fromarray(np.concatenate(images, axis=1)))
-    film[0].save(ROOT / "docs/images/gallery_sequence.webp", save_all=True, append_images=film[1:], duration=120, loop=0,
-                 quality=50, method=6)
+    film[0].save(ROOT / "docs/images/gallery_sequence.webp", save_all=True, append_images=film[1:], duration=120,
+                 loop=0, quality=50, method=6)
 
 
 def report(data):
