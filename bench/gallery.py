@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Makes the pictures of the documentation: surfaces before and after, side by side, into docs/images.
 
-usage: gallery.py [--data FOLDER] [NAME...]       names: clean dirty cloud smoke cad stages
-Needs numpy and the module isoshell. FOLDER holds three files that are not part of the project: elephant_holes.off and
-kitten.xyz (CGAL's data, CC0) and fandisk.off (the same); what lacks its file is left out.
+usage: gallery.py [--data FOLDER] [NAME...]       names: clean dirty cloud smoke cad stages sequence report
+Needs numpy and the module isoshell; `sequence` also Pillow, and `report` playwright with chromium. FOLDER holds three
+files that are not part of the project: elephant_holes.off and kitten.xyz (CGAL's data, CC0) and fandisk.off (the same);
+what lacks its file is left out.
 """
 import argparse
 import os
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -111,12 +113,66 @@ def stages(_):
                  picture((result.vertices, result.faces, None, set()), view))
 
 
+def turned(vertices, degrees):
+    """A bust whose head is turned by so much, and its neck by less the lower."""
+    height = vertices[:, 1]
+    share = ((height - height.min()) / np.ptp(height) * 2.5 - .35).clip(0, 1)
+    angle = np.radians(degrees) * share ** 2 * (3 - 2 * share)
+    x, z = vertices[:, 0], vertices[:, 2]
+    return np.stack([np.cos(angle) * x + np.sin(angle) * z, height, np.cos(angle) * z - np.sin(angle) * x], axis=1)
+
+
+def sequence(_):
+    """A film: every frame meshed anew, beside the same frames as a sequence. Every twelfth number of a vertex has a
+    colour, which the faces around that vertex have."""
+    from PIL import Image
+
+    vertices, faces, _, _ = read_mesh(str(ROOT / "tests/data/nefertiti.ply"))
+    frames = [(turned(vertices, 45 * np.sin(2 * np.pi * t / 20)), faces) for t in range(20)]
+    framed, view, up, film = np.concatenate([v for v, _ in frames[::5]]), (.1, .1, 1.), (0, 1., 0), []
+    tones = [(232, 116, 97), (96, 158, 214), (240, 186, 80), (120, 184, 110)]
+    colours = np.random.default_rng(3).permutation(tones * 17)
+    for pair in zip(*(isoshell.remesh_sequence(frames, vertices=800, features="off", no_coherence=anew)
+                      for anew in (True, False))):
+        images = []
+        for result in pair:
+            number = np.where(result.faces % 12 == 0, result.faces // 12, -1).max(axis=1)
+            of_faces = np.where(number[:, None] < 0, (222, 227, 234), colours[number])
+            image = render(result.vertices, result.faces, of_faces, set(), SIZE - 110, np.array(view), np.array(up), 1,
+                           True, framed)
+            images.append(image[:, 45:-45])
+        film.append(Image.fromarray(np.concatenate(images, axis=1)))
+    film[0].save(ROOT / "docs/images/gallery_sequence.webp", save_all=True, append_images=film[1:], duration=120,
+                 loop=0, quality=50, method=6)
+
+
+def report(data):
+    """The page of a part, coloured by its deviation, as a browser shows it."""
+    from PIL import Image
+    from playwright.sync_api import sync_playwright
+
+    source = data / "fandisk.off"
+    source.stat()  # or it is left out
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as started:
+        page_file, shot = Path(folder, "page.html"), Path(folder, "shot.png")
+        isoshell.remesh(str(source), vertices=4000, report=page_file, quiet=True)
+        browser = started.chromium.launch(executable_path=shutil.which("chromium"), args=[
+            "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1100, "height": 750})
+        page.goto(page_file.as_uri())
+        page.get_by_text("Deviation", exact=True).first.click()
+        page.wait_for_timeout(5000)  # it draws
+        page.screenshot(path=shot)
+        browser.close()
+        Image.open(shot).convert("RGB").quantize(128).save(ROOT / "docs/images/report_fandisk.png", optimize=True)
+
+
 def main():
     args = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     args.add_argument("--data", type=Path, default=Path("."))
     args.add_argument("names", nargs="*")
     a = args.parse_args()
-    for make in (clean, dirty, cloud, smoke, cad, stages):
+    for make in (clean, dirty, cloud, smoke, cad, stages, sequence, report):
         if not a.names or make.__name__ in a.names:
             try:
                 make(a.data)

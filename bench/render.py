@@ -58,13 +58,15 @@ def write_png(path, image):
                            + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-def render(v, f, colours, curves, size, view, up, zoom, edges):
+def render(v, f, colours, curves, size, view, up, zoom, edges, framed=None):
+    """The picture; frames of a film are `framed` by the same points."""
     back = view / np.linalg.norm(view)
     right = np.cross(up, back)
     right /= np.linalg.norm(right)
     axes = np.stack([right, np.cross(back, right), back])
     p = v @ axes.T
-    centre, extent = (p.max(0) + p.min(0)) / 2, (p.max(0) - p.min(0))[:2].max()
+    shown = p if framed is None else framed @ axes.T
+    centre, extent = (shown.max(0) + shown.min(0)) / 2, np.ptp(shown, axis=0)[:2].max()
     p = (p - centre) * (0.94 * size * zoom / extent)
     p[:, 0] += size / 2
     p[:, 1] = size / 2 - p[:, 1]

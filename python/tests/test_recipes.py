@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import isoshell
 import numpy as np
@@ -80,3 +82,60 @@ def test_volumes_for_houdini_are_a_mesh_two_stage_files_and_a_preview(ball: Mesh
     made = {path.name for path in (tmp_path / "out").iterdir()}
     assert made == {"mesh.ply", "mesh.shell.vdb", "mesh.voronoi.vdb", "mesh.voronoi.preview.vdb"}
     assert isoshell.remesh(tmp_path / "out/mesh.voronoi.vdb").vertices.shape == (200, 3)
+
+
+class StandIn:
+    """As much of Houdini's node and geometry as the Python SOP calls; polygons turn clockwise."""
+
+    def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
+        self.points, self.polygons = vertices.tolist(), [list(map(int, face[::-1])) for face in faces]
+
+    def geometry(self) -> StandIn:
+        return self
+
+    def evalParm(self, name: str) -> int:
+        return {"vertices": 150}[name]
+
+    def pointFloatAttribValuesAsString(self, name: str) -> bytes:
+        return {"P": np.array(self.points, np.float32).tobytes()}[name]
+
+    def prims(self) -> list[SimpleNamespace]:
+        def corner(i: int) -> SimpleNamespace:
+            return SimpleNamespace(point=lambda: SimpleNamespace(number=lambda: i))
+
+        return [SimpleNamespace(vertices=lambda p=polygon: [corner(i) for i in p]) for polygon in self.polygons]
+
+    def clear(self) -> None:
+        self.points, self.polygons = [], []
+
+    def createPoints(self, positions: list[list[float]]) -> list[int]:
+        self.points += positions
+        return list(range(len(positions)))
+
+    def createPolygons(self, polygons: list[list[int]]) -> None:
+        self.polygons += polygons
+
+
+def test_a_sop_of_houdini_remeshes_its_geometry_and_turns_it_back(ball: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(RECIPES)
+    cook = importlib.import_module("houdini_sop").cook
+    node = StandIn(*ball)
+    cook(node)
+    assert len(node.points) == 150
+    made = isoshell.mesh_info((np.array(node.points), np.array(node.polygons)[:, ::-1]))
+    assert made["topology"]["closed_manifold"] and made["topology"]["volume"] == pytest.approx(4 / 3 * np.pi, rel=0.05)
+
+
+def test_a_sequence_for_nuke_is_one_stage_with_velocities(ball: Mesh, tmp_path: Path) -> None:
+    usd = pytest.importorskip("pxr.Usd")
+    geom = pytest.importorskip("pxr.UsdGeom")
+    for frame in (1, 2, 3):
+        write_obj(tmp_path / f"ball.{frame:04}.obj", ball[0] + [0.25 * frame, 0, 0], ball[1])
+    said = run("sequence_for_nuke.py", tmp_path / "ball.####.obj", "1-3", tmp_path / "out.usdc", 150)
+    assert "has points at [1.0, 2.0, 3.0]" in said
+    stage = usd.Stage.Open(str(tmp_path / "out.usdc"))
+    mesh = next(geom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(geom.Mesh))
+    velocities = np.array(mesh.GetVelocitiesAttr().Get(2))
+    assert velocities.shape == (150, 3)
+    moved = 0.25 * stage.GetTimeCodesPerSecond()  # vertices also slide a little
+    assert np.median(velocities, axis=0) == pytest.approx([moved, 0, 0], abs=0.05 * moved)

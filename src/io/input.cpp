@@ -34,7 +34,9 @@ void check_exists(const std::string& path) {
   if (!std::filesystem::exists(status)) {
     const bool is_pattern = path.find_first_of("#%*") != std::string::npos;
     refuse(path + ": no such file" +
-           (is_pattern ? "; a pattern of frames, as mesh.####.ply or mesh.%04d.ply, needs --frames, as 1-240" : ""));
+           (is_pattern
+                ? "; only vdb_isomesh with --frames, as 1-240, takes a pattern, as mesh.####.ply or mesh.%04d.ply"
+                : ""));
   }
   if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
   if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once

@@ -47,7 +47,8 @@ TEST_CASE("command: an input that cannot be read exits with 3 and is named", "[c
   for (const char* pattern : {"gone.####.off", "gone_%04d.off", "'*.off'"}) {
     const auto r = folder.run(std::string(pattern) + " out.ply");
     CHECK(r.status == 3);
-    CHECK(contains(r.err, "a pattern of frames, as mesh.####.ply or mesh.%04d.ply, needs --frames, as 1-240"));
+    CHECK(contains(r.err,
+                   "only vdb_isomesh with --frames, as 1-240, takes a pattern, as mesh.####.ply or mesh.%04d.ply"));
   }
   CHECK(contains(folder.run(". out.ply --input-format off").err, "is a folder"));
   folder.write("cloud.xyz", "0 0 0\n1 1 1\n");

@@ -60,6 +60,17 @@ TEST_CASE("mesh info: a gate that is missed ends with 6", "[cli][mesh_info]") {
   CHECK(folder.run("t.off --require max-deviation=0.001").status == 2);
 }
 
+TEST_CASE("mesh info: a pattern of frames is refused as what another command takes", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.0001.off", kTetrahedron);
+  folder.write("t.off", kTetrahedron);
+  for (const char* const arguments : {"t.####.off", "t.%04d.off", "t.off --ref t.####.off"}) {
+    const auto r = folder.run(arguments);
+    CHECK(r.status == 3);
+    CHECK(r.err.find("only vdb_isomesh with --frames, as 1-240, takes a pattern") != std::string::npos);
+  }
+}
+
 TEST_CASE("mesh info: gates see the topology that the certificate shows", "[cli][mesh_info]") {
   cli::Folder folder;
   const char* const moebius =
