@@ -36,6 +36,12 @@ isoshell_package(dev libisoshell-dev libdevel
 # The library is static, and OpenVDB's CMake module asks for all that OpenVDB was built with.
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "libtbb-dev, libopenvdb-dev, libblosc-dev, libboost-iostreams-dev, libimath-dev, zlib1g-dev")
+if(ISOSHELL_HAS_DRACO)
+  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libdraco-dev")
+endif()
+if(ISOSHELL_HAS_MESHOPT)
+  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libmeshoptimizer-dev")
+endif()
 if(ISOSHELL_PYTHON_DIR)
   isoshell_package(python python3-isoshell python
                    "${isoshell_about}\n.\nThis package holds the module for this system's own Python 3.")

@@ -11,7 +11,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(build-essential cmake ninja-build libopenvdb-dev libnanovdb-dev libtbb-dev libblosc-dev zlib1g-dev
-          libboost-iostreams-dev libimath-dev libcli11-dev nlohmann-json3-dev catch2 python3-minimal)
+          libboost-iostreams-dev libimath-dev libdraco-dev libmeshoptimizer-dev libcli11-dev nlohmann-json3-dev catch2
+          python3-minimal)
 of_tests=(libopenvdb-tools python3-openvdb python3-dev python3-venv mold)
 wished=(fish groff-base mandoc man-db pkg-config zsh)
 case "${1:-}" in

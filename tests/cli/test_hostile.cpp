@@ -65,7 +65,13 @@ TEST_CASE("hostile: files of every format that promise what they do not hold are
         {"deep.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", 3},
         {"words.obj", "v a b c\nf 1 1 1\n", 3},
         {"inf.obj", "v inf 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 5},
-        {"draco.gltf", R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})", 3},
+        {"extension.gltf", R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_node_visibility"]})", 3},
+        {"draco.gltf",
+         R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":9,"uri":"data:;base64,RFJBQ08CAgEB"}],)"
+         R"("bufferViews":[{"buffer":0,"byteLength":9}],"accessors":[{"componentType":5126,"count":3,"type":"VEC3"},)"
+         R"({"componentType":5125,"count":3,"type":"SCALAR"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
+         R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}}]}]})",
+         3},
         {"no_file.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":9,"uri":"none.bin"}]})", 3},
         {"outside.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":9,"uri":"../a.bin"}]})", 3},
         {"cut.glb", "glTF\2", 3},

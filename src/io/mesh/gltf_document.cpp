@@ -86,19 +86,27 @@ std::optional<NumberType> type_of(int64_t code) {
   }
 }
 
-int64_t bytes_of(NumberType type) {
-  return with_type(type, [](auto number) { return int64_t(sizeof(number)); });
-}
-
-/// Extensions that change neither shapes nor how they are stored.
-bool concerns_looks(const std::string& extension) {
+/// Extensions that change neither shapes nor how they are stored, and those that unpack() understands.
+bool is_understood(const std::string& extension) {
+  for (const char* name : {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"})
+    if (extension == name) return true;
   for (const char* start :
        {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_", "EXT_lights_", "KHR_xmp"})
     if (extension.rfind(start, 0) == 0) return true;
   return false;
 }
 
+/// A buffer of EXT_meshopt_compression that need not be in the file.
+bool is_mere_place(const Json& buffer) {
+  static const Json::json_pointer fallback("/extensions/EXT_meshopt_compression/fallback");
+  return buffer.contains(fallback) && buffer[fallback] == true;
+}
+
 }  // namespace
+
+int64_t bytes_of(NumberType type) {
+  return with_type(type, [](auto number) { return int64_t(sizeof(number)); });
+}
 
 GltfDocument::GltfDocument(const MeshSource& source) : source_(source) {
   read_container();
@@ -162,11 +170,15 @@ void GltfDocument::check_version() {
 
 void GltfDocument::check_extensions() const {
   for (const Json& name : list(json_, "extensionsRequired")) {
-    if (name.is_string() && (name == "KHR_mesh_quantization" || concerns_looks(name.get_ref<const std::string&>())))
-      continue;
+    if (name.is_string() && is_understood(name.get_ref<const std::string&>())) continue;
     source_.refuse("extensionsRequired names " + short_dump(name) +
                    ", which is not read; write the file without that extension");
   }
+}
+
+bool GltfDocument::requires_extension(const std::string& name) const {
+  const Json& names = list(json_, "extensionsRequired");
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 const Json& GltfDocument::list(const Json& object, const char* key, const std::string& place) const {
@@ -230,6 +242,9 @@ void GltfDocument::read_buffers() {
       data = bytes_of_uri(uri->get_ref<const std::string&>(), place + ".uri");
     } else if (i == 0 && chunk_) {
       data = *chunk_;
+    } else if (is_mere_place(buffer)) {
+      buffers_.push_back(data);
+      continue;
     } else {
       refuse(place, " has no uri, and the file no binary chunk for it");
     }
@@ -259,17 +274,32 @@ View<const char> GltfDocument::bytes_of_uri(const std::string& uri, const std::s
 }
 
 View<const char> GltfDocument::bytes_of_view(int64_t index, const std::string& from) const {
-  const Json& view = element("bufferViews", index, from);
-  const std::string place = "bufferViews[" + std::to_string(index) + "]";
-  const int64_t number = needed_integer(view, "buffer", place);
+  return bytes_in_buffer(element("bufferViews", index, from), "bufferViews[" + std::to_string(index) + "]");
+}
+
+View<const char> GltfDocument::bytes_in_buffer(const Json& object, const std::string& place) const {
+  const int64_t number = needed_integer(object, "buffer", place);
   element("buffers", number, place + ".buffer");
   const View<const char> buffer = buffers_[size_t(number)];
-  const int64_t offset = integer(view, "byteOffset", place).value_or(0),
-                bytes = needed_integer(view, "byteLength", place);
+  const int64_t offset = integer(object, "byteOffset", place).value_or(0),
+                bytes = needed_integer(object, "byteLength", place);
   if (offset + bytes > buffer.size)
     refuse(place, " ends at byte " + std::to_string(offset + bytes) + "; buffers[" + std::to_string(number) + "] has " +
                       std::to_string(buffer.size) + " bytes");
   return {buffer.data + offset, bytes};
+}
+
+bool GltfDocument::has_data(int64_t buffer) const {
+  return buffer < int64_t(buffers_.size()) && buffers_[size_t(buffer)].data;
+}
+
+size_t GltfDocument::add_buffer(std::vector<char> bytes) {
+  const auto size = int64_t(bytes.size());
+  decoded_.push_back(std::move(bytes));
+  buffers_.push_back({decoded_.back().data(), size});
+  bytes_ += size;
+  json_["buffers"].push_back({{"byteLength", size_t(size)}});
+  return buffers_.size() - 1;
 }
 
 void GltfDocument::place_elements(const Json& object, int64_t view, bool packed, GltfElements& e) const {
@@ -291,7 +321,7 @@ void GltfDocument::place_elements(const Json& object, int64_t view, bool packed,
   if (e.count > 0) e.data = bytes.data + offset;
 }
 
-GltfAccessor GltfDocument::accessor(int64_t index, const std::string& from) const {
+GltfAccessor GltfDocument::described(int64_t index, const std::string& from) const {
   const Json& object = element("accessors", index, from);
   GltfAccessor a;
   a.place = "accessors[" + std::to_string(index) + "]";
@@ -307,6 +337,12 @@ GltfAccessor GltfDocument::accessor(int64_t index, const std::string& from) cons
     refuse(a.place + ".type", " is " + short_dump(shape) + "; it must be SCALAR, VEC2 to VEC4 or MAT2 to MAT4");
   const Json normalized = object.value("normalized", Json(false));
   a.normalized = normalized.is_boolean() && normalized.get<bool>() && a.type != NumberType::f32;
+  return a;
+}
+
+GltfAccessor GltfDocument::accessor(int64_t index, const std::string& from) const {
+  GltfAccessor a = described(index, from);
+  const Json& object = json_["accessors"][size_t(index)];
   if (const std::optional<int64_t> view = integer(object, "bufferView", a.place))
     place_elements(object, *view, false, a);
   else if (a.count > bytes_)

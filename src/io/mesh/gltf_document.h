@@ -33,6 +33,9 @@ class GltfDocument {
 
   const MeshSource& source() const { return source_; }
   const Json& json() const { return json_; }
+  Json& json() { return json_; }
+  /// Whether extensionsRequired names it.
+  bool requires_extension(const std::string& name) const;
   /// How many bytes of the file stand behind the length that its header has.
   int64_t surplus_bytes() const { return surplus_bytes_; }
 
@@ -48,7 +51,15 @@ class GltfDocument {
   bool numbers(const Json& object, const char* key, const std::string& place, double* values, size_t count) const;
 
   GltfAccessor accessor(int64_t index, const std::string& from) const;
+  /// An accessor without its data, as it says that they are.
+  GltfAccessor described(int64_t index, const std::string& from) const;
   View<const char> bytes_of_view(int64_t index, const std::string& from) const;
+  /// Those that an object says by buffer, byteOffset and byteLength.
+  View<const char> bytes_in_buffer(const Json& object, const std::string& place) const;
+  /// Whether a buffer is no mere place that an extension's data unpack to.
+  bool has_data(int64_t buffer) const;
+  /// Result: the number of a new buffer, in the JSON, too.
+  size_t add_buffer(std::vector<char> bytes);
   /// Of all buffers.
   int64_t bytes() const { return bytes_; }
   /// How many elements an accessor says that it has, which is not checked and so no more than a hint of how much memory
@@ -73,6 +84,8 @@ class GltfDocument {
   std::vector<std::vector<char>> decoded_;
   int64_t surplus_bytes_ = 0, bytes_ = 0;  ///< bytes_: of all buffers
 };
+
+int64_t bytes_of(NumberType type);
 
 /// The values of all elements; normalised integers as they stand unless `scaled`. Real: float, double.
 template <class Real>

@@ -8,6 +8,7 @@
 #include "io/mesh/face_corners.h"
 #include "io/mesh/gltf_materials.h"
 #include "io/mesh/gltf_primitives.h"
+#include "io/mesh/gltf_unpack.h"
 #include "io/mesh/mesh_readers.h"
 #include "io/mesh/weld.h"
 
@@ -237,7 +238,8 @@ void add_materials(const GltfDocument& document, const std::vector<double>& of_c
 }  // namespace
 
 TriangleSoup read_gltf(const MeshSource& source) {
-  const GltfDocument document(source);
+  GltfDocument document(source);
+  unpack(document);
   const GltfContent content = content_of(document);
   GltfTriangles triangles = triangles_of(document, content);
   if (triangles.count == 0 && content.other_primitives > 0)
