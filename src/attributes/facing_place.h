@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/triangle_grid.h"
-#include "core/world_vector.h"
 
 namespace isoshell {
 
@@ -19,17 +18,6 @@ inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, const Mesh
 }
 inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, WorldPoint normal, double edge_length) {
   return facing_place(grid, p, grid.nearest(p), normal, edge_length);
-}
-
-/// Per point the sum of the normals of its triangles, by their area.
-inline std::vector<WorldPoint> outward_normals(const std::vector<WorldPoint>& points,
-                                               const TriangleGrid::Triangles& triangles) {
-  std::vector<WorldPoint> normals(points.size(), WorldPoint{0, 0, 0});
-  for (const auto& t : triangles) {
-    const WorldPoint area = doubled_area(points[t[0]], points[t[1]], points[t[2]]);
-    for (const uint32_t v : t) normals[v] = normals[v] + area;
-  }
-  return normals;
 }
 
 /// The value at a place from those at its triangle's corners. Where all are the same, exactly that.

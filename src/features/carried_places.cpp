@@ -12,11 +12,18 @@ namespace isoshell {
 namespace {
 
 constexpr double kReach = 0.1;       ///< edge lengths from a path
-constexpr double kCellWidth = 0.75;  ///< of the longest edge length: about as much as an edge of a path and its reach
+constexpr double kCellWidth = 0.75;  ///< of the mean edge length: about as much as an edge of a path and its reach
 
 double part_of_nearest(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
   const double whole = distance_sq(a, b);
   return whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
+}
+
+double mean_length_on_paths(const FineMesh& mesh) {
+  double sum = 0, count = 0;
+  for (const CurvePath& path : mesh.paths)
+    for (const uint32_t v : path.vertex) sum += mesh.edge_length[v], ++count;
+  return count > 0 ? sum / count : 1;
 }
 
 }  // namespace
@@ -24,7 +31,7 @@ double part_of_nearest(const WorldPoint& p, const WorldPoint& a, const WorldPoin
 std::vector<PlaceOnPath> places_on_paths(const FineMesh& mesh, const std::vector<WorldPoint>& points) {
   std::vector<PlaceOnPath> nearest(points.size());
   if (points.empty()) return nearest;
-  const PointCells cells(points, kCellWidth * *std::max_element(mesh.edge_length.begin(), mesh.edge_length.end()));
+  const PointCells cells(points, kCellWidth * mean_length_on_paths(mesh));
   std::vector<double> least_sq(points.size(), std::numeric_limits<double>::infinity());
   for (size_t p = 0; p < mesh.paths.size(); ++p) {
     const CurvePath& path = mesh.paths[p];

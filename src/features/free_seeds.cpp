@@ -17,6 +17,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kFewestOfClosed = 4;  ///< vertices of a closed surface
+constexpr int64_t kSlack = 8;           ///< a patch keeps so many seeds more or less than it needs, or one in so many
 
 int64_t doubled_area(const SurfaceMesh& surface, TriangleIndices t) {
   const Vec64 n = cross(difference(surface.position[t.b], surface.position[t.a]),
@@ -173,19 +174,17 @@ FreeSeeds::Counts FreeSeeds::as_before(const Counts& wanted, const Counts& befor
   Counts out;
   int64_t missing = 0;
   for (size_t p = 0; p < patches_.size(); ++p) {
-    const int64_t slack = std::max<int64_t>(8, wanted[p] / 8), most = patches_[p].inside / 2;
+    const int64_t slack = std::max<int64_t>(kSlack, wanted[p] / kSlack), most = patches_[p].inside / 2;
     out.push_back(std::clamp(before[p], std::min(wanted[p], std::max(kFewestOfClosed, wanted[p] - slack)),
                              std::max(wanted[p], std::min(most, wanted[p] + slack))));
     missing += wanted[p] - out.back();
   }
-  for (; missing != 0; missing += missing > 0 ? -1 : 1) {
-    const int64_t step = missing > 0 ? 1 : -1;
-    const auto share_missing = [&](size_t p) { return double(step * (wanted[p] - out[p])) / double(wanted[p] + 1); };
-    size_t most = 0;
-    for (size_t p = 1; p < out.size(); ++p)
-      if (share_missing(p) > share_missing(most)) most = p;
-    out[most] += step;
-  }
+  std::vector<double> demand;
+  for (size_t p = 0; p < out.size(); ++p)
+    demand.push_back(std::max(0.0, double(missing < 0 ? out[p] - wanted[p] : wanted[p] - out[p])));
+  if (missing == 0) return out;
+  const std::vector<int64_t> more = shared(std::abs(missing), demand);
+  for (size_t p = 0; p < out.size(); ++p) out[p] += missing < 0 ? -more[p] : more[p];
   return out;
 }
 

@@ -29,8 +29,8 @@ class FreeSeeds {
   /// the coarser level.
   Counts coarser(const SeedSet& fixed, const Counts& finer) const;
 
-  /// As many in all as are wanted, and in each patch what it had before, as far as that is within a twentieth of what
-  /// is wanted there, or two.
+  /// As many in all as are wanted, and in each patch what it had before, as far as that is within an eighth of what
+  /// is wanted there, or eight.
   Counts as_before(const Counts& wanted, const Counts& before) const;
 
   /// Spread at random, as place_seeds does it: each in a triangle that has a vertex off the border, which is its home.

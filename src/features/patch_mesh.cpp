@@ -14,9 +14,10 @@
 namespace isoshell {
 namespace {
 
-constexpr int kRings = 2;                       ///< of triangles around what is changed
-constexpr double kLess = 0.97;                  ///< of the cost that a change must leave
-constexpr double kLessIfSteady = 0.5;           ///< the same of one in a frame that follows another
+constexpr int kRings = 2;       ///< of triangles around what is changed
+constexpr double kLess = 0.97;  ///< of the cost that a change must leave
+constexpr double kLessIfSteady =
+    0.5;  ///< of what moves and flips leave, where triangles stay poor in a frame that follows
 constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triangle itself must have for changes to pay
 constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
 constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor

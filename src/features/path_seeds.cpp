@@ -49,8 +49,9 @@ Candidate& candidate_at(const FineMesh& mesh, const CurvePath& path, const std::
   const auto next = std::lower_bound(candidates.begin() + 1, candidates.end() - 1, at,
                                      [](const Candidate& c, double place) { return c.segments < place; });
   const auto near = at - (next - 1)->segments < next->segments - at ? next - 1 : next;
-  const bool is_near = std::abs(near->segments - at) < too_soon;
-  if (is_near && near->point.part == 0) return *near;
+  const auto is_near = [&](const Candidate& c) { return std::abs(c.segments - at) < too_soon; };
+  for (const auto beside : {next - 1, next})
+    if (beside->point.part == 0 && is_near(*beside)) return *beside;
   if (at - begin < too_soon) point.part = 0;
   const bool is_at_end = end - at < too_soon;
   const double part = is_at_end ? 1 : point.part;
@@ -58,7 +59,7 @@ Candidate& candidate_at(const FineMesh& mesh, const CurvePath& path, const std::
   if (is_at_end) point = {point.edge + 1, 0};
   const Candidate there{point, mesh.position[u] + part * (mesh.position[v] - mesh.position[u]),
                         begin + part * (end - begin), (1 - part) * mesh.edge_length[u] + part * mesh.edge_length[v]};
-  if (!is_near) return *candidates.insert(next, there);
+  if (!is_near(*near)) return *candidates.insert(next, there);
   *near = there;
   return *near;
 }
@@ -159,11 +160,14 @@ std::vector<size_t> even(const std::vector<Candidate>& c, size_t segments) {
   return way;
 }
 
-/// A loop's, from the one in the first segment that costs least, and so ending with that.
+/// A loop's, from the one in the first segment that costs least, or the first one farther on that stays, and so ending
+/// with that.
 std::vector<Candidate> from_cheapest(const std::vector<Candidate>& c) {
   size_t begin = 0;
   for (size_t i = 1; i + 1 < c.size() && c[i].segments < 1; ++i)
     if (c[i].cost < c[begin].cost) begin = i;
+  for (size_t i = begin; i + 1 < c.size() && c[begin].cost >= 0; ++i)
+    if (c[i].cost < 0) begin = i;
   if (begin == 0) return c;
   std::vector<Candidate> out(c.begin() + int64_t(begin), c.end() - 1);
   const size_t behind = out.size();

@@ -168,10 +168,17 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
   const bool lengths_decide = how.asked.vary() && field_decides(options);
   if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
   SharedCut cut;
-  const std::string refused = reason_against([&] {
-    cut = make_cut(plan, network, source, report.features, context);
-    return std::string();
-  });
+  const auto why_not_all = [&] {
+    return reason_against([&] {
+      cut = make_cut(plan, network, source, report.features, context);
+      return std::string();
+    });
+  };
+  std::string refused = why_not_all();
+  if (!cut && !how.before.empty()) {  // curves may keep more seeds than there is room for
+    how.before.clear();
+    refused = why_not_all();
+  }
   if (!cut) cut = cut_along_fewer(plan, network, std::move(source), report, context);
   if (!cut) throw NoRoom("features", refused);
   return cut;

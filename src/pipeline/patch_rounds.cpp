@@ -97,7 +97,7 @@ class PatchRounds {
     Wrong wrong = left_of(*cut, made, mesh_patches(*cut, made));
     if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
-      if (is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
+      if (options_.previous || is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
       if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
       std::optional<Paths> fewer = drop_creases(*cut->fine, wrong.places());
       if (!fewer) return wrong.said();

@@ -175,6 +175,17 @@ MeshOfPatches mesh_of_patches(const Prepared& p, std::shared_ptr<const CutSurfac
   return out;
 }
 
+/// Of a frame that cannot be made from the one before, from new seeds.
+MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const Prepared& p, const PatchOptions& in_patches,
+                              SeededMesh& made, RemeshReport& report, Context& context) {
+  report.coherence.began_warm = false;
+  report.coherence.why_cold = failed.why_not;
+  RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*p.cut, in_patches, context); });
+  report.relax = std::move(relaxed.report);
+  made = {{}, std::move(relaxed.seeds)};
+  return mesh_of_patches(p, p.cut, made, in_patches, report, context);
+}
+
 /// From the curves on the sheet, which has no bad place.
 MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, const RemeshOptions& options,
                                     PatchOptions in_patches, SeededMesh& made, RemeshReport& report, Context& context) {
@@ -183,11 +194,6 @@ MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, con
   });
   if (!cut) return failed;
   in_patches.seeds.count = cut->seeds;
-  if (in_patches.previous) {
-    in_patches.previous = nullptr;
-    report.coherence.began_warm = false;
-    report.coherence.why_cold = kCurvesOnSheet;
-  }
   failed.why_not = reason_against([&] {
     RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
     report.relax = std::move(relaxed.report);
@@ -243,9 +249,10 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
 }
 
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
-                                                const PatchOptions& in_patches, RemeshReport& report,
-                                                Context& context) {
+                                                PatchOptions in_patches, RemeshReport& report, Context& context) {
   MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
+  if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr))
+    made_here = mesh_begun_cold(made_here, p, in_patches, made, report, context);
   if (!made_here.why_not.empty())
     made_here = mesh_on_sheet_instead(std::move(made_here), p, options, in_patches, made, report, context);
   if (!made_here.why_not.empty()) {

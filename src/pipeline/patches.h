@@ -46,6 +46,6 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
 /// where that fails, too: cells are no disks, or patches touch along edges that are on no curve: report.features says
 /// so. With borders that are kept triangles may intersect where the input's do.
 std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
-                                                const PatchOptions& in_patches, RemeshReport& report, Context& context);
+                                                PatchOptions in_patches, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include "attributes/facing_place.h"
+#include "core/outward_normals.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "core/world_vector.h"
@@ -57,7 +58,7 @@ std::vector<uint32_t> homes_inside(const CutSurface& cut, const PreviousFrame& p
   return home;
 }
 
-/// Per vertex the square of the shortest edge at it, over that of the edge length that is aimed at there.
+/// Per vertex the square of the shortest edge at it.
 std::vector<double> shortest_edges(const PreviousFrame& previous) {
   std::vector<double> shortest(previous.carried.size(), std::numeric_limits<double>::infinity());
   for (const auto& t : previous.triangles)
@@ -70,13 +71,20 @@ std::vector<double> shortest_edges(const PreviousFrame& previous) {
   return shortest;
 }
 
-/// Those inside as seeds, with their triangles, the ones with the longest edges first.
+/// Those inside as seeds, with their triangles, the ones with the longest edges first, beside the lengths aimed at. Of
+/// those with one home the first.
 SeededMesh seeds_inside(const CutSurface& cut, const PreviousFrame& previous, const std::vector<uint32_t>& home) {
   std::vector<uint32_t> order;
   for (uint32_t i = 0; i < home.size(); ++i)
     if (home[i] != kNone) order.push_back(i);
-  const std::vector<double> shortest = shortest_edges(previous);
+  std::vector<double> shortest = shortest_edges(previous);
+  if (const EdgeLengths& lengths = cut.surface.lengths; !lengths.at.empty())
+    for (const uint32_t i : order) shortest[i] /= double(lengths.at[home[i]]) * double(lengths.at[home[i]]);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return shortest[a] > shortest[b]; });
+  std::vector<char> is_taken(size_t(cut.surface.vertex_count()), 0);
+  order.erase(std::remove_if(order.begin(), order.end(),
+                             [&](uint32_t i) { return std::exchange(is_taken[home[i]], char(1)) != 0; }),
+              order.end());
   SeededMesh inside;
   const auto count = int64_t(order.size());
   inside.seeds.position = Buffer<PointQ8>(count);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "attributes/facing_place.h"
+#include "core/outward_normals.h"
 #include "core/parallel_ranges.h"
 #include "core/triangle_grid.h"
 #include "core/watched.h"
