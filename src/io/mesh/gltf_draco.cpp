@@ -4,7 +4,9 @@
 #include <draco/core/varint_decoding.h>
 
 #include <cstring>
+#include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
@@ -108,7 +110,7 @@ std::vector<char> values_of(const draco::PointAttribute& attribute, int64_t poin
   std::vector<char> values(size_t(points) * bytes);
   const bool is_same = attribute.data_type() == type;
   const int64_t wrong = sum_over_ranges(points, kGrain, [&](int64_t begin, int64_t end) {
-    T value[256];  // components are counted in a byte
+    T value[16] = {};  // accessors have no more components; a failed conversion leaves some of them as they were
     int64_t failed = 0;
     for (int64_t p = begin; p < end; ++p) {
       const auto at = attribute.mapped_index(draco::PointIndex(uint32_t(p)));
