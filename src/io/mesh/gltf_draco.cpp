@@ -18,7 +18,6 @@ namespace {
 constexpr int64_t kGrain = 1 << 14;
 constexpr uint16_t kBitstream = DRACO_BITSTREAM_VERSION(2, 2);  // the one that the extension is defined for
 constexpr int kMostSeams = 32;                                  // attributes with a connectivity of their own
-constexpr int64_t kMostBytesPerPoint = 1024;                    // of all attributes that a file has, wanted or not
 
 /// libdraco's decoders take memory for what the packed bytes say. Here they first say how much that is.
 template <class Decoder>
@@ -43,10 +42,13 @@ class BoundedDecoder : public Decoder {
 
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();
-    int64_t bytes = 0;
-    for (int i = 0; i < cloud.num_attributes(); ++i) bytes += cloud.attribute(i)->byte_stride();
-    return is_most("points", cloud.num_points(), limits_.most_points) &&
-           is_most("bytes a point", bytes, kMostBytesPerPoint) && Decoder::DecodeAllAttributes();
+    const int64_t points = cloud.num_points();
+    int64_t bytes = 0;  // of a point: its values, and the integers of 32 bits that they are packed as
+    for (int i = 0; i < cloud.num_attributes(); ++i)
+      bytes += cloud.attribute(i)->byte_stride() + 4 * cloud.attribute(i)->num_components();
+    return is_most("points", points, limits_.most_points) &&
+           (points == 0 || is_most("bytes a point", bytes, limits_.most_bytes / points)) &&
+           Decoder::DecodeAllAttributes();
   }
 
  private:

@@ -13,7 +13,8 @@ using Json = GltfDocument::Json;
 
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr int64_t kMostMeshopt = 64;     // bytes of a byte: 2 bits say that 16 bytes are as those before them
+constexpr int64_t kMostMeshopt = 64;     // bytes of a byte: 2 bits say that 16 bytes are as those before them;
+                                         // and of all buffers, as several views may be packed in the same bytes
 constexpr int64_t kMostDraco = 1 << 14;  // of all buffers; flat grids reach some 700
 constexpr uint32_t kTriangles = 4, kStrip = 5, kU32 = 5125;  // the reader takes what is unsigned alone
 
@@ -39,7 +40,8 @@ std::string text_of(const Json& object, const char* key, const std::string& othe
   return at->is_string() ? at->get<std::string>() : "";
 }
 
-void unpack_view(GltfDocument& document, size_t index, bool is_required) {
+/// `left`: how many bytes may be unpacked, this view's are taken off.
+void unpack_view(GltfDocument& document, size_t index, bool is_required, int64_t& left) {
   const std::string in_list = "bufferViews[" + std::to_string(index) + "]";
   const Json& view = document.element("bufferViews", int64_t(index), in_list);
   const Json* const packed = extension_of(document, view, kMeshopt, in_list);
@@ -56,6 +58,10 @@ void unpack_view(GltfDocument& document, size_t index, bool is_required) {
     document.refuse(place, " has " + std::to_string(job.packed.size) + " bytes for " + std::to_string(job.count) +
                                " elements of " + std::to_string(job.stride) + " bytes; a byte holds at most " +
                                std::to_string(kMostMeshopt) + ", and an element has at most 256; restore the file");
+  left -= job.count * job.stride;
+  if (left < 0)
+    document.refuse(place, " unpacks, together with those before it, to more than " + std::to_string(kMostMeshopt) +
+                               " times the bytes of all buffers, the most that is read; restore the file");
   if (const std::string fault = decode_meshopt(job); !fault.empty()) document.refuse(place, fault);
   const size_t bytes = job.values.size();
   const size_t buffer = document.add_buffer(std::move(job.values));
@@ -69,6 +75,7 @@ void unpack_view(GltfDocument& document, size_t index, bool is_required) {
 struct PackedPrimitive {
   size_t mesh, primitive;
   std::string place, fault;
+  double bytes;  ///< unpacked, as the accessors say
   DracoMesh data;
   std::vector<std::string> semantics;
   std::vector<int64_t> accessors;
@@ -76,13 +83,17 @@ struct PackedPrimitive {
 
 class DracoUnpacker {
  public:
-  explicit DracoUnpacker(GltfDocument& document)
+  /// `file_bytes`: of all buffers of the file.
+  DracoUnpacker(GltfDocument& document, int64_t file_bytes)
       : document_(document),
         is_required_(document.requires_extension(kDraco)),
-        most_bytes_(double(kMostDraco * document.bytes())) {}
+        most_bytes_(double(kMostDraco * file_bytes)) {}
 
   void unpack() {
     find_all();
+    // Draco's data may have more than accessors say: each may have its share of what all may have.
+    for (PackedPrimitive& p : packed_)
+      p.data.most_bytes = int64_t(p.bytes / std::max(claimed_bytes_, 1.0) * most_bytes_);
     for_each_index(size_t(0), packed_.size(), [&](size_t i) { packed_[i].fault = decode_draco(packed_[i].data); });
     for (PackedPrimitive& p : packed_) {
       if (!p.fault.empty()) document_.refuse(p.place, p.fault);
@@ -121,7 +132,7 @@ class DracoUnpacker {
 
   void add(size_t mesh, size_t index, const Json& extension, const std::string& in_list) {
     const Json& primitive = document_.json()["meshes"][mesh]["primitives"][index];
-    PackedPrimitive p{mesh, index, in_list + ".extensions." + kDraco, "", {}, {}, {}};
+    PackedPrimitive p{mesh, index, in_list + ".extensions." + kDraco, "", 0, {}, {}, {}};
     const Json& attributes = attributes_of(document_, primitive, in_list);
     const Json& packed = attributes_of(document_, extension, p.place);
     if (!is_required_ && is_plain_too(primitive, attributes, packed)) return;
@@ -152,9 +163,9 @@ class DracoUnpacker {
   }
 
   /// Before memory is taken for them.
-  void claim(const PackedPrimitive& p, int64_t bytes_per_point) {
-    const double bytes = 12.0 * double(p.data.most_triangles) + double(bytes_per_point) * double(p.data.most_points);
-    claimed_bytes_ += bytes;
+  void claim(PackedPrimitive& p, int64_t bytes_per_point) {
+    p.bytes = 12.0 * double(p.data.most_triangles) + double(bytes_per_point) * double(p.data.most_points);
+    claimed_bytes_ += p.bytes;
     if (claimed_bytes_ > most_bytes_)
       document_.refuse(p.place, " unpacks to " + std::to_string(p.data.most_triangles) + " triangles and " +
                                     std::to_string(p.data.most_points) +
@@ -200,9 +211,11 @@ class DracoUnpacker {
 
 void unpack(GltfDocument& document) {
   const bool is_required = document.requires_extension(kMeshopt);
+  const int64_t file_bytes = document.bytes();  // before what is unpacked counts, too
   const size_t views = document.list(document.json(), "bufferViews").size();
-  for (size_t i = 0; i < views; ++i) unpack_view(document, i, is_required);
-  DracoUnpacker(document).unpack();
+  int64_t left = kMostMeshopt * file_bytes;
+  for (size_t i = 0; i < views; ++i) unpack_view(document, i, is_required, left);
+  DracoUnpacker(document, file_bytes).unpack();
 }
 
 }  // namespace isoshell
