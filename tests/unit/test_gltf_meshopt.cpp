@@ -249,6 +249,16 @@ TEST_CASE("meshopt: views of the same packed bytes unpack to a limit together", 
   CHECK(refusal_of(copies_to(2 * most)).find("more than 64 times the bytes of all buffers") != std::string::npos);
 }
 
+TEST_CASE("meshopt: damaged views that no primitive uses are passed over", "[mesh_file][meshopt][unit]") {
+  const Sample sample;
+  GltfFile file = packed_file(sample);
+  const size_t view = packed_view(file, "damaged bytes of an animation", 4, 16, "ATTRIBUTES");
+  const size_t unused = file.accessor(5126, 4, "VEC4", {{"bufferView", view}});
+  check_same(read_glb(file.glb()), read_glb(plain_file(sample).glb()));
+  file.json["meshes"][0]["primitives"][0]["attributes"]["_OTHER"] = unused;
+  CHECK(refusal_of(file).find("bufferViews[4]") != std::string::npos);
+}
+
 TEST_CASE("meshopt: damaged bytes are refused or give a sound soup", "[mesh_file][meshopt][unit]") {
   const GltfFile file = packed_file(Sample());
   const std::string glb = file.glb();

@@ -40,6 +40,47 @@ std::string text_of(const Json& object, const char* key, const std::string& othe
   return at->is_string() ? at->get<std::string>() : "";
 }
 
+/// Calls `f` with the numbers of mesh and primitive, the primitive, and where it stands.
+template <class F>
+void for_each_primitive(const GltfDocument& document, F f) {
+  const Json& meshes = document.list(document.json(), "meshes");
+  for (size_t m = 0; m < meshes.size(); ++m) {
+    const std::string in_list = "meshes[" + std::to_string(m) + "]";
+    const Json& primitives = document.list(document.element("meshes", int64_t(m), in_list), "primitives", in_list);
+    for (size_t i = 0; i < primitives.size(); ++i)
+      if (primitives[i].is_object()) f(m, i, primitives[i], in_list + ".primitives[" + std::to_string(i) + "]");
+  }
+}
+
+/// Marks the views that a value names at any depth. What is no number of a view is refused where it is read.
+void mark_views(const Json& value, std::vector<bool>& is_used) {
+  if (!value.is_structured()) return;
+  for (const auto& item : value.items()) {
+    const Json& number = item.value();
+    if (item.key() == "bufferView" && number.is_number_unsigned() && number.get<uint64_t>() < is_used.size())
+      is_used[number.get<size_t>()] = true;
+    mark_views(number, is_used);
+  }
+}
+
+/// Those of primitives and images: others, as those of animations, are not read and may be damaged.
+std::vector<bool> used_views(const GltfDocument& document) {
+  const Json &json = document.json(), &accessors = document.list(json, "accessors");
+  std::vector<bool> is_used(document.list(json, "bufferViews").size());
+  const auto mark_accessor = [&](const Json& number) {
+    if (number.is_number_unsigned() && number.get<uint64_t>() < accessors.size())
+      mark_views(accessors[number.get<size_t>()], is_used);
+  };
+  mark_views(document.list(json, "images"), is_used);
+  for_each_primitive(document, [&](size_t, size_t, const Json& primitive, const std::string&) {
+    if (primitive.contains("extensions")) mark_views(primitive["extensions"], is_used);
+    if (primitive.contains("indices")) mark_accessor(primitive["indices"]);
+    if (!primitive.contains("attributes")) return;
+    for (const auto& attribute : primitive["attributes"].items()) mark_accessor(attribute.value());
+  });
+  return is_used;
+}
+
 /// `left`: how many bytes may be unpacked, this view's are taken off.
 void unpack_view(GltfDocument& document, size_t index, bool is_required, int64_t& left) {
   const std::string in_list = "bufferViews[" + std::to_string(index) + "]";
@@ -103,17 +144,9 @@ class DracoUnpacker {
 
  private:
   void find_all() {
-    const Json& meshes = document_.list(document_.json(), "meshes");
-    for (size_t m = 0; m < meshes.size(); ++m) {
-      const std::string in_list = "meshes[" + std::to_string(m) + "]";
-      const Json& primitives = document_.list(document_.element("meshes", int64_t(m), in_list), "primitives", in_list);
-      for (size_t i = 0; i < primitives.size(); ++i) {
-        const std::string place = in_list + ".primitives[" + std::to_string(i) + "]";
-        const Json* const extension =
-            primitives[i].is_object() ? extension_of(document_, primitives[i], kDraco, place) : nullptr;
-        if (extension) add(m, i, *extension, place);
-      }
-    }
+    for_each_primitive(document_, [&](size_t m, size_t i, const Json& primitive, const std::string& place) {
+      if (const Json* const extension = extension_of(document_, primitive, kDraco, place)) add(m, i, *extension, place);
+    });
   }
 
   bool has_view(const Json& object, const std::string& key) const {
@@ -212,9 +245,10 @@ class DracoUnpacker {
 void unpack(GltfDocument& document) {
   const bool is_required = document.requires_extension(kMeshopt);
   const int64_t file_bytes = document.bytes();  // before what is unpacked counts, too
-  const size_t views = document.list(document.json(), "bufferViews").size();
+  const std::vector<bool> is_used = used_views(document);
   int64_t left = kMostMeshopt * file_bytes;
-  for (size_t i = 0; i < views; ++i) unpack_view(document, i, is_required, left);
+  for (size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) unpack_view(document, i, is_required, left);
   DracoUnpacker(document, file_bytes).unpack();
 }
 
