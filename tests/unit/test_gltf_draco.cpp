@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "io/mesh/gltf_codecs.h"
 #include "support/gltf_file.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -276,6 +277,22 @@ TEST_CASE("Draco: what a packed mesh promises and does not hold is refused with 
   other = packed;
   other.bytes[7] = 0;  // points without triangles
   check_contains(refusal_of(packed_file(sample, other)), "no triangles");
+}
+
+TEST_CASE("Draco: what a packed mesh takes in memory is refused before it is taken", "[mesh_file][draco][unit]") {
+  const Sample sample;
+  for (const int speed : {5, 10}) {
+    const Packed packed = pack(sample, speed);
+    const auto points = int64_t(packed.points);
+    // The values and the integers that they are packed as, although no attribute is wanted.
+    const int64_t bytes = points * (12 + 12 + 8 + 4 + 2 + 4 * (3 + 3 + 2 + 4 + 1));
+    DracoMesh mesh{
+        {packed.bytes.data(), int64_t(packed.bytes.size())}, int64_t(packed.triangles), points, bytes, {}, 0, {}};
+    CHECK(decode_draco(mesh) == "");
+    CHECK(mesh.points == points);
+    mesh.most_bytes = bytes - 1;
+    check_contains(decode_draco(mesh), "promises 90 bytes a point; at most 89 are read");
+  }
 }
 
 TEST_CASE("Draco: damaged bytes are refused or give a sound soup", "[mesh_file][draco][unit]") {

@@ -226,6 +226,39 @@ TEST_CASE("meshopt: what a packed view promises and does not hold is refused wit
   CHECK(refusal_of(lost).find("buffers[1] has 0 bytes") != std::string::npos);
 }
 
+TEST_CASE("meshopt: views of the same packed bytes unpack to a limit together", "[mesh_file][meshopt][unit]") {
+  const Sample sample;
+  GltfFile file = packed_file(sample);
+  const size_t corners = sample.corners.size();
+  const std::string packed = indices_packed(std::vector<uint32_t>(corners), 1, true);
+  REQUIRE(4 * corners < 64 * packed.size());  // each is read
+  const size_t first = packed_view(file, packed, corners, 4, "TRIANGLES", "NONE", false);
+  const Json view = file.json["bufferViews"][first], primitive = file.json["meshes"][0]["primitives"][0];
+  const auto copies_to = [&](size_t bytes) {
+    GltfFile copied = file;
+    for (size_t i = 1; 4 * corners * i < bytes; ++i) {
+      copied.json["bufferViews"].push_back(view);
+      Json& made = copied.primitive(primitive);
+      made["indices"] = copied.accessor(5125, corners, "SCALAR", {{"bufferView", first + i}});
+    }
+    return copied;
+  };
+  const size_t most = 64 * file.binary.size();
+  // The copies' triangles have one corner each and are left out.
+  CHECK(read_glb(copies_to(most / 2).glb()).triangles.size() == sample.torus.triangles.size());
+  CHECK(refusal_of(copies_to(2 * most)).find("more than 64 times the bytes of all buffers") != std::string::npos);
+}
+
+TEST_CASE("meshopt: damaged views that no primitive uses are passed over", "[mesh_file][meshopt][unit]") {
+  const Sample sample;
+  GltfFile file = packed_file(sample);
+  const size_t view = packed_view(file, "damaged bytes of an animation", 4, 16, "ATTRIBUTES");
+  const size_t unused = file.accessor(5126, 4, "VEC4", {{"bufferView", view}});
+  check_same(read_glb(file.glb()), read_glb(plain_file(sample).glb()));
+  file.json["meshes"][0]["primitives"][0]["attributes"]["_OTHER"] = unused;
+  CHECK(refusal_of(file).find("bufferViews[4]") != std::string::npos);
+}
+
 TEST_CASE("meshopt: damaged bytes are refused or give a sound soup", "[mesh_file][meshopt][unit]") {
   const GltfFile file = packed_file(Sample());
   const std::string glb = file.glb();

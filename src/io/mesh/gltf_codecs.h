@@ -19,6 +19,7 @@ struct DracoMesh {
   };
   View<const char> packed;
   int64_t most_triangles, most_points;  ///< refused before memory is taken for more
+  int64_t most_bytes;                   ///< of all attributes that are packed, wanted or not; as those
   std::vector<Attribute> attributes;
   int64_t points = 0;         ///< result
   std::vector<char> indices;  ///< result: of 32 bits, of points, three a triangle; they may be out of range

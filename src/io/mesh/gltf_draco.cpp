@@ -4,7 +4,9 @@
 #include <draco/core/varint_decoding.h>
 
 #include <cstring>
+#include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
@@ -16,7 +18,6 @@ namespace {
 constexpr int64_t kGrain = 1 << 14;
 constexpr uint16_t kBitstream = DRACO_BITSTREAM_VERSION(2, 2);  // the one that the extension is defined for
 constexpr int kMostSeams = 32;                                  // attributes with a connectivity of their own
-constexpr int64_t kMostBytesPerPoint = 1024;                    // of all attributes that a file has, wanted or not
 
 /// libdraco's decoders take memory for what the packed bytes say. Here they first say how much that is.
 template <class Decoder>
@@ -41,10 +42,13 @@ class BoundedDecoder : public Decoder {
 
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();
-    int64_t bytes = 0;
-    for (int i = 0; i < cloud.num_attributes(); ++i) bytes += cloud.attribute(i)->byte_stride();
-    return is_most("points", cloud.num_points(), limits_.most_points) &&
-           is_most("bytes a point", bytes, kMostBytesPerPoint) && Decoder::DecodeAllAttributes();
+    const int64_t points = cloud.num_points();
+    int64_t bytes = 0;  // of a point: its values, and the integers of 32 bits that they are packed as
+    for (int i = 0; i < cloud.num_attributes(); ++i)
+      bytes += cloud.attribute(i)->byte_stride() + 4 * cloud.attribute(i)->num_components();
+    return is_most("points", points, limits_.most_points) &&
+           (points == 0 || is_most("bytes a point", bytes, limits_.most_bytes / points)) &&
+           Decoder::DecodeAllAttributes();
   }
 
  private:
@@ -108,7 +112,7 @@ std::vector<char> values_of(const draco::PointAttribute& attribute, int64_t poin
   std::vector<char> values(size_t(points) * bytes);
   const bool is_same = attribute.data_type() == type;
   const int64_t wrong = sum_over_ranges(points, kGrain, [&](int64_t begin, int64_t end) {
-    T value[256];  // components are counted in a byte
+    T value[16] = {};  // accessors have no more components; a failed conversion leaves some of them as they were
     int64_t failed = 0;
     for (int64_t p = begin; p < end; ++p) {
       const auto at = attribute.mapped_index(draco::PointIndex(uint32_t(p)));

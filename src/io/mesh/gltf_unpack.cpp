@@ -13,7 +13,8 @@ using Json = GltfDocument::Json;
 
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr int64_t kMostMeshopt = 64;     // bytes of a byte: 2 bits say that 16 bytes are as those before them
+constexpr int64_t kMostMeshopt = 64;     // bytes of a byte: 2 bits say that 16 bytes are as those before them;
+                                         // and of all buffers, as several views may be packed in the same bytes
 constexpr int64_t kMostDraco = 1 << 14;  // of all buffers; flat grids reach some 700
 constexpr uint32_t kTriangles = 4, kStrip = 5, kU32 = 5125;  // the reader takes what is unsigned alone
 
@@ -39,7 +40,49 @@ std::string text_of(const Json& object, const char* key, const std::string& othe
   return at->is_string() ? at->get<std::string>() : "";
 }
 
-void unpack_view(GltfDocument& document, size_t index, bool is_required) {
+/// Calls `f` with the numbers of mesh and primitive, the primitive, and where it stands.
+template <class F>
+void for_each_primitive(const GltfDocument& document, F f) {
+  const Json& meshes = document.list(document.json(), "meshes");
+  for (size_t m = 0; m < meshes.size(); ++m) {
+    const std::string in_list = "meshes[" + std::to_string(m) + "]";
+    const Json& primitives = document.list(document.element("meshes", int64_t(m), in_list), "primitives", in_list);
+    for (size_t i = 0; i < primitives.size(); ++i)
+      if (primitives[i].is_object()) f(m, i, primitives[i], in_list + ".primitives[" + std::to_string(i) + "]");
+  }
+}
+
+/// Marks the views that a value names at any depth. What is no number of a view is refused where it is read.
+void mark_views(const Json& value, std::vector<bool>& is_used) {
+  if (!value.is_structured()) return;
+  for (const auto& item : value.items()) {
+    const Json& number = item.value();
+    if (item.key() == "bufferView" && number.is_number_unsigned() && number.get<uint64_t>() < is_used.size())
+      is_used[number.get<size_t>()] = true;
+    mark_views(number, is_used);
+  }
+}
+
+/// Those of primitives and images: others, as those of animations, are not read and may be damaged.
+std::vector<bool> used_views(const GltfDocument& document) {
+  const Json &json = document.json(), &accessors = document.list(json, "accessors");
+  std::vector<bool> is_used(document.list(json, "bufferViews").size());
+  const auto mark_accessor = [&](const Json& number) {
+    if (number.is_number_unsigned() && number.get<uint64_t>() < accessors.size())
+      mark_views(accessors[number.get<size_t>()], is_used);
+  };
+  mark_views(document.list(json, "images"), is_used);
+  for_each_primitive(document, [&](size_t, size_t, const Json& primitive, const std::string&) {
+    if (primitive.contains("extensions")) mark_views(primitive["extensions"], is_used);
+    if (primitive.contains("indices")) mark_accessor(primitive["indices"]);
+    if (!primitive.contains("attributes")) return;
+    for (const auto& attribute : primitive["attributes"].items()) mark_accessor(attribute.value());
+  });
+  return is_used;
+}
+
+/// `left`: how many bytes may be unpacked, this view's are taken off.
+void unpack_view(GltfDocument& document, size_t index, bool is_required, int64_t& left) {
   const std::string in_list = "bufferViews[" + std::to_string(index) + "]";
   const Json& view = document.element("bufferViews", int64_t(index), in_list);
   const Json* const packed = extension_of(document, view, kMeshopt, in_list);
@@ -56,6 +99,10 @@ void unpack_view(GltfDocument& document, size_t index, bool is_required) {
     document.refuse(place, " has " + std::to_string(job.packed.size) + " bytes for " + std::to_string(job.count) +
                                " elements of " + std::to_string(job.stride) + " bytes; a byte holds at most " +
                                std::to_string(kMostMeshopt) + ", and an element has at most 256; restore the file");
+  left -= job.count * job.stride;
+  if (left < 0)
+    document.refuse(place, " unpacks, together with those before it, to more than " + std::to_string(kMostMeshopt) +
+                               " times the bytes of all buffers, the most that is read; restore the file");
   if (const std::string fault = decode_meshopt(job); !fault.empty()) document.refuse(place, fault);
   const size_t bytes = job.values.size();
   const size_t buffer = document.add_buffer(std::move(job.values));
@@ -69,6 +116,7 @@ void unpack_view(GltfDocument& document, size_t index, bool is_required) {
 struct PackedPrimitive {
   size_t mesh, primitive;
   std::string place, fault;
+  double bytes;  ///< unpacked, as the accessors say
   DracoMesh data;
   std::vector<std::string> semantics;
   std::vector<int64_t> accessors;
@@ -76,13 +124,17 @@ struct PackedPrimitive {
 
 class DracoUnpacker {
  public:
-  explicit DracoUnpacker(GltfDocument& document)
+  /// `file_bytes`: of all buffers of the file.
+  DracoUnpacker(GltfDocument& document, int64_t file_bytes)
       : document_(document),
         is_required_(document.requires_extension(kDraco)),
-        most_bytes_(double(kMostDraco * document.bytes())) {}
+        most_bytes_(double(kMostDraco * file_bytes)) {}
 
   void unpack() {
     find_all();
+    // Draco's data may have more than accessors say: each may have its share of what all may have.
+    for (PackedPrimitive& p : packed_)
+      p.data.most_bytes = int64_t(p.bytes / std::max(claimed_bytes_, 1.0) * most_bytes_);
     for_each_index(size_t(0), packed_.size(), [&](size_t i) { packed_[i].fault = decode_draco(packed_[i].data); });
     for (PackedPrimitive& p : packed_) {
       if (!p.fault.empty()) document_.refuse(p.place, p.fault);
@@ -92,17 +144,9 @@ class DracoUnpacker {
 
  private:
   void find_all() {
-    const Json& meshes = document_.list(document_.json(), "meshes");
-    for (size_t m = 0; m < meshes.size(); ++m) {
-      const std::string in_list = "meshes[" + std::to_string(m) + "]";
-      const Json& primitives = document_.list(document_.element("meshes", int64_t(m), in_list), "primitives", in_list);
-      for (size_t i = 0; i < primitives.size(); ++i) {
-        const std::string place = in_list + ".primitives[" + std::to_string(i) + "]";
-        const Json* const extension =
-            primitives[i].is_object() ? extension_of(document_, primitives[i], kDraco, place) : nullptr;
-        if (extension) add(m, i, *extension, place);
-      }
-    }
+    for_each_primitive(document_, [&](size_t m, size_t i, const Json& primitive, const std::string& place) {
+      if (const Json* const extension = extension_of(document_, primitive, kDraco, place)) add(m, i, *extension, place);
+    });
   }
 
   bool has_view(const Json& object, const std::string& key) const {
@@ -121,7 +165,7 @@ class DracoUnpacker {
 
   void add(size_t mesh, size_t index, const Json& extension, const std::string& in_list) {
     const Json& primitive = document_.json()["meshes"][mesh]["primitives"][index];
-    PackedPrimitive p{mesh, index, in_list + ".extensions." + kDraco, "", {}, {}, {}};
+    PackedPrimitive p{mesh, index, in_list + ".extensions." + kDraco, "", 0, {}, {}, {}};
     const Json& attributes = attributes_of(document_, primitive, in_list);
     const Json& packed = attributes_of(document_, extension, p.place);
     if (!is_required_ && is_plain_too(primitive, attributes, packed)) return;
@@ -152,9 +196,9 @@ class DracoUnpacker {
   }
 
   /// Before memory is taken for them.
-  void claim(const PackedPrimitive& p, int64_t bytes_per_point) {
-    const double bytes = 12.0 * double(p.data.most_triangles) + double(bytes_per_point) * double(p.data.most_points);
-    claimed_bytes_ += bytes;
+  void claim(PackedPrimitive& p, int64_t bytes_per_point) {
+    p.bytes = 12.0 * double(p.data.most_triangles) + double(bytes_per_point) * double(p.data.most_points);
+    claimed_bytes_ += p.bytes;
     if (claimed_bytes_ > most_bytes_)
       document_.refuse(p.place, " unpacks to " + std::to_string(p.data.most_triangles) + " triangles and " +
                                     std::to_string(p.data.most_points) +
@@ -200,9 +244,12 @@ class DracoUnpacker {
 
 void unpack(GltfDocument& document) {
   const bool is_required = document.requires_extension(kMeshopt);
-  const size_t views = document.list(document.json(), "bufferViews").size();
-  for (size_t i = 0; i < views; ++i) unpack_view(document, i, is_required);
-  DracoUnpacker(document).unpack();
+  const int64_t file_bytes = document.bytes();  // before what is unpacked counts, too
+  const std::vector<bool> is_used = used_views(document);
+  int64_t left = kMostMeshopt * file_bytes;
+  for (size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) unpack_view(document, i, is_required, left);
+  DracoUnpacker(document, file_bytes).unpack();
 }
 
 }  // namespace isoshell
