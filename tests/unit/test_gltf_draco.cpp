@@ -288,7 +288,7 @@ TEST_CASE("Draco: what a packed mesh takes in memory is refused before it is tak
     const int64_t bytes = points * (12 + 12 + 8 + 4 + 2 + 4 * (3 + 3 + 2 + 4 + 1));
     DracoMesh mesh{
         {packed.bytes.data(), int64_t(packed.bytes.size())}, int64_t(packed.triangles), points, bytes, {}, 0, {}};
-    CHECK(decode_draco(mesh) == "");
+    CHECK(decode_draco(mesh).empty());
     CHECK(mesh.points == points);
     mesh.most_bytes = bytes - 1;
     check_contains(decode_draco(mesh), "promises 90 bytes a point; at most 89 are read");
