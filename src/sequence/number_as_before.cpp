@@ -1,4 +1,4 @@
-// Numbers for the vertices of a mesh that began cold (see previous_frame.h).
+// Numbers for the vertices of a mesh that has not kept those of the frame before (see previous_frame.h).
 #include <algorithm>
 #include <cmath>
 

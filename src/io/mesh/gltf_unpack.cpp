@@ -1,3 +1,4 @@
+// See gltf_unpack.h.
 #include "io/mesh/gltf_unpack.h"
 
 #include <algorithm>
