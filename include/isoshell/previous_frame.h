@@ -18,11 +18,12 @@ struct PreviousFrame {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<WorldPoint> carried;  ///< per vertex where it is in this frame, on its surface or near it
+  bool has_other_faces = false;     ///< the surface of this frame has other triangles than that of the one before
 };
 
 /// How steady a frame is beside the one before.
 struct CoherenceReport {
-  bool began_warm = false;  ///< from the vertices of the frame before; else they were only given their numbers
+  bool began_warm = false;  ///< from the vertices of the frame before; else vertices only got numbers of near ones
   std::string why_cold;     ///< empty when it began warm
   int64_t born = 0;  ///< vertices that are not where those of their number went, by nine tenths of an edge or more
   double kept_edges_pct = 0;  ///< of the edges of this frame: the frame before has one between the same two vertices
@@ -63,9 +64,9 @@ std::vector<WorldPoint> carry_onto(const TriangleMesh& mesh, const TriangleSoup&
 /// Whether both have the same triangles, corner by corner.
 bool have_same_triangles(const TriangleSoup& a, const TriangleSoup& b);
 
-/// Gives the vertices of a mesh that began cold the numbers of those of the frame before that lie nearest, each to one
-/// at most and no farther than half an edge's length; the others take the numbers that are free. Cost: a sort of the
-/// near pairs.
+/// Gives the vertices of a mesh that has not kept the numbers of the frame before, because it began cold or was made of
+/// patches, those of the nearest ones, each to one at most and no farther than half an edge's length; the others take
+/// the numbers that are free. Cost: a sort of the near pairs.
 void number_as_before(const PreviousFrame& previous, TriangleMesh& mesh);
 
 /// Per vertex 1 where it is not the one of its number in the frame before: nine tenths of the mean edge's length or

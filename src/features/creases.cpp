@@ -112,12 +112,18 @@ struct Lengths {
 class Judge {
  public:
   Judge(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
-        View<const double> filtered_turns, double reach_world)
-      : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
+        View<const double> filtered_turns, const CurveOptions& options)
+      : mesh_(mesh),
+        edges_(edges),
+        normals_(normals),
+        turns_(filtered_turns),
+        reach_world_(options.edge_length_world),
+        before_(options.before.get()) {}
 
   /// Looks at every twelfth chain, then at the next ones of components that may have creases: on a scan, it needs no
   /// more than show that a quarter of their length is bad.
-  /// Sums up what all chains of components are long, and those that were found bad.
+  /// Sums up what all chains of components are long, and those that were found bad. Beside a frame before, those that
+  /// it did not have are bad, and the surface is one component.
   std::vector<Judged> judge(const std::vector<EdgeChain>& chains, std::map<uint32_t, Lengths>& of_component) const {
     std::vector<uint8_t> is_end(edges_.count(), 0);
     for (const EdgeChain& chain : chains)
@@ -127,13 +133,14 @@ class Judge {
     std::vector<Judged> judged(chains.size());
     for (size_t c = 0; c < chains.size(); ++c) {
       if (chains[c].kind != CurveKind::crease) continue;
-      judged[c] = {component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
+      judged[c] = {before_ ? 0 : component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
       of_component[judged[c].component].all += judged[c].length_world;
     }
     for (size_t first = 0; first < kParts; ++first) {
       for_each_index(size_t(0), (chains.size() + kParts - 1 - first) / kParts, [&](size_t i) {
         const size_t c = first + kParts * i;
-        if (chains[c].kind == CurveKind::crease && !of_component.at(judged[c].component).are_surely_of_a_scan())
+        if (chains[c].kind == CurveKind::crease && !of_component.at(judged[c].component).are_surely_of_a_scan() &&
+            (!before_ || before_->hold(mesh_, chains[c])))
           look_beside_chain(ground, chains[c], judged[c]);
       });
       for (size_t c = first; c < chains.size(); c += kParts)
@@ -175,6 +182,7 @@ class Judge {
   View<const WorldPoint> normals_;
   View<const double> turns_;
   double reach_world_;
+  const CreasesBefore* before_;
 };
 
 }  // namespace
@@ -200,8 +208,9 @@ std::vector<CurveEdge> with_creases_at(const FeatureMesh& mesh, const MeshEdges&
 }
 
 std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
-                                                  const std::vector<CurveEdge>& fixed, double edge_length_world,
+                                                  const std::vector<CurveEdge>& fixed, const CurveOptions& options,
                                                   CreaseReport& report) {
+  const double edge_length_world = options.edge_length_world;
   const Buffer<WorldPoint> face_normal = face_normals(mesh, edges);
   const View<const WorldPoint> normals = face_normal.view();
   const Buffer<double> turn = turns_at(edges, filter_normals(mesh, edges, normals, edge_length_world).view());
@@ -210,7 +219,7 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
   if (candidates.empty()) return fixed;
   const std::vector<EdgeChain> chains = find_chains(edges, with_creases(fixed, candidates, turns));
   std::map<uint32_t, Lengths> of_component;
-  const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, edge_length_world).judge(chains, of_component);
+  const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, options).judge(chains, of_component);
   for (size_t c = 0; c < chains.size(); ++c)
     if (chains[c].kind == CurveKind::crease && judged[c].is_surely_good())
       of_component[judged[c].component].good += judged[c].length_world;

@@ -19,7 +19,7 @@ std::vector<CurveEdge> with_creases_at(const FeatureMesh& mesh, const MeshEdges&
 
 /// And the creases between surfaces that are smooth beside them, by filtered normals.
 std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const MeshEdges& edges,
-                                                  const std::vector<CurveEdge>& fixed, double edge_length_world,
+                                                  const std::vector<CurveEdge>& fixed, const CurveOptions& options,
                                                   CreaseReport& report);
 
 }  // namespace isoshell

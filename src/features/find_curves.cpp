@@ -126,8 +126,7 @@ FoundCreases find_creases(const FeatureMesh& mesh, const CurveOptions& options) 
   std::vector<CurveEdge>& all = found.curve_edges;
   all = find_fixed_curve_edges(edges);
   if (options.mode == CreaseMode::threshold) all = with_creases_above(mesh, edges, all, options.degrees);
-  if (options.mode == CreaseMode::automatic)
-    all = with_creases_beside_smooth(mesh, edges, all, options.edge_length_world, found.report);
+  if (options.mode == CreaseMode::automatic) all = with_creases_beside_smooth(mesh, edges, all, options, found.report);
   if (options.mode == CreaseMode::given) all = with_creases_at(mesh, edges, all, inner_edges(edges, options.creases));
   return found;
 }

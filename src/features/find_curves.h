@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
+#include "features/creases_before.h"
 #include "features/edge_chains.h"
 
 namespace isoshell {
@@ -23,8 +25,11 @@ struct CurveOptions {
   std::vector<std::array<uint32_t, 2>> lines = {};    ///< likewise
   std::vector<std::array<uint32_t, 2>> creases = {};  ///< likewise; of mode given
   std::vector<std::array<uint32_t, 2>> smooth = {};   ///< ends of edges that are no creases, however sharp they are
-  bool drops_small_patches = false;                   ///< patches with less than 6 h of border lose a crease, however
-                                                      ///< sharp it is
+  /// Those of the frame before, of mode automatic: no others come, and they stay while they are the rule on the
+  /// surface. Null where every crease may come.
+  std::shared_ptr<const CreasesBefore> before = nullptr;
+  bool drops_small_patches = false;  ///< patches with less than 6 h of border lose a crease, however
+                                     ///< sharp it is
 };
 
 /// What was decided about creases.

@@ -10,9 +10,12 @@
 #include "pipeline/choose_grid.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_start.h"
 
 namespace isoshell {
 namespace {
+
+constexpr double kReachOfBefore = .5;  // edges: creases of two frames are the same one
 
 std::optional<FoundCreases> creases_unless_refused(const FeatureMesh& mesh, const CurveOptions& options) {
   try {
@@ -59,12 +62,18 @@ class SurfaceOnDevice {
 
 }  // namespace
 
-CurveOptions curve_options(const RemeshOptions& options, double edge_length_world) {
+CurveOptions curve_options(const RemeshOptions& options, double area_world, double edge_length_world) {
   const Features::Creases creases = options.features.creases;
   const CreaseMode mode = creases == Features::Creases::off         ? CreaseMode::off
                           : creases == Features::Creases::automatic ? CreaseMode::automatic
                                                                     : CreaseMode::threshold;
-  return {mode, options.features.degrees, edge_length_world};
+  CurveOptions curves{mode, options.features.degrees, edge_length_world};
+  const PreviousFrame* const previous = options.previous.get();
+  if (mode == CreaseMode::automatic && previous && previous->has_other_faces &&
+      reason_to_begin_cold(*previous, vertex_target(options, area_world)).empty())
+    curves.before = std::make_shared<CreasesBefore>(previous->vertices, previous->triangles, previous->carried,
+                                                    kReachOfBefore * edge_length_world);
+  return curves;
 }
 
 FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& context) {
@@ -100,7 +109,8 @@ std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, 
   const double edge_world = usual_edge_length(options, surface.topology.area_world);
   return timed(report, "features", context, [&]() -> std::shared_ptr<CreaseSearch> {
     try {
-      return std::make_shared<CreaseSearch>(surface, curve_options(options, edge_world), context);
+      return std::make_shared<CreaseSearch>(surface, curve_options(options, surface.topology.area_world, edge_world),
+                                            context);
     } catch (const std::system_error&) {
       return nullptr;
     }

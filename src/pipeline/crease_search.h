@@ -11,8 +11,8 @@
 
 namespace isoshell {
 
-/// How curves are looked for on a surface with edges of this length; without seams and lines.
-CurveOptions curve_options(const RemeshOptions& options, double edge_length_world);
+/// How curves are looked for on a surface of this area with edges of this length; without seams and lines.
+CurveOptions curve_options(const RemeshOptions& options, double area_world, double edge_length_world);
 
 /// The snapped surface, welded: what a stage file holds, so that a run that resumes finds the same features.
 FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& context);

@@ -223,7 +223,7 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   timed(report, "features", context, [&] {
     SearchedSurface searched = searched_surface(p, context);
     FeatureMesh& mesh = searched.mesh;
-    CurveOptions curves = curve_options(options, edge_world);
+    CurveOptions curves = curve_options(options, p.surface.topology.area_world, edge_world);
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
     if (curves.mode != CreaseMode::off) curves.lines = vertices_of(source.interfaces, mesh, p.surface.frame);
     if (lines) {

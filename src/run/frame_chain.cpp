@@ -62,6 +62,7 @@ std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const TriangleSoup
     previous->carried = carry_with_triangles(last_->mesh, last_->surface, surface, context);
     return previous;
   }
+  previous->has_other_faces = true;
   TriangleMesh moved = last_->mesh;
   if (last_->velocity) moved.vertices = carry_with_velocity(moved.vertices, *last_->velocity);
   previous->carried = carry_onto(moved, surface, context);

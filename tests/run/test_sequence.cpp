@@ -204,6 +204,29 @@ TEST_CASE("sequence: a crisp part that turns keeps its creases, and the vertices
   CHECK(contains(get_file(folder / "s.00.json"), "\"coherence\": null"));
 }
 
+TEST_CASE("sequence: a crisp part whose faces change keeps its creases, resumed or not", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 4, [](int f) {
+    return turned(shapes::shuffled(shapes::box({0, 0, 0}, {3, 2, 1}), uint64_t(f)), 0.01 * f);
+  });
+  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  std::vector<double> kept_length_world;
+  request.after_frame = [&](int64_t, const RunResult& r) {
+    kept_length_world.push_back(r.record.report.features.kept_length_world);
+  };
+  const SequenceResult result = run_sequence(request, context);
+  CHECK(result.warm == 3);
+  CHECK(result.kept_edges_worst_pct > 90);
+  for (const double length : kept_length_world) CHECK(length == Approx(24).epsilon(0.001));
+  SequenceRequest part = request_in(folder, 2, "again.##.ply");
+  run_sequence(part, context);
+  part.frames.last = 3;
+  part.resume = true;
+  run_sequence(part, context);
+  CHECK(files_of(part) == files_of(request));
+}
+
 TEST_CASE("sequence: frames with creases are the same with other threads, and resumed", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
