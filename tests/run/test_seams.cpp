@@ -200,6 +200,14 @@ TEST_CASE("seams: both sides of a seam within one chart keep their own", "[seams
   CHECK(largest_error(result.mesh, kUvName, uv_unrolled) < kSnapped);
 }
 
+TEST_CASE("seams: cells on both sides of a seam within one chart are as many as were asked for", "[seams]") {
+  TriangleSoup soup = bar(4);
+  soup.attributes = {of_corners(soup, kUvName, 2, uv_unrolled)};
+  const RunResult result = run_of(soup, 1500, "off");
+  CHECK(result.record.report.features.kept);
+  CHECK(result.record.report.dual.inserted_seeds == 0);
+}
+
 TEST_CASE("seams: both sides of a slit keep their own up to its end", "[seams]") {
   // A slit along half of the ridge at y = 1, z = 1: the jump rises from its end at x = 1 on.
   const OfCorner slit = [](const WorldPoint& middle, const WorldPoint& p) {

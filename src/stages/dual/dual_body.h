@@ -117,7 +117,8 @@ class Partition {
         "decide strays", waiting.size,
         DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(surface_), pieces.piece.view(),
                                 pieces.size.view(), label_.view(), cells_.root.view(), surface_.position.view(),
-                                seeds_.position.view(), surface_.vertex_count(), first_count_, decision.view()});
+                                seeds_.position.view(), seeds_.fixed.joined.view(), surface_.vertex_count(),
+                                first_count_, decision.view()});
     const Buffer<uint32_t> joining = exec_.select(waiting.size, IsJoining{decision.view()});
     Buffer<uint32_t> founding = exec_.select(waiting.size, DecisionIs{decision.view(), kNewCell});
     uint32_t resolved = kNewCell;

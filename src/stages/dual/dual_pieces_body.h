@@ -79,23 +79,40 @@ ISOSHELL_HD inline PointQ8 middle_of_disconnected_piece(const DisconnectedPieces
 }
 
 /// Decides for disconnected piece waiting[i]: a label to join, kNewCell, kLocalLargest or kWait. Reads the state before
-/// the round.
+/// the round. What lies across a curve whose both sides are in one patch is as near to a fixed seed there as to its
+/// copy on its own side, which it joins.
 struct DecideDisconnectedPiece {
   DisconnectedPiecesView disconnected_pieces;
   View<const uint32_t> waiting;
   SheetGraph graph;
   View<const uint32_t> piece, piece_size, label, main_root;
   View<const PointQ8> vertex_position, seed_position;
+  View<const uint32_t> joined;        ///< of fixed seeds
   int64_t mean_vertices, mean_cells;  ///< mean cell = mean_vertices / mean_cells
   View<uint32_t> decision;
 
   ISOSHELL_HD void operator()(int64_t i) const {
     const int64_t s = waiting[i];
     const int64_t size = disconnected_pieces.first[s + 1] - disconnected_pieces.first[s];
-    decision[i] = 4 * size * mean_cells > mean_vertices ? kNewCell : neighbour(s);
+    const uint32_t copy = copy_beside(s);
+    decision[i] = copy != kNone ? copy : 4 * size * mean_cells > mean_vertices ? kNewCell : neighbour(s);
   }
 
  private:
+  /// The first copy of the disconnected piece's seed of which an adjacent main piece is; kNone where there is none.
+  ISOSHELL_HD uint32_t copy_beside(int64_t s) const {
+    const uint32_t root = disconnected_pieces.root[s], own = label[root];
+    uint32_t found = kNone;
+    if (own >= joined.size) return found;
+    for (int64_t m = disconnected_pieces.first[s]; m < disconnected_pieces.first[s + 1]; ++m)
+      graph.for_each_neighbour(disconnected_pieces.vertex(m), [&](uint32_t w) {
+        const uint32_t owner = label[w];
+        const bool is_copy = owner < joined.size && owner != own && joined[owner] == joined[own];
+        if (is_copy && main_root[owner] == piece[w] && owner < found) found = owner;
+      });
+    return found;
+  }
+
   /// The label of the adjacent main piece whose seed is nearest to the disconnected piece's middle.
   ISOSHELL_HD uint32_t neighbour(int64_t s) const {
     const uint32_t root = disconnected_pieces.root[s];
