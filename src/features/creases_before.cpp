@@ -54,9 +54,8 @@ CreasesBefore::CreasesBefore(const std::vector<WorldPoint>& vertices, const Tria
 bool CreasesBefore::are_near(const WorldPoint& place) const {
   const WorldPoint aside{reach_world_, reach_world_, reach_world_};
   bool found = false;
-  cells_.for_each_in(place - aside, place + aside, [&](size_t i) {
-    found = found || distance_sq(places_[i], place) < reach_world_ * reach_world_;
-  });
+  cells_.for_each_in(place - aside, place + aside,
+                     [&](size_t i) { found = found || distance_sq(places_[i], place) < reach_world_ * reach_world_; });
   return found;
 }
 

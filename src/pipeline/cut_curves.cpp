@@ -163,7 +163,7 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
   report.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(options, p)};
-  const bool may_be_warm = options.previous && !source.is_sheet;
+  const bool may_be_warm = options.previous != nullptr;
   if (may_be_warm && reason_to_begin_cold(*options.previous, seeds).empty()) how.before = options.previous->carried;
   const bool lengths_decide = how.asked.vary() && field_decides(options);
   if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;

@@ -40,13 +40,11 @@ PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, cons
 }
 
 /// Whether the frame begins with the vertices of the frame before; the report says why one that has one does not.
-bool begins_warm(const Prepared& p, int64_t seeds, const RemeshOptions& options, bool in_patches,
-                 RemeshReport& report) {
+bool begins_warm(int64_t seeds, const RemeshOptions& options, RemeshReport& report) {
   CoherenceReport& coherence = report.coherence;
   coherence.began_warm = false;
   if (!options.previous) return false;
-  coherence.why_cold =
-      in_patches && !is_on_own_triangles(p) ? kCurvesOnSheet : reason_to_begin_cold(*options.previous, seeds);
+  coherence.why_cold = reason_to_begin_cold(*options.previous, seeds);
   return coherence.began_warm = coherence.why_cold.empty();
 }
 
@@ -55,7 +53,7 @@ SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patch
                     Context& context) {
   const RemeshOptions options = checked(asked);
   const SeedOptions seed_options{in_patches ? p.cut->seeds : vertex_target(options, p), options.seed};
-  const bool is_warm = begins_warm(p, seed_options.count, options, in_patches, report);
+  const bool is_warm = begins_warm(seed_options.count, options, report);
   RelaxedSeeds relaxed;
   if (in_patches) {
     relaxed = timed(report, "relax", context,

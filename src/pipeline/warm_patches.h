@@ -5,9 +5,6 @@
 
 namespace isoshell {
 
-/// Why a frame whose curves are kept on the sheet begins cold: they are laid there anew in every frame.
-constexpr char kCurvesOnSheet[] = "curves are kept on the sheet";
-
 /// The vertices of options.previous that are inside of patches, each in the patch that it lies on and that faces its
 /// way, relaxed in few passes; curves have kept theirs where the surface was cut for that. Patches have as many as
 /// before, as far as their size allows, and new ones in the middles of the longest edges; those with the shortest edges

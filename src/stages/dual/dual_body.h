@@ -113,12 +113,11 @@ class Partition {
   Buffer<uint32_t> resolve_disconnected_pieces_once(Pieces& pieces, const DisconnectedPieces& disconnected_pieces,
                                                     View<const uint32_t> waiting) {
     Buffer<uint32_t> decision = exec_.template make<uint32_t>(waiting.size);
-    exec_.for_each(
-        "decide strays", waiting.size,
-        DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(surface_), pieces.piece.view(),
-                                pieces.size.view(), label_.view(), cells_.root.view(), surface_.position.view(),
-                                seeds_.position.view(), seeds_.fixed.joined.view(), surface_.vertex_count(),
-                                first_count_, decision.view()});
+    exec_.for_each("decide strays", waiting.size,
+                   DecideDisconnectedPiece{disconnected_pieces.view(), waiting, graph_of(surface_), pieces.piece.view(),
+                                           pieces.size.view(), label_.view(), cells_.root.view(),
+                                           surface_.position.view(), seeds_.position.view(), seeds_.fixed.joined.view(),
+                                           surface_.vertex_count(), first_count_, decision.view()});
     const Buffer<uint32_t> joining = exec_.select(waiting.size, IsJoining{decision.view()});
     Buffer<uint32_t> founding = exec_.select(waiting.size, DecisionIs{decision.view(), kNewCell});
     uint32_t resolved = kNewCell;
