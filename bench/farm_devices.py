@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """A farm over the devices of one machine: assets a second with one, two, ... of them.
 
-    bench/farm_devices.py make MESHES ASSETS [--count 2000]     copies of a folder of scans, scaled along the axes, as PLY
+    bench/farm_devices.py make SOURCES ASSETS [--count 2000]    copies of the files of a folder, in turn
     bench/farm_devices.py run ASSETS WORK [--devices 1,2,4] [--contexts 8] [--kill] [--cpu]
+
+Copies of meshes are scaled along the axes, and PLY; those of clouds (.xyz, .pcd) and volumes (.vdb) are as they are. Of
+twenty copies one is cut off in the middle where there are clouds or volumes.
 
 The rate is that between the tenth and the last asset, so that it leaves out how processes start; the whole time stands
 beside it. With --kill a last run has all devices, and the process that meshes on one of them is killed every
@@ -28,19 +31,29 @@ from isoshell._farm import _manifest
 FARM = [sys.executable, "-m", "isoshell", "farm", "run"]
 VERTICES = 4000
 KILL_SECONDS = 20
+MESHES = (".off", ".obj", ".ply")
+OTHERS = (".xyz", ".pcd", ".vdb")
 
 
-def make(meshes, folder, count):
-    """The same files for the same meshes and count."""
+def make(sources, folder, count):
+    """The same files for the same sources and count."""
     folder.mkdir(parents=True)
     chance = random.Random(11)
     place = isoshell.Context(device="cpu")._place
-    scans = [_isoshell.read_surface(place, _isoshell.Source.file(str(path)), [], lambda *_: None)
-             for path in sorted(meshes.iterdir()) if path.suffix in (".off", ".obj", ".ply")]
+    scans = {path: _isoshell.read_surface(place, _isoshell.Source.file(str(path)), [], lambda *_: None)
+             for path in sources.iterdir() if path.suffix in MESHES}
+    paths = sorted([*scans, *(path for path in sources.iterdir() if path.suffix in OTHERS)])
     for i in range(count):
-        vertices, faces = scans[i % len(scans)]
-        scale = np.array([chance.uniform(0.5, 2) for _ in range(3)])
-        write_ply(folder / f"asset{i:05d}.ply", (vertices * scale).astype("<f4"), faces.astype("<i4"))
+        path = paths[i % len(paths)]
+        copy = folder / f"asset{i:05d}{path.suffix if path.suffix in OTHERS else '.ply'}"
+        if path in scans:
+            vertices, faces = scans[path]
+            scale = np.array([chance.uniform(0.5, 2) for _ in range(3)])
+            write_ply(copy, (vertices * scale).astype("<f4"), faces.astype("<i4"))
+        else:
+            shutil.copyfile(path, copy)
+        if len(paths) > len(scans) and i % 20 == 19:
+            os.truncate(copy, copy.stat().st_size // 2)
 
 
 def write_ply(path, vertices, faces):
@@ -99,7 +112,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="what", required=True)
     made = commands.add_parser("make")
-    made.add_argument("meshes", type=Path)
+    made.add_argument("sources", type=Path)
     made.add_argument("assets", type=Path)
     made.add_argument("--count", type=int, default=2000)
     runs = commands.add_parser("run")
@@ -111,7 +124,7 @@ def main():
     runs.add_argument("--cpu", action="store_true")
     given = parser.parse_args()
     if given.what == "make":
-        return make(given.meshes, given.assets, given.count)
+        return make(given.sources, given.assets, given.count)
     counts = [int(number) for number in given.devices.split(",")]
     words = ["--device", "cuda", "--contexts", given.contexts]
     digests = {f"devices-{n}": run(given.assets, given.work / f"devices-{n}", words, n) for n in counts}

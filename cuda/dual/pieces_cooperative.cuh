@@ -43,11 +43,12 @@ struct CooperativeKernel<dual::DecideDisconnectedPiece>
   static __device__ void run(const dual::DecideDisconnectedPiece& step, int64_t i, Shared&, int lane) {
     const dual::DisconnectedPiecesView& disconnected_pieces = step.disconnected_pieces;
     const int64_t s = step.waiting[i], size = disconnected_pieces.first[s + 1] - disconnected_pieces.first[s];
-    if (4 * size * step.mean_cells > step.mean_vertices) {
-      if (lane == 0) step.decision[i] = dual::kNewCell;
+    const uint32_t root = disconnected_pieces.root[s];
+    const uint32_t copy = copy_beside(step, s, step.label[root], lane);
+    if (copy != kNone || 4 * size * step.mean_cells > step.mean_vertices) {
+      if (lane == 0) step.decision[i] = copy != kNone ? copy : dual::kNewCell;
       return;
     }
-    const uint32_t root = disconnected_pieces.root[s];
     const uint64_t rank = dual::piece_rank(step.piece_size[root], root);
     const PointQ8 middle = pieces_cooperative::middle(disconnected_pieces, s, step.vertex_position, lane);
     pieces_cooperative::Nearest nearest;
@@ -66,6 +67,16 @@ struct CooperativeKernel<dual::DecideDisconnectedPiece>
     largest = __all_sync(kWholeWarp, largest);
     if (lane == 0)
       step.decision[i] = nearest.index != kNone ? nearest.index : (largest ? dual::kLocalLargest : dual::kWait);
+  }
+
+ private:
+  static __device__ uint32_t copy_beside(const dual::DecideDisconnectedPiece& step, int64_t s, uint32_t own, int lane) {
+    uint32_t found = kNone;
+    if (own >= step.joined.size) return found;
+    for (int64_t m = step.disconnected_pieces.first[s] + lane; m < step.disconnected_pieces.first[s + 1]; m += 32)
+      step.graph.for_each_neighbour(step.disconnected_pieces.vertex(m),
+                                    [&](uint32_t w) { found = min(found, step.copy_at(w, own)); });
+    return warp_min(found);
   }
 };
 

@@ -17,7 +17,6 @@ from ._progress import tell
 
 SUFFIXES = ("ply", "obj", "stl", "off", "glb", "gltf", "usda", "usdc", "usdz")
 PLACE = ("device", "threads", "max_memory")
-CONTEXTS_OF_DEVICE = 8
 TETRAHEDRON = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 
@@ -50,7 +49,7 @@ def parser() -> argparse.ArgumentParser:
                       "tcp://host:8786, or the file that dask scheduler --scheduler-file wrote [local]")
     farm.add_argument("--workers", metavar="N", type=_positive, help="local: assets that are meshed side by side [as "
                       "many as there are processors, or 8 for each CUDA device]; slurm: jobs [1]")
-    farm.add_argument("--contexts", metavar="N", type=_positive, help="assets that share a process [1, or 8 with a "
+    farm.add_argument("--contexts", metavar="N", type=_positive, help="assets that share a process [1, or 16 with a "
                       "CUDA device]")
     farm.add_argument("--time-limit", metavar="S", type=float, default=3600.0, help="seconds that an asset may take, "
                       "0: no limit [3600]")
@@ -92,7 +91,7 @@ def _add_options(run: argparse.ArgumentParser) -> None:
 
 def _run(arguments: argparse.Namespace, words: List[str]) -> int:
     from ._run import run
-    from ._worker import devices_of
+    from ._worker import CONTEXTS_OF_DEVICE, devices_of
 
     given = vars(arguments)
     names = [option.name.replace("-", "_") for option in _isoshell.option_table()]

@@ -27,6 +27,7 @@ REJECTED = "rejected"  # below OUT: meshes that miss a requirement
 FULL = [os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT, errno.EROFS)]
 TRANSIENT = ("UNWRITABLE_OUTPUT", "NO_DEVICE", "INTERRUPTED")
 ABOVE_ESTIMATE = 1.1
+CONTEXTS_OF_DEVICE = 16
 
 Job = Dict[str, Any]
 
@@ -60,7 +61,7 @@ class Crew:
         self._out = job["out"]
         slots = _slots()
         self._devices = devices_of(job["place"].get("device"))
-        self._contexts = job["contexts"] or (8 if self._devices else 1)
+        self._contexts = job["contexts"] or (CONTEXTS_OF_DEVICE if self._devices else 1)
         self._most = job["memory"] or _memory_of_worker()
         self._admission = Admission(self._most)
         self._share = job["asset_memory"] or self._most // slots
@@ -148,7 +149,8 @@ class Crew:
                 continue
             code = answer.get("code")
             if code == "OUT_OF_MEMORY" and not self._is_share_fixed and share < self._most:
-                share = self._wanted(job, folder)
+                # With all of the memory it has a device to itself, too, whose memory no share says anything of.
+                share = self._most if self._devices or share > self._share else self._wanted(job, folder)
                 is_alone = False
                 continue
             if code == "INTERNAL" and not again:

@@ -98,17 +98,23 @@ struct DecideDisconnectedPiece {
     decision[i] = copy != kNone ? copy : 4 * size * mean_cells > mean_vertices ? kNewCell : neighbour(s);
   }
 
+  /// The label of vertex w, where that is in a main piece of a copy of the seed `own`; kNone elsewhere.
+  ISOSHELL_HD uint32_t copy_at(uint32_t w, uint32_t own) const {
+    const uint32_t owner = label[w];
+    const bool is_copy = owner < joined.size && owner != own && joined[owner] == joined[own];
+    return is_copy && main_root[owner] == piece[w] ? owner : kNone;
+  }
+
  private:
   /// The first copy of the disconnected piece's seed of which an adjacent main piece is; kNone where there is none.
   ISOSHELL_HD uint32_t copy_beside(int64_t s) const {
-    const uint32_t root = disconnected_pieces.root[s], own = label[root];
+    const uint32_t own = label[disconnected_pieces.root[s]];
     uint32_t found = kNone;
     if (own >= joined.size) return found;
     for (int64_t m = disconnected_pieces.first[s]; m < disconnected_pieces.first[s + 1]; ++m)
       graph.for_each_neighbour(disconnected_pieces.vertex(m), [&](uint32_t w) {
-        const uint32_t owner = label[w];
-        const bool is_copy = owner < joined.size && owner != own && joined[owner] == joined[own];
-        if (is_copy && main_root[owner] == piece[w] && owner < found) found = owner;
+        const uint32_t copy = copy_at(w, own);
+        if (copy < found) found = copy;
       });
     return found;
   }
