@@ -2,7 +2,7 @@
 """A farm over the devices of one machine: assets a second with one, two, ... of them.
 
     bench/farm_devices.py make SOURCES ASSETS [--count 2000]    copies of the files of a folder, in turn
-    bench/farm_devices.py run ASSETS WORK [--devices 1,2,4] [--contexts 8] [--kill] [--cpu]
+    bench/farm_devices.py run ASSETS WORK [--devices 1,2,4] [--contexts 16] [--kill] [--cpu]
 
 Copies of meshes are scaled along the axes, and PLY; those of clouds (.xyz, .pcd) and volumes (.vdb) are as they are. Of
 twenty copies one is cut off in the middle where there are clouds or volumes.
@@ -119,7 +119,7 @@ def main():
     runs.add_argument("assets", type=Path)
     runs.add_argument("work", type=Path)
     runs.add_argument("--devices", default="1,2,4")
-    runs.add_argument("--contexts", default="8")
+    runs.add_argument("--contexts", default="16")
     runs.add_argument("--kill", action="store_true")
     runs.add_argument("--cpu", action="store_true")
     given = parser.parse_args()

@@ -87,7 +87,7 @@ def frame_of(frame, voxels):
     counts = np.ceil((np.array([1, 1, 0.85]) + 4 * size - low) / size).astype(int)
     at = np.stack(np.meshgrid(*[low[i] + size * np.arange(n) for i, n in enumerate(counts)], indexing="ij"),
                   axis=-1).astype(np.float32)
-    inside, velocity, weights = np.zeros(counts, np.float32), np.zeros_like(at), np.zeros(counts, np.float32)
+    velocity, weights = np.zeros_like(at), np.zeros(counts, np.float32)
     for distance, of_shape in shapes(at, frame):  # a smooth union: -BLEND log(sum(exp(-distance / BLEND)))
         weight = np.exp(-np.clip(distance, -1, 1) / (BLEND / 3))
         weights += weight

@@ -18,7 +18,8 @@ struct PreviousFrame {
   std::vector<WorldPoint> vertices;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<WorldPoint> carried;  ///< per vertex where it is in this frame, on its surface or near it
-  bool has_other_faces = false;     ///< the surface of this frame has other triangles than that of the one before
+  bool has_other_faces = false;     ///< the surface is meshed anew in every frame: a volume, or with other triangles
+  bool had_curves = false;          ///< its surface was cut along curves; the mesh is the same if that is not told
 };
 
 /// How steady a frame is beside the one before.

@@ -69,8 +69,8 @@ struct RemeshOptions {
   /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;
   /// The frame before this one of a sequence: vertices keep their numbers; null: there is none. Needs the method sheet.
-  /// Where the surface is cut along curves, or cannot be meshed from there, the run begins as without it, and vertices
-  /// get the numbers of those that lie nearest.
+  /// Where the surface is another than before, or cannot be meshed from there, the run begins as without it, and
+  /// vertices get the numbers of those that lie nearest.
   std::shared_ptr<const PreviousFrame> previous = {};
   bool color_features = false;  ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
   bool outer_only = false;      ///< drop what lies inside of a closed surface
@@ -172,9 +172,10 @@ struct Prepared {
   Shell shell;          ///< empty unless the method or want_shell asks for it
   Sheet sheet;          ///< with edge lengths where they vary
   int32_t closing_vox = 0;
-  std::optional<int64_t> vertices;            ///< as many as the sizing field asks for; without it as the options say
-  GrownSolid grown;                           ///< for the stages that follow
-  std::shared_ptr<CreaseSearch> creases;      ///< looked for while a device makes the sheet
+  std::optional<int64_t> vertices;  ///< as many as the sizing field asks for; without it as the options say
+  std::shared_ptr<const PreviousFrame> previous;  ///< that of the options, where the run begins with it
+  GrownSolid grown;                               ///< for the stages that follow
+  std::shared_ptr<CreaseSearch> creases;          ///< looked for while a device makes the sheet
   std::shared_ptr<const CutSurface> cut;      ///< the input's own triangles in patches; null where no features are kept
   std::shared_ptr<RelaxedMeanwhile> relaxed;  ///< on a device while creases were looked for, in case there are none
 };

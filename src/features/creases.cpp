@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/parallel_ranges.h"
+#include "features/creases_before.h"
 #include "features/face_normals.h"
 #include "features/facet_edges.h"
 #include "features/surface_walk.h"
@@ -19,8 +20,9 @@ constexpr double kStraightOn = .5;       // cosine between an edge and the next 
 constexpr int64_t kMostToGrow = 64;      // edges around a vertex: where more meet, none goes on from another
 constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
-constexpr size_t kParts = 12;            // in which chains are judged
-constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
+constexpr double kNearlyAll = .98;
+constexpr size_t kParts = 12;           // in which chains are judged
+constexpr double kWalkInFaceSizes = 4;  // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
 Buffer<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
@@ -108,46 +110,58 @@ struct Lengths {
   bool are_surely_of_a_scan() const { return bad > 1.001 * (1 - kLeastGoodShare) * all; }
 };
 
+/// All chains, and the sums of each component that has creases.
+struct JudgedChains {
+  std::vector<Judged> chain;
+  std::map<uint32_t, Lengths> of_component;
+
+  bool is_crease(size_t c) const { return chain[c].is_good() && of_component.at(chain[c].component).are_of_creases(); }
+  /// Whether nearly all that looks like a crease is one, over all components.
+  bool are_nearly_all_creases() const {
+    double all = 0, good = 0;
+    for (const auto& [component, lengths] : of_component) all += lengths.all, good += lengths.good;
+    return good >= kNearlyAll * all;
+  }
+};
+
 /// Looks beside creases at the surface as it is: what filtered normals hide tells a scan.
 class Judge {
  public:
   Judge(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
-        View<const double> filtered_turns, const CurveOptions& options)
-      : mesh_(mesh),
-        edges_(edges),
-        normals_(normals),
-        turns_(filtered_turns),
-        reach_world_(options.edge_length_world),
-        before_(options.before.get()) {}
+        View<const double> filtered_turns, double reach_world)
+      : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
 
   /// Looks at every twelfth chain, then at the next ones of components that may have creases: on a scan, it needs no
-  /// more than show that a quarter of their length is bad.
-  /// Sums up what all chains of components are long, and those that were found bad. Beside a frame before, those that
-  /// it did not have are bad, and the surface is one component.
-  std::vector<Judged> judge(const std::vector<EdgeChain>& chains, std::map<uint32_t, Lengths>& of_component) const {
+  /// more than show that a quarter of their length is bad. Beside creases before all are bad that these do not hold,
+  /// and the surface is one component.
+  JudgedChains judge(const std::vector<EdgeChain>& chains, const CreasesBefore* before) const {
     std::vector<uint8_t> is_end(edges_.count(), 0);
     for (const EdgeChain& chain : chains)
       for (const uint32_t e : chain.edge) is_end[e] = 1;
     const WalkGround ground{mesh_, edges_, normals_, is_end};
     const std::vector<uint32_t> component = components_of(mesh_, edges_);
-    std::vector<Judged> judged(chains.size());
+    JudgedChains all{std::vector<Judged>(chains.size()), {}};
+    auto& [judged, of_component] = all;
     for (size_t c = 0; c < chains.size(); ++c) {
       if (chains[c].kind != CurveKind::crease) continue;
-      judged[c] = {before_ ? 0 : component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
+      judged[c] = {before ? 0 : component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
       of_component[judged[c].component].all += judged[c].length_world;
     }
     for (size_t first = 0; first < kParts; ++first) {
       for_each_index(size_t(0), (chains.size() + kParts - 1 - first) / kParts, [&](size_t i) {
         const size_t c = first + kParts * i;
         if (chains[c].kind == CurveKind::crease && !of_component.at(judged[c].component).are_surely_of_a_scan() &&
-            (!before_ || before_->hold(mesh_, chains[c])))
+            (!before || before->hold(mesh_, chains[c])))
           look_beside_chain(ground, chains[c], judged[c]);
       });
       for (size_t c = first; c < chains.size(); c += kParts)
         if (chains[c].kind == CurveKind::crease && !judged[c].is_surely_good())
           of_component[judged[c].component].bad += judged[c].length_world;
     }
-    return judged;
+    for (size_t c = 0; c < chains.size(); ++c)
+      if (chains[c].kind == CurveKind::crease && judged[c].is_surely_good())
+        of_component[judged[c].component].good += judged[c].length_world;
+    return all;
   }
 
  private:
@@ -182,7 +196,6 @@ class Judge {
   View<const WorldPoint> normals_;
   View<const double> turns_;
   double reach_world_;
-  const CreasesBefore* before_;
 };
 
 }  // namespace
@@ -218,15 +231,15 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
   const std::vector<uint32_t> candidates = grow_creases(mesh, edges, turns);
   if (candidates.empty()) return fixed;
   const std::vector<EdgeChain> chains = find_chains(edges, with_creases(fixed, candidates, turns));
-  std::map<uint32_t, Lengths> of_component;
-  const std::vector<Judged> judged = Judge(mesh, edges, normals, turns, options).judge(chains, of_component);
-  for (size_t c = 0; c < chains.size(); ++c)
-    if (chains[c].kind == CurveKind::crease && judged[c].is_surely_good())
-      of_component[judged[c].component].good += judged[c].length_world;
+  const Judge judge(mesh, edges, normals, turns, edge_length_world);
+  JudgedChains judged = judge.judge(chains, nullptr);
+  if (options.before && !judged.are_nearly_all_creases()) {
+    const CreasesBefore before(*options.before, edge_length_world);
+    judged = judge.judge(chains, &before);
+  }
   std::vector<uint32_t> kept;
   for (size_t c = 0; c < chains.size(); ++c)
-    if (chains[c].kind == CurveKind::crease && judged[c].is_good() &&
-        of_component[judged[c].component].are_of_creases())
+    if (chains[c].kind == CurveKind::crease && judged.is_crease(c))
       kept.insert(kept.end(), chains[c].edge.begin(), chains[c].edge.end());
   std::sort(kept.begin(), kept.end());
   if (!kept.empty()) {
@@ -235,7 +248,7 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
     kept.insert(kept.end(), facets.begin(), facets.end());
     std::sort(kept.begin(), kept.end());
   }
-  for (const auto& [component, lengths] : of_component) {
+  for (const auto& [component, lengths] : judged.of_component) {
     report.candidate_length_world += lengths.all;
     report.components_with_candidates += lengths.all > 0;
     report.components_without_creases += lengths.all > 0 && !lengths.are_of_creases();

@@ -10,6 +10,8 @@
 namespace isoshell {
 namespace {
 
+constexpr double kReach = 0.5;  ///< edges
+
 constexpr double kSharpCosine = 0.766;  // of 40 degrees
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
@@ -32,24 +34,23 @@ std::vector<std::array<uint32_t, 2>> sharp_edges(const std::vector<WorldPoint>& 
   return sharp;
 }
 
-std::vector<WorldPoint> places_on(const std::vector<std::array<uint32_t, 2>>& edges,
-                                  const std::vector<WorldPoint>& carried, double most_apart) {
+std::vector<WorldPoint> places_on_edges(const std::vector<std::array<uint32_t, 2>>& edges,
+                                        const std::vector<WorldPoint>& at, double most_apart) {
   std::vector<WorldPoint> places;
   for (const auto& [u, v] : edges) {
-    const WorldPoint along = carried[v] - carried[u];
+    const WorldPoint along = at[v] - at[u];
     const auto steps = std::max<int64_t>(1, int64_t(std::ceil(length(along) / most_apart)));
-    for (int64_t i = 0; i <= steps; ++i) places.push_back(carried[u] + double(i) / double(steps) * along);
+    for (int64_t i = 0; i <= steps; ++i) places.push_back(at[u] + double(i) / double(steps) * along);
   }
   return places;
 }
 
 }  // namespace
 
-CreasesBefore::CreasesBefore(const std::vector<WorldPoint>& vertices, const Triangles& triangles,
-                             const std::vector<WorldPoint>& carried, double reach_world)
-    : reach_world_(reach_world),
-      places_(places_on(sharp_edges(vertices, triangles), carried, reach_world)),
-      cells_(places_, reach_world) {}
+CreasesBefore::CreasesBefore(const PreviousFrame& previous, double edge_length_world)
+    : reach_world_(kReach * edge_length_world),
+      places_(places_on_edges(sharp_edges(previous.vertices, previous.triangles), previous.carried, reach_world_)),
+      cells_(places_, reach_world_) {}
 
 bool CreasesBefore::are_near(const WorldPoint& place) const {
   const WorldPoint aside{reach_world_, reach_world_, reach_world_};

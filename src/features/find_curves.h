@@ -2,13 +2,13 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <vector>
 
-#include "features/creases_before.h"
 #include "features/edge_chains.h"
 
 namespace isoshell {
+
+struct PreviousFrame;
 
 enum class CreaseMode : uint8_t {
   off,        ///< borders and non-manifold edges only
@@ -25,9 +25,10 @@ struct CurveOptions {
   std::vector<std::array<uint32_t, 2>> lines = {};    ///< likewise
   std::vector<std::array<uint32_t, 2>> creases = {};  ///< likewise; of mode given
   std::vector<std::array<uint32_t, 2>> smooth = {};   ///< ends of edges that are no creases, however sharp they are
-  /// Those of the frame before, of mode automatic: no others come, and they stay while they are the rule on the
-  /// surface. Null where every crease may come.
-  std::shared_ptr<const CreasesBefore> before = nullptr;
+  /// Of mode automatic: the frame before, where this one has other faces. What a simulation meshes anew has sharp edges
+  /// here and there for a moment, so unless nearly all that looks like a crease is one, none come, and those that were
+  /// there stay while they are the rule on the whole surface. Null where every crease may come.
+  const PreviousFrame* before = nullptr;
   bool drops_small_patches = false;  ///< patches with less than 6 h of border lose a crease, however
                                      ///< sharp it is
 };

@@ -10,12 +10,9 @@
 #include "pipeline/choose_grid.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
-#include "pipeline/warm_start.h"
 
 namespace isoshell {
 namespace {
-
-constexpr double kReachOfBefore = .5;  // edges: creases of two frames are the same one
 
 std::optional<FoundCreases> creases_unless_refused(const FeatureMesh& mesh, const CurveOptions& options) {
   try {
@@ -62,17 +59,13 @@ class SurfaceOnDevice {
 
 }  // namespace
 
-CurveOptions curve_options(const RemeshOptions& options, double area_world, double edge_length_world) {
+CurveOptions curve_options(const RemeshOptions& options, const PreviousFrame* previous, double edge_length_world) {
   const Features::Creases creases = options.features.creases;
   const CreaseMode mode = creases == Features::Creases::off         ? CreaseMode::off
                           : creases == Features::Creases::automatic ? CreaseMode::automatic
                                                                     : CreaseMode::threshold;
   CurveOptions curves{mode, options.features.degrees, edge_length_world};
-  const PreviousFrame* const previous = options.previous.get();
-  if (mode == CreaseMode::automatic && previous && previous->has_other_faces &&
-      reason_to_begin_cold(*previous, vertex_target(options, area_world)).empty())
-    curves.before = std::make_shared<CreasesBefore>(previous->vertices, previous->triangles, previous->carried,
-                                                    kReachOfBefore * edge_length_world);
+  if (previous && previous->has_other_faces) curves.before = previous;
   return curves;
 }
 
@@ -101,16 +94,15 @@ void CreaseSearch::free_meanwhile(SearchedSurface found) {
                       [found = std::move(found)]() mutable { const auto ends_here = std::move(found); });
 }
 
-std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const LatticeSurface& surface,
-                                                  RemeshReport& report, Context& context) {
+std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const Prepared& p, RemeshReport& report,
+                                                  Context& context) {
   const bool is_wanted = options.method == Method::sheet && options.features.creases != Features::Creases::off;
   const bool is_known = !options.features.lines && !wants_lengths(options);
-  if (surface.points.space() == MemorySpace::host || !is_wanted || !is_known) return nullptr;
-  const double edge_world = usual_edge_length(options, surface.topology.area_world);
+  if (p.surface.points.space() == MemorySpace::host || !is_wanted || !is_known) return nullptr;
+  const double edge_world = usual_edge_length(options, p.surface.topology.area_world);
   return timed(report, "features", context, [&]() -> std::shared_ptr<CreaseSearch> {
     try {
-      return std::make_shared<CreaseSearch>(surface, curve_options(options, surface.topology.area_world, edge_world),
-                                            context);
+      return std::make_shared<CreaseSearch>(p.surface, curve_options(options, p.previous.get(), edge_world), context);
     } catch (const std::system_error&) {
       return nullptr;
     }

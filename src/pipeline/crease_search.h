@@ -11,8 +11,9 @@
 
 namespace isoshell {
 
-/// How curves are looked for on a surface of this area with edges of this length; without seams and lines.
-CurveOptions curve_options(const RemeshOptions& options, double area_world, double edge_length_world);
+/// How curves are looked for with edges of this length, in a run that begins with the frame before or anew (null);
+/// without seams and lines.
+CurveOptions curve_options(const RemeshOptions& options, const PreviousFrame* previous, double edge_length_world);
 
 /// The snapped surface, welded: what a stage file holds, so that a run that resumes finds the same features.
 FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& context);
@@ -53,7 +54,7 @@ class CreaseSearch {
 /// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a
 /// device. Null elsewhere, where the edge length depends on the sheet, and where there is no thread. Reports the time
 /// of the beginning alone.
-std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const LatticeSurface& surface,
-                                                  RemeshReport& report, Context& context);
+std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const Prepared& p, RemeshReport& report,
+                                                  Context& context);
 
 }  // namespace isoshell

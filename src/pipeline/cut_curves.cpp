@@ -15,8 +15,8 @@
 #include "pipeline/choose_grid.h"
 #include "pipeline/feature_report.h"
 #include "pipeline/lay_on_sheet.h"
+#include "pipeline/sheet_when_needed.h"
 #include "pipeline/sizing.h"
-#include "pipeline/warm_start.h"
 
 namespace isoshell {
 namespace {
@@ -163,8 +163,7 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
   report.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(options, p)};
-  const bool may_be_warm = options.previous != nullptr;
-  if (may_be_warm && reason_to_begin_cold(*options.previous, seeds).empty()) how.before = options.previous->carried;
+  if (options.previous && p.previous) how.before = p.previous->carried;
   const bool lengths_decide = how.asked.vary() && field_decides(options);
   if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
   SharedCut cut;
@@ -213,6 +212,7 @@ void name_as_laid(const LaidCurves& laid, const CurveNetwork& on_sheet, std::vec
 SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
                     const std::string& against, const RemeshOptions& options, const Prepared& p, RemeshReport& report,
                     Context& context) {
+  if (!has_sheet(p)) return nullptr;
   if (p.grown && !p.grown.only_flaps)  // the sheet is beside the surface everywhere
     return nullptr;
   const LaidCurves laid = lay_on_sheet(mesh, network, p, context);

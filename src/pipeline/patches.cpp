@@ -30,10 +30,10 @@
 #include "pipeline/part_fans.h"
 #include "pipeline/patch_rounds.h"
 #include "pipeline/relax_meanwhile.h"
+#include "pipeline/sheet_when_needed.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
-#include "pipeline/warm_patches.h"
 
 namespace isoshell {
 namespace {
@@ -186,9 +186,10 @@ MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const Prepared& p, co
   return mesh_of_patches(p, p.cut, made, in_patches, report, context);
 }
 
-/// From the curves on the sheet, which has no bad place.
-MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, const RemeshOptions& options,
+/// From the curves on the sheet, which has no bad place, and from new seeds.
+MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, RemeshOptions options,
                                     PatchOptions in_patches, SeededMesh& made, RemeshReport& report, Context& context) {
+  options.previous.reset();
   const std::shared_ptr<const CutSurface> cut = timed(report, "features", context, [&] {
     return cut_sheet_instead(*failed.cut->source, failed.why_not, options, p, report, context);
   });
@@ -223,7 +224,7 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   timed(report, "features", context, [&] {
     SearchedSurface searched = searched_surface(p, context);
     FeatureMesh& mesh = searched.mesh;
-    CurveOptions curves = curve_options(options, p.surface.topology.area_world, edge_world);
+    CurveOptions curves = curve_options(options, p.previous.get(), edge_world);
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
     if (curves.mode != CreaseMode::off) curves.lines = vertices_of(source.interfaces, mesh, p.surface.frame);
     if (lines) {
@@ -248,13 +249,15 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
   });
 }
 
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
-                                                PatchOptions in_patches, RemeshReport& report, Context& context) {
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SheetWhenNeeded& sheet, SeededMesh& made,
+                                                const RemeshOptions& options, PatchOptions in_patches,
+                                                RemeshReport& report, Context& context) {
   MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
   if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr))
     made_here = mesh_begun_cold(made_here, p, in_patches, made, report, context);
   if (!made_here.why_not.empty())
-    made_here = mesh_on_sheet_instead(std::move(made_here), p, options, in_patches, made, report, context);
+    made_here =
+        mesh_on_sheet_instead(std::move(made_here), sheet.get(report), options, in_patches, made, report, context);
   if (!made_here.why_not.empty()) {
     give_up(report, p.cut->source->if_lost, made_here.why_not);
     return {};
@@ -268,11 +271,12 @@ std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& m
     report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
                               std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
   if (cut.source->is_sheet) {
-    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(p.sheet, mesh); });
-    flag_gaps(p, {at.data(), int64_t(at.size())}, mesh, report.gaps);
+    const Prepared& whole = sheet.get(report);
+    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(whole.sheet, mesh); });
+    flag_gaps(whole, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
                               report.features.on_sheet);
-    if (is_on_own_triangles(p)) warn_of_topology(p, p.surface.topology, options, report);
+    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, options, report);
   } else {
     report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
     report.topology_agrees = report.topology_compared;

@@ -8,6 +8,8 @@
 
 namespace isoshell {
 
+class SheetWhenNeeded;
+
 /// What a surface comes from.
 struct PatchSource {
   const TriangleSoup* soup = nullptr;                      ///< null: not known, as in a run that resumes
@@ -45,7 +47,8 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
 /// are relaxed again. Where that does not end it the same is tried on the sheet, with the curves laid onto it. None
 /// where that fails, too: cells are no disks, or patches touch along edges that are on no curve: report.features says
 /// so. With borders that are kept triangles may intersect where the input's do.
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SeededMesh& made, const RemeshOptions& options,
-                                                PatchOptions in_patches, RemeshReport& report, Context& context);
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SheetWhenNeeded& sheet, SeededMesh& made,
+                                                const RemeshOptions& options, PatchOptions in_patches,
+                                                RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/copy_product.h"
 #include "isoshell/error.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/remesh.h"
@@ -13,24 +14,17 @@
 #include "pipeline/joined_parts.h"
 #include "pipeline/patches.h"
 #include "pipeline/prepare_surface.h"
+#include "pipeline/sheet_when_needed.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_start.h"
 #include "repair/open_soup.h"
 
 namespace isoshell {
 namespace {
 
 constexpr int32_t kCoarsestGrid = 8;
-
-bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
-
-/// How far the sheet's topology is from the input's; 0 when they agree, or when the input's is not known.
-int64_t topology_gap(const Prepared& p) {
-  const InputTopology& input = p.surface.topology;
-  if (!can_compare(input)) return 0;
-  return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
-}
 
 /// None when the run finds it.
 std::optional<int32_t> asked_closing(const RemeshOptions& options, const InputTopology& input,
@@ -89,6 +83,21 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
   return false;
 }
 
+void note_digests(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+  note_digest(options, report, context, "surface", p.surface);
+  if (!has_sheet(p)) return;
+  note_digest(options, report, context, "sites", p.sites);
+  note_digest(options, report, context, "samples", p.samples);
+  note_digest(options, report, context, "sheet", p.sheet);
+}
+
+void report_surface(const Prepared& p, const RemeshOptions& options, RemeshReport& report) {
+  report.input = p.surface.topology;
+  report.frame = p.surface.frame;
+  report.band_vox = options.band_vox;
+  report_sheet(p, report);
+}
+
 void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options, RemeshReport& report,
             Context& context) {
   if (options.want_shell || options.method == Method::shell) {
@@ -97,22 +106,11 @@ void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options
     report.leaves = p.shell.voxels.leaf_count();
     note_digest(options, report, context, "shell", p.shell);
   }
-  report.input = p.surface.topology;
-  report.frame = p.surface.frame;
-  report.band_vox = options.band_vox;
-  report.closing_vox = p.closing_vox;
-  report.grown_vox = p.grown.distance_vox;
-  report.sites = p.sites.voxels.voxel_count();
-  report.sheet_vertices = p.sheet.vertex_count();
-  report.sheet = p.sheet.topology;
-  report.topology_compared = can_compare(report.input);
-  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
+  report_surface(p, options, report);
   timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
+  if (wants_lengths(options)) choose_beginning(options, vertex_target(options, p), p, report);
   cut_into_patches(options, source, p, report, context);
-  note_digest(options, report, context, "surface", p.surface);
-  note_digest(options, report, context, "sites", p.sites);
-  note_digest(options, report, context, "samples", p.samples);
-  note_digest(options, report, context, "sheet", p.sheet);
+  note_digests(p, options, report, context);
 }
 
 /// Width of the smallest cells that the lengths ask for, as far as the grid that even cells would have carries them.
@@ -145,50 +143,92 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const WorldBox& box, co
   return resolution;
 }
 
-/// The coarsest grid whose sheet has the input's topology, or the one that comes nearest. The soup is that of `source`,
-/// repaired.
-Prepared prepare_on_best_grid(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
-                              const PatchSource& source, const RemeshOptions& options, RemeshReport& report,
-                              Context& context) {
-  const auto [lo, hi] = box;
-  const bool free_grid = !options.resolution && !options.voxel_size_world;
-  const int32_t usual = first_resolution(options, input.area_world, lo, hi);
-  const int32_t first = free_grid && wants_lengths(options)
-                            ? resolution_for_lengths(soup, box, input, options, usual, report, context)
-                            : usual;
-  // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
-  const bool reachable = can_compare(input) && shows_all_parts(options, input);
-  const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
+/// Sheets of a surface on finer and finer grids.
+class GridSearch {
+ public:
+  /// The soup is that of `source`, repaired.
+  GridSearch(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input, const PatchSource& source,
+             const RemeshOptions& options, RemeshReport& report, Context& context)
+      : soup_(soup), box_(box), input_(input), source_(source), options_(options), report_(report), context_(context) {}
 
-  Prepared best;
-  int64_t best_gap = INT64_MAX;
-  int fruitless = 0;
-  for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
-       resolution += std::max(1, resolution / 2)) {
-    if (!memory_allows(estimate_run(soup, box, input, options, resolution), best_gap < INT64_MAX, report, context))
-      break;
-    const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution);
-    LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, frame, context); });
-    surface.topology = input;
-    Prepared p;
-    try {
-      p = prepare_surface(std::move(surface), asked_closing(options, input, frame), options, report, context);
-    } catch (const Error& error) {  // what is there is better than nothing
-      if (error.code() != ErrorCode::out_of_memory || best_gap == INT64_MAX) throw;
-      report.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
-      break;
+  /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
+  Prepared best_grid() {
+    const bool free_grid = !options_.resolution && !options_.voxel_size_world;
+    const int32_t usual = first_resolution(options_, input_.area_world, box_.min, box_.max);
+    const int32_t first = free_grid && wants_lengths(options_)
+                              ? resolution_for_lengths(soup_, box_, input_, options_, usual, report_, context_)
+                              : usual;
+    // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
+    const bool reachable = can_compare(input_) && shows_all_parts(options_, input_);
+    const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
+    const bool had_curves = options_.previous && options_.previous->had_curves;
+    if (had_curves && allows(first, false))
+      if (std::optional<Prepared> cut = cut_at_once(snapped(first))) return std::move(*cut);
+    Prepared best;
+    int64_t best_gap = INT64_MAX;
+    int fruitless = 0;
+    for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
+         resolution += std::max(1, resolution / 2)) {
+      const bool is_refining = best_gap < INT64_MAX;
+      if (!allows(resolution, is_refining)) break;
+      std::optional<Prepared> p = with_sheet(snapped(resolution), is_refining);
+      if (!p) break;
+      const int64_t gap = topology_gap(*p);
+      if (gap > 0 && !is_refining && !had_curves)
+        if (std::optional<Prepared> cut = cut_at_once(host_copy(p->surface))) return std::move(*cut);
+      fruitless = gap < best_gap ? 0 : fruitless + 1;
+      if (gap < best_gap) {
+        best_gap = gap;
+        best = std::move(*p);
+      }
     }
-    const int64_t gap = topology_gap(p);
-    fruitless = gap < best_gap ? 0 : fruitless + 1;
-    if (gap < best_gap) {
-      best_gap = gap;
-      best = std::move(p);
+    finish(best, source_, options_, report_, context_);
+    if (!is_on_own_triangles(best)) warn_of_topology(best, input_, options_, report_);
+    return best;
+  }
+
+ private:
+  bool allows(int32_t resolution, bool is_refining) {
+    return memory_allows(estimate_run(soup_, box_, input_, options_, resolution), is_refining, report_, context_);
+  }
+
+  LatticeSurface snapped(int32_t resolution) {
+    const LatticeFrame frame = LatticeFrame::around(box_.min, box_.max, resolution);
+    LatticeSurface surface = timed(report_, "snap", context_, [&] { return snap_surface(soup_, frame, context_); });
+    surface.topology = input_;
+    return surface;
+  }
+
+  /// A frame that keeps its curves takes the first grid. None where it is no such frame.
+  std::optional<Prepared> cut_at_once(LatticeSurface surface) {
+    if (!may_be_cut_at_once(options_, input_, surface.first_cap != kNone)) return {};
+    std::optional<Prepared> p = prepare_patches_alone(std::move(surface), options_, source_, report_, context_);
+    if (!p) return {};
+    report_surface(*p, options_, report_);
+    note_digests(*p, options_, report_, context_);
+    return p;
+  }
+
+  /// None where a finer grid takes more memory than there is: what is there is better than nothing.
+  std::optional<Prepared> with_sheet(LatticeSurface surface, bool is_refining) {
+    const std::optional<int32_t> closing_vox = asked_closing(options_, input_, surface.frame);
+    try {
+      return prepare_surface(std::move(surface), closing_vox, options_, report_, context_);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::out_of_memory || !is_refining) throw;
+      report_.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
+      return {};
     }
   }
-  finish(best, source, options, report, context);
-  if (!is_on_own_triangles(best)) warn_of_topology(best, input, options, report);
-  return best;
-}
+
+  const TriangleSoup& soup_;
+  const WorldBox& box_;
+  const InputTopology& input_;
+  const PatchSource& source_;
+  const RemeshOptions& options_;
+  RemeshReport& report_;
+  Context& context_;
+};
 
 /// Borders that are kept are those wider than the gaps that were asked to be closed; where nothing was, those of no
 /// holes.
@@ -259,8 +299,8 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshRep
   }
   report.unite.cut_faces += cut_faces;
   if (cut_faces > 0 && report.unite.joined_components == 0) report.unite.joined_components = input.components;
-  Prepared prepared = prepare_on_best_grid(*current, current == &soup ? box : bounding_box(changed), input, source,
-                                           options, report, context);
+  const WorldBox current_box = current == &soup ? box : bounding_box(changed);
+  Prepared prepared = GridSearch(*current, current_box, input, source, options, report, context).best_grid();
   report.input = given;
   return prepared;
 }

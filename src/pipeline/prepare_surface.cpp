@@ -10,8 +10,10 @@
 #include "pipeline/crease_search.h"
 #include "pipeline/flaps.h"
 #include "pipeline/shown_parts.h"
+#include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
+#include "pipeline/warm_start.h"
 #include "repair/hollows.h"
 #include "repair/joined_components.h"
 
@@ -30,7 +32,9 @@ class Preparation {
   Prepared from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
     Prepared p;
     p.surface = std::move(surface);
-    p.creases = begin_crease_search(options_, p.surface, report_, context_);
+    if (!wants_lengths(options_))
+      choose_beginning(options_, vertex_target(options_, p.surface.topology.area_world), p, report_);
+    p.creases = begin_crease_search(options_, p, report_, context_);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
     const bool shows_handles = shows_most_handles(options_, p.surface.topology);
@@ -176,6 +180,24 @@ Prepared prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_
   Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
   if (p.creases) p.creases->wait_until_copied();
   return p;
+}
+
+bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
+
+int64_t topology_gap(const Prepared& p) {
+  const InputTopology& input = p.surface.topology;
+  if (!can_compare(input)) return 0;
+  return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
+}
+
+void report_sheet(const Prepared& p, RemeshReport& report) {
+  report.closing_vox = p.closing_vox;
+  report.grown_vox = p.grown.distance_vox;
+  report.sites = p.sites.voxels.voxel_count();
+  report.sheet_vertices = p.sheet.vertex_count();
+  report.sheet = p.sheet.topology;
+  report.topology_compared = can_compare(p.surface.topology);
+  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
 }
 
 }  // namespace isoshell

@@ -12,4 +12,13 @@ namespace isoshell {
 Prepared prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox, const RemeshOptions& options,
                          RemeshReport& report, Context& context);
 
+/// Whether components and genus of an input can be compared with those of a sheet.
+bool can_compare(const InputTopology& input);
+
+/// How far the sheet's topology is from the input's; 0 when they agree, or when the input's is not known.
+int64_t topology_gap(const Prepared& p);
+
+/// What there is to say of sites and sheet.
+void report_sheet(const Prepared& p, RemeshReport& report);
+
 }  // namespace isoshell

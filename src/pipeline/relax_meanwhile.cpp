@@ -14,13 +14,6 @@ namespace isoshell {
 
 namespace {
 
-/// Null where the frame begins cold.
-std::shared_ptr<const PreviousFrame> frame_to_begin_with(const Prepared& prepared, const RemeshOptions& options) {
-  if (!options.previous) return nullptr;
-  const bool is_warm = reason_to_begin_cold(*options.previous, vertex_target(options, prepared)).empty();
-  return is_warm ? options.previous : nullptr;
-}
-
 RelaxedSeeds from_previous(const Prepared& prepared, const RemeshOptions& options, Context& context) {
   return relax_from_previous(prepared.sheet, *options.previous, vertex_target(options, prepared),
                              relax_options(options), options.tolerance.has_value(), context);
@@ -50,7 +43,7 @@ LevelOptions level_options(const Prepared& prepared, const RemeshOptions& option
 void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshReport& report, Context& context) {
   const std::shared_ptr<CreaseSearch> search = prepared.creases;
   if (!search || !search->goes_on()) return;
-  RelaxedMeanwhile made{level_options(prepared, options), frame_to_begin_with(prepared, options), {}};
+  RelaxedMeanwhile made{level_options(prepared, options), prepared.previous, {}};
   try {
     made.relaxed = timed(report, "relax", context, [&] {
       return made.previous

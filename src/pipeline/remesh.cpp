@@ -20,11 +20,11 @@
 #include "pipeline/patches.h"
 #include "pipeline/relax_meanwhile.h"
 #include "pipeline/resolve_intersections.h"
+#include "pipeline/sheet_when_needed.h"
 #include "pipeline/shown_parts.h"
 #include "pipeline/sizing.h"
 #include "pipeline/thin_walls.h"
 #include "pipeline/timed.h"
-#include "pipeline/warm_patches.h"
 #include "pipeline/warm_start.h"
 
 namespace isoshell {
@@ -39,21 +39,12 @@ PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, cons
           is_warm ? options.previous : nullptr};
 }
 
-/// Whether the frame begins with the vertices of the frame before; the report says why one that has one does not.
-bool begins_warm(int64_t seeds, const RemeshOptions& options, RemeshReport& report) {
-  CoherenceReport& coherence = report.coherence;
-  coherence.began_warm = false;
-  if (!options.previous) return false;
-  coherence.why_cold = reason_to_begin_cold(*options.previous, seeds);
-  return coherence.began_warm = coherence.why_cold.empty();
-}
-
 /// On the patches of a cut surface, or on the sheet.
 SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patches, RemeshReport& report,
                     Context& context) {
   const RemeshOptions options = checked(asked);
   const SeedOptions seed_options{in_patches ? p.cut->seeds : vertex_target(options, p), options.seed};
-  const bool is_warm = begins_warm(seed_options.count, options, report);
+  const bool is_warm = report.coherence.began_warm = options.previous && p.previous;
   RelaxedSeeds relaxed;
   if (in_patches) {
     relaxed = timed(report, "relax", context,
@@ -247,19 +238,20 @@ TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions&
   Attempt best{{}, std::exchange(report, {})};
   const GiveBack give_back{best, seeds, report};
   best.made.seeds = std::move(seeds);
+  SheetWhenNeeded sheet(p, options, context);
   if (p.cut && best.made.seeds.fixed.count > 0) {
     const PatchOptions in_patches = patch_options(p, options, optimize, best.report.coherence.began_warm);
     if (std::optional<TriangleMesh> mesh =
-            triangulate_patches(p, best.made, options, in_patches, best.report, context)) {
+            triangulate_patches(p, sheet, best.made, options, in_patches, best.report, context)) {
       follow_previous(options, false, *mesh, best.report);
       note_digest(options, best.report, context, "mesh", *mesh);
       return std::move(*mesh);
     }
     best.report.post = {};
-    if (is_on_own_triangles(p)) warn_of_topology(p, p.surface.topology, options, best.report);
-    best.made.seeds = relax_without_creases(p, options, best.report, context);
+    if (is_on_own_triangles(p)) warn_of_topology(sheet.get(best.report), p.surface.topology, options, best.report);
+    best.made.seeds = relax_without_creases(sheet.get(best.report), options, best.report, context);
   }
-  return triangulate_on_sheet(p, options, optimize, best, context);
+  return triangulate_on_sheet(sheet.get(best.report), options, optimize, best, context);
 }
 
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& asked, Context& context) {

@@ -57,8 +57,7 @@ double share_spoiled(const PreviousFrame& previous) {
   return double(spoiled) / double(std::max<int64_t>(1, looked_at));
 }
 
-}  // namespace
-
+/// Why a frame that wants so many vertices cannot begin with those of the frame before; empty where it can.
 std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) {
   const auto before = int64_t(previous.vertices.size());
   if (before == 0 || previous.carried.size() != previous.vertices.size()) return "there are no vertices before it";
@@ -68,6 +67,14 @@ std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) 
   if (share_spoiled(previous) > kMostSpoiled)
     return "the vertices of the frame before do not lie on this one as they did: its surface is another, or far away";
   return "";
+}
+
+}  // namespace
+
+void choose_beginning(const RemeshOptions& options, int64_t vertices, Prepared& p, RemeshReport& report) {
+  if (!options.previous) return;
+  report.coherence.why_cold = reason_to_begin_cold(*options.previous, vertices);
+  if (report.coherence.why_cold.empty()) p.previous = options.previous;
 }
 
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,

@@ -7,8 +7,9 @@
 
 namespace isoshell {
 
-/// Why a frame that wants so many vertices cannot begin with those of the frame before; empty where it can.
-std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted);
+/// Decides whether a run that is to have so many vertices begins with the frame before, once that is known: sets
+/// p.previous, and says in the report why not where there is one.
+void choose_beginning(const RemeshOptions& options, int64_t vertices, Prepared& p, RemeshReport& report);
 
 /// Seeds where the vertices of the frame before are now, with their numbers, and more in the middles of the longest
 /// edges where more are wanted; relaxed without levels, and in few passes: every pass takes vertices from where they

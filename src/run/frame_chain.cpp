@@ -18,6 +18,7 @@ TriangleSoup triangles_alone(std::vector<WorldPoint> vertices, std::vector<std::
 struct FrameChain::Frame {
   TriangleSoup surface;  ///< positions and triangles alone
   TriangleMesh mesh;     ///< as its file has it
+  bool had_curves = false;
   std::shared_ptr<const VelocityField> velocity;
 };
 
@@ -32,13 +33,15 @@ RunResult FrameChain::run(Input input, RunRequest request, Context& context) {
     throw Error(ErrorCode::usage, "frames",
                 input.facts.path + " is a stage file, which has no surface that vertices could go with");
   TriangleSoup surface = triangles_alone(input.soup.vertices, input.soup.triangles);
-  if (last_) request.options.values.previous = previous_for(surface, context);
+  if (last_) request.options.values.previous = previous_for(surface, input.facts.kind, context);
   RunResult made = isoshell::run(std::move(input), request, context);
   TriangleMesh mesh;
   mesh.vertices = made.mesh.vertices;
   mesh.triangles = made.mesh.triangles;
   round_as_in_ply(mesh);
-  last_ = std::make_unique<Frame>(Frame{std::move(surface), std::move(mesh), nullptr});
+  const FeatureReport& features = made.record.report.features;
+  const bool had_curves = features.kept && features.on_sheet.empty();
+  last_ = std::make_unique<Frame>(Frame{std::move(surface), std::move(mesh), had_curves, nullptr});
   return made;
 }
 
@@ -54,15 +57,18 @@ void FrameChain::go_on_from(TriangleSoup surface, TriangleSoup mesh) {
   last_->mesh.triangles = std::move(mesh.triangles);
 }
 
-std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const TriangleSoup& surface, Context& context) const {
+std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const TriangleSoup& surface, InputKind kind,
+                                                              Context& context) const {
   auto previous = std::make_shared<PreviousFrame>();
   previous->vertices = last_->mesh.vertices;
   previous->triangles = last_->mesh.triangles;
-  if (have_same_triangles(last_->surface, surface)) {
+  previous->had_curves = last_->had_curves;
+  const bool has_same_triangles = have_same_triangles(last_->surface, surface);
+  previous->has_other_faces = kind != InputKind::mesh || !has_same_triangles;
+  if (has_same_triangles) {
     previous->carried = carry_with_triangles(last_->mesh, last_->surface, surface, context);
     return previous;
   }
-  previous->has_other_faces = true;
   TriangleMesh moved = last_->mesh;
   if (last_->velocity) moved.vertices = carry_with_velocity(moved.vertices, *last_->velocity);
   previous->carried = carry_onto(moved, surface, context);

@@ -308,8 +308,11 @@ class Run {
   }
 
   void count_risks(const Prepared& p) {
+    const bool has_sites = p.sites.voxels.voxel_count() > 0;  // a frame of a sequence may have done without
+    const SiteSamples made =
+        has_sites ? SiteSamples{} : sample_sites(p.surface, voxelize(p.surface, context_), context_);
     record_.risky_sites = 0;
-    for (const uint8_t risky : find_risks(p.surface, p.samples)) record_.risky_sites += risky;
+    for (const uint8_t risky : find_risks(p.surface, has_sites ? p.samples : made)) record_.risky_sites += risky;
   }
 
   void warn(const std::string& text) { tell(MessageKind::warning, text); }

@@ -204,11 +204,14 @@ TEST_CASE("sequence: a crisp part that turns keeps its creases, and the vertices
   CHECK(contains(get_file(folder / "s.00.json"), "\"coherence\": null"));
 }
 
-TEST_CASE("sequence: a crisp part whose faces change keeps its creases, resumed or not", "[sequence]") {
+TEST_CASE("sequence: a crisp part whose faces change keeps its creases and gets new ones, resumed or not",
+          "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
   write_frames(folder, 4, [](int f) {
-    return turned(shapes::shuffled(shapes::box({0, 0, 0}, {3, 2, 1}), uint64_t(f)), 0.01 * f);
+    TriangleSoup part = shapes::box({0, 0, 0}, {3, 2, 1});
+    if (f == 3) part = shapes::together(part, shapes::box({0, 0, 1.5}, {1, 1, 2.5}));
+    return turned(shapes::shuffled(part, uint64_t(f)), 0.01 * f);
   });
   SequenceRequest request = request_in(folder, 4, "out.##.ply");
   std::vector<double> kept_length_world;
@@ -217,14 +220,32 @@ TEST_CASE("sequence: a crisp part whose faces change keeps its creases, resumed 
   };
   const SequenceResult result = run_sequence(request, context);
   CHECK(result.warm == 3);
-  CHECK(result.kept_edges_worst_pct > 90);
-  for (const double length : kept_length_world) CHECK(length == Approx(24).epsilon(0.001));
+  REQUIRE(kept_length_world.size() == 4);
+  for (size_t f = 0; f < 4; ++f) CHECK(kept_length_world[f] == Approx(f < 3 ? 24 : 36).epsilon(0.001));
   SequenceRequest part = request_in(folder, 2, "again.##.ply");
   run_sequence(part, context);
   part.frames.last = 3;
   part.resume = true;
   run_sequence(part, context);
   CHECK(files_of(part) == files_of(request));
+}
+
+TEST_CASE("sequence: parts that come to touch along an edge are meshed where they cannot be cut", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 2, [](int f) {
+    const double gap = f == 0 ? 0.05 : 0;
+    return shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}),
+                            shapes::box({1 + gap, 1 + gap, 0}, {2 + gap, 2 + gap, 1}));
+  });
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  std::vector<RunResult> made;
+  request.after_frame = [&](int64_t, const RunResult& r) { made.push_back(r); };
+  run_sequence(request, context);
+  REQUIRE(made.size() == 2);
+  CHECK(made[0].record.report.features.kept_length_world == Approx(24).epsilon(0.001));
+  for (const RunResult& r : made) CHECK(check_mesh(r.mesh).is_closed_manifold());
+  CHECK(made[1].record.report.sheet_vertices > 0);
 }
 
 TEST_CASE("sequence: frames with creases are the same with other threads, and resumed", "[sequence]") {

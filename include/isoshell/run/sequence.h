@@ -44,7 +44,8 @@ class FrameChain {
 
  private:
   struct Frame;
-  std::shared_ptr<const PreviousFrame> previous_for(const TriangleSoup& surface, Context& context) const;
+  std::shared_ptr<const PreviousFrame> previous_for(const TriangleSoup& surface, InputKind kind,
+                                                    Context& context) const;
 
   bool is_coherent_;
   std::unique_ptr<Frame> last_;

@@ -65,7 +65,7 @@ class Crew:
         self._most = job["memory"] or _memory_of_worker()
         self._admission = Admission(self._most)
         self._share = job["asset_memory"] or self._most // slots
-        self._is_share_fixed = bool(job["asset_memory"])
+        self._is_share_fixed = bool(job["asset_memory"] or job["place"].get("max_memory"))
         self._lock = threading.Lock()
         self._children: List[Optional[Child]] = [None] * -(-slots // self._contexts)
         self._busy = [0] * len(self._children)
@@ -149,7 +149,7 @@ class Crew:
                 continue
             code = answer.get("code")
             if code == "OUT_OF_MEMORY" and not self._is_share_fixed and share < self._most:
-                # With all of the memory it has a device to itself, too, whose memory no share says anything of.
+                # With all of the node's memory it is alone on the node, and shares say nothing of a device's memory.
                 share = self._most if self._devices or share > self._share else self._wanted(job, folder)
                 is_alone = False
                 continue

@@ -1,4 +1,5 @@
-// Disconnected pieces of cells: large ones become cells of their own, small ones join a neighbour. Paper section 3.4.
+// Disconnected pieces of cells: large ones become cells of their own, small ones join a neighbour (paper section 3.4);
+// those of fixed seeds join a copy of these that is beside them, however large they are.
 //
 // Main pieces never change here, and in every round all disconnected pieces that touch a main piece are resolved; where
 // disconnected pieces touch none, the largest of the neighbourhood becomes a cell. So the rounds end, with every cell
