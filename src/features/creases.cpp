@@ -141,7 +141,8 @@ class Judge {
     const WalkGround ground{mesh_, edges_, normals_, is_end};
     const std::vector<uint32_t> component = components_of(mesh_, edges_);
     JudgedChains all{std::vector<Judged>(chains.size()), {}};
-    auto& [judged, of_component] = all;
+    std::vector<Judged>& judged = all.chain;
+    std::map<uint32_t, Lengths>& of_component = all.of_component;
     for (size_t c = 0; c < chains.size(); ++c) {
       if (chains[c].kind != CurveKind::crease) continue;
       judged[c] = {before ? 0 : component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
