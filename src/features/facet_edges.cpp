@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/parallel_ranges.h"
@@ -103,7 +104,10 @@ std::vector<uint32_t> find_facet_edges(const FeatureMesh& mesh, const MeshEdges&
     const bool is_between = around.any(chain.vertex.front(), is_curve) && around.any(chain.vertex.back(), is_curve) &&
                             !around.is_narrow(mesh, chain.vertex.front(), chain.edge.front()) &&
                             !around.is_narrow(mesh, chain.vertex.back(), chain.edge.back());
-    if (chain.is_ring || is_between) found.insert(found.end(), chain.edge.begin(), chain.edge.end());
+    if (!chain.is_ring && !is_between) continue;
+    // A crease may end within a chain, where edges that turn less go on from it.
+    std::copy_if(chain.edge.begin(), chain.edge.end(), std::back_inserter(found),
+                 [&](uint32_t e) { return is_candidate[e]; });
   }
   std::sort(found.begin(), found.end());
   return found;

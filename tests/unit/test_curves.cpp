@@ -6,6 +6,7 @@
 #include <ostream>
 #include <set>
 
+#include "core/half_edge_list.h"
 #include "core/world_vector.h"
 #include "features/face_normals.h"
 #include "features/find_curves.h"
@@ -264,6 +265,21 @@ TEST_CASE("curves: edges between facets as wide as edges of the result are curve
   CHECK(find_curves(mesh, {CreaseMode::automatic, 40, 0.4}).curves.size() == 2);
   const FeatureMesh cone = weld_for_features(cylinder(24, 3, 2, 0.5));  // facets that are too narrow on top
   CHECK(find_curves(cone, {CreaseMode::automatic, 40, 0.2}).curves.size() == 2);
+}
+
+TEST_CASE("curves: an edge is on one curve where edges between facets go on from a crease", "[curves][unit]") {
+  TriangleSoup ring =
+      shapes::torus(2, 0.8, 32, 8);  // flattened and drawn out: its long edges are creases here and there
+  for (WorldPoint& p : ring.vertices) p = {1.8 * p.x, 0.65 * p.y, 0.7 * p.z};
+  const FeatureMesh mesh = weld_for_features(ring);
+  for (const double length : {0.05, 0.1, 0.15, 0.2, 0.3}) {
+    std::vector<uint64_t> edges;
+    for (const FeatureCurve& curve : find_curves(mesh, {CreaseMode::automatic, 40, length}).curves)
+      for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < curve.vertex.size(); ++i)
+        edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % curve.vertex.size()]));
+    std::sort(edges.begin(), edges.end());
+    CHECK(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
+  }
 }
 
 TEST_CASE("curves: the facets of a round shape of triangles have none", "[curves][unit]") {
