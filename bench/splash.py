@@ -16,7 +16,7 @@ import sys
 import numpy as np
 
 HALF_WIDTH = 3
-BLEND = 0.05  # of the smooth union, in world units; the pool is 2 wide
+BLEND = 0.05 / 3  # of the smooth union, in world units; the pool is 2 wide
 GRAVITY = 0.0022  # a frame a frame
 DROPLETS = 12
 IMPACT = 8  # the frame in which the drop meets the pool
@@ -89,10 +89,10 @@ def frame_of(frame, voxels):
                   axis=-1).astype(np.float32)
     velocity, weights = np.zeros_like(at), np.zeros(counts, np.float32)
     for distance, of_shape in shapes(at, frame):  # a smooth union: -BLEND log(sum(exp(-distance / BLEND)))
-        weight = np.exp(-np.clip(distance, -1, 1) / (BLEND / 3))
+        weight = np.exp(-np.clip(distance, -1, 1) / BLEND)
         weights += weight
         velocity += weight[..., None] * of_shape
-    inside = -BLEND / 3 * np.log(weights)
+    inside = -BLEND * np.log(weights)
     slope = np.linalg.norm(np.stack(np.gradient(inside, size), -1), axis=-1)
     return inside / np.maximum(slope, 0.5), velocity / weights[..., None], low, size
 

@@ -20,9 +20,9 @@ constexpr double kStraightOn = .5;       // cosine between an edge and the next 
 constexpr int64_t kMostToGrow = 64;      // edges around a vertex: where more meet, none goes on from another
 constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
-constexpr double kNearlyAll = .98;
-constexpr size_t kParts = 12;           // in which chains are judged
-constexpr double kWalkInFaceSizes = 4;  // at least: roots of the area of the face beside the edge
+constexpr double kNearlyAll = .98;       // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
+constexpr size_t kParts = 12;            // in which chains are judged
+constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
 Buffer<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
@@ -128,39 +128,45 @@ struct JudgedChains {
 class Judge {
  public:
   Judge(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
-        View<const double> filtered_turns, double reach_world)
-      : mesh_(mesh), edges_(edges), normals_(normals), turns_(filtered_turns), reach_world_(reach_world) {}
+        View<const double> filtered_turns, const std::vector<EdgeChain>& chains, double reach_world)
+      : mesh_(mesh),
+        edges_(edges),
+        normals_(normals),
+        turns_(filtered_turns),
+        chains_(chains),
+        is_end_(edges.count(), 0),
+        component_(components_of(mesh, edges)),
+        reach_world_(reach_world) {
+    for (const EdgeChain& chain : chains)
+      for (const uint32_t e : chain.edge) is_end_[e] = 1;
+  }
 
   /// Looks at every twelfth chain, then at the next ones of components that may have creases: on a scan, it needs no
   /// more than show that a quarter of their length is bad. Beside creases before all are bad that these do not hold,
   /// and the surface is one component.
-  JudgedChains judge(const std::vector<EdgeChain>& chains, const CreasesBefore* before) const {
-    std::vector<uint8_t> is_end(edges_.count(), 0);
-    for (const EdgeChain& chain : chains)
-      for (const uint32_t e : chain.edge) is_end[e] = 1;
-    const WalkGround ground{mesh_, edges_, normals_, is_end};
-    const std::vector<uint32_t> component = components_of(mesh_, edges_);
-    JudgedChains all{std::vector<Judged>(chains.size()), {}};
+  JudgedChains judge(const CreasesBefore* before) const {
+    const WalkGround ground{mesh_, edges_, normals_, is_end_};
+    JudgedChains all{std::vector<Judged>(chains_.size()), {}};
     std::vector<Judged>& judged = all.chain;
     std::map<uint32_t, Lengths>& of_component = all.of_component;
-    for (size_t c = 0; c < chains.size(); ++c) {
-      if (chains[c].kind != CurveKind::crease) continue;
-      judged[c] = {before ? 0 : component[edges_.edges[chains[c].edge[0]].face[0]], length_of(mesh_, chains[c])};
+    for (size_t c = 0; c < chains_.size(); ++c) {
+      if (chains_[c].kind != CurveKind::crease) continue;
+      judged[c] = {before ? 0 : component_[edges_.edges[chains_[c].edge[0]].face[0]], length_of(mesh_, chains_[c])};
       of_component[judged[c].component].all += judged[c].length_world;
     }
     for (size_t first = 0; first < kParts; ++first) {
-      for_each_index(size_t(0), (chains.size() + kParts - 1 - first) / kParts, [&](size_t i) {
+      for_each_index(size_t(0), (chains_.size() + kParts - 1 - first) / kParts, [&](size_t i) {
         const size_t c = first + kParts * i;
-        if (chains[c].kind == CurveKind::crease && !of_component.at(judged[c].component).are_surely_of_a_scan() &&
-            (!before || before->hold(mesh_, chains[c])))
-          look_beside_chain(ground, chains[c], judged[c]);
+        if (chains_[c].kind == CurveKind::crease && !of_component.at(judged[c].component).are_surely_of_a_scan() &&
+            (!before || before->hold(mesh_, chains_[c])))
+          look_beside_chain(ground, chains_[c], judged[c]);
       });
-      for (size_t c = first; c < chains.size(); c += kParts)
-        if (chains[c].kind == CurveKind::crease && !judged[c].is_surely_good())
+      for (size_t c = first; c < chains_.size(); c += kParts)
+        if (chains_[c].kind == CurveKind::crease && !judged[c].is_surely_good())
           of_component[judged[c].component].bad += judged[c].length_world;
     }
-    for (size_t c = 0; c < chains.size(); ++c)
-      if (chains[c].kind == CurveKind::crease && judged[c].is_surely_good())
+    for (size_t c = 0; c < chains_.size(); ++c)
+      if (chains_[c].kind == CurveKind::crease && judged[c].is_surely_good())
         of_component[judged[c].component].good += judged[c].length_world;
     return all;
   }
@@ -196,6 +202,9 @@ class Judge {
   const MeshEdges& edges_;
   View<const WorldPoint> normals_;
   View<const double> turns_;
+  const std::vector<EdgeChain>& chains_;
+  std::vector<uint8_t> is_end_;      ///< per edge: a chain's, where walks end
+  std::vector<uint32_t> component_;  ///< per triangle
   double reach_world_;
 };
 
@@ -232,11 +241,11 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
   const std::vector<uint32_t> candidates = grow_creases(mesh, edges, turns);
   if (candidates.empty()) return fixed;
   const std::vector<EdgeChain> chains = find_chains(edges, with_creases(fixed, candidates, turns));
-  const Judge judge(mesh, edges, normals, turns, edge_length_world);
-  JudgedChains judged = judge.judge(chains, nullptr);
+  const Judge judge(mesh, edges, normals, turns, chains, edge_length_world);
+  JudgedChains judged = judge.judge(nullptr);
   if (options.before && !judged.are_nearly_all_creases()) {
     const CreasesBefore before(*options.before, edge_length_world);
-    judged = judge.judge(chains, &before);
+    judged = judge.judge(&before);
   }
   std::vector<uint32_t> kept;
   for (size_t c = 0; c < chains.size(); ++c)

@@ -4,43 +4,27 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/half_edge_list.h"
 #include "core/world_vector.h"
+#include "features/creases.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kReach = 0.5;  ///< edges
+constexpr double kReach = 0.5;        ///< edges
+constexpr double kSharpDegrees = 40;  ///< as creases begin
 
-constexpr double kSharpCosine = 0.766;  // of 40 degrees
-
-using Triangles = std::vector<std::array<uint32_t, 3>>;
-
-bool is_sharp(const std::vector<WorldPoint>& at, const std::array<uint32_t, 3>& s, const std::array<uint32_t, 3>& t) {
-  const WorldPoint a = doubled_area(at[s[0]], at[s[1]], at[s[2]]), b = doubled_area(at[t[0]], at[t[1]], at[t[2]]);
-  return dot(a, b) < kSharpCosine * std::sqrt(length_sq(a) * length_sq(b));
-}
-
-std::vector<std::array<uint32_t, 2>> sharp_edges(const std::vector<WorldPoint>& at, const Triangles& triangles) {
-  std::vector<std::pair<uint64_t, uint32_t>> sides;
-  for (size_t t = 0; t < triangles.size(); ++t)
-    for (size_t c = 0; c < 3; ++c) sides.push_back({edge_key(triangles[t][c], triangles[t][(c + 1) % 3]), uint32_t(t)});
-  std::sort(sides.begin(), sides.end());
-  std::vector<std::array<uint32_t, 2>> sharp;
-  for (size_t i = 0; i + 1 < sides.size(); ++i)
-    if (sides[i].first == sides[i + 1].first &&
-        is_sharp(at, triangles[sides[i].second], triangles[sides[i + 1].second]))
-      sharp.push_back({uint32_t(sides[i].first >> 32), uint32_t(sides[i].first)});
-  return sharp;
-}
-
-std::vector<WorldPoint> places_on_edges(const std::vector<std::array<uint32_t, 2>>& edges,
-                                        const std::vector<WorldPoint>& at, double most_apart) {
+/// On the sharp edges of the mesh, where their ends have gone to.
+std::vector<WorldPoint> places_on_sharp_edges(const PreviousFrame& previous, double most_apart) {
+  FeatureMesh mesh;
+  mesh.vertices = previous.vertices;
+  mesh.triangles = previous.triangles;
+  const MeshEdges edges = find_mesh_edges(mesh);
   std::vector<WorldPoint> places;
-  for (const auto& [u, v] : edges) {
-    const WorldPoint along = at[v] - at[u];
+  for (const CurveEdge& sharp : with_creases_above(mesh, edges, {}, kSharpDegrees)) {
+    const auto& [u, v] = edges.edges[sharp.edge].end;
+    const WorldPoint from = previous.carried[u], along = previous.carried[v] - from;
     const auto steps = std::max<int64_t>(1, int64_t(std::ceil(length(along) / most_apart)));
-    for (int64_t i = 0; i <= steps; ++i) places.push_back(at[u] + double(i) / double(steps) * along);
+    for (int64_t i = 0; i <= steps; ++i) places.push_back(from + double(i) / double(steps) * along);
   }
   return places;
 }
@@ -49,7 +33,7 @@ std::vector<WorldPoint> places_on_edges(const std::vector<std::array<uint32_t, 2
 
 CreasesBefore::CreasesBefore(const PreviousFrame& previous, double edge_length_world)
     : reach_world_(kReach * edge_length_world),
-      places_(places_on_edges(sharp_edges(previous.vertices, previous.triangles), previous.carried, reach_world_)),
+      places_(places_on_sharp_edges(previous, reach_world_)),
       cells_(places_, reach_world_) {}
 
 bool CreasesBefore::are_near(const WorldPoint& place) const {

@@ -268,8 +268,8 @@ TEST_CASE("curves: edges between facets as wide as edges of the result are curve
 }
 
 TEST_CASE("curves: an edge is on one curve where edges between facets go on from a crease", "[curves][unit]") {
-  TriangleSoup ring =
-      shapes::torus(2, 0.8, 32, 8);  // flattened and drawn out: its long edges are creases here and there
+  // Flattened and drawn out: its long edges are creases here and there.
+  TriangleSoup ring = shapes::torus(2, 0.8, 32, 8);
   for (WorldPoint& p : ring.vertices) p = {1.8 * p.x, 0.65 * p.y, 0.7 * p.z};
   const FeatureMesh mesh = weld_for_features(ring);
   for (const double length : {0.05, 0.1, 0.15, 0.2, 0.3}) {

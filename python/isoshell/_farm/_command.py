@@ -48,7 +48,7 @@ def parser() -> argparse.ArgumentParser:
     farm.add_argument("--scheduler", metavar="S", default="local", help="local, slurm, an address such as "
                       "tcp://host:8786, or the file that dask scheduler --scheduler-file wrote [local]")
     farm.add_argument("--workers", metavar="N", type=_positive, help="local: assets that are meshed side by side [as "
-                      "many as there are processors, or 8 for each CUDA device]; slurm: jobs [1]")
+                      "many as there are processors, or 16 for each CUDA device]; slurm: jobs [1]")
     farm.add_argument("--contexts", metavar="N", type=_positive, help="assets that share a process [1, or 16 with a "
                       "CUDA device]")
     farm.add_argument("--time-limit", metavar="S", type=float, default=3600.0, help="seconds that an asset may take, "

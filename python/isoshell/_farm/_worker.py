@@ -65,7 +65,7 @@ class Crew:
         self._most = job["memory"] or _memory_of_worker()
         self._admission = Admission(self._most)
         self._share = job["asset_memory"] or self._most // slots
-        self._is_share_fixed = bool(job["asset_memory"] or job["place"].get("max_memory"))
+        self._is_share_fixed = bool(job["asset_memory"])
         self._lock = threading.Lock()
         self._children: List[Optional[Child]] = [None] * -(-slots // self._contexts)
         self._busy = [0] * len(self._children)
@@ -148,7 +148,8 @@ class Crew:
                     share = self._most  # the kernel kills where memory is short
                 continue
             code = answer.get("code")
-            if code == "OUT_OF_MEMORY" and not self._is_share_fixed and share < self._most:
+            is_limit_fixed = self._is_share_fixed or job["place"].get("max_memory")
+            if code == "OUT_OF_MEMORY" and not is_limit_fixed and share < self._most:
                 # With all of the node's memory it is alone on the node, and shares say nothing of a device's memory.
                 share = self._most if self._devices or share > self._share else self._wanted(job, folder)
                 is_alone = False
