@@ -37,7 +37,10 @@ class Cluster(NamedTuple):
 def cluster_of(scheduler: str, workers: Optional[int], slots: int, memory: Optional[int]) -> Iterator[Cluster]:
     """local, slurm, the address of a scheduler, or the file that it wrote."""
     distributed = places.package("distributed")
-    settings: Dict[str, Any] = {"distributed.scheduler.allowed-failures": DEATHS_OF_WORKERS}
+    settings: Dict[str, Any] = {
+        "distributed.scheduler.allowed-failures": DEATHS_OF_WORKERS,
+        "distributed.worker.profile.enabled": False,  # its threads only wait for processes
+    }
     for name in ("distributed", "asyncio", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said by the farm, in a line
     with ExitStack() as stack:
