@@ -18,7 +18,7 @@ class Size:
         ("AUTO", "Auto", "Sharp edges of crisp parts stay; scans have none"),
         ("ANGLE", "Angle", "All edges stay whose faces turn by so much"),
         ("OFF", "Off", "All edges are rounded off")))
-    angle: FloatProperty(name="Angle", default=math.radians(30), min=math.radians(1), max=math.radians(180),
+    angle: FloatProperty(name="Angle", default=math.radians(30), min=math.radians(1), max=math.radians(179),
                          subtype="ANGLE", description="Edges stay whose faces turn by so much or more")
     adaptivity: FloatProperty(name="Adaptivity", default=0, min=0, max=1, subtype="FACTOR",
                               description="Fraction of the vertices that are distributed by curvature, not by area")

@@ -20,7 +20,12 @@ void bind_keywords(nb::module_& m) {
       .def_ro("value", &tool::OptionEntry::value, "What stands for its value, as K; empty for a flag.")
       .def_ro("text", &tool::OptionEntry::text)
       .def_ro("fallback", &tool::OptionEntry::fallback, "What holds without it.")
-      .def_ro("real", &tool::OptionEntry::real, "Takes any number, not only whole ones.");
+      .def_ro("real", &tool::OptionEntry::real, "Takes any number, not only whole ones.")
+      .def_ro("of_command", &tool::OptionEntry::of_command, "No keyword: only the command has it.")
+      .def_prop_ro(
+          "low", [](const tool::OptionEntry& o) { return o.range.low; }, "The least number that it takes.")
+      .def_prop_ro(
+          "high", [](const tool::OptionEntry& o) { return o.range.high; }, "The largest number that it takes.");
   m.def("option_table", tool::option_table, "Every option of the command.");
 }
 

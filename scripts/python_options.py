@@ -27,7 +27,6 @@ class Options(TypedDict, total=False):
     """The options of the command vdb_isomesh, with underscores. None is as if a keyword were not there; what holds then
     is in brackets.
 '''
-LEFT_OUT = {"help", "version", "dry-run", "frames", "velocity", "no-coherence", "keep-going", "resume"}
 SPECIAL = {
     "features": "Union[float, str]",
     "close-gaps": "Union[float, str]",
@@ -65,7 +64,7 @@ def text_of(option: _isoshell.OptionEntry) -> str:
 
 
 def options_file() -> str:
-    options = [option for option in _isoshell.option_table() if option.name not in LEFT_OUT]
+    options = [option for option in _isoshell.option_table() if not option.of_command]
     text, group, members = HEAD, "", ""
     for option in options:
         keyword, kind = option.name.replace("-", "_"), type_of(option)

@@ -1,5 +1,6 @@
 """The packed extension by Blender's own rules."""
 
+import math
 import os
 import subprocess
 import sys
@@ -33,3 +34,15 @@ def test_operators_panel_and_menu_are_there_and_go_away(extension):
     extension.unregister()
     assert not hasattr(bpy.types, "VIEW3D_PT_isoshell") and not hasattr(bpy.types.Scene, "isoshell_remesh")
     extension.register()
+
+
+def test_numbers_have_the_ranges_of_the_options():
+    import isoshell
+
+    options = {entry.name: entry for entry in isoshell._isoshell.option_table()}
+    properties = bpy.context.scene.isoshell_remesh.bl_rna.properties
+    assert properties["vertices"].hard_min == options["vertices"].low
+    assert (properties["adaptivity"].hard_min, properties["adaptivity"].hard_max) == (0, options["adaptivity"].high)
+    angle = properties["angle"]
+    limits = [options["features"].low, options["features"].high]
+    assert [math.degrees(angle.hard_min), math.degrees(angle.hard_max)] == pytest.approx(limits)

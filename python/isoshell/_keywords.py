@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, NamedTuple, Optional, Tuple
 
 from . import _isoshell
 from ._errors import Error
@@ -12,24 +12,32 @@ Keywords = List[Tuple[str, Optional[str]]]
 
 PLACE = ("device", "threads", "max_memory")  # of a Context
 READING = ("iso", "input-format", "features")  # what decides how a source is read
-LEFT_OUT = {
+INSTEAD = {  # of options that only the command has
     "help": "see help(isoshell.Options)",
     "version": "see isoshell.__version__",
     "dry_run": "call isoshell.estimate",
-    **{
-        name: "sequences are meshed by isoshell.remesh_sequence"
-        for name in ("frames", "velocity", "no_coherence", "keep_going", "resume")
-    },
 }
+OF_SEQUENCES = "sequences are meshed by isoshell.remesh_sequence"
 
-_flags: dict[str, bool] = {}
+class Kind(NamedTuple):
+    is_flag: bool
+    of_command: bool  # no keyword
 
 
-def flags() -> dict[str, bool]:
-    """Every option of the command by its keyword, and whether it is a flag."""
-    if not _flags:
-        _flags.update({o.name.replace("-", "_"): not o.value for o in _isoshell.option_table()})
-    return _flags
+_kinds: dict[str, Kind] = {}
+
+
+def kinds() -> dict[str, Kind]:
+    """Every option of the command by its keyword."""
+    if not _kinds:
+        _kinds.update({entry.name.replace("-", "_"): Kind(not entry.value, entry.of_command)
+                       for entry in _isoshell.option_table()})
+    return _kinds
+
+
+def is_flag(name: str) -> bool:
+    """Whether that is an option without a value."""
+    return name in kinds() and kinds()[name].is_flag
 
 
 def keywords_of(options: dict[str, Any]) -> Keywords:
@@ -37,16 +45,17 @@ def keywords_of(options: dict[str, Any]) -> Keywords:
     words: Keywords = []
     for name, given in options.items():
         value = _plain(given)
-        if name in LEFT_OUT:
-            raise Error(f"{name} is no keyword; {LEFT_OUT[name]}", stage="options")
+        kind = kinds().get(name)
+        if kind is not None and kind.of_command:
+            raise Error(f"{name} is no keyword; {INSTEAD.get(name, OF_SEQUENCES)}", stage="options")
         option = name.replace("_", "-")
         if "-" in name:
             raise Error(f"unknown option {name}; did you mean {name.replace('-', '_')}?", stage="options")
-        if name not in flags():
+        if kind is None:
             words.append((option, None))  # the parser refuses it, and knows the nearest name
         elif value is None:
             continue
-        elif not flags()[name]:
+        elif not kind.is_flag:
             text = _text(name, value)
             if text:
                 words.append((option, text))

@@ -10,7 +10,7 @@ from typing import Any, Optional
 
 from ._errors import Error, RunWarning
 from ._isoshell import ErrorCode
-from ._keywords import flags
+from ._keywords import kinds
 from ._remesh import estimate, remesh
 from ._result import Result
 from ._sequence import Frames, remesh_sequence
@@ -40,7 +40,7 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
         name = option.replace("-", "_")
         if is_joined:
             options[name] = value
-        elif flags().get(name, True):
+        elif name not in kinds() or kinds()[name].is_flag:
             options[name] = True
         else:
             options[name] = left.pop(0) if left else ""

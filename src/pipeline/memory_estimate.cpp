@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "pipeline/check_options.h"
+#include "options/check_options.h"
 #include "pipeline/choose_grid.h"
 
 namespace isoshell {

@@ -9,7 +9,7 @@
 #include "isoshell/memory_estimate.h"
 #include "isoshell/remesh.h"
 #include "isoshell/repair.h"
-#include "pipeline/check_options.h"
+#include "options/check_options.h"
 #include "pipeline/choose_grid.h"
 #include "pipeline/joined_parts.h"
 #include "pipeline/patches.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <regex>
 
-#include "isoshell/run/option_text.h"
+#include "isoshell/options/option_text.h"
 #include "isoshell/run/sequence.h"
 
 namespace isoshell {

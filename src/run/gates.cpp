@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "isoshell/error.h"
+#include "isoshell/options/option_text.h"
 #include "isoshell/readable.h"
-#include "isoshell/run/option_text.h"
 
 namespace isoshell {
 namespace {

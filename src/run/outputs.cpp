@@ -11,7 +11,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
-#include "isoshell/run/option_text.h"
+#include "isoshell/options/option_text.h"
 
 namespace isoshell {
 namespace {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "isoshell/error.h"
-#include "isoshell/run/option_text.h"
+#include "isoshell/options/option_table.h"
 
 namespace isoshell {
 namespace {
@@ -41,95 +42,65 @@ bool gives_closing(const RemeshOptions& asked, const AskedOptions& kept, const S
   return closing_vox == file.info.closing_vox;
 }
 
-/// Refuses options that differ from what made the file. JSON may give an option and leave its value open, as what
-/// options_json writes does: such an option asks for nothing.
-class Held {
- public:
-  Held(const StageFile& file, const AskedOptions& asked) : stage_(file.info.stage), asked_(asked) {}
-
-  template <class T>
-  void check(const char* option, bool same, const T& there) const {
-    if (!asked_.was_given(option) || same) return;
-    std::ostringstream text;
-    text << "--" << option << " is fixed by the " << stage_ << " stage file: it was " << there << "; leave it out";
-    throw Error(ErrorCode::usage, "options", text.str());
-  }
-  template <class T>
-  void check(const char* option, const std::optional<T>& asked, const std::optional<T>& kept) const {
-    const bool same = !asked || asked == kept;
-    if (kept)
-      check(option, same, *kept);
-    else
-      check(option, same, "not given");
-  }
-
- private:
-  const std::string& stage_;
-  const AskedOptions& asked_;
+/// What a stage file holds says of an option more than what made it: whether that agrees with what is asked, and what
+/// it was.
+struct InFile {
+  bool agrees;
+  std::string was;
 };
 
-void check_shell(const Held& held, const StageFile& file, const RemeshOptions& asked, const AskedOptions& kept) {
+/// Of the options whose value the file itself shows.
+std::optional<InFile> shown_in_file(const OptionRow& row, const StageFile& file, const AskedOptions& asked,
+                                    const AskedOptions& kept) {
+  const std::string name = row.name;
+  const RemeshOptions& o = asked.values;
   const LatticeFrame& frame = file.surface.frame;
-  held.check("resolution", !asked.resolution || asked.resolution == frame.resolution, frame.resolution);
-  held.check("voxel-size", !asked.voxel_size_world || gives_grid(*asked.voxel_size_world, frame), frame.voxel_size);
-  held.check("band", asked.band_vox == file.shell.band_vox, file.shell.band_vox);
-  held.check("close-gaps", gives_closing(asked, kept, file), std::to_string(2 * file.info.closing_vox) + "vox");
-  held.check("boundary", asked.boundary == kept.values.boundary, boundary_name(kept.values.boundary));
-  held.check("outer-only", asked.outer_only == kept.values.outer_only, kept.values.outer_only ? "given" : "not given");
+  const auto text = [](auto value) {
+    std::ostringstream digits;
+    digits << value;
+    return digits.str();
+  };
+  if (name == "resolution") return InFile{!o.resolution || o.resolution == frame.resolution, text(frame.resolution)};
+  if (name == "voxel-size")
+    return InFile{!o.voxel_size_world || gives_grid(*o.voxel_size_world, frame), text(frame.voxel_size)};
+  if (name == "band") return InFile{o.band_vox == file.shell.band_vox, text(file.shell.band_vox)};
+  if (name == "close-gaps") return InFile{gives_closing(o, kept, file), text(2 * file.info.closing_vox) + "vox"};
+  if (name == "vertices") return InFile{!o.vertices || o.vertices == file.seeds->size(), text(file.seeds->size())};
+  return std::nullopt;
 }
 
-void check_seeds(const Held& held, int64_t seeds, const AskedOptions& a, const AskedOptions& k) {
-  const RemeshOptions &asked = a.values, &kept = k.values;
-  held.check("vertices", !asked.vertices || asked.vertices == seeds, seeds);
-  held.check("edge-length", asked.edge_length_world, kept.edge_length_world);
-  held.check("sizing", a.sizing == k.sizing, k.sizing.empty() ? "not given" : k.sizing);
-  held.check("adaptivity", asked.adaptivity == kept.adaptivity, kept.adaptivity);
-  held.check("gradation", asked.gradation == kept.gradation, kept.gradation);
-  held.check("method", asked.method == kept.method, method_name(kept.method));
-  held.check("iterations", asked.max_passes, kept.max_passes);
-  held.check("tolerance", asked.tolerance, kept.tolerance);
-  held.check("step", asked.max_step_vox, kept.max_step_vox);
-  held.check("seed", asked.seed == kept.seed, kept.seed);
-  held.check("features", features_text(asked.features) == features_text(kept.features), features_text(kept.features));
+bool is_fixed(const OptionRow& row, const StageFile& file) {
+  return row.on_resume == OnResume::of_shell || (row.on_resume == OnResume::of_seeds && file.seeds);
+}
+
+/// Refuses an option that differs from what made the file. JSON may give an option and leave its value open, as what
+/// options_json writes does: such an option asks for nothing.
+void check_fixed(const OptionRow& row, const StageFile& file, const AskedOptions& asked, const AskedOptions& kept) {
+  const OptionValue value = value_of(row, asked);
+  const bool is_open = std::holds_alternative<std::monostate>(value);
+  const InFile in_file = shown_in_file(row, file, asked, kept)
+                             .value_or(InFile{is_open || value == value_of(row, kept), shown_value(row, kept)});
+  if (!in_file.agrees)
+    throw Error(ErrorCode::usage, "options",
+                "--" + std::string(row.name) + " is fixed by the " + file.info.stage + " stage file: it was " +
+                    in_file.was + "; leave it out");
 }
 
 }  // namespace
 
 AskedOptions adopt_options(const StageFile& file, const std::string& path, const AskedOptions& asked) {
   const AskedOptions kept = kept_options(file.info.options_json, path);
-  const Held held(file, asked);
-  check_shell(held, file, asked.values, kept);
-  if (file.seeds) check_seeds(held, file.seeds->size(), asked, kept);
-
   AskedOptions settled = asked;
-  RemeshOptions& o = settled.values;
-  o.band_vox = file.shell.band_vox;
-  o.outer_only = kept.values.outer_only;
-  o.boundary = kept.values.boundary;
-  o.resolution = kept.values.resolution;
-  o.voxel_size_world = kept.values.voxel_size_world;
-  o.closing_vox = kept.values.closing_vox;
-  o.closing_world = kept.values.closing_world;
-  const auto keep = [&](const char* option, auto RemeshOptions::*value) {
-    if (!asked.was_given(option)) o.*value = kept.values.*value;
-  };
   const bool size_given = asked.was_given("vertices") || asked.was_given("edge-length") || asked.was_given("sizing");
-  if (!size_given || file.seeds) {
-    o.vertices = kept.values.vertices;
-    o.edge_length_world = kept.values.edge_length_world;
+  for (const OptionRow& row : option_rows()) {
+    const std::string name = row.name;
+    const bool fixed = is_fixed(row, file);
+    if (fixed && asked.was_given(name)) check_fixed(row, file, asked, kept);
+    const bool given = name == "vertices" || name == "edge-length" ? size_given : asked.was_given(name);
+    // A lattice that is there takes no more than what made it.
+    if (row.on_resume != OnResume::of_run && (!given || fixed)) set_value(row, name, value_of(row, kept), settled);
   }
-  keep("iterations", &RemeshOptions::max_passes);
-  keep("tolerance", &RemeshOptions::tolerance);
-  keep("step", &RemeshOptions::max_step_vox);
-  keep("seed", &RemeshOptions::seed);
-  keep("uniform-area", &RemeshOptions::uniform_area);
-  keep("features", &RemeshOptions::features);
-  keep("color-features", &RemeshOptions::color_features);
-  keep("adaptivity", &RemeshOptions::adaptivity);
-  keep("gradation", &RemeshOptions::gradation);
-  keep("fit", &RemeshOptions::fit);
-  keep("method", &RemeshOptions::method);
-  if (!asked.was_given("sizing")) settled.sizing = kept.sizing;
+  settled.values.band_vox = file.shell.band_vox;
   return settled;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "isoshell/io/vdb_file.h"
-#include "isoshell/run/options_json.h"
+#include "isoshell/options/options_json.h"
 
 namespace isoshell {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "isoshell/run/options_json.h"
+#include "isoshell/options/options_json.h"
 #include "isoshell/run/record.h"
 
 namespace isoshell {

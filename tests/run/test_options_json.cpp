@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "isoshell/error.h"
-#include "isoshell/run/option_text.h"
-#include "isoshell/run/options_json.h"
+#include "isoshell/options/option_text.h"
+#include "isoshell/options/options_json.h"
 #include "support/catch.h"
 
 using namespace isoshell;
@@ -39,11 +39,11 @@ class NamedField final : public SizingField {
 }  // namespace
 
 TEST_CASE("options json: what is not given is the number that always stood for it", "[options]") {
-  CHECK(
-      options_json(RemeshOptions{}) ==
-      R"({"vertices":10000,"edge-length":0.0,"band":2,"outer-only":false,"method":"sheet","iterations":0,)"
-      R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","uniform-area":false,"features":"auto",)"
-      R"("boundary":"close","attributes":"all","color-features":false,"adaptivity":0.0,"gradation":1.2,"sizing":"","resolution":0,"voxel-size":0.0,"close-gaps":"auto"})");
+  CHECK(options_json(RemeshOptions{}) ==
+        R"({"vertices":10000,"edge-length":0.0,"sizing":"","adaptivity":0.0,"gradation":1.2,"resolution":0,)"
+        R"("voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,"method":"sheet","iterations":0,)"
+        R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close",)"
+        R"("attributes":"all","color-features":false,"uniform-area":false})");
   const AskedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
   CHECK_FALSE(back.values.edge_length_world);
@@ -169,7 +169,7 @@ TEST_CASE("options json: of options set in C++ those are given that differ from 
   o.outer_only = true;
   o.want_digests = true;
   const AskedOptions asked = asked_options(o, "f.vdb");
-  CHECK(asked.given == std::vector<std::string>{"vertices", "outer-only", "tolerance", "sizing", "close-gaps"});
+  CHECK(asked.given == std::vector<std::string>{"vertices", "sizing", "close-gaps", "outer-only", "tolerance"});
   CHECK(asked.sizing == "f.vdb");
   CHECK(asked.values.vertices == 500);
   CHECK(asked.values.want_digests);

@@ -10,7 +10,7 @@
 #include "features/weld_for_features.h"
 #include "isoshell/digest.h"
 #include "isoshell/error.h"
-#include "isoshell/run/option_text.h"
+#include "isoshell/options/option_text.h"
 #include "isoshell/run/run.h"
 #include "isoshell/transfer_attributes.h"
 #include "support/catch.h"

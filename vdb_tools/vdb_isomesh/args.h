@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isoshell/backend.h"
+#include "isoshell/options/option_range.h"
 #include "isoshell/run/sequence.h"
 
 namespace isoshell::tool {
@@ -50,8 +51,10 @@ struct OptionEntry {
   std::string group, name;
   std::string value;  ///< what stands for it, as K; empty: a flag
   std::string text;
-  std::string fallback;  ///< what holds without the option, for people
-  bool real = false;     ///< takes any number, not only whole ones
+  std::string fallback = {};  ///< what holds without the option, for people
+  bool real = false;          ///< takes any number, not only whole ones
+  bool of_command = false;    ///< means nothing to a front that calls the library
+  OptionRange range = {};     ///< of a number
 };
 std::vector<OptionEntry> option_table();
 

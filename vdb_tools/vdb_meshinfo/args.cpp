@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "isoshell/error.h"
-#include "isoshell/run/option_text.h"
+#include "isoshell/options/option_text.h"
 #include "vdb_isomesh/help.h"
 
 namespace isoshell::tool {

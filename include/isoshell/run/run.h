@@ -7,8 +7,8 @@
 
 #include "isoshell/memory_estimate.h"
 #include "isoshell/message.h"
+#include "isoshell/options/options_json.h"
 #include "isoshell/run/gates.h"
-#include "isoshell/run/options_json.h"
 #include "isoshell/run/record.h"
 
 namespace isoshell {

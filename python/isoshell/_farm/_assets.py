@@ -13,7 +13,7 @@ from typing import Any, Dict, Iterable, Iterator, List
 
 from .._errors import Error
 from .._isoshell import ErrorCode
-from .._keywords import flags
+from .._keywords import is_flag, kinds
 from . import _places as places
 
 MESHES = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf", ".xyz", ".pcd", ".vdb", ".nvdb",
@@ -39,7 +39,7 @@ class Asset:
 
 def options_of_table() -> List[str]:
     """What a column of a table may be called, beside path."""
-    return sorted((set(flags()) | set(OF_SEQUENCES)) - set(OF_THE_FARM))
+    return sorted((set(kinds()) | set(OF_SEQUENCES)) - set(OF_THE_FARM))
 
 
 def assets_of(given: str, options: Options, suffix: str, out: str) -> List[Asset]:
@@ -163,7 +163,7 @@ def _value_of(place: str, number: int, name: str, value: Any) -> Any:
     """A flag as True or None; anything else as it is, and None where nothing is given."""
     if value is None or value == "":
         return None
-    if name in ("no_coherence", "keep_going") or flags().get(name):
+    if is_flag(name):
         text = str(value).strip().lower()
         if text not in ("true", "false", "yes", "no", "1", "0"):
             raise Error(f"{place}: row {number}: {name} is {value!r}; it must be true or false", stage="assets")

@@ -9,10 +9,16 @@
 #include <vector>
 
 #include "isoshell/error.h"
-#include "isoshell/option_range.h"
+#include "isoshell/options/option_range.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
+
+/// Any whole number of 64 bits. Throws: usage.
+int64_t parse_whole(const std::string& option, const std::string& text);
+
+/// Any number, "nan" and "inf" too, which ranges refuse. Throws: usage.
+double parse_real(const std::string& option, const std::string& text);
 
 /// A finite number. Throws: usage.
 double parse_number(const std::string& option, const std::string& text);
@@ -58,6 +64,7 @@ std::string attributes_text(const std::optional<std::vector<std::string>>& attri
 
 /// Sets the closing to gaps of this width: "auto", world units, or voxels as "4vox". Throws: usage.
 void set_gap_width(const std::string& option, const std::string& text, RemeshOptions& options);
+std::string gap_width_text(const RemeshOptions& options);
 
 /// Bytes of "2G", "512M", "1.5k", "4GiB" or plain bytes. Throws: usage.
 int64_t parse_size_bytes(const std::string& text);

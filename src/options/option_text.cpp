@@ -1,6 +1,7 @@
-#include "isoshell/run/option_text.h"
+#include "isoshell/options/option_text.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <locale>
 #include <sstream>
@@ -12,7 +13,36 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "options", message); }
 
+/// Of all of `text`, before which one plus may stand.
+template <class Number>
+bool holds_number(const std::string& text, Number& value) {
+  const char *end = text.data() + text.size(), *begin = text.data() + (text.size() > 1 && text[0] == '+');
+  const auto [stop, failed] = std::from_chars(begin, end, value);
+  return failed == std::errc() && stop == end;
+}
+
+/// With all digits.
+std::string number_text(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(17);
+  text << value;
+  return text.str();
+}
+
 }  // namespace
+
+int64_t parse_whole(const std::string& option, const std::string& text) {
+  int64_t value = 0;
+  if (!holds_number(text, value)) refuse(option + " is '" + text + "'; it must be a whole number");
+  return value;
+}
+
+double parse_real(const std::string& option, const std::string& text) {
+  double value = 0;
+  if (!holds_number(text, value)) refuse(option + " is '" + text + "'; it must be a number");
+  return value;
+}
 
 double parse_number(const std::string& option, const std::string& text) {
   double value = 0;
@@ -71,15 +101,10 @@ Features parse_features(const std::string& option, const std::string& text) {
 }
 
 std::string features_text(const Features& features) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(17);
-  if (features.creases == Features::Creases::threshold)
-    text << features.degrees;
-  else
-    text << (features.creases == Features::Creases::off ? "off" : "auto");
-  if (!features.line_file.empty()) text << ',' << features.line_file;
-  return text.str();
+  const std::string creases = features.creases == Features::Creases::threshold ? number_text(features.degrees)
+                              : features.creases == Features::Creases::off     ? "off"
+                                                                               : "auto";
+  return features.line_file.empty() ? creases : creases + "," + features.line_file;
 }
 
 std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text) {
@@ -115,6 +140,11 @@ void set_gap_width(const std::string& option, const std::string& text, RemeshOpt
     options.closing_vox = int32_t(std::ceil(width / 2));
   else
     options.closing_world = width;
+}
+
+std::string gap_width_text(const RemeshOptions& options) {
+  if (options.closing_world >= 0.) return number_text(*options.closing_world);
+  return options.closing_vox >= 0 ? std::to_string(2 * *options.closing_vox) + "vox" : "auto";
 }
 
 int64_t parse_size_bytes(const std::string& text) {

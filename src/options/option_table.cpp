@@ -1,0 +1,138 @@
+#include "isoshell/options/option_table.h"
+
+#include "isoshell/options/option_text.h"
+
+namespace isoshell {
+namespace {
+
+/// A name of `Value`, which one function reads and another writes.
+template <class Value, Value RemeshOptions::*Member, Value (*Parse)(const std::string&, const std::string&), auto Name>
+TextOption named(TextOption::Number number = TextOption::Number::refused, void (*check)(RemeshOptions&) = nullptr) {
+  return {[](const std::string& shown, const std::string& text, AskedOptions& to) {
+            to.values.*Member = Parse(shown, text);
+          },
+          [](const AskedOptions& from) -> std::string { return Name(from.values.*Member); }, number, check};
+}
+
+void check_features(RemeshOptions& o) {
+  if (o.features.creases == Features::Creases::threshold)
+    check_range("features.degrees", o.features.degrees, option_range::crease);
+}
+
+TextOption features_option() {
+  return named<Features, &RemeshOptions::features, parse_features, features_text>(TextOption::Number::read,
+                                                                                  check_features);
+}
+
+TextOption gap_option() {
+  return {[](const std::string& shown, const std::string& text, AskedOptions& to) {
+            set_gap_width(shown, text, to.values);
+          },
+          [](const AskedOptions& from) { return gap_width_text(from.values); }, TextOption::Number::written,
+          [](RemeshOptions& o) {  // -1 stood for no value
+            if (o.closing_vox == -1) o.closing_vox.reset();
+            if (o.closing_world == -1.) o.closing_world.reset();
+            if (o.closing_vox) check_range("closing_vox", *o.closing_vox, option_range::closing);
+            if (o.closing_world) check_range("closing_world", *o.closing_world, {});
+          }};
+}
+
+TextOption sizing_option() {
+  return {[](const std::string&, const std::string& text, AskedOptions& to) { to.sizing = text; },
+          [](const AskedOptions& from) {
+            return from.sizing.empty() && from.values.sizing ? from.values.sizing->source() : from.sizing;
+          }};
+}
+
+std::vector<OptionRow> size_rows() {
+  const char* group = "Size of the result";
+  return {
+      {group, "vertices", "K", "number of vertices of the result", "10000", "vertices", &RemeshOptions::vertices,
+       OnResume::of_seeds, option_range::vertices},
+      {group, "edge-length", "L", "target edge length in world units, instead of --vertices", "", "edge_length_world",
+       &RemeshOptions::edge_length_world, OnResume::of_seeds, option_range::length, 0, "vertices"},
+      {group, "sizing", "F.vdb[:GRID]",
+       "float grid of target edge lengths in world units; without --vertices it also decides the number of vertices",
+       "", "sizing", sizing_option(), OnResume::of_seeds},
+      {group, "adaptivity", "A", "fraction of the vertices, 0 to 1, distributed by curvature instead of area", "0",
+       "adaptivity", &RemeshOptions::adaptivity, OnResume::of_seeds, option_range::adaptivity},
+      {group, "gradation", "G", "maximum ratio of neighbouring edge lengths, above 1 and at most 10", "1.2",
+       "gradation", &RemeshOptions::gradation, OnResume::of_seeds, option_range::gradation},
+  };
+}
+
+std::vector<OptionRow> grid_rows() {
+  const char* group = "Grid";
+  return {
+      {group, "resolution", "R", "voxels along the longest side, 8 to 8192", "cells are 4.5 to 5.5 voxels wide",
+       "resolution", &RemeshOptions::resolution, OnResume::of_shell, option_range::resolution},
+      {group, "voxel-size", "S", "voxel size in world units, instead of --resolution", "", "voxel_size_world",
+       &RemeshOptions::voxel_size_world, OnResume::of_shell, option_range::length, 0, "resolution"},
+      {group, "band", "D", "thickness of the shell in voxels, 1 to 20", "2", "band_vox", &RemeshOptions::band_vox,
+       OnResume::of_shell, option_range::band},
+      {group, "close-gaps", "W", "maximum width of the gaps to bridge: W in world units, voxels as 4vox, 0, or auto",
+       "auto", "closing_world", gap_option(), OnResume::of_shell},
+      {group, "outer-only", "", "drop what lies inside of closed surfaces (default: keep hollows)", "", "outer_only",
+       &RemeshOptions::outer_only, OnResume::of_shell},
+  };
+}
+
+std::vector<OptionRow> relaxation_rows() {
+  const char* group = "Relaxation";
+  return {
+      {group, "method", "sheet|shell",
+       "sheet: exact clipped Voronoi cells on the closed sheet; shell: the paper's iteration on voxels of the shell",
+       "sheet", "method", named<Method, &RemeshOptions::method, parse_method, method_name>(), OnResume::of_seeds},
+      {group, "iterations", "N", "maximum number of relaxation passes on the finest level of seeds", "the method's own",
+       "max_passes", &RemeshOptions::max_passes, OnResume::of_seeds, option_range::iterations},
+      {group, "tolerance", "E", "stop when the energy falls by less than this fraction per pass", "the method's own",
+       "tolerance", &RemeshOptions::tolerance, OnResume::of_seeds, option_range::tolerance, -1},
+      {group, "step", "U", "maximum movement of a seed per pass, in voxels", "the method's own", "max_step_vox",
+       &RemeshOptions::max_step_vox, OnResume::of_seeds, option_range::step},
+      {group, "seed", "N", "seed of the random number generator", "0", "seed", &RemeshOptions::seed,
+       OnResume::of_seeds},
+  };
+}
+
+std::vector<OptionRow> shape_rows() {
+  const char* group = "Shape of the result";
+  using Names = std::optional<std::vector<std::string>>;
+  return {
+      {group, "fit", "balanced|surface",
+       "balanced: vertices where the mesh is closest to the surface; surface: vertices on the surface", "balanced",
+       "fit", named<Fit, &RemeshOptions::fit, parse_fit, fit_name>(), OnResume::of_file},
+      {group, "features", "auto|off|DEG[,FILE]",
+       "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
+       "or more; off: none; and the lines of FILE, OBJ (l) or PLY (edges), as auto,curves.obj",
+       "auto", "features", features_option(), OnResume::of_seeds, option_range::crease},
+      {group, "boundary", "close|keep",
+       "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
+       "--close-gaps are borders of the result",
+       "close", "boundary", named<Boundary, &RemeshOptions::boundary, parse_boundary, boundary_name>(),
+       OnResume::of_shell},
+      {group, "attributes", "all|none|LIST",
+       "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
+       "normal, material, group",
+       "all", "attributes", named<Names, &RemeshOptions::attributes, parse_attributes, attributes_text>(),
+       OnResume::of_run},
+      {group, "color-features", "",
+       "colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY", "",
+       "color_features", &RemeshOptions::color_features, OnResume::of_file},
+      {group, "uniform-area", "", "prefer triangles of equal area to triangles of the best shape", "", "uniform_area",
+       &RemeshOptions::uniform_area, OnResume::of_file},
+  };
+}
+
+}  // namespace
+
+const std::vector<OptionRow>& option_rows() {
+  static const std::vector<OptionRow> rows = [] {
+    std::vector<OptionRow> all;
+    for (const std::vector<OptionRow>& part : {size_rows(), grid_rows(), relaxation_rows(), shape_rows()})
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
+  return rows;
+}
+
+}  // namespace isoshell

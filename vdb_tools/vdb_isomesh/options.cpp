@@ -1,0 +1,165 @@
+#include "vdb_isomesh/options.h"
+
+#include <cmath>
+
+#include "isoshell/error.h"
+#include "isoshell/options/option_table.h"
+#include "isoshell/options/option_text.h"
+
+namespace isoshell::tool {
+namespace {
+
+using Set = std::function<void(const std::string&, Arguments&)>;
+
+void set_iso(const std::string& text, Arguments& a) {
+  const double value = parse_real("--iso", text);
+  if (!std::isfinite(value)) throw Error(ErrorCode::usage, "command line", "--iso must be a finite number");
+  a.run.input.iso = value;
+}
+
+void set_threads(const std::string& text, Arguments& a) {
+  const int64_t count = parse_whole("--threads", text);
+  check_range("--threads", double(count), {1, 4096});
+  a.threads = int(count);
+}
+
+void set_device(const std::string& text, Arguments& a) {
+  if (text.compare(0, 5, "cuda:") == 0) {
+    a.backend = Backend::cuda;
+    const int64_t number = parse_count("--device", text.substr(5));
+    check_range("the device number", double(number), {0, 1023});
+    a.device = int(number);
+    return;
+  }
+  a.backend = parse_choice<Backend>("--device", text,
+                                    {{"auto", Backend::best}, {"cpu", Backend::cpu}, {"cuda", Backend::cuda}});
+}
+
+void set_stop_after(const std::string& text, Arguments& a) {
+  a.run.stop_after =
+      parse_choice<StopAfter>("--stop-after", text, {{"shell", StopAfter::shell}, {"voronoi", StopAfter::voronoi}});
+}
+
+void set_progress(const std::string& text, Arguments& a) {
+  a.progress = parse_choice<ProgressMode>("--progress", text,
+                                          {{"auto", ProgressMode::automatic},
+                                           {"always", ProgressMode::always},
+                                           {"never", ProgressMode::never},
+                                           {"json", ProgressMode::json}});
+}
+
+void set_requirements(const std::string& text, Arguments& a) {
+  const bool allow_intersections = a.run.gates.allow_intersections;
+  a.run.gates = parse_gates(text);
+  a.run.gates.allow_intersections = allow_intersections;
+}
+
+Set text_of(std::string RunRequest::*member) {
+  return [member](const std::string& text, Arguments& a) { a.run.*member = text; };
+}
+
+Set flag_of(bool Arguments::*member, bool value = true) {
+  return [member, value](const std::string&, Arguments& a) { a.*member = value; };
+}
+
+Set verbosity(int value) {
+  return [value](const std::string&, Arguments& a) { a.verbosity = value; };
+}
+
+void nothing(const std::string&, Arguments&) {}
+
+CommandOption of_run(const OptionRow& row) {
+  return {{row.group, row.name, row.value_name, row.text, row.fallback, row.is_real(), false, row.range},
+          [&row](const std::string& text, Arguments& a) {
+            set_from_text(row, std::string("--") + row.name, text, a.run.options);
+          },
+          "",
+          row.instead_of};
+}
+
+std::vector<CommandOption> file_options() {
+  const char* group = "Files";
+  return {
+      {{group, "iso", "V", "isovalue of a volume; required for a fog volume",
+        "0 in a level set and in unsigned distances", true},
+       set_iso},
+      {{group, "input-format", "F", "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb",
+        "by its name"},
+       [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
+      {{group, "output-format", "F", "format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb", "by its name"},
+       [](const std::string& text, Arguments& a) { a.run.output.format = text; }},
+      {{group, "save-shell", "F.vdb", "also write the shell, to resume from"}, text_of(&RunRequest::save_shell)},
+      {{group, "save-voronoi", "F.vdb", "also write the Voronoi volume, to resume from"},
+       text_of(&RunRequest::save_voronoi)},
+      {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"}, set_stop_after},
+      {{group, "stats", "F.json", "write all statistics as JSON; - writes to standard output"},
+       text_of(&RunRequest::statistics)},
+      {{group, "report", "F.html",
+        "also write a page that shows the result beside the input, with all that was measured; by the Python module "
+        "alone: pip install isoshell[report]"},
+       text_of(&RunRequest::report)},
+      {{group, "force", "", "overwrite existing files"},
+       [](const std::string&, Arguments& a) { a.run.overwrite = true; }},
+  };
+}
+
+std::vector<CommandOption> sequence_options() {
+  const char* group = "Sequences";
+  std::vector<CommandOption> options = {
+      {{group, "frames", "A-B[xSTEP]",
+        "mesh the frames from A to B, every STEP-th, each beginning with the one before, so that vertices keep their "
+        "numbers; INPUT, OUTPUT and --stats have #### or %04d where the number is"},
+       [](const std::string& text, Arguments& a) { a.frames = parse_frames(text); }},
+      {{group, "velocity", "GRID",
+        "grid of velocities in the .vdb file of a frame, in world units a frame: where its surface goes until the "
+        "next"},
+       [](const std::string& text, Arguments& a) { a.velocity = text; }},
+      {{group, "no-coherence", "", "begin every frame anew"}, flag_of(&Arguments::is_coherent, false)},
+      {{group, "keep-going", "", "go on after a frame that cannot be read or meshed, or misses a gate"},
+       flag_of(&Arguments::keep_going)},
+      {{group, "resume", "", "leave out the frames whose OUTPUT is there, and go on after them; in PLY"},
+       flag_of(&Arguments::resume)},
+  };
+  for (CommandOption& option : options) option.entry.of_command = true;
+  return options;
+}
+
+std::vector<CommandOption> process_options() {
+  const char* group = "Run";
+  return {
+      {{group, "require", "LIST",
+        "exit with status 6 unless the result meets every requirement of this comma-separated list: closed, manifold, "
+        "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG (smallest angle in degrees), "
+        "max-deviation=W (distance between result and input in world units), normal-deviation=DEG (mean angle between "
+        "normals of result and input), features (no curve of the input is lost), kept-edges=PERCENT and born=N (of a "
+        "frame that follows another: edges that it keeps, at least, and vertices that are new, at most)"},
+       set_requirements},
+      {{group, "allow-intersections", "", "exit with status 0, not 6, where the result intersects itself"},
+       [](const std::string&, Arguments& a) { a.run.gates.allow_intersections = true; }},
+      {{group, "device", "auto|cpu|cuda[:N]", "device to run on", "auto"}, set_device},
+      {{group, "threads", "N", "number of CPU threads", "all"}, set_threads},
+      {{group, "max-memory", "SIZE",
+        "refuse a run that would need more memory than this (of the device, for a run there), as 512M or 8G",
+        "80 % of the free memory"},
+       [](const std::string& text, Arguments& a) { a.max_memory_bytes = parse_size_bytes(text); }},
+      {{group, "dry-run", "", "print the grid and the memory estimate, and exit", "", false, true},
+       flag_of(&Arguments::dry_run)},
+      {{group, "progress", "auto|always|never|json", "report progress on standard error", "auto"}, set_progress},
+      {{group, "verbose", "", "print more messages"}, verbosity(2), "v"},
+      {{group, "quiet", "", "print errors only"}, verbosity(0), "q"},
+      {{group, "help", "", "print this help and exit", "", false, true}, nothing, "h"},
+      {{group, "version", "", "print the version and exit", "", false, true}, nothing},
+  };
+}
+
+}  // namespace
+
+std::vector<CommandOption> command_options() {
+  std::vector<CommandOption> all;
+  for (const OptionRow& row : option_rows()) all.push_back(of_run(row));
+  for (const std::vector<CommandOption>& part : {file_options(), sequence_options(), process_options()})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace isoshell::tool
