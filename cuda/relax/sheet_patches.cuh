@@ -6,8 +6,8 @@
 
 #include "cuda/relax/label_sums.cuh"
 #include "cuda/runtime/executor_cuda.cuh"
-#include "isoshell/seed_set.h"
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/seed_set.h"
+#include "isoshell/advanced/surface_mesh.h"
 #include "stages/relax/relax_sheet_body.h"
 #include "voxel/cell_sum.h"
 

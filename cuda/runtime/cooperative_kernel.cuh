@@ -7,7 +7,7 @@
 
 #include "cuda/cuda_kernels.h"
 #include "cuda/runtime/warp.cuh"
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cuda/runtime/device_stream.h"
-#include "isoshell/device_memory.h"
+#include "isoshell/advanced/device_memory.h"
 #include "isoshell/error.h"
 #include "stages/cuda_device.h"
 

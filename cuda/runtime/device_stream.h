@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "isoshell/advanced/buffer.h"
 #include "isoshell/backend.h"
-#include "isoshell/buffer.h"
 
 namespace isoshell {
 

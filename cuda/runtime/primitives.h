@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cuda/runtime/device_stream.h"
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell {
 

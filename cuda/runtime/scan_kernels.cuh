@@ -10,7 +10,7 @@
 
 #include "cuda/runtime/host_bell.cuh"
 #include "cuda/runtime/warp.cuh"
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell::scan_kernels {
 

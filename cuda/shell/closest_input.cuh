@@ -1,7 +1,7 @@
 // What the distance transform over rows of leaves reads and writes.
 #pragma once
 
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 namespace site_order {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "isoshell/advanced/lattice_surface.h"
 #include "isoshell/backend.h"
-#include "isoshell/lattice_surface.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {

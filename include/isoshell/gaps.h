@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "isoshell/sheet.h"
-#include "isoshell/site_set.h"
+#include "isoshell/advanced/sheet.h"
+#include "isoshell/advanced/site_set.h"
 
 namespace isoshell {
 

@@ -1,10 +1,12 @@
 // Umbrella header.
 #pragma once
 
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/stages.h"
+#include "isoshell/advanced/to_host.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/borders.h"
 #include "isoshell/device_info.h"
-#include "isoshell/digest.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "isoshell/gaps.h"
@@ -22,7 +24,5 @@
 #include "isoshell/remesh_many.h"
 #include "isoshell/repair.h"
 #include "isoshell/run/run.h"
-#include "isoshell/stages.h"
-#include "isoshell/to_host.h"
 #include "isoshell/transfer_attributes.h"
 #include "isoshell/workers.h"

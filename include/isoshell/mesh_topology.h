@@ -1,8 +1,8 @@
 // What kind of complex a triangle mesh is: the last check of every run.
 #pragma once
 
-#include "isoshell/buffer.h"
-#include "isoshell/lattice_surface.h"
+#include "isoshell/advanced/buffer.h"
+#include "isoshell/advanced/lattice_surface.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

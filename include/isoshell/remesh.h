@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/gaps.h"
 #include "isoshell/polylines.h"
 #include "isoshell/previous_frame.h"
 #include "isoshell/repair.h"
 #include "isoshell/sizing.h"
-#include "isoshell/stages.h"
 
 namespace isoshell {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/advanced/lattice.h"
 #include "isoshell/attribute.h"
-#include "isoshell/lattice.h"
 
 namespace isoshell {
 

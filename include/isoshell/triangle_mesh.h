@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "isoshell/advanced/lattice.h"
 #include "isoshell/attribute.h"
-#include "isoshell/lattice.h"
 
 namespace isoshell {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/triangle_grid.h"
+#include "geometry/triangle_grid.h"
 
 namespace isoshell {
 

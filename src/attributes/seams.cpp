@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "attributes/welded_source.h"
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 
 namespace isoshell {
 namespace {

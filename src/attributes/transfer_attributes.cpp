@@ -11,9 +11,9 @@
 #include "core/attribute_values.h"
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
-#include "core/triangle_list.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
+#include "geometry/triangle_list.h"
+#include "geometry/world_vector.h"
 
 namespace isoshell {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/attribute_values.h"
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 
 namespace isoshell {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "core/attribute_values.h"
 #include "core/parallel_ranges.h"
-#include "features/weld_for_features.h"
+#include "features/mesh/weld_for_features.h"
 
 namespace isoshell {
 namespace {

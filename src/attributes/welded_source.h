@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "features/mesh_edges.h"
+#include "features/mesh/mesh_edges.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/parallel_ranges.h"
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 #include "voxel/atomic.h"
 
 namespace isoshell {

@@ -1,7 +1,7 @@
 // Copies of products from memory to memory: the one list of the arrays that each product has.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 
 namespace isoshell {
 

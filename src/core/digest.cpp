@@ -1,5 +1,5 @@
 // Digests of the canonical arrays.
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 
 #include <cstdio>
 #include <type_traits>

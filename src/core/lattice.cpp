@@ -1,5 +1,5 @@
 // World units in and out of the lattice. Only + - * / and floor, so every machine gives the same bits.
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 #include <algorithm>
 #include <cmath>

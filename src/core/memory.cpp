@@ -3,7 +3,7 @@
 #include <cstring>
 #include <string>
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 #include "isoshell/error.h"
 
 namespace isoshell {

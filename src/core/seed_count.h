@@ -1,7 +1,7 @@
 // How many seeds a sheet can carry.
 #pragma once
 
-#include "isoshell/sheet.h"
+#include "isoshell/advanced/sheet.h"
 
 namespace isoshell {
 

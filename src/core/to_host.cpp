@@ -1,5 +1,5 @@
 // Products to the host.
-#include "isoshell/to_host.h"
+#include "isoshell/advanced/to_host.h"
 
 #include "core/copy_product.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell {
 

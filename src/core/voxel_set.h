@@ -1,7 +1,7 @@
 // Builds the index of a VoxelSet from its sorted leaves.
 #pragma once
 
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 

@@ -3,6 +3,8 @@
 
 namespace isoshell {
 
+const char* CpuBackend::name() const { return "cpu"; }
+
 const BackendTable& cpu_backend() {
   static const CpuBackend table;
   return table;

@@ -7,7 +7,7 @@ namespace isoshell {
 
 class CpuBackend final : public BackendTable {
  public:
-  const char* name() const override { return "cpu"; }
+  const char* name() const override;  // the first one that is not inline, so the table lies beside it
   InputTopology measure_topology(const TriangleSoup&, DirtCounts&, Context&) const override;
   LatticeSurface snap_surface(const TriangleSoup&, const LatticeFrame&, Context&) const override;
   MadeSurface make_surface_mesh(const SurfaceTriangles&, Context&) const override;

@@ -9,7 +9,7 @@
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "cpu/cpu_kernels.h"
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell {
 

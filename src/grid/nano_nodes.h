@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "isoshell/shell.h"
+#include "isoshell/advanced/shell.h"
 
 namespace isoshell {
 

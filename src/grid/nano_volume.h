@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/buffer.h"
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/buffer.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

@@ -12,13 +12,13 @@
 
 #include "core/attribute_values.h"
 #include "core/file_format.h"
-#include "io/mesh/face_collector.h"
+#include "io/faces/face_collector.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/readable.h"
-#include "isoshell/stages.h"
 
 namespace isoshell {
 namespace {

@@ -1,6 +1,6 @@
 #include "isoshell/io/memory_input.h"
 
-#include "io/mesh/face_collector.h"
+#include "io/faces/face_collector.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "core/half_edge_list.h"
 #include "core/parallel_ranges.h"
-#include "core/triangle_grid.h"
-#include "core/triangle_list.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
-#include "isoshell/buffer.h"
+#include "geometry/half_edge_list.h"
+#include "geometry/triangle_grid.h"
+#include "geometry/triangle_list.h"
+#include "geometry/world_vector.h"
+#include "isoshell/advanced/buffer.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {

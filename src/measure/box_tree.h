@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/half_edge_list.h"
-#include "core/world_vector.h"
+#include "geometry/half_edge_list.h"
+#include "geometry/world_vector.h"
 #include "measure/index_sets.h"
 
 namespace isoshell {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 
 namespace isoshell {
 

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <vector>
 
+#include "isoshell/advanced/lattice_surface.h"
 #include "isoshell/backend.h"
-#include "isoshell/lattice_surface.h"
 #include "measure/box_tree.h"
 
 namespace isoshell {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "core/distance_sums.h"
 #include "core/parallel_ranges.h"
-#include "core/triangle_list.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
+#include "geometry/distance_sums.h"
+#include "geometry/triangle_list.h"
+#include "geometry/world_vector.h"
 #include "measure/largest_distance.h"
 
 namespace isoshell {

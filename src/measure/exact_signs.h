@@ -1,7 +1,7 @@
 // On which side points lie, exactly, for coordinates of the world.
 #pragma once
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

@@ -1,7 +1,7 @@
 // Which of numbered things belong together.
 #pragma once
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {

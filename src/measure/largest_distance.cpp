@@ -10,7 +10,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 
 namespace isoshell {
 namespace {

@@ -1,7 +1,7 @@
 // How far a mesh is from another one at most.
 #pragma once
 
-#include "core/triangle_grid.h"
+#include "geometry/triangle_grid.h"
 #include "isoshell/backend.h"
 #include "isoshell/triangle_mesh.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/parallel_ranges.h"
-#include "core/triangle_list.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
+#include "geometry/triangle_list.h"
+#include "geometry/world_vector.h"
 #include "measure/complex_counts.h"
 #include "measure/self_intersections.h"
 #include "measure/triangle_shape.h"

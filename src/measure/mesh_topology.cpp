@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/half_edge_list.h"
-#include "core/triangle_list.h"
+#include "geometry/half_edge_list.h"
+#include "geometry/triangle_list.h"
 #include "isoshell/error.h"
 #include "measure/index_sets.h"
 

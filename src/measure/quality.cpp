@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/parallel_ranges.h"
-#include "core/triangle_list.h"
-#include "core/world_vector.h"
+#include "geometry/triangle_list.h"
+#include "geometry/world_vector.h"
 #include "measure/triangle_shape.h"
 
 namespace isoshell {

@@ -12,9 +12,9 @@
 #include <numeric>
 
 #include "core/parallel_ranges.h"
-#include "core/triangle_list.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
+#include "geometry/triangle_list.h"
+#include "geometry/world_vector.h"
 #include "measure/box_tree.h"
 #include "measure/exact_signs.h"
 

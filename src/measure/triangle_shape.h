@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 
 namespace isoshell {
 

@@ -3,11 +3,11 @@
 
 #include <sstream>
 
-#include "features/inner_walls.h"
-#include "features/weld_for_features.h"
+#include "features/mesh/inner_walls.h"
+#include "features/mesh/weld_for_features.h"
 #include "isoshell/readable.h"
-#include "pipeline/timed.h"
-#include "repair/join_solids.h"
+#include "pipeline/grid/timed.h"
+#include "repair/solids/join_solids.h"
 
 namespace isoshell {
 namespace {

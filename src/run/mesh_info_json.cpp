@@ -1,7 +1,7 @@
 // The certificate of a mesh as JSON.
 #include <nlohmann/json.hpp>
 
-#include "io/output_file.h"
+#include "io/bytes/output_file.h"
 #include "isoshell/run/mesh_info.h"
 
 namespace isoshell {

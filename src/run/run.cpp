@@ -5,14 +5,14 @@
 #include <chrono>
 #include <type_traits>
 
-#include "io/output_file.h"
-#include "isoshell/digest.h"
+#include "io/bytes/output_file.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
 #include "isoshell/gaps.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/polyline_file.h"
 #include "isoshell/io/sizing_vdb.h"
-#include "isoshell/to_host.h"
 #include "isoshell/transfer_attributes.h"
 #include "run/choose_attributes.h"
 #include "run/color_features.h"

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "attributes/facing_place.h"
-#include "core/outward_normals.h"
 #include "core/parallel_ranges.h"
-#include "core/triangle_grid.h"
 #include "core/watched.h"
-#include "core/world_vector.h"
+#include "geometry/outward_normals.h"
+#include "geometry/triangle_grid.h"
+#include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
 #include "sequence/mean_edge_length.h"

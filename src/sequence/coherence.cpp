@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 #include "isoshell/previous_frame.h"
 #include "sequence/mean_edge_length.h"
 

@@ -1,7 +1,7 @@
 // The unit of what is said of vertices from frame to frame.
 #pragma once
 
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/point_cells.h"
-#include "core/world_vector.h"
+#include "geometry/point_cells.h"
+#include "geometry/world_vector.h"
 #include "isoshell/previous_frame.h"
 #include "sequence/mean_edge_length.h"
 

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "core/parallel_ranges.h"
-#include "core/triangle_grid.h"
-#include "core/world_vector.h"
+#include "geometry/triangle_grid.h"
+#include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
 

@@ -1,8 +1,8 @@
 // The seam between backends: the few functions each one provides. Everything else in src/ is written once.
 #pragma once
 
-#include "core/distance_sums.h"
-#include "isoshell/stages.h"
+#include "geometry/distance_sums.h"
+#include "isoshell/advanced/stages.h"
 
 namespace isoshell {
 

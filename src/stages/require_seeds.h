@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "isoshell/advanced/seed_set.h"
+#include "isoshell/advanced/surface_mesh.h"
 #include "isoshell/error.h"
-#include "isoshell/seed_set.h"
-#include "isoshell/surface_mesh.h"
 
 namespace isoshell {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "isoshell/advanced/surface_mesh.h"
 #include "isoshell/error.h"
-#include "isoshell/surface_mesh.h"
 #include "stages/require_seeds.h"
 
 namespace isoshell {

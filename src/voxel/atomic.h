@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "isoshell/host_device.h"
+#include "isoshell/advanced/host_device.h"
 
 namespace isoshell {
 

@@ -3,8 +3,8 @@
 // once.
 #pragma once
 
-#include "isoshell/lattice.h"
-#include "isoshell/lattice_surface.h"
+#include "isoshell/advanced/lattice.h"
+#include "isoshell/advanced/lattice_surface.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

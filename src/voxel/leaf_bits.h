@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 

@@ -1,7 +1,7 @@
 // The input triangle nearest to a position, searched among the sites around it.
 #pragma once
 
-#include "isoshell/site_set.h"
+#include "isoshell/advanced/site_set.h"
 #include "voxel/closest_point.h"
 #include "voxel/leaf.h"
 

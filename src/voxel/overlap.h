@@ -14,8 +14,8 @@
 
 #include <cstdint>
 
-#include "isoshell/lattice.h"
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/lattice.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

@@ -1,7 +1,7 @@
 // How far the boundary of the voxels that meet a surface lies outside of it.
 #pragma once
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

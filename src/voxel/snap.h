@@ -2,7 +2,7 @@
 // Not in the public header: there it would be compiled with flags that are not ours.
 #pragma once
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

@@ -2,7 +2,7 @@
 // are done every set's root is its smallest member, whatever the schedule was.
 #pragma once
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 #include "voxel/atomic.h"
 
 namespace isoshell {

@@ -1,6 +1,6 @@
 // Writes the stage files and the preview of a torus into a folder, for test_vdb_tools.sh.
+#include "isoshell/advanced/stages.h"
 #include "isoshell/io/vdb_file.h"
-#include "isoshell/stages.h"
 #include "support/shapes.h"
 
 using namespace isoshell;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/isoshell.h"
 #include "isoshell/run/sequence.h"

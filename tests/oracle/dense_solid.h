@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell::oracle {
 

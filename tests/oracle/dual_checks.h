@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "isoshell/sheet.h"
+#include "isoshell/advanced/sheet.h"
 
 namespace isoshell::oracle {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "isoshell/shell.h"
+#include "isoshell/advanced/shell.h"
 #include "support/voxel_sites.h"
 #include "voxel/exact_int.h"
 

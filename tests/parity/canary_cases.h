@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 #include "parity/executor_operations.h"
 
 namespace isoshell::parity {

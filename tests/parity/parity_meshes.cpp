@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/isoshell.h"
 
 using namespace isoshell;

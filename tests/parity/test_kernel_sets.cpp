@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "cpu/relax/label_simd.h"
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "parity/product_hash.h"
 #include "stages/dual/dual_body.h"
 #include "stages/optimize/optimize_body.h"

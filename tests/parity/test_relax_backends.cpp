@@ -2,7 +2,7 @@
 // limit and a way round it; here every one of them is pushed past it, and the seeds must stay those of the CPU.
 #include <algorithm>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
 #include "support/relax_sheets.h"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <functional>
 
+#include "isoshell/advanced/digest.h"
 #include "isoshell/borders.h"
-#include "isoshell/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/mesh_topology.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"

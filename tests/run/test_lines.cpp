@@ -1,8 +1,8 @@
 // Runs that keep lines of the user's: they become edges of the result, wherever they lie on the surface.
 #include <cmath>
 
-#include "core/world_vector.h"
-#include "isoshell/digest.h"
+#include "geometry/world_vector.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/remesh_many.h"
 #include "isoshell/workers.h"
 #include "support/catch.h"

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "core/attribute_values.h"
-#include "core/world_vector.h"
-#include "features/find_curves.h"
-#include "features/weld_for_features.h"
-#include "isoshell/digest.h"
+#include "features/curves/find_curves.h"
+#include "features/mesh/weld_for_features.h"
+#include "geometry/world_vector.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/options/option_text.h"
 #include "isoshell/run/run.h"

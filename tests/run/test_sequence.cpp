@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/mesh_topology.h"

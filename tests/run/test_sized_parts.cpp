@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
 #include "support/catch.h"

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/run/run.h"
 #include "support/catch.h"

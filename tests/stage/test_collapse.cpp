@@ -3,8 +3,8 @@
 #include <set>
 
 #include "core/copy_product.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/stages.h"
 #include "stages/halfedge/triangle_shape.h"
 #include "support/catch.h"
 #include "support/shapes.h"

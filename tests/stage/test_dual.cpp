@@ -1,8 +1,8 @@
 // The dual on sheets with few and badly placed seeds: every run must give the sheet's own topology.
 #include "cpu/relax/label_simd.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/stages.h"
 #include "oracle/dual_checks.h"
 #include "stages/dual/dual_body.h"
 #include "support/catch.h"

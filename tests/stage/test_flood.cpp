@@ -1,5 +1,5 @@
 // The flood against its definition, round by round.
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "oracle/lloyd.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"

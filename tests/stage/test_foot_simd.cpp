@@ -1,7 +1,7 @@
 // What is closest on triangles, taken many at a time on the CPU, against the definitions.
 #include "cpu/relax/walk_ahead.h"
 #include "cpu/sheet/project_simd.h"
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/shapes.h"

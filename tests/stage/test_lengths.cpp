@@ -4,10 +4,10 @@
 #include <queue>
 #include <set>
 
+#include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
 #include "isoshell/remesh.h"
-#include "isoshell/to_host.h"
-#include "stages/sheet/edge_lengths.h"
+#include "stages/labels/edge_lengths.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/test_context.h"

@@ -12,9 +12,9 @@
 #include <string>
 #include <unordered_map>
 
+#include "isoshell/advanced/stages.h"
+#include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
-#include "isoshell/to_host.h"
 #include "support/catch.h"
 #include "support/test_context.h"
 #include "support/voxel_shapes.h"

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "cpu/executor_tbb.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
-#include "isoshell/stages.h"
 #include "stages/halfedge/planes.h"
 #include "stages/optimize/optimize_body.h"
 #include "stages/optimize/optimize_chords.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"

@@ -1,7 +1,7 @@
 // The CPU's own ways of labelling a sheet and of summing its cells, against brute force and against the definition.
 #include "cpu/relax/pass_simd.h"
 #include "cpu/relax/three_cell_simd.h"
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "support/catch.h"
 #include "support/relax_sheets.h"
 #include "support/shapes.h"

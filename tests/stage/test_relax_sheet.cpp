@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "cpu/executor_tbb.h"
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "stages/labels/label_body.h"
 #include "stages/relax/relax_sheet_body.h"
 #include "support/catch.h"

@@ -1,6 +1,6 @@
 // The paper's Lloyd loop: labels, sums, step, projection, stop rule.
 #include "cpu/executor_tbb.h"
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "oracle/lloyd.h"
 #include "stages/shell/nearest_seed_body.h"

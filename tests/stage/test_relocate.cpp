@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "cpu/executor_tbb.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/stages.h"
 #include "stages/optimize/optimize_relocate.h"
 #include "support/catch.h"
 #include "support/shapes.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "oracle/overlap_oracle.h"
 #include "support/catch.h"
 #include "support/site_shapes.h"

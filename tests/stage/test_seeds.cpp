@@ -1,5 +1,5 @@
 // Seeds of method shell: one a stratum, on the surface, and honest refusals. Then: onto the sheet.
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"

@@ -1,9 +1,9 @@
 // build_shell against its oracle.
 #include <cstdlib>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "oracle/closest_site.h"
 #include "support/catch.h"
 #include "support/test_context.h"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "core/voxel_set.h"
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "oracle/overlap_oracle.h"
 #include "support/catch.h"

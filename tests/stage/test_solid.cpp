@@ -5,8 +5,8 @@
 
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
-#include "isoshell/digest.h"
-#include "isoshell/stages.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/stages.h"
 #include "oracle/dense_solid.h"
 #include "stages/sheet/sheet_body.h"
 #include "support/catch.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/site_shapes.h"

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "cpu/executor_tbb.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
-#include "isoshell/stages.h"
 #include "stages/halfedge/intersections.h"
 #include "support/catch.h"
 #include "support/shapes.h"

@@ -12,10 +12,10 @@
 
 #include "core/voxel_set.h"
 #include "io/vdb/vdb_layout.h"
-#include "isoshell/digest.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
-#include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/temporary_file.h"
 #include "support/test_context.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "features/feature_mesh.h"
+#include "features/mesh/feature_mesh.h"
 #include "support/shapes.h"
 
 namespace isoshell {

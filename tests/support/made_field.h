@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "implicit/scalar_field.h"
+#include "implicit/volumes/scalar_field.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {

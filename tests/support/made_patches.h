@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "features/curve_seeds.h"
-#include "features/free_seeds.h"
+#include "features/cutting/curve_seeds.h"
+#include "features/cutting/free_seeds.h"
 #include "support/feature_shapes.h"
 
 namespace isoshell {

@@ -3,8 +3,8 @@
 
 #include <functional>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/cut_surfaces.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "support/test_context.h"
 #include "support/voxel_shapes.h"
 #include "voxel/exact_int.h"

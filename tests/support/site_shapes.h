@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/stages.h"
-#include "isoshell/to_host.h"
+#include "isoshell/advanced/stages.h"
+#include "isoshell/advanced/to_host.h"
 #include "support/shapes.h"
 
 namespace isoshell::shapes {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/voxel_set.h"
-#include "isoshell/sheet.h"
+#include "isoshell/advanced/sheet.h"
 #include "isoshell/surface_source.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"

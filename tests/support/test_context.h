@@ -5,9 +5,9 @@
 
 #include <utility>
 
+#include "isoshell/advanced/stages.h"
+#include "isoshell/advanced/to_host.h"
 #include "isoshell/backend.h"
-#include "isoshell/stages.h"
-#include "isoshell/to_host.h"
 
 namespace isoshell {
 

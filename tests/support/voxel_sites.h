@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/voxel_set.h"
-#include "isoshell/site_set.h"
+#include "isoshell/advanced/site_set.h"
 #include "voxel/leaf.h"
 
 namespace isoshell {

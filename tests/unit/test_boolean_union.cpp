@@ -3,7 +3,7 @@
 
 #include "isoshell/boolean_union.h"
 #include "isoshell/error.h"
-#include "repair/winding.h"
+#include "repair/solids/winding.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_volume.h"

@@ -1,9 +1,9 @@
 // Measures of borders, intersections of triangles on the lattice, and fans that touch, on meshes that can be counted.
 #include <cmath>
 
-#include "features/jagged_paths.h"
-#include "features/separate_fans.h"
-#include "features/weld_for_features.h"
+#include "features/cutting/jagged_paths.h"
+#include "features/mesh/separate_fans.h"
+#include "features/mesh/weld_for_features.h"
 #include "isoshell/borders.h"
 #include "measure/crossings.h"
 #include "support/catch.h"

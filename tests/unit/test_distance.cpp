@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/triangle_grid.h"
-#include "core/turn.h"
-#include "core/world_vector.h"
+#include "geometry/triangle_grid.h"
+#include "geometry/turn.h"
+#include "geometry/world_vector.h"
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "support/catch.h"

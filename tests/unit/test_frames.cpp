@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/previous_frame.h"
 #include "isoshell/run/sequence.h"

@@ -1,7 +1,7 @@
 // join_solids: unions of closed parts as one mesh.
-#include "isoshell/stages.h"
-#include "repair/join_solids.h"
-#include "repair/plane_triangulation.h"
+#include "isoshell/advanced/stages.h"
+#include "repair/holes/plane_triangulation.h"
+#include "repair/solids/join_solids.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_volume.h"

@@ -1,7 +1,7 @@
 // The lattice and the leaf arithmetic.
 #include "core/voxel_set.h"
+#include "isoshell/advanced/lattice.h"
 #include "isoshell/error.h"
-#include "isoshell/lattice.h"
 #include "support/catch.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"

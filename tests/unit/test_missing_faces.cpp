@@ -3,8 +3,8 @@
 #include <cmath>
 #include <functional>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/repair.h"
-#include "isoshell/stages.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_volume.h"

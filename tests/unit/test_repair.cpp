@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/repair.h"
-#include "isoshell/stages.h"
-#include "repair/open_soup.h"
+#include "repair/holes/open_soup.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 

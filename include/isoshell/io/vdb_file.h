@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "isoshell/lattice_surface.h"
-#include "isoshell/seed_set.h"
-#include "isoshell/shell.h"
-#include "isoshell/site_set.h"
-#include "isoshell/voronoi_labels.h"
+#include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/advanced/seed_set.h"
+#include "isoshell/advanced/shell.h"
+#include "isoshell/advanced/site_set.h"
+#include "isoshell/advanced/voronoi_labels.h"
 
 namespace isoshell {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 
 namespace isoshell {
 

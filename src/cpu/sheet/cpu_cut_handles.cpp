@@ -27,12 +27,9 @@ int rank_of_site(const SiteSample& s, int outward) {
   return kInsideRanks + step * (HandleCutter::kRanks - 1 - kInsideRanks) / (2 * kFarthestQ8);
 }
 
-/// Bytes must not depend on how much memory there is: too little is an error. A device's limit says nothing of the
-/// host.
+/// Bytes must not depend on how much memory there is: too little is an error.
 void require_memory(int64_t bytes, const Context& context) {
-  if (std::string(backend_name(context)) != "cpu" || context.memory_limit_bytes <= 0 ||
-      bytes <= context.memory_limit_bytes)
-    return;
+  if (context.memory_limit_bytes <= 0 || bytes <= context.memory_limit_bytes) return;
   throw Error(ErrorCode::out_of_memory, "cut handles",
               "cutting false handles needs about " + std::to_string(bytes >> 20) + " MiB, more than the limit of " +
                   std::to_string(context.memory_limit_bytes >> 20) + " MiB; lower --resolution or raise --max-memory");

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cpu/sheet/bit_plane.h"
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

@@ -1,7 +1,7 @@
 // One reader a format. Each throws as read_mesh() does.
 #pragma once
 
-#include "io/mesh/mesh_source.h"
+#include "io/bytes/mesh_source.h"
 #include "isoshell/polylines.h"
 #include "isoshell/surface_source.h"
 

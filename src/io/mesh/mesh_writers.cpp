@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/world_vector.h"
-#include "io/mesh/row_buffer.h"
+#include "geometry/world_vector.h"
+#include "io/bytes/row_buffer.h"
 #include "isoshell/error.h"
 
 namespace isoshell {

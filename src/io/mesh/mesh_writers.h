@@ -1,7 +1,7 @@
 // One writer a format. They only write; the caller commits.
 #pragma once
 
-#include "io/output_file.h"
+#include "io/bytes/output_file.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/text_scan.h"
+#include "io/bytes/text_scan.h"
 
 namespace isoshell {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "io/mesh/face_corners.h"
+#include "io/faces/face_corners.h"
 #include "io/mesh/mesh_readers.h"
 #include "io/mesh/obj_lines.h"
 

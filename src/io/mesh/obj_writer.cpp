@@ -5,8 +5,8 @@
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "io/bytes/row_buffer.h"
 #include "io/mesh/mesh_writers.h"
-#include "io/mesh/row_buffer.h"
 
 namespace isoshell {
 namespace {

@@ -1,9 +1,9 @@
 // OFF as text: a row of counts, a row a vertex, a row a face. Normals and colours are passed over.
 #include <algorithm>
 
-#include "io/mesh/face_collector.h"
+#include "io/bytes/text_scan.h"
+#include "io/faces/face_collector.h"
 #include "io/mesh/mesh_readers.h"
-#include "io/text_scan.h"
 
 namespace isoshell {
 namespace {

@@ -1,10 +1,10 @@
 // STL, binary and text. Normals are passed over; corners are welded by position.
 #include <algorithm>
 
-#include "io/mesh/face_collector.h"
+#include "io/bytes/text_scan.h"
+#include "io/faces/face_collector.h"
+#include "io/faces/weld.h"
 #include "io/mesh/mesh_readers.h"
-#include "io/mesh/weld.h"
-#include "io/text_scan.h"
 
 namespace isoshell {
 namespace {

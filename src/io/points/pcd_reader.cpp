@@ -1,10 +1,10 @@
 // PCD, the Point Cloud Library's format: a header of text, then rows as text, as binary, or columns packed by LZF.
 #include <cstring>
 
-#include "io/mesh/face_collector.h"
+#include "io/bytes/lzf.h"
+#include "io/bytes/text_scan.h"
+#include "io/faces/face_collector.h"
 #include "io/points/point_readers.h"
-#include "io/text_scan.h"
-#include "io/vdb/lzf.h"
 
 namespace isoshell {
 namespace {

@@ -1,7 +1,7 @@
 // One reader a format of points. Each throws as read_points() does; points that are not finite are still in the result.
 #pragma once
 
-#include "io/mesh/mesh_source.h"
+#include "io/bytes/mesh_source.h"
 #include "isoshell/io/point_file.h"
 
 namespace isoshell {

@@ -1,7 +1,7 @@
 // Helpers on products that stage files need.
 #pragma once
 
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell {
 

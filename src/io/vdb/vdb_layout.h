@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 
 namespace isoshell {
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "implicit/scalar_field.h"
-#include "io/mesh/mesh_source.h"
+#include "implicit/volumes/scalar_field.h"
+#include "io/bytes/mesh_source.h"
 #include "isoshell/io/volume_file.h"
 
 namespace isoshell {

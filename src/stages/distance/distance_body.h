@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/distance_sums.h"
-#include "core/turn.h"
+#include "geometry/distance_sums.h"
+#include "geometry/turn.h"
 #include "voxel/random.h"
 
 namespace isoshell {

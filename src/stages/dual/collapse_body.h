@@ -1,7 +1,7 @@
 // collapse_edges (see stages.h), written once over an executor.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/halfedge/collapse_cost.h"
 #include "stages/halfedge/half_edges.h"
 #include "stages/halfedge/intersections.h"

@@ -11,7 +11,7 @@
 // component with a border needs no four cells, since it has three on every border.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/dual/dual_border_body.h"
 #include "stages/dual/dual_cells_body.h"
 #include "stages/dual/dual_faces_body.h"

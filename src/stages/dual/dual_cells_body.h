@@ -1,7 +1,7 @@
 // The cells of the dual: which vertices a seed owns, in how many pieces, and whether they form a disk.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sheet/sheet_graph.h"
 #include "voxel/atomic.h"
 #include "voxel/exact_int.h"

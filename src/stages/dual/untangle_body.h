@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/halfedge/intersections.h"
 #include "stages/sheet/sheet_walk.h"
 #include "voxel/leaf.h"

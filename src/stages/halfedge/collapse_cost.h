@@ -3,7 +3,7 @@
 
 #include "stages/halfedge/fixed_vertices.h"
 #include "stages/halfedge/triangle_shape.h"
-#include "stages/sheet/edge_lengths.h"
+#include "stages/labels/edge_lengths.h"
 
 namespace isoshell::collapse {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "stages/halfedge/labelled_triangles.h"
 #include "voxel/atomic.h"
 

@@ -1,7 +1,7 @@
 // Self-intersections of a mesh on the lattice: exact, every pair of triangles that could meet.
 #pragma once
 
-#include "isoshell/lattice_surface.h"
+#include "isoshell/advanced/lattice_surface.h"
 #include "stages/sparse/point_grid_body.h"
 #include "voxel/intersect.h"
 

@@ -1,7 +1,7 @@
 // Triangles by their corners' indices: their order, and which stay triangles when labels take the corners' places.
 #pragma once
 
-#include "isoshell/lattice_surface.h"
+#include "isoshell/advanced/lattice_surface.h"
 
 namespace isoshell {
 

@@ -1,7 +1,7 @@
 // The borders of a surface mesh as chains, from what is around each vertex.
 #pragma once
 
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/surface_mesh.h"
 #include "voxel/union_find.h"
 
 namespace isoshell {

@@ -2,7 +2,7 @@
 // positions by + - * / and sqrt in a fixed order.
 #pragma once
 
-#include "isoshell/lattice.h"
+#include "isoshell/advanced/lattice.h"
 #include "voxel/closest_point.h"
 #include "voxel/exact_int.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/buckets.h"
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/surface_mesh.h"
 
 namespace isoshell {
 

@@ -10,9 +10,9 @@
 
 #include <algorithm>
 
-#include "isoshell/seed_set.h"
+#include "isoshell/advanced/seed_set.h"
+#include "stages/labels/edge_lengths.h"
 #include "stages/labels/patch_labels.h"
-#include "stages/sheet/edge_lengths.h"
 #include "stages/sparse/point_grid_body.h"
 
 namespace isoshell {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/halfedge/intersections.h"
 #include "stages/labels/label_body.h"
 #include "stages/optimize/optimize_chords.h"

@@ -3,7 +3,7 @@
 // set, so the order of the work cannot show.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/optimize/optimization_body.h"
 
 namespace isoshell {

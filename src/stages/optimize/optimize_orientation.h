@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "voxel/atomic.h"
 #include "voxel/exact_int.h"
 #include "voxel/union_find.h"

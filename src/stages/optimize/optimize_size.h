@@ -1,7 +1,7 @@
 // How long edges of the result should be, for the optimisation.
 #pragma once
 
-#include "stages/sheet/edge_lengths.h"
+#include "stages/labels/edge_lengths.h"
 
 namespace isoshell::optimize {
 

@@ -1,7 +1,7 @@
 // The small steps of optimize_mesh, and the plain form of those that take the time.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/optimize/optimize_fit.h"
 #include "stages/optimize/optimize_smooth.h"
 #include "stages/sheet/sheet_walk.h"

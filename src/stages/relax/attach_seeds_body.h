@@ -1,7 +1,7 @@
 // attach_to_sheet (see stages.h), written once over an executor.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sheet/sheet_walk.h"
 #include "stages/sparse/vertex_grid_body.h"
 #include "voxel/proxy_depth.h"

@@ -1,9 +1,9 @@
 // The part of relax_on_sheet that measures the cells: area and centre of each, and the energy, by blocks of vertices.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
+#include "stages/labels/edge_lengths.h"
 #include "stages/relax/pass_state.h"
-#include "stages/sheet/edge_lengths.h"
 #include "voxel/atomic.h"
 #include "voxel/cell_sum.h"
 

@@ -1,8 +1,8 @@
 // What relaxation keeps from pass to pass, where its steps run: so the host enqueues passes without looking at each.
 #pragma once
 
-#include "isoshell/buffer.h"
-#include "isoshell/stages.h"
+#include "isoshell/advanced/buffer.h"
+#include "isoshell/advanced/stages.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

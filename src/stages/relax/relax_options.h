@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 
 namespace isoshell {
 

@@ -6,7 +6,7 @@
 // rose. Fixed seeds take part in all but the moves.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/labels/label_body.h"
 #include "stages/relax/cell_sums_body.h"
 #include "stages/relax/pass_state.h"

@@ -3,8 +3,8 @@
 // prefix sum and a search instead of a sort.
 #pragma once
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "stages/labels/label_body.h"
 #include "voxel/leaf.h"
 #include "voxel/random.h"

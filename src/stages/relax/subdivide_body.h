@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "isoshell/stages.h"
-#include "stages/sheet/edge_lengths.h"
+#include "isoshell/advanced/stages.h"
+#include "stages/labels/edge_lengths.h"
 #include "stages/sheet/sheet_walk.h"
 
 namespace isoshell {

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/labels/label_body.h"
 #include "stages/sheet/sheet_graph.h"
 #include "stages/sparse/vertex_grid_body.h"

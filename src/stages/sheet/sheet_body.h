@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "stages/sheet/sheet_closing_body.h"
 #include "stages/sheet/sheet_components_body.h"
 #include "stages/sheet/sheet_off_surface_body.h"

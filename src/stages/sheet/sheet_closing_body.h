@@ -2,7 +2,7 @@
 // farther than r from the sites and is then thickened by r.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sheet/sheet_solid_body.h"
 
 namespace isoshell {

@@ -4,7 +4,7 @@
 // on order.
 #pragma once
 
-#include "isoshell/buffer.h"
+#include "isoshell/advanced/buffer.h"
 #include "voxel/atomic.h"
 #include "voxel/leaf.h"
 #include "voxel/leaf_bits.h"

@@ -1,7 +1,7 @@
 // The edge graph of a surface as steps see it.
 #pragma once
 
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/surface_mesh.h"
 
 namespace isoshell {
 

@@ -2,7 +2,7 @@
 // finer than a voxel, which the solid fills.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sheet/sheet_walk.h"
 #include "stages/sparse/vertex_grid_body.h"
 

@@ -1,7 +1,7 @@
 // The part of build_sheet that lays the quad mesh onto the surface: smoothing, projection, bridges over gaps.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sheet/sheet_quads_body.h"
 #include "voxel/exact_int.h"
 #include "voxel/nearest_triangle.h"

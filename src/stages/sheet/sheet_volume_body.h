@@ -1,7 +1,7 @@
 // The volume inside a sheet, over an executor: it decides the closing.
 #pragma once
 
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/surface_mesh.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

@@ -1,7 +1,7 @@
 // Moving along the surface: how seeds and vertices get back onto it after a step.
 #pragma once
 
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/surface_mesh.h"
 #include "voxel/closest_point.h"
 #include "voxel/exact_int.h"
 

@@ -5,8 +5,8 @@
 // masks by bit operations, and looks at labels only for voxels that are new: every voxel is labelled once.
 #pragma once
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "voxel/atomic.h"
 #include "voxel/dilate.h"
 #include "voxel/exact_int.h"

@@ -7,8 +7,8 @@
 // voxel, else of its home. Home is the closest site of the seed's voxel. An empty cell keeps its seed.
 #pragma once
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/stages.h"
 #include "stages/relax/pass_state.h"
 #include "stages/shell/nearest_seed_body.h"
 #include "stages/sparse/drop_empty_leaves.h"

@@ -4,7 +4,7 @@
 // counts in hand the values go straight to their place, so that the stage needs little more memory than its result.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sparse/drop_empty_leaves.h"
 #include "voxel/atomic.h"
 #include "voxel/closest.h"

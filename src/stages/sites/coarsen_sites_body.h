@@ -1,7 +1,7 @@
 // coarsen_sites (see stages.h), written once over an executor.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sparse/drop_empty_leaves.h"
 
 namespace isoshell {

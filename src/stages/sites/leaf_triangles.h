@@ -2,8 +2,8 @@
 // no step is longer than one block, however large a triangle is.
 #pragma once
 
-#include "isoshell/lattice_surface.h"
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "voxel/atomic.h"
 #include "voxel/leaf.h"
 #include "voxel/overlap.h"

@@ -2,7 +2,7 @@
 // counting and filling need no atomics, and a leaf's ascending triangle list makes ascending lists of its sites.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sites/leaf_triangles.h"
 #include "voxel/closest_point.h"
 #include "voxel/heap_sort.h"

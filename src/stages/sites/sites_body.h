@@ -3,7 +3,7 @@
 // voxels.
 #pragma once
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/sites/leaf_triangles.h"
 
 namespace isoshell {

@@ -1,7 +1,7 @@
 // The index of a VoxelSet: prefix sums of the masks and the two-level leaf lookup.
 #pragma once
 
-#include "isoshell/voxel_set.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "voxel/atomic.h"
 #include "voxel/leaf.h"
 

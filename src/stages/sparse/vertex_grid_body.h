@@ -2,7 +2,7 @@
 // blocks takes a small part of the memory that one of the vertices would.
 #pragma once
 
-#include "isoshell/surface_mesh.h"
+#include "isoshell/advanced/surface_mesh.h"
 #include "stages/sparse/point_grid_body.h"
 
 namespace isoshell {

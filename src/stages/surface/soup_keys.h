@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "isoshell/stages.h"
+#include "isoshell/advanced/stages.h"
 #include "stages/halfedge/labelled_triangles.h"
 #include "voxel/atomic.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/world_vector.h"
+#include "geometry/world_vector.h"
 #include "stages/surface/soup_keys.h"
 #include "voxel/random.h"
 #include "voxel/union_find.h"

@@ -1,0 +1,71 @@
+#include "module/mesh_info.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <utility>
+
+#include "isoshell/run/mesh_info.h"
+#include "module/watched.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+using Read = decltype(Source::read);
+
+Input read_with(const Read& read, const RunRequest& request, const Context& context) {
+  return read ? read(request, context) : read_input(request.input, context.memory_limit_bytes, request.tell);
+}
+
+/// What both borrow.
+nb::object kept_of(const Source& a, const Source& b) {
+  nb::list kept;
+  for (const nb::object& borrowed : {a.kept, b.kept})
+    if (borrowed.is_valid()) kept.append(borrowed);
+  return std::move(kept);
+}
+
+/// The certificate as JSON, and the gates that it misses.
+nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywords, const Source* reference,
+                       const Keywords& reference_keywords, nb::object progress, nb::object tell) {
+  const Asked asked = asked_of(source, keywords, "", std::move(progress), std::move(tell));
+  Source both = source;
+  std::optional<RunRequest> of_reference;
+  if (reference) {
+    of_reference = asked_of(*reference, reference_keywords, "", nb::none(), nb::none()).arguments.run;
+    both.kept = kept_of(source, *reference);
+  }
+  const MeshInfo info =
+      watched(place, both, asked,
+              [read = source.read, of_reference, read_reference = reference ? reference->read : Read()](
+                  const RunRequest& request, Context& context) {
+                if (context.progress) context.progress("read", 0);
+                Input mesh = read_with(read, request, context);
+                std::optional<Input> other;
+                if (of_reference) {
+                  RunRequest again = *of_reference;
+                  again.tell = request.tell;
+                  other = read_with(read_reference, again, context);
+                }
+                if (context.progress) context.progress("read", 1);
+                return mesh_info(std::move(mesh), std::move(other), request.gates, context);
+              });
+  return nb::make_tuple(mesh_info_json(info), info.missed_gates);
+}
+
+}  // namespace
+
+void bind_mesh_info(nb::module_& m) {
+  m.def("mesh_info", mesh_info_of, nb::arg("place"), nb::arg("source"), nb::arg("keywords"),
+        nb::arg("reference").none(), nb::arg("reference_keywords"), nb::arg("progress").none(), nb::arg("tell"),
+        nb::sig("def mesh_info(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | "
+                "None]], reference: Source | None, reference_keywords: collections.abc.Sequence[tuple[str, str | "
+                "None]], progress: typing.Any, tell: typing.Any) -> tuple[str, list[str]]"));
+}
+
+}  // namespace isoshell::python

@@ -1,0 +1,108 @@
+#include "module/report.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "isoshell/distance.h"
+#include "isoshell/error.h"
+#include "module/watched.h"
+#include "values/arrays.h"
+#include "vdb_isomesh/command.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+/// As a run with these features reads it.
+Input read_file(InputRequest file, const Features& features, const Tell& tell, const Context& context) {
+  file.creases = volume_creases(features);
+  return read_input(file, context.memory_limit_bytes, tell);
+}
+
+/// What the run of a request starts from, to be read again.
+Source source_of(const RunRequest& request) {
+  return {"",
+          [file = request.input, features = request.options.values.features](
+              const RunRequest& again, const Context& c) { return read_file(file, features, again.tell, c); },
+          {},
+          {}};
+}
+
+TriangleMesh surface_of(Input input) {
+  if (input.stage) return to_world(input.stage->surface);
+  TriangleMesh mesh;
+  mesh.vertices = std::move(input.soup.vertices);
+  mesh.triangles = std::move(input.soup.triangles);
+  return mesh;
+}
+
+/// The surface that a run starts from, as it is read, with what is known of it.
+nb::tuple read_surface(Place& place, const Source& source, const Keywords& keywords, nb::object tell) {
+  const Asked asked = asked_of(source, keywords, "", nb::none(), std::move(tell));
+  TriangleMesh mesh = watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
+    if (read) return surface_of(read(request, context));
+    return surface_of(read_file(request.input, request.options.values.features, request.tell, context));
+  });
+  const nb::object owner = nb::cast(std::move(mesh));
+  const auto& kept = nb::cast<const TriangleMesh&>(owner);
+  return nb::make_tuple(rows_of(kept.vertices, owner), rows_of(kept.triangles, owner));
+}
+
+using Numbers = nb::ndarray<nb::numpy, double, nb::shape<-1>, nb::c_contig>;
+
+Numbers distances_to(const AnyArray& points, const AnyArray& vertices, const AnyArray& faces) {
+  const std::vector<WorldPoint> from = points_of("points", points);
+  TriangleMesh mesh;
+  mesh.vertices = points_of("vertices", vertices);
+  mesh.triangles = triangles_of("faces", faces, mesh.vertices.size());
+  auto made = std::make_unique<std::vector<double>>();
+  {
+    const nb::gil_scoped_release released;
+    Context context;
+    *made = distances(from, mesh, context);
+  }
+  const nb::capsule owner(made.get(), [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  std::vector<double>& kept = *made.release();
+  return {kept.data(), {kept.size()}, owner};
+}
+
+int command(const std::vector<std::string>& arguments, const nb::object& write_report) {
+  std::vector<const char*> words;
+  for (const std::string& word : arguments) words.push_back(word.c_str());
+  tool::WriteReport write;
+  if (!write_report.is_none())
+    write = [&](const RunRequest& request, const RunResult& result) {
+      const nb::gil_scoped_acquire acquired;
+      const auto failure = nb::cast<std::string>(
+          write_report(nb::cast(result), nb::cast(source_of(request)), request.report, request.overwrite));
+      if (!failure.empty()) throw Error(ErrorCode::unwritable_output, "report", failure);
+    };
+  const nb::gil_scoped_release released;
+  return tool::command(int(words.size()), words.data(), write);
+}
+
+}  // namespace
+
+void bind_report(nb::module_& m) {
+  m.def("read_surface", read_surface, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("tell"),
+        nb::sig("def read_surface(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | "
+                "None]], tell: typing.Any) -> tuple[typing.Any, typing.Any]"));
+  m.def("distances", distances_to, nb::arg("points"), nb::arg("vertices"), nb::arg("faces"),
+        nb::sig("def distances(points: typing.Any, vertices: typing.Any, faces: typing.Any) -> typing.Any"),
+        "Of each point to the nearest one of the mesh.");
+  m.def("command", command, nb::arg("arguments"), nb::arg("write_report").none(),
+        nb::sig("def command(arguments: collections.abc.Sequence[str], write_report: typing.Any) -> int"),
+        "The command, with its name as the first argument. Returns its exit status; signals end the process from then "
+        "on. write_report(result, source, path, overwrite) makes the page of --report, and returns why it could not; "
+        "None: the option is refused.");
+}
+
+}  // namespace isoshell::python

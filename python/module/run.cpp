@@ -1,0 +1,56 @@
+#include "module/run.h"
+
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <utility>
+
+#include "module/watched.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+RunResult remesh(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
+                 bool measure_all, nb::object progress, nb::object tell) {
+  Asked asked = asked_of(source, keywords, output, std::move(progress), std::move(tell));
+  if (measure_all) asked.arguments.run.measures = Measures::all;
+  return watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
+    return read ? run(read(request, context), request, context) : run(request, context);
+  });
+}
+
+nb::dict estimate(Place& place, const Source& source, const Keywords& keywords, nb::object tell) {
+  const Asked asked = asked_of(source, keywords, "", nb::none(), std::move(tell));
+  const RunEstimate e =
+      watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
+        return read ? dry_run(read(request, context), request, context) : dry_run(request, context);
+      });
+  nb::dict dict;
+  dict["resolution"] = e.resolution;
+  dict["voxel_size"] = e.voxel_size_world;
+  dict["vertices"] = e.vertices;
+  dict["sites"] = e.sites;
+  dict["active_voxels"] = e.active_voxels;
+  dict["sheet_vertices"] = e.sheet_vertices;
+  dict["memory_bytes"] = e.bytes;
+  return dict;
+}
+
+}  // namespace
+
+void bind_run(nb::module_& m) {
+  m.def("remesh", remesh, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("output"),
+        nb::arg("measure_all"), nb::arg("progress").none(), nb::arg("tell"));
+  m.def(
+      "estimate", estimate, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("tell"),
+      nb::sig("def estimate(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | None]], "
+              "tell: typing.Any) -> dict[str, typing.Any]"));
+  m.def("end_jobs_left_alone", end_jobs_left_alone);
+}
+
+}  // namespace isoshell::python

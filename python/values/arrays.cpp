@@ -1,0 +1,151 @@
+#include "values/arrays.h"
+
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "isoshell/error.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+static_assert(sizeof(WorldPoint) == 3 * sizeof(double), "vertices are shown as rows of three doubles");
+
+using DlpackCode = nb::dlpack::dtype_code;
+
+[[noreturn]] void refuse(const char* argument, const std::string& what) {
+  throw Error(ErrorCode::usage, "arguments", std::string(argument) + what);
+}
+
+std::string shape_text(const AnyArray& a) {
+  std::string text;
+  for (size_t i = 0; i < a.ndim(); ++i) text += (i ? ", " : "") + std::to_string(a.shape(i));
+  return "(" + text + (a.ndim() == 1 ? ",)" : ")");
+}
+
+std::string type_text(const nb::dlpack::dtype& type) {
+  const char* kind = "values";
+  if (type.code == uint8_t(DlpackCode::Float)) kind = "float";
+  if (type.code == uint8_t(DlpackCode::Int)) kind = "int";
+  if (type.code == uint8_t(DlpackCode::UInt)) kind = "uint";
+  if (type.code == uint8_t(DlpackCode::Bool)) kind = "bool";
+  if (type.code == uint8_t(DlpackCode::Complex)) kind = "complex";
+  return kind + std::to_string(type.bits);
+}
+
+void check_rows(const char* argument, const AnyArray& a) {
+  if (a.ndim() != 2 || a.shape(1) != 3)
+    refuse(argument, " must be rows of three, of the shape (K, 3), and has the shape " + shape_text(a));
+}
+
+bool is(const nb::dlpack::dtype& type, DlpackCode code, int bits) {
+  return type.code == uint8_t(code) && type.bits == bits && type.lanes == 1;
+}
+
+/// Calls work(zero) with a zero of the array's type. False where it is of none of these.
+template <class Work>
+bool of_whole_type(const AnyArray& a, Work work) {
+  const nb::dlpack::dtype type = a.dtype();
+  if (is(type, DlpackCode::Int, 64)) return work(int64_t(0)), true;
+  if (is(type, DlpackCode::Int, 32)) return work(int32_t(0)), true;
+  if (is(type, DlpackCode::UInt, 32)) return work(uint32_t(0)), true;
+  if (is(type, DlpackCode::UInt, 64)) return work(uint64_t(0)), true;
+  if (is(type, DlpackCode::Int, 16)) return work(int16_t(0)), true;
+  if (is(type, DlpackCode::UInt, 16)) return work(uint16_t(0)), true;
+  if (is(type, DlpackCode::Int, 8)) return work(int8_t(0)), true;
+  if (is(type, DlpackCode::UInt, 8)) return work(uint8_t(0)), true;
+  return false;
+}
+
+template <class Work>
+bool of_number_type(const AnyArray& a, Work work) {
+  if (is(a.dtype(), DlpackCode::Float, 64)) return work(double(0)), true;
+  if (is(a.dtype(), DlpackCode::Float, 32)) return work(float(0)), true;
+  return of_whole_type(a, work);
+}
+
+/// Calls visit(i, value) for every value in order. The array is of one or two dimensions.
+template <class T, class Visit>
+void each_value(const AnyArray& a, Visit visit) {
+  const auto* const bytes = static_cast<const std::byte*>(a.data());  // which need not be aligned
+  const size_t rows = a.shape(0), columns = a.ndim() == 2 ? a.shape(1) : 1;
+  const int64_t step = a.stride(0), across = a.ndim() == 2 ? a.stride(1) : 0;
+  for (size_t i = 0; i < rows; ++i)
+    for (size_t j = 0; j < columns; ++j) {
+      T value;
+      std::memcpy(&value, bytes + (int64_t(i) * step + int64_t(j) * across) * int64_t(sizeof(T)), sizeof(T));
+      visit(i * columns + j, value);
+    }
+}
+
+[[noreturn]] void refuse_index(const char* argument, const AnyArray& a, size_t at, const std::string& value,
+                               size_t end) {
+  const std::string place =
+      a.ndim() == 2 ? std::to_string(at / a.shape(1)) + ", " + std::to_string(at % a.shape(1)) : std::to_string(at);
+  throw Error(ErrorCode::unreadable_input, "arguments",
+              std::string(argument) + "[" + place + "] is " + value + "; indices count from 0 and are below " +
+                  std::to_string(end) + ", the number of vertices");
+}
+
+void copy_indices(const char* argument, const AnyArray& a, size_t end, uint32_t* to) {
+  const bool known = of_whole_type(a, [&](auto zero) {
+    using T = decltype(zero);
+    const nb::gil_scoped_release released;
+    each_value<T>(a, [&](size_t at, T value) {
+      bool fits = uint64_t(value) < uint64_t(end);
+      if constexpr (std::is_signed_v<T>) fits = fits && value >= 0;
+      if (!fits) refuse_index(argument, a, at, std::to_string(value), end);
+      to[at] = uint32_t(value);
+    });
+  });
+  if (!known) refuse(argument, " must be whole numbers, such as int32 or int64, and is " + type_text(a.dtype()));
+}
+
+}  // namespace
+
+std::vector<WorldPoint> points_of(const char* argument, const AnyArray& a) {
+  check_rows(argument, a);
+  std::vector<WorldPoint> points(a.shape(0));
+  double* to = points.empty() ? nullptr : &points[0].x;
+  const bool known = of_number_type(a, [&](auto zero) {
+    using T = decltype(zero);
+    const nb::gil_scoped_release released;
+    each_value<T>(a, [&](size_t at, T value) { to[at] = double(value); });
+  });
+  if (!known) refuse(argument, " must be numbers, such as float32 or float64, and is " + type_text(a.dtype()));
+  return points;
+}
+
+std::vector<std::array<uint32_t, 3>> triangles_of(const char* argument, const AnyArray& a, size_t vertices) {
+  check_rows(argument, a);
+  std::vector<std::array<uint32_t, 3>> triangles(a.shape(0));
+  copy_indices(argument, a, vertices, triangles.empty() ? nullptr : triangles[0].data());
+  return triangles;
+}
+
+std::vector<uint32_t> indices_of(const char* argument, const AnyArray& a, size_t end) {
+  if (a.ndim() != 1) refuse(argument, " must be one row, and has the shape " + shape_text(a));
+  std::vector<uint32_t> indices(a.shape(0));
+  copy_indices(argument, a, end, indices.data());
+  return indices;
+}
+
+const float* floats_of(const char* argument, const AnyArray& a, size_t dimensions) {
+  if (a.ndim() != dimensions)
+    refuse(argument, " must have " + std::to_string(dimensions) + " dimensions, and has the shape " + shape_text(a));
+  if (!is(a.dtype(), DlpackCode::Float, 32)) refuse(argument, " must be float32 here, and is " + type_text(a.dtype()));
+  return static_cast<const float*>(a.data());
+}
+
+Rows<double> rows_of(const std::vector<WorldPoint>& points, nb::handle owner) {
+  return {reinterpret_cast<const double*>(points.data()), {points.size(), 3}, owner};
+}
+
+Rows<int32_t> rows_of(const std::vector<std::array<uint32_t, 3>>& triangles, nb::handle owner) {
+  return {reinterpret_cast<const int32_t*>(triangles.data()), {triangles.size(), 3}, owner};
+}
+
+}  // namespace isoshell::python

@@ -1,0 +1,69 @@
+#include "values/errors.h"
+
+#include <nanobind/stl/string.h>
+
+#include <exception>
+#include <new>
+
+#include "isoshell/error.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
+
+void raise(ErrorCode code, const std::string& stage, const std::string& message) {
+  const nb::object error = nb::module_::import_("isoshell._errors").attr("Error")(in_keywords(message), code, stage);
+  PyErr_SetObject(error.type().ptr(), error.ptr());
+}
+
+void translate(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& e) {
+    raise(e.code(), e.stage(), e.what());
+  } catch (const std::bad_alloc&) {
+    raise(ErrorCode::out_of_memory, "memory", "out of memory; lower --resolution");
+  }
+}
+
+}  // namespace
+
+std::string in_keywords(const std::string& message) {
+  std::string text;
+  for (size_t i = 0; i < message.size();) {
+    const bool begins = message.compare(i, 2, "--") == 0 && i + 2 < message.size() && is_letter(message[i + 2]);
+    if (!begins) {
+      text += message[i++];
+      continue;
+    }
+    size_t end = i + 2;
+    for (size_t j = end; j < message.size() && (is_letter(message[j]) || message[j] == '-'); ++j)
+      if (is_letter(message[j])) end = j + 1;
+    std::string name = message.substr(i + 2, end - i - 2);
+    for (char& c : name)
+      if (c == '-') c = '_';
+    text += name == "help" ? "help(isoshell.Options)" : name;
+    i = end;
+  }
+  return text;
+}
+
+void bind_errors(nb::module_& m) {
+  nb::enum_<ErrorCode>(m, "ErrorCode", nb::is_arithmetic(), "What went wrong: the exit status of the command.")
+      .value("INTERNAL", ErrorCode::internal, "A defect of isoshell.")
+      .value("USAGE", ErrorCode::usage, "An argument that cannot be.")
+      .value("UNREADABLE_INPUT", ErrorCode::unreadable_input, "The source cannot be read, or holds what cannot be.")
+      .value("UNWRITABLE_OUTPUT", ErrorCode::unwritable_output, "A file cannot be written.")
+      .value("NOTHING_TO_MESH", ErrorCode::nothing_to_mesh, "The source has no surface.")
+      .value("GATE_FAILED", ErrorCode::gate_failed, "The result does not meet a requirement, or intersects itself.")
+      .value("OUT_OF_MEMORY", ErrorCode::out_of_memory, "The run needs more memory than it may take.")
+      .value("NO_DEVICE", ErrorCode::no_device, "There is no such device.")
+      .value("INTERRUPTED", ErrorCode::interrupted, "Context.cancel() was called.");
+  m.def("in_keywords", in_keywords, nb::arg("message"));
+  nb::register_exception_translator(translate);
+}
+
+}  // namespace isoshell::python

@@ -1,0 +1,32 @@
+#include "values/keywords.h"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+
+tool::Arguments arguments_of(const Keywords& keywords, const std::string& output) {
+  std::vector<tool::GivenOption> given;
+  for (const auto& [name, value] : keywords) given.push_back({name, value});
+  return tool::parse_given_options(given, output);
+}
+
+void bind_keywords(nb::module_& m) {
+  nb::class_<tool::OptionEntry>(m, "OptionEntry", "An option of the command.")
+      .def_ro("group", &tool::OptionEntry::group)
+      .def_ro("name", &tool::OptionEntry::name, "Without dashes.")
+      .def_ro("value", &tool::OptionEntry::value, "What stands for its value, as K; empty for a flag.")
+      .def_ro("text", &tool::OptionEntry::text)
+      .def_ro("fallback", &tool::OptionEntry::fallback, "What holds without it.")
+      .def_ro("real", &tool::OptionEntry::real, "Takes any number, not only whole ones.")
+      .def_ro("of_command", &tool::OptionEntry::of_command, "No keyword: only the command has it.")
+      .def_prop_ro(
+          "low", [](const tool::OptionEntry& o) { return o.range.low; }, "The least number that it takes.")
+      .def_prop_ro(
+          "high", [](const tool::OptionEntry& o) { return o.range.high; }, "The largest number that it takes.");
+  m.def("option_table", tool::option_table, "Every option of the command.");
+}
+
+}  // namespace isoshell::python

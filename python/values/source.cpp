@@ -1,0 +1,188 @@
+#include "values/source.h"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
+#include "isoshell/io/sizing_vdb.h"
+#include "isoshell/io/velocity_vdb.h"
+#include "isoshell/triangle_mesh.h"
+#include "values/arrays.h"
+#include "values/attributes.h"
+
+namespace nb = nanobind;
+
+namespace isoshell::python {
+namespace {
+
+using Triple = std::array<double, 3>;
+
+void refuse_iso(const RunRequest& request) {
+  if (request.input.iso) throw Error(ErrorCode::usage, "arguments", "--iso is for volumes; leave it out");
+}
+
+Source file(const std::string& path) { return {path, {}, {}, {}}; }
+
+Source surface(const std::string& name, TriangleSoup soup) {
+  const auto given = std::make_shared<TriangleSoup>(std::move(soup));
+  return {"",
+          [name, given](const RunRequest& request, const Context&) {
+            refuse_iso(request);
+            return input_of(std::move(*given), name, request.tell);
+          },
+          {},
+          {}};
+}
+
+using GivenAttribute = std::tuple<std::string, std::string, AnyArray, std::vector<std::string>>;
+
+Source triangles(const std::string& name, const AnyArray& vertices, const AnyArray& faces,
+                 const std::vector<GivenAttribute>& attributes) {
+  TriangleSoup soup;
+  soup.vertices = points_of("vertices", vertices);
+  soup.triangles = triangles_of("faces", faces, soup.vertices.size());
+  for (const auto& [attribute, domain, values, labels] : attributes)
+    soup.attributes.push_back(attribute_of(attribute, domain, values, labels));
+  return surface(name, std::move(soup));
+}
+
+PolygonSoup polygon_soup(const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+  PolygonSoup soup;
+  soup.vertices = points_of("vertices", vertices);
+  soup.sizes = indices_of("sizes of faces", sizes, size_t(UINT32_MAX));
+  soup.corners = indices_of("faces", corners, soup.vertices.size());
+  return soup;
+}
+
+Source polygons(const std::string& name, const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+  return surface(name, split_polygons(polygon_soup(vertices, sizes, corners), name));
+}
+
+/// What split_polygons makes of the faces: their triangles, in the faces' order.
+nb::object split(const std::string& name, const AnyArray& vertices, const AnyArray& sizes, const AnyArray& corners) {
+  TriangleMesh mesh;
+  mesh.triangles = split_polygons(polygon_soup(vertices, sizes, corners), name).triangles;
+  const nb::object owner = nb::cast(std::move(mesh));
+  return nb::cast(rows_of(nb::cast<const TriangleMesh&>(owner).triangles, owner));
+}
+
+Source points(const AnyArray& positions, const std::optional<AnyArray>& normals) {
+  PointCloud cloud;
+  cloud.position = points_of("points", positions);
+  if (normals) cloud.normal = points_of("normals", *normals);
+  const auto given = std::make_shared<PointCloud>(std::move(cloud));
+  return {"",
+          [given](const RunRequest& request, const Context& context) {
+            refuse_iso(request);
+            return input_of(*given, "points", context.memory_limit_bytes, request.tell,
+                            volume_creases(request.options.values.features));
+          },
+          {},
+          {}};
+}
+
+/// The lattice of the first three dimensions of an array.
+DenseVolume lattice(const float* first, const AnyArray& values, const Triple& spacing, const Triple& origin) {
+  DenseVolume v;
+  v.values = first;
+  for (size_t i = 0; i < 3; ++i) {
+    v.size[i] = int64_t(values.shape(i));
+    v.stride[i] = values.stride(i);
+  }
+  v.spacing_world = {spacing[0], spacing[1], spacing[2]};
+  v.origin_world = {origin[0], origin[1], origin[2]};
+  return v;
+}
+
+DenseVolume dense_volume(const char* argument, const AnyArray& values, const Triple& spacing, const Triple& origin) {
+  return lattice(floats_of(argument, values, 3), values, spacing, origin);
+}
+
+Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin) {
+  const DenseVolume v = dense_volume("volume", values, spacing, origin);
+  return {"",
+          [v](const RunRequest& request, const Context& context) {
+            const VolumeReadOptions options{"", request.input.iso, context.memory_limit_bytes,
+                                            volume_creases(request.options.values.features)};
+            return input_of(v, "volume", options, request.tell);
+          },
+          nb::cast(values),
+          {}};
+}
+
+void set_velocities(Source& source, const AnyArray& vectors, const Triple& spacing, const Triple& origin) {
+  const float* first = floats_of("velocities", vectors, 4);
+  const auto part = [&](int64_t axis) { return lattice(first + axis * vectors.stride(3), vectors, spacing, origin); };
+  source.velocity = [parts = std::array<DenseVolume, 3>{part(0), part(1), part(2)}] {
+    return velocity_of(parts, "velocities");
+  };
+  source.kept = nb::make_tuple(source.kept, vectors);
+}
+
+void set_velocities_of_vertices(Source& source, const AnyArray& velocities, const AnyArray& vertices,
+                                const AnyArray& faces) {
+  TriangleSoup soup;
+  soup.vertices = points_of("vertices", vertices);
+  soup.triangles = triangles_of("faces", faces, soup.vertices.size());
+  source.velocity = [soup = std::move(soup), given = points_of("velocities", velocities)] {
+    return velocity_on(soup, given);
+  };
+}
+
+void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, const Triple& origin) {
+  source.sizing = sizing_of(dense_volume("sizing", lengths, spacing, origin), "sizing");
+}
+
+}  // namespace
+
+Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context) {
+  if (read) return read(request, context);
+  InputRequest file = request.input;
+  file.creases = volume_creases(request.options.values.features);
+  return read_input(file, context.memory_limit_bytes, request.tell);
+}
+
+void bind_source(nb::module_& m) {
+  nb::class_<Source>(m, "Source", "What one run starts from.")
+      .def_prop_ro("is_file", &Source::is_file)
+      .def_static("file", file, nb::arg("path"))
+      .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"), nb::arg("attributes"),
+                  nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any, attributes: "
+                          "list[tuple[str, str, typing.Any, list[str]]]) -> Source"))
+      .def_static("polygons", polygons, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
+                  nb::sig("def polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
+                          "Source"))
+      .def_static("points", points, nb::arg("positions"), nb::arg("normals").none(),
+                  nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
+      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
+                  nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
+                          "float, float]) -> Source"))
+      .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),
+           nb::arg("faces"),
+           nb::sig("def set_velocities_of_vertices(self, velocities: typing.Any, vertices: typing.Any, faces: "
+                   "typing.Any) -> None"))
+      .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
+           nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
+                   "tuple[float, float, float]) -> None"))
+      .def("set_velocities", set_velocities, nb::arg("vectors"), nb::arg("spacing"), nb::arg("origin"),
+           nb::sig("def set_velocities(self, vectors: typing.Any, spacing: tuple[float, float, float], origin: "
+                   "tuple[float, float, float]) -> None"));
+  m.def(
+      "split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
+      nb::sig("def split_polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
+              "typing.Any"),
+      "The triangles of faces of any number of corners, in their order; what has no area or no finite place has none.");
+}
+
+}  // namespace isoshell::python

@@ -1,0 +1,37 @@
+// What changes of a result ask of the surface below it, over and over.
+#pragma once
+
+#include <vector>
+
+#include "features/cutting/cut_surface.h"
+#include "geometry/world_vector.h"
+
+namespace isoshell {
+
+class CutLookup {
+ public:
+  /// Finds where curves bend, in parallel. `cut` must outlive it.
+  explicit CutLookup(const CutSurface& cut);
+
+  const CutSurface& cut() const { return *cut_; }
+  WorldPoint position(uint32_t home) const;
+  uint32_t patch(uint32_t home) const { return cut_->surface.patch.empty() ? 0 : cut_->surface.patch[home]; }
+  double edge_length(uint32_t home) const;
+  /// The first copy of a place of a curve; beyond the last place of a loop it goes on with the first.
+  uint32_t home_on(uint32_t curve, size_t at) const;
+  /// Of several fans of one patch at a place the first one; kNone where there is none.
+  uint32_t copy_in(uint32_t home, uint32_t patch) const;
+  /// Between a unit vector and the normal of the surface of a patch; of several fans there the one that fits best.
+  double cosine(uint32_t home, uint32_t patch, const WorldPoint& unit) const;
+  /// How far a curve leaves the chord between two of its places, to within a small part of an edge. Cost: a look at the
+  /// bends between them, of which a straight curve has none however many places it has.
+  double off_chord(uint32_t curve, size_t begin, size_t end) const;
+
+ private:
+  std::vector<size_t> bends_of(uint32_t curve) const;
+
+  const CutSurface* cut_;
+  std::vector<std::vector<size_t>> bends_;  ///< per curve, ascending; of loops those of two rounds
+};
+
+}  // namespace isoshell

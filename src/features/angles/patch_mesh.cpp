@@ -1,0 +1,367 @@
+// PatchMesh (see patch_mesh.h).
+#include "features/angles/patch_mesh.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "core/copy_product.h"
+#include "core/parallel_ranges.h"
+#include "features/mesh/mesh_fans.h"
+#include "geometry/near_points.h"
+#include "isoshell/advanced/voxel_set.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int kRings = 2;       ///< of triangles around what is changed
+constexpr double kLess = 0.97;  ///< of the cost that a change must leave
+constexpr double kLessIfSteady =
+    0.5;  ///< of what moves and flips leave, where triangles stay poor in a frame that follows
+constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triangle itself must have for changes to pay
+constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
+constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor
+constexpr double kHopeless = 1.5;  ///< of the least cost so far: a change that is above after a round is given up
+constexpr double kKept = 1;        ///< edges around a point near which nothing is to change
+
+/// Along strips narrower than edges all triangles are poor. Where one hardly counts beside the others, changes at its
+/// corners do not save what they must, and the others have their own turn.
+bool is_among_worse(const MeshRegion& region) {
+  return region.poor() > kFewPoor && region.cost_of_first() < kLeastPart * region.cost();
+}
+
+template <class T>
+void sort_unique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace
+
+PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
+    : cut_(&cut),
+      lookup_(std::make_shared<CutLookup>(cut)),
+      hopeless_(std::make_shared<std::unordered_set<uint64_t>>()),
+      options_(options) {
+  const OnHost<SeedSet> seeds(made.seeds);
+  const OnHost<DualMesh> open(made.mesh);
+  const JoinedMesh joined = join_patches(*open, seeds->fixed);
+  vertices_.resize(size_t(joined.mesh.position.size()));
+  around_.resize(vertices_.size());
+  for (uint32_t c = 0; c < cut.curves.size(); ++c)
+    if (const CutCurve& curve = cut.curves[c]; !curve.is_loop && curve.seeds.size() == 2)
+      ends_.push_back({edge_key(curve.place.front(), curve.place.back()), c});
+  std::sort(ends_.begin(), ends_.end());
+  list_vertices(*seeds, joined);
+  list_triangles(*open, *seeds, joined);
+  is_hopeless_.assign(triangles_.size(), 0);
+  count_ = int64_t(vertices_.size());
+}
+
+void PatchMesh::list_vertices(const SeedSet& seeds, const JoinedMesh& joined) {
+  std::vector<std::pair<uint32_t, size_t>> on_curve(cut_->copies_first.size() - 1, {kNone, 0});  // per place
+  for (uint32_t c = 0; c < cut_->curves.size(); ++c)
+    for (size_t i = 0; i < cut_->curves[c].place.size(); ++i) on_curve[cut_->curves[c].place[i]] = {c, i};
+  for (int64_t s = seeds.size() - 1; s >= 0; --s) {  // of copies the first counts
+    RegionVertex& v = vertices_[joined.vertex_of[s]];
+    const PointQ8 p = joined.mesh.position[joined.vertex_of[s]];
+    v.position = {double(p.x), double(p.y), double(p.z)};
+    v.home = seeds.home[s];
+    v.number = joined.vertex_of[s];
+    const uint32_t place = s < seeds.fixed.count ? cut_->place[v.home] : kNone;
+    if (place == kNone) continue;
+    v.kind = place < cut_->corner_count ? RegionVertex::Kind::corner : RegionVertex::Kind::on_curve;
+    std::tie(v.curve, v.at) = on_curve[place];
+  }
+}
+
+void PatchMesh::list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined) {
+  MeshTriangles corners;  // of the open mesh
+  for (const TriangleIndices& i : open.triangles) {
+    RegionTriangle made;
+    made.corner = {joined.vertex_of[i.a], joined.vertex_of[i.b], joined.vertex_of[i.c]};
+    made.curve = {kNone, kNone, kNone};
+    made.patch = cut_->surface.patch.empty() ? 0 : cut_->surface.patch[seeds.home[i.a]];
+    for (const uint32_t v : made.corner) around_[v].push_back(uint32_t(triangles_.size()));
+    triangles_.push_back(made);
+    corners.push_back({i.a, i.b, i.c});
+  }
+  const std::vector<ListedHalfEdge> sides = sorted_half_edges(corners);
+  for (size_t i = 0; i < sides.size(); ++i) {
+    const bool has_twin =
+        (i > 0 && sides[i - 1].edge == sides[i].edge) || (i + 1 < sides.size() && sides[i + 1].edge == sides[i].edge);
+    if (has_twin) continue;
+    RegionTriangle& t = triangles_[sides[i].number / 3];
+    const size_t k = sides[i].number % 3;
+    t.curve[k] = curve_between(t.corner[k], t.corner[(k + 1) % 3]);
+  }
+}
+
+/// That two vertices follow each other on.
+uint32_t PatchMesh::curve_between(uint32_t u, uint32_t v) const {
+  const RegionVertex &a = vertices_[u], &b = vertices_[v];
+  if (a.kind == RegionVertex::Kind::on_curve) return a.curve;
+  if (b.kind == RegionVertex::Kind::on_curve) return b.curve;
+  return whole_curve(cut_->place[a.home], cut_->place[b.home]);
+}
+
+/// From one corner to another in one segment: there is one such at most.
+uint32_t PatchMesh::whole_curve(uint32_t from, uint32_t to) const {
+  const auto found = std::lower_bound(ends_.begin(), ends_.end(), std::make_pair(edge_key(from, to), uint32_t(0)));
+  return found != ends_.end() && found->first == edge_key(from, to) ? found->second : 0;
+}
+
+double PatchMesh::sine_of(uint32_t triangle) const {
+  const RegionTriangle& t = triangles_[triangle];
+  if (t.is_gone()) return 1;
+  return smallest_sine(vertices_[t.corner[0]].position, vertices_[t.corner[1]].position,
+                       vertices_[t.corner[2]].position);
+}
+
+bool PatchMesh::is_edge(uint32_t u, uint32_t v) const {
+  return std::any_of(around_[u].begin(), around_[u].end(), [&](uint32_t t) {
+    const auto& c = triangles_[t].corner;
+    return std::find(c.begin(), c.end(), v) != c.end();
+  });
+}
+
+std::vector<uint32_t> PatchMesh::poor_triangles() const {
+  std::vector<std::pair<double, uint32_t>> found;
+  for (uint32_t t = 0; t < triangles_.size(); ++t)
+    if (const double sine = sine_of(t); sine < kPoorSine) found.push_back({sine, t});
+  std::sort(found.begin(), found.end());
+  std::vector<uint32_t> out;
+  for (const auto& [sine, t] : found) out.push_back(t);
+  return out;
+}
+
+/// The triangles around vertices, and around those of these, and so on; ascending.
+std::vector<uint32_t> PatchMesh::triangles_around(std::vector<uint32_t> vertices) const {
+  std::vector<uint32_t> triangles;
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (const uint32_t v : vertices) triangles.insert(triangles.end(), around_[v].begin(), around_[v].end());
+    sort_unique(triangles);
+    vertices.clear();
+    for (const uint32_t t : triangles)
+      vertices.insert(vertices.end(), triangles_[t].corner.begin(), triangles_[t].corner.end());
+    sort_unique(vertices);
+  }
+  return triangles;
+}
+
+/// The vertices asked for come first.
+PatchMesh::Cutout PatchMesh::cut_out(const std::vector<uint32_t>& vertices,
+                                     const std::vector<uint32_t>& triangles) const {
+  std::vector<uint32_t> all;
+  for (const uint32_t t : triangles) all.insert(all.end(), triangles_[t].corner.begin(), triangles_[t].corner.end());
+  sort_unique(all);
+  std::stable_partition(all.begin(), all.end(),
+                        [&](uint32_t v) { return std::find(vertices.begin(), vertices.end(), v) != vertices.end(); });
+  std::vector<RegionVertex> region_vertices;
+  for (const uint32_t v : all) {
+    region_vertices.push_back(vertices_[v]);
+    region_vertices.back().number = v;
+    region_vertices.back().is_inner =
+        !is_kept(v) && std::includes(triangles.begin(), triangles.end(), around_[v].begin(), around_[v].end());
+  }
+  std::vector<RegionTriangle> region_triangles;
+  for (const uint32_t t : triangles) {
+    region_triangles.push_back(triangles_[t]);
+    for (uint32_t& v : region_triangles.back().corner) v = uint32_t(std::find(all.begin(), all.end(), v) - all.begin());
+  }
+  return {triangles, MeshRegion(*lookup_, std::move(region_vertices), std::move(region_triangles))};
+}
+
+std::vector<PatchMesh::Change> PatchMesh::changes_of(const MeshRegion& region, Reach reach) {
+  std::vector<std::pair<uint32_t, uint32_t>> edges;
+  for (const RegionTriangle& t : region.triangles())
+    for (size_t i = 0; i < 3 && !t.is_gone(); ++i) {
+      const auto [u, v] = std::minmax(t.corner[i], t.corner[(i + 1) % 3]);
+      if ((u < 3) == (reach == Reach::corners)) edges.push_back({u, v});  // the first three are the corners
+    }
+  sort_unique(edges);
+  std::vector<Change> changes;
+  for (const auto& [u, v] : edges)
+    changes.insert(changes.end(), {{Change::collapse, u, v}, {Change::collapse, v, u}, {Change::split, u, v}});
+  return changes;
+}
+
+bool PatchMesh::make(MeshRegion& region, const Change& change) {
+  const WorldPoint &a = region.vertices()[change.u].position, &b = region.vertices()[change.v].position;
+  return change.what == Change::split ? region.split(change.u, change.v, 0.5 * (a + b))
+                                      : region.collapse(change.u, change.v);
+}
+
+/// The region after each change, before anything is moved. Where many triangles are poor, which are searched one by one
+/// and share their changes, those that leave the least cost, at the corners.
+std::vector<MeshRegion> PatchMesh::promising(const MeshRegion& region, Reach reach) {
+  const bool are_few = region.poor() <= kFewPoor;
+  std::vector<MeshRegion> made;
+  if (reach == Reach::beyond && !are_few) return made;
+  for (const Change& change : changes_of(region, reach)) {
+    MeshRegion there = region;
+    if (!make(there, change)) continue;
+    there.flip_edges();
+    made.push_back(std::move(there));
+  }
+  std::stable_sort(made.begin(), made.end(),
+                   [](const MeshRegion& a, const MeshRegion& b) { return a.cost() < b.cost(); });
+  if (!are_few && made.size() > kMostTries) made.erase(made.begin() + kMostTries, made.end());
+  return made;
+}
+
+/// What moves and flips alone leave, where no triangle is poor then, or the best of what a change more leaves, the
+/// nearest ones first. None where that is not enough.
+std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) const {
+  MeshRegion relaxed = start;
+  relaxed.relax();
+  if (!relaxed.is_better_than(start)) relaxed = start;
+  if (relaxed.poor() == 0) return relaxed;
+  const bool is_enough = relaxed.cost() < kLess * start.cost();
+  const auto relaxed_if_enough = [&] { return is_enough ? std::make_optional(relaxed) : std::nullopt; };
+  if (is_among_worse(start)) return relaxed_if_enough();
+  const auto is_worth_it = [&](const MeshRegion& region) {
+    const bool may_renumber = !options_.is_steady || region.poor() == 0;
+    return region.cost() < (may_renumber ? kLess * start.cost() : kLessIfSteady * relaxed.cost());
+  };
+  MeshRegion best = relaxed;
+  for (const Reach reach : {Reach::corners, Reach::beyond}) {
+    for (MeshRegion& there : promising(relaxed, reach)) {
+      there.relax(kHopeless * best.cost());
+      if (there.cost() < best.cost() && there.is_better_than(start)) best = std::move(there);
+    }
+    if (is_worth_it(best)) return best;
+  }
+  return relaxed_if_enough();
+}
+
+/// Takes out those, in their order, around which no triangle is that is around one before.
+std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) const {
+  std::vector<char> is_taken(triangles_.size());
+  std::vector<uint32_t> apart, left;
+  for (const uint32_t t : triangles) {
+    const auto& corner = triangles_[t].corner;
+    std::vector<uint32_t> around;
+    if (!is_taken[t]) around = triangles_around({corner.begin(), corner.end()});
+    const bool is_free =
+        !is_taken[t] && std::none_of(around.begin(), around.end(), [&](uint32_t u) { return is_taken[u]; });
+    (is_free ? apart : left).push_back(t);
+    if (!is_free) continue;
+    for (const uint32_t u : around) is_taken[u] = 1;
+  }
+  triangles = std::move(left);
+  return apart;
+}
+
+bool PatchMesh::improve(std::vector<uint32_t> triangles) {
+  bool has_changed = false;
+  while (!triangles.empty()) {
+    const auto is_done = [&](uint32_t t) { return sine_of(t) >= kPoorSine || is_hopeless_[t]; };
+    triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_done), triangles.end());
+    const std::vector<uint32_t> apart = take_apart(triangles);
+    std::vector<std::optional<Cutout>> cutouts(apart.size());
+    std::vector<std::optional<MeshRegion>> better(apart.size());
+    for_each_index(size_t(0), apart.size(), [&](size_t i) {
+      const auto& corner = triangles_[apart[i]].corner;
+      const std::vector<uint32_t> corners(corner.begin(), corner.end());
+      cutouts[i] = cut_out(corners, triangles_around(corners));
+      if (!hopeless_->count(cutouts[i]->region.digest())) better[i] = improved(cutouts[i]->region);
+    });
+    for (size_t i = 0; i < apart.size(); ++i) {
+      has_changed = has_changed || better[i];
+      if (better[i]) {
+        put_back(*cutouts[i], *better[i]);
+        continue;
+      }
+      is_hopeless_[apart[i]] = 1;
+      hopeless_->insert(cutouts[i]->region.digest());
+    }
+  }
+  return has_changed;
+}
+
+void PatchMesh::keep_near(const std::vector<PointQ8>& points) {
+  const NearPoints near(points, kKept * cut_->longest_edge_q8);
+  is_kept_.assign(vertices_.size(), 0);
+  for (size_t v = 0; v < vertices_.size(); ++v) {
+    const WorldPoint& p = vertices_[v].position;
+    is_kept_[v] = near.holds({int32_t(p.x), int32_t(p.y), int32_t(p.z)});
+  }
+}
+
+/// A triangle without corners where there is none before, or is none any more.
+void PatchMesh::replace(uint32_t triangle, const RegionTriangle& by) {
+  RegionTriangle& t = triangles_[triangle];
+  if (!t.is_gone())
+    for (const uint32_t v : t.corner)
+      around_[v].erase(std::lower_bound(around_[v].begin(), around_[v].end(), triangle));
+  t = by;
+  if (!t.is_gone())
+    for (const uint32_t v : t.corner)
+      around_[v].insert(std::lower_bound(around_[v].begin(), around_[v].end(), triangle), triangle);
+  is_hopeless_[triangle] = 0;
+}
+
+void PatchMesh::put_back(const Cutout& cutout, const MeshRegion& region) {
+  std::vector<uint32_t> number;
+  for (const RegionVertex& v : region.vertices()) {
+    const bool is_new = v.number == RegionVertex::kNoOne;
+    number.push_back(is_new ? uint32_t(vertices_.size()) : v.number);
+    if (is_new) vertices_.emplace_back(), around_.emplace_back();
+    vertices_[number.back()] = v;
+  }
+  for (size_t i = 0; i < region.triangles().size(); ++i) {
+    if (i >= cutout.triangles.size()) triangles_.push_back({{}, {}, 0}), is_hopeless_.push_back(0);
+    const uint32_t t = i < cutout.triangles.size() ? cutout.triangles[i] : uint32_t(triangles_.size() - 1);
+    if (!region.has_changed(i)) continue;
+    RegionTriangle made = region.triangles()[i];
+    if (!made.is_gone())
+      for (uint32_t& v : made.corner) v = number[v];
+    replace(t, made);
+  }
+  count_ += int64_t(region.vertices().size()) - int64_t(cutout.region.vertices().size());
+  count_ -= std::count_if(number.begin(), number.end(), [&](uint32_t v) { return around_[v].empty(); });
+}
+
+JoinedPatches PatchMesh::joined() const {
+  std::vector<uint32_t> number(vertices_.size(), kNone);
+  JoinedPatches out;
+  out.mesh.position = Buffer<PointQ8>(count_);
+  out.home = Buffer<uint32_t>(count_);
+  uint32_t count = 0;
+  for (size_t v = 0; v < vertices_.size(); ++v) {
+    if (around_[v].empty()) continue;
+    const WorldPoint& p = vertices_[v].position;
+    out.mesh.position[count] = {int32_t(p.x), int32_t(p.y), int32_t(p.z)};
+    out.home[count] = vertices_[v].home;
+    if (vertices_[v].kind == RegionVertex::Kind::corner) out.features.corners.push_back(count);
+    out.on_curves += vertices_[v].kind != RegionVertex::Kind::free ? 1 : 0;
+    number[v] = count++;
+  }
+  std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
+  for (const RegionTriangle& t : triangles_) {
+    if (t.is_gone()) continue;
+    std::array<uint32_t, 3> i{number[t.corner[0]], number[t.corner[1]], number[t.corner[2]]};
+    for (size_t k = 0; k < 3; ++k)
+      if (t.curve[k] != kNone)
+        out.features.curve_edges.push_back(
+            {{std::min(i[k], i[(k + 1) % 3]), std::max(i[k], i[(k + 1) % 3])}, cut_->curves[t.curve[k]].curve});
+    std::rotate(i.begin(), std::min_element(i.begin(), i.end()), i.end());
+    triangles.push_back({i, t.patch});
+  }
+  std::sort(triangles.begin(), triangles.end());
+  out.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [corner, patch] = triangles[t];
+    out.mesh.triangles[int64_t(t)] = {corner[0], corner[1], corner[2]};
+    out.features.patch.push_back(patch);
+  }
+  std::vector<MeshCurveEdge>& edges = out.features.curve_edges;  // so far once for each of their triangles
+  const auto key = [](const MeshCurveEdge& e) { return std::tie(e.vertex, e.curve); };
+  std::sort(edges.begin(), edges.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  edges.erase(std::unique(edges.begin(), edges.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); }),
+              edges.end());
+  return out;
+}
+
+}  // namespace isoshell

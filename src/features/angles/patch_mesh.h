@@ -1,0 +1,96 @@
+// The joined mesh of patches, to be changed region by region.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "features/angles/mesh_region.h"
+#include "isoshell/triangle_mesh.h"
+
+namespace isoshell {
+
+/// The mesh of patches put together, and what its vertices and edges lie on.
+struct JoinedPatches {
+  DualMesh mesh;
+  Buffer<uint32_t> home;  ///< per vertex one of the surface, one of the copies where it has several
+  MeshFeatures features;
+  int64_t on_curves = 0;  ///< vertices on curves and corners
+};
+
+/// What becomes of the mesh of patches.
+struct JoinOptions {
+  int64_t vertices;  ///< that it is to have
+  /// In a frame that follows another: vertices come and go only where no triangle is poor then, or that halves a cost.
+  bool is_steady = false;
+};
+
+class PatchMesh {
+ public:
+  PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options);
+
+  /// Triangles with an angle below 30 degrees, the worst first.
+  std::vector<uint32_t> poor_triangles() const;
+  /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
+  /// Result: whether anything was changed. The same for every number of threads.
+  bool improve(std::vector<uint32_t> triangles);
+  int64_t surplus() const { return count_ - options_.vertices; }
+  /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
+  void meet_count(const Context& context);
+
+  /// From now on, vertices within an edge of these points stay.
+  void keep_near(const std::vector<PointQ8>& points);
+
+  JoinedPatches joined() const;
+
+ private:
+  /// Triangles around some vertices, the first ones of the region.
+  struct Cutout {
+    std::vector<uint32_t> triangles;  ///< of the mesh
+    MeshRegion region;
+  };
+  struct Change {
+    enum { split, collapse } what;
+    uint32_t u, v;
+  };
+  /// Which edges are split and collapsed: those at the corners of a triangle, or the others that are two rings around.
+  enum class Reach { corners, beyond };
+
+  void list_vertices(const SeedSet& seeds, const JoinedMesh& joined);
+  void list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined);
+  uint32_t curve_between(uint32_t u, uint32_t v) const;
+  uint32_t whole_curve(uint32_t from, uint32_t to) const;
+
+  bool is_kept(uint32_t vertex) const { return vertex < is_kept_.size() && is_kept_[vertex]; }
+  double sine_of(uint32_t triangle) const;
+  bool is_edge(uint32_t u, uint32_t v) const;
+  std::vector<std::pair<double, uint64_t>> edges_by_length() const;
+
+  std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
+  Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;
+  std::vector<uint32_t> take_apart(std::vector<uint32_t>& triangles) const;
+  void replace(uint32_t triangle, const RegionTriangle& by);
+  void put_back(const Cutout& cutout, const MeshRegion& region);
+
+  static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
+  static bool make(MeshRegion& region, const Change& change);
+  static std::vector<MeshRegion> promising(const MeshRegion& region, Reach reach);
+  std::optional<MeshRegion> improved(const MeshRegion& start) const;
+  std::optional<MeshRegion> recounted(const MeshRegion& start) const;
+
+  const CutSurface* cut_;
+  std::shared_ptr<const CutLookup> lookup_;
+  std::shared_ptr<std::unordered_set<uint64_t>> hopeless_;  ///< digests of regions, of all copies of this mesh
+  std::vector<RegionVertex> vertices_;
+  std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
+  std::vector<char> is_kept_;                        ///< per vertex that was there at first; empty: none
+  std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried
+  std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
+  std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
+  int64_t count_ = 0;
+  JoinOptions options_;
+};
+
+}  // namespace isoshell

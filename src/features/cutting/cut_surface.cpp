@@ -1,0 +1,114 @@
+// cut_surface and edge_length_for (see cut_surface.h).
+#include "features/cutting/cut_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/watched.h"
+#include "features/cutting/cut_fine_mesh.h"
+#include "features/cutting/jagged_paths.h"
+#include "features/mesh/flip_flat_edges.h"
+#include "features/mesh/refine_mesh.h"
+#include "features/seeds/edge_lengths.h"
+#include "features/seeds/path_seeds.h"
+#include "geometry/world_vector.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
+constexpr double kFirstCut = 1.5;     ///< lengths of the mesh on which they are found, over the one that is asked for
+constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
+
+/// As snap_coordinate, before it rounds.
+WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
+  const auto steps = [&](double world, double origin) { return (world - origin) / frame.voxel_size * kOneVoxelQ8; };
+  return {steps(p.x, frame.origin.x), steps(p.y, frame.origin.y), steps(p.z, frame.origin.z)};
+}
+
+/// With the lengths that are asked for, and cut again where these are so short that it shows too little of them.
+VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const CutOptions& options, Context& context) {
+  const double e = fine.edge_length[0];
+  for (int cut = 1;; ++cut) {
+    VertexGraph graph = find_vertex_graph(fine);
+    if (!options.asked.vary()) return graph;
+    const size_t before = fine.position.size();
+    ask_for_lengths(fine, graph, frame, options.asked, options.vertices, e);
+    if (cut == kMostCuts) return graph;
+    FineMesh finer = fine;
+    for (double& l : finer.edge_length) l = std::min(2 * l, e);
+    finer = refine_mesh(std::move(finer), context);
+    if (finer.position.size() == before) return graph;
+    fine = std::move(finer);
+  }
+}
+
+/// Cut coarsely first, to find the lengths, then as they ask, with a vertex for every seed of a path.
+FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
+                 const CutOptions& options, Context& context, MeshTwins& twins) {
+  FineMesh fine;
+  for (const WorldPoint& p : mesh.vertices) fine.position.push_back(on_lattice(frame, p));
+  const double e = options.edge_length_world / frame.voxel_size * kOneVoxelQ8;
+  fine.edge_length.assign(fine.position.size(), kFirstCut * e);
+  fine.triangles = mesh.triangles;
+  fine.paths = curve_paths(fine.position, fine.triangles, network);
+  find_jagged_paths(fine.position, e, fine.paths);
+  fine = refine_mesh(std::move(fine), context);
+  std::fill(fine.edge_length.begin(), fine.edge_length.end(), e);
+  const VertexGraph graph = with_asked_lengths(fine, frame, options, context);
+  const double widest = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
+  const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * widest);
+  if (options.vertices > 0 || options.asked.vary())
+    vary_edge_lengths(fine, graph, facing, {options.vertices, options.asked.growth, options.asked.field != nullptr});
+  check_cancel(context, "features");
+  std::vector<WorldPoint> before;
+  for (const WorldPoint& p : options.before) before.push_back(on_lattice(frame, p));
+  place_path_seeds(fine, facing, before);
+  fine = refine_mesh(std::move(fine), context, &graph.neighbours);
+  begin_loops_at_seeds(fine);
+  return flip_flat_edges(std::move(fine), &twins);
+}
+
+void require_edge_length(double edge_length_world) {
+  if (edge_length_world > 0 && std::isfinite(edge_length_world)) return;
+  throw Error(ErrorCode::usage, "features",
+              "the edge length is " + std::to_string(edge_length_world) + "; it must be above 0, and finite");
+}
+
+}  // namespace
+
+CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
+                       const CutOptions& options, Context& context) {
+  require_edge_length(options.edge_length_world);
+  auto fine = std::make_shared<FineMesh>();
+  MeshTwins twins;
+  run_with_threads(context, [&] { *fine = refined(mesh, network, frame, options, context, twins); });
+  CutSurface cut = cut_fine_mesh(fine, frame, context, std::move(twins));
+  cut.is_asked = options.asked.vary();
+  cut.seeds = options.vertices;
+  if (cut.seeds == 0 && cut.is_asked) cut.seeds = std::llround(vertices_of_lengths(*fine));
+  return cut;
+}
+
+double edge_length_for(const FeatureMesh& mesh, const CurveNetwork& network, int64_t vertices) {
+  if (vertices < 1)
+    throw Error(ErrorCode::usage, "features", std::to_string(vertices) + " vertices are too few; it takes at least 1");
+  double area = 0, extra = 0;
+  for (const auto& t : mesh.triangles)
+    area += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  for (const FeatureCurve& curve : network.curves) {
+    CurvePath path;
+    path.vertex = curve.vertex;
+    path.is_loop = curve.is_loop;
+    measure_path(mesh.vertices, path);
+    if (curve.kind == CurveKind::border) extra += path.length / 2;
+    if (curve.kind == CurveKind::non_manifold) extra -= path.length / 2;
+  }
+  // vertices = 2 / sqrt(3) * area / e^2 + extra / e, solved for 1 / e.
+  const double per_area = 2 / std::sqrt(3.0) * area;
+  return 2 * per_area / (std::sqrt(extra * extra + 4 * per_area * double(vertices)) - extra);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,211 @@
+// flip_flat_edges (see flip_flat_edges.h).
+#include "features/mesh/flip_flat_edges.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "core/parallel_ranges.h"
+#include "features/mesh/edge_sides.h"
+#include "features/mesh/split_edges.h"
+#include "geometry/world_vector.h"
+#include "isoshell/advanced/voxel_set.h"
+
+namespace isoshell {
+namespace {
+
+constexpr double kMostOffPlaneQ8 = 0.5;
+constexpr size_t kMostFlipsPerEdge = 8;  ///< far more than it takes; rounding may not make it endless
+constexpr double kRoundedAway = 1e-9;    ///< sums of two angles of 180 degrees, as in grids, are not told from it
+
+/// Half-edge 3 t + i runs from corner i of triangle t to the next one. Of the triangles beside an edge, a to b, c is
+/// the corner of the one that passes it so, d that of the other.
+class FlatEdges {
+ public:
+  /// `twins` are those between paths: edges without stay, and of no flip more than a part is seen or changed. No edge
+  /// is made that `avoided` has, which is ascending.
+  FlatEdges(FineMesh& mesh, MeshTwins& twins, const std::vector<uint64_t>& avoided)
+      : mesh_(mesh), twin_(twins.of), part_(twins.part), avoided_(avoided) {}
+
+  /// Returns the edges that flips made, whether they still are or not.
+  std::vector<uint64_t> flip_all() {
+    std::vector<uint8_t> is_waiting(twin_.size(), 0);
+    for_each_index(uint32_t(0), uint32_t(twin_.size()), [&](uint32_t h) {
+      if (twin_[h] == kNone || twin_[h] < h || is_acute(h)) return;
+      const uint32_t c = canonical(h);
+      is_waiting[c] = should_flip(c);
+    });
+    std::vector<Waiting> waiting;
+    for (uint32_t h = 0; h < is_waiting.size(); ++h)
+      if (is_waiting[h]) waiting.push_back({part_[h / 3], h, at(from(h)), at(to(h))});
+    tbb::parallel_sort(waiting.begin(), waiting.end());
+    std::vector<std::vector<uint32_t>> of_part;
+    for (size_t i = 0; i < waiting.size(); ++i) {
+      if (i == 0 || waiting[i].part != waiting[i - 1].part) of_part.emplace_back();
+      of_part.back().push_back(waiting[i].half_edge);
+    }
+    std::vector<std::vector<uint64_t>> made_in(of_part.size());
+    for_each_index(size_t(0), of_part.size(), [&](size_t p) { made_in[p] = flip_waiting(std::move(of_part[p])); });
+    std::vector<uint64_t> made;
+    for (const std::vector<uint64_t>& in_part : made_in) made.insert(made.end(), in_part.begin(), in_part.end());
+    return made;
+  }
+
+ private:
+  /// In an order that does not depend on how triangles are numbered, but where edges have the same ends.
+  struct Waiting {
+    uint32_t part, half_edge;
+    WorldPoint from, to;
+
+    bool operator<(const Waiting& o) const {
+      if (part != o.part) return part < o.part;
+      if (is_before(from, o.from)) return true;
+      if (is_before(o.from, from)) return false;
+      if (is_before(to, o.to)) return true;
+      return !is_before(o.to, to) && half_edge < o.half_edge;
+    }
+  };
+
+  std::vector<uint64_t> flip_waiting(std::vector<uint32_t> waiting) {
+    std::vector<uint64_t> made;
+    for (size_t left = kMostFlipsPerEdge * twin_.size(); !waiting.empty() && left > 0; --left) {
+      uint32_t h = waiting.back();
+      waiting.pop_back();
+      if (twin_[h] == kNone || is_acute(h)) continue;
+      h = canonical(h);
+      if (!should_flip(h)) continue;
+      const uint32_t t = h - h % 3, u = twin_[h] - twin_[h] % 3;
+      made.push_back(edge_key(opposite(h), opposite(twin_[h])));
+      flip(h);
+      waiting.insert(waiting.end(), {t, t + 2, u, u + 2});
+    }
+    return made;
+  }
+
+  static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  uint32_t from(uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
+  uint32_t to(uint32_t h) const { return from(next(h)); }
+  uint32_t opposite(uint32_t h) const { return from(next(next(h))); }
+  const WorldPoint& at(uint32_t v) const { return mesh_.position[v]; }
+  uint32_t canonical(uint32_t h) const { return is_before(at(from(h)), at(to(h))) ? h : twin_[h]; }
+
+  /// Whether neither of the angles at c and d is more than 90 degrees, so that the edge should not flip.
+  bool is_acute(uint32_t h) const {
+    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(twin_[h]));
+    return dot(a - c, b - c) >= 0 && dot(a - d, b - d) >= 0;
+  }
+
+  /// Whether the angles at c and d are more than 180 degrees together, and the edge between them would do as well and
+  /// be the only one.
+  bool should_flip(uint32_t h) const {
+    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(twin_[h]));
+    const WorldPoint at_c = cross(b - a, c - a), at_d = cross(a - b, d - b);
+    const double area_c = length(at_c), area_d = length(at_d);
+    const double left = dot(a - c, b - c) * area_d, right = dot(a - d, b - d) * area_c;
+    if (left + right >= -kRoundedAway * (std::abs(left) + std::abs(right))) return false;
+    const WorldPoint both = {at_c.x + at_d.x, at_c.y + at_d.y, at_c.z + at_d.z};
+    if (std::abs(dot(at_c, d - a)) > kMostOffPlaneQ8 * length(both)) return false;
+    const double ab = length(b - a);
+    const auto faces_so = [&](const WorldPoint& n, double area) {
+      return dot(n, both) > 0 || area <= kMostOffPlaneQ8 * ab;
+    };
+    if (!faces_so(at_c, area_c) || !faces_so(at_d, area_d)) return false;
+    if (dot(cross(d - a, c - a), both) <= 0 || dot(cross(c - b, d - b), both) <= 0) return false;
+    const double longest_sq =
+        std::max({length_sq(b - a), length_sq(c - a), length_sq(c - b), length_sq(d - a), length_sq(d - b)});
+    return length(d - c) <= std::sqrt(longest_sq) && !is_beside(next(next(h)), opposite(twin_[h])) &&
+           !std::binary_search(avoided_.begin(), avoided_.end(), edge_key(opposite(h), opposite(twin_[h])));
+  }
+
+  /// Whether an edge joins the vertex that a half-edge begins at to another one, in the fan of its triangle.
+  bool is_beside(uint32_t begin, uint32_t other) const {
+    for (uint32_t h = begin; h != kNone;) {
+      const uint32_t before = next(next(h));
+      if (to(h) == other || from(before) == other) return true;
+      h = twin_[before];
+      if (h == begin) return false;
+    }
+    for (uint32_t h = twin_[begin]; h != kNone; h = twin_[next(h)])
+      if (to(next(h)) == other || opposite(next(h)) == other) return true;
+    return false;
+  }
+
+  /// The triangles a, b, c and b, a, d become a, d, c and b, c, d.
+  void flip(uint32_t h) {
+    const uint32_t g = twin_[h], t = h - h % 3, u = g - g % 3;
+    const uint32_t a = from(h), b = to(h), c = opposite(h), d = opposite(g);
+    const uint32_t at_ad = twin_[next(g)], at_ca = twin_[next(next(h))], at_bc = twin_[next(h)],
+                   at_db = twin_[next(next(g))];
+    mesh_.triangles[t / 3] = {a, d, c};
+    mesh_.triangles[u / 3] = {b, c, d};
+    connect(t, at_ad);
+    connect(t + 1, u + 1);
+    connect(t + 2, at_ca);
+    connect(u, at_bc);
+    connect(u + 2, at_db);
+  }
+  void connect(uint32_t g, uint32_t h) {
+    twin_[g] = h;
+    if (h != kNone) twin_[h] = g;
+  }
+
+  FineMesh& mesh_;
+  std::vector<uint32_t>& twin_;
+  const std::vector<uint32_t>& part_;
+  const std::vector<uint64_t>& avoided_;
+};
+
+/// Edges of more than two triangles, ascending.
+std::vector<uint64_t> crowded_edges(const EdgeSides& sides) {
+  std::vector<uint64_t> edges;
+  for (uint32_t u = 0; u < sides.count(); ++u)
+    for_each_edge_from(sides, u, [&](uint32_t v, View<const EdgeSide> on_edge) {
+      if (on_edge.size > 2) edges.push_back(edge_key(u, v));
+    });
+  return edges;
+}
+
+bool has_edge(const EdgeSides& sides, uint64_t edge) {
+  const View<const EdgeSide> from = sides.in(int64_t(edge >> 32));
+  const auto at = std::lower_bound(from.begin(), from.end(), EdgeSide{uint32_t(edge), 0});
+  return at != from.end() && at->larger_end == uint32_t(edge);
+}
+
+/// Whether flips may have made an edge that others have, too: there was one, or they made it twice.
+bool may_be_crowded(const EdgeSides& before, std::vector<uint64_t> made) {
+  tbb::parallel_sort(made.begin(), made.end());
+  return std::adjacent_find(made.begin(), made.end()) != made.end() ||
+         std::any_of(made.begin(), made.end(), [&](uint64_t edge) { return has_edge(before, edge); });
+}
+
+/// Adds to `crowded` the crowded edges that flips made. Whether there are any.
+bool add_crowded(const EdgeSides& before, const EdgeSides& after, std::vector<uint64_t>& crowded) {
+  const std::vector<uint64_t> now = crowded_edges(after), then = crowded_edges(before);
+  const size_t known = crowded.size();
+  std::set_difference(now.begin(), now.end(), then.begin(), then.end(), std::back_inserter(crowded));
+  std::sort(crowded.begin(), crowded.end());
+  return crowded.size() > known;
+}
+
+}  // namespace
+
+FineMesh flip_flat_edges(FineMesh mesh, MeshTwins* twins) {
+  const MeshTriangles before = mesh.triangles;
+  const EdgeSides sides = find_edge_sides(before, mesh.position.size());
+  const std::vector<uint64_t> on_paths = path_edges(mesh.paths);
+  std::vector<uint64_t> crowded;  // what both sides of a thin part would make
+  for (;;) {
+    MeshTwins found = find_twins(before, sides, on_paths);
+    const std::vector<uint64_t> made = FlatEdges(mesh, found, crowded).flip_all();
+    if (!may_be_crowded(sides, made)) {
+      if (twins) *twins = std::move(found);
+      return mesh;
+    }
+    if (!add_crowded(sides, find_edge_sides(mesh.triangles, mesh.position.size()), crowded)) return mesh;
+    mesh.triangles = before;
+  }
+}
+
+}  // namespace isoshell

@@ -1,0 +1,183 @@
+#include "features/mesh/weld_for_features.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "core/buckets.h"
+#include "features/mesh/split_edges.h"
+#include "isoshell/distance.h"
+
+namespace isoshell {
+namespace {
+
+/// Positions that are used, ascending and once each, and per vertex its place among them.
+struct WeldedVertices {
+  std::vector<WorldPoint> position;
+  std::vector<uint32_t> place;
+};
+
+WorldPoint without_negative_zero(const WorldPoint& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
+
+/// A vertex of the soup; its position lies beside its number for the sort.
+struct UsedVertex {
+  WorldPoint at;
+  uint32_t number;
+
+  bool operator<(const UsedVertex& o) const {
+    return std::tie(at.x, at.y, at.z, number) < std::tie(o.at.x, o.at.y, o.at.z, o.number);
+  }
+};
+
+/// Those that triangles use, by position, then by number.
+std::vector<UsedVertex> used_by_position(const TriangleSoup& soup) {
+  std::vector<uint8_t> is_used(soup.vertices.size(), 0);
+  for (const auto& t : soup.triangles)
+    for (const uint32_t v : t) is_used[v] = 1;
+  std::vector<UsedVertex> used;
+  used.reserve(is_used.size());
+  for (uint32_t v = 0; v < is_used.size(); ++v)
+    if (is_used[v]) used.push_back({soup.vertices[v], v});
+  tbb::parallel_sort(used.begin(), used.end());
+  return used;
+}
+
+WeldedVertices weld_vertices(const TriangleSoup& soup) {
+  const std::vector<UsedVertex> used = used_by_position(soup);
+  std::vector<WorldPoint> position;
+  position.reserve(used.size());
+  std::vector<uint32_t> place(soup.vertices.size(), 0);
+  for (const auto& [p, v] : used) {
+    const bool is_known =
+        !position.empty() && position.back().x == p.x && position.back().y == p.y && position.back().z == p.z;
+    if (!is_known) position.push_back(without_negative_zero(p));
+    place[v] = uint32_t(position.size() - 1);
+  }
+  return {std::move(position), std::move(place)};
+}
+
+/// A point of a lattice, as a number to sort by.
+struct NumberedPoint {
+  uint64_t x_y;
+  uint32_t z, number;
+
+  bool operator<(const NumberedPoint& o) const { return x_y != o.x_y ? x_y < o.x_y : z < o.z; }
+};
+
+bool are_all_used(const LatticeSurface& surface) {
+  std::vector<uint8_t> is_used(size_t(surface.points.size()), 0);
+  const auto use = [&](uint32_t v) { __atomic_store_n(&is_used[v], uint8_t(1), __ATOMIC_RELAXED); };
+  for_each_index(int64_t(0), surface.triangles.size(), [&](int64_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    use(a), use(b), use(c);
+  });
+  return std::find(is_used.begin(), is_used.end(), 0) == is_used.end();
+}
+
+/// Points of a lattice are in the order of their positions in the world. None where some are not used, and where the
+/// lattice is so fine and so far from the origin that rounding makes neighbours one.
+std::optional<WeldedVertices> vertices_of(const LatticeSurface& surface) {
+  if (!are_all_used(surface)) return {};
+  const size_t count = size_t(surface.points.size());
+  Buffer<NumberedPoint> points(surface.points.size());
+  for_each_index(uint32_t(0), uint32_t(count), [&](uint32_t v) {
+    const PointQ8& q = surface.points[v];
+    points[v] = {uint64_t(uint32_t(q.x)) << 32 | uint32_t(q.y), uint32_t(q.z), v};
+  });
+  tbb::parallel_sort(points.begin(), points.end());
+  WeldedVertices welded{std::vector<WorldPoint>(count), std::vector<uint32_t>(count)};
+  for_each_index(uint32_t(0), uint32_t(count), [&](uint32_t i) {
+    const uint32_t v = points[i].number;
+    welded.position[i] = without_negative_zero(surface.frame.to_world(surface.points[v]));
+    welded.place[v] = i;
+  });
+  for (size_t i = 1; i < count; ++i)
+    if (!is_before(welded.position[i - 1], welded.position[i])) return {};
+  return welded;
+}
+
+std::array<uint32_t, 3> corners_of(const std::array<uint32_t, 3>& t) { return t; }
+std::array<uint32_t, 3> corners_of(const TriangleIndices& t) { return {t.a, t.b, t.c}; }
+
+/// A triangle among those of its smallest corner.
+struct WeldedTriangle {
+  std::array<uint32_t, 2> others;  ///< corners, the smaller first
+  uint32_t source_face;
+  bool is_turned;  ///< runs from the smallest corner to the larger one of the others
+
+  bool operator<(const WeldedTriangle& o) const {
+    return std::tie(others, source_face) < std::tie(o.others, o.source_face);
+  }
+  std::array<uint32_t, 3> corners(uint32_t smallest) const {
+    return {smallest, others[is_turned ? 1 : 0], others[is_turned ? 0 : 1]};
+  }
+};
+using WeldedTriangles = Buckets<WeldedTriangle>;
+
+template <class Triangle>
+WeldedTriangles by_smallest_corner(View<const Triangle> triangles, const WeldedVertices& welded) {
+  const auto vertices = int64_t(welded.position.size());
+  return sort_into_buckets<WeldedTriangle>(vertices, triangles.size, [&](int64_t t, auto put) {
+    const std::array<uint32_t, 3> corner = corners_of(triangles[t]);
+    const uint32_t c[3] = {welded.place[corner[0]], welded.place[corner[1]], welded.place[corner[2]]};
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return;
+    const size_t first = size_t(std::min_element(c, c + 3) - c);
+    const uint32_t a = c[(first + 1) % 3], b = c[(first + 2) % 3];
+    put(c[first], WeldedTriangle{{std::min(a, b), std::max(a, b)}, uint32_t(t), b < a});
+  });
+}
+
+/// Calls visit(triangle) for the first one of the same corners, of those whose smallest corner a vertex is.
+template <class Visit>
+void for_each_first(const WeldedTriangles& all, int64_t vertex, Visit visit) {
+  const View<const WeldedTriangle> in = all.in(vertex);
+  for (int64_t i = 0; i < in.size; ++i)
+    if (i == 0 || in[i].others != in[i - 1].others) visit(in[i]);
+}
+
+template <class Triangle>
+FeatureMesh weld_triangles(View<const Triangle> triangles, WeldedVertices welded) {
+  const WeldedTriangles all = by_smallest_corner(triangles, welded);
+  FeatureMesh mesh;
+  mesh.vertices = std::move(welded.position);
+  Buffer<int64_t> first(all.first.size());
+  first[all.count()] = 0;
+  for_each_index(int64_t(0), all.count(), [&](int64_t v) {
+    int64_t count = 0;
+    for_each_first(all, v, [&](const WeldedTriangle&) { ++count; });
+    first[v] = count;
+  });
+  offsets_from_counts(first.view());
+  mesh.triangles.resize(size_t(first[all.count()]));
+  mesh.source_face.resize(mesh.triangles.size());
+  for_each_index(int64_t(0), all.count(), [&](int64_t v) {
+    auto at = size_t(first[v]);
+    for_each_first(all, v, [&](const WeldedTriangle& t) {
+      mesh.triangles[at] = t.corners(uint32_t(v));
+      mesh.source_face[at++] = t.source_face;
+    });
+  });
+  return mesh;
+}
+
+}  // namespace
+
+FeatureMesh weld_for_features(const TriangleSoup& soup) {
+  const View<const std::array<uint32_t, 3>> triangles{soup.triangles.data(), int64_t(soup.triangles.size())};
+  return weld_triangles(triangles, weld_vertices(soup));
+}
+
+FeatureMesh weld_for_features(const LatticeSurface& surface) {
+  if (std::optional<WeldedVertices> vertices = vertices_of(surface))
+    return weld_triangles(surface.triangles.view(), std::move(*vertices));
+  TriangleMesh mesh = to_world(surface);
+  TriangleSoup soup;
+  soup.vertices = std::move(mesh.vertices);
+  soup.triangles = std::move(mesh.triangles);
+  return weld_for_features(soup);
+}
+
+}  // namespace isoshell

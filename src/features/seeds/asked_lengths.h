@@ -1,0 +1,29 @@
+// Edge lengths that a user asks for, on a fine mesh.
+#pragma once
+
+#include "features/mesh/vertex_graph.h"
+#include "isoshell/advanced/lattice.h"
+#include "isoshell/sizing.h"
+
+namespace isoshell {
+
+/// What is asked for beside a number of vertices. World units.
+struct AskedLengths {
+  const SizingField* field = nullptr;
+  double usual_world = 0;     ///< where the field says nothing
+  double shortest_world = 0;  ///< none is shorter
+  double adaptivity = 0;      ///< part of the vertices that goes by curvature
+  double growth = 0.2;        ///< most that a length grows, over the way
+
+  bool vary() const { return field || adaptivity > 0; }
+};
+
+/// Most that lengths differ by: what EdgeLengthsView::mass has room for.
+constexpr double kMostLengthRatio = 16;
+
+/// Gives the vertices the lengths asked for: those of the field, by curvature off the paths, and at most sixteen times
+/// the shortest; above 0 vertices in proportion, so that about so many have them. `e`: the length the mesh was cut at.
+void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame, const AskedLengths& asked,
+                     int64_t vertices, double e);
+
+}  // namespace isoshell

@@ -1,0 +1,33 @@
+// Vectors of the world, for host and device.
+#pragma once
+
+#include <cmath>
+
+#include "isoshell/advanced/host_device.h"
+#include "isoshell/advanced/lattice.h"
+
+namespace isoshell {
+
+ISOSHELL_HD inline WorldPoint operator+(const WorldPoint& a, const WorldPoint& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+ISOSHELL_HD inline WorldPoint operator-(const WorldPoint& a, const WorldPoint& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+ISOSHELL_HD inline WorldPoint operator*(double by, const WorldPoint& a) { return {by * a.x, by * a.y, by * a.z}; }
+ISOSHELL_HD inline double dot(const WorldPoint& a, const WorldPoint& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+ISOSHELL_HD inline double length_sq(const WorldPoint& a) { return dot(a, a); }
+ISOSHELL_HD inline double length(const WorldPoint& a) { return std::sqrt(dot(a, a)); }
+ISOSHELL_HD inline double distance_sq(const WorldPoint& a, const WorldPoint& b) { return length_sq(b - a); }
+ISOSHELL_HD inline WorldPoint cross(const WorldPoint& a, const WorldPoint& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// Along the normal, as long as twice the triangle's area.
+ISOSHELL_HD inline WorldPoint doubled_area(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
+  return cross(b - a, c - a);
+}
+ISOSHELL_HD inline double triangle_area(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
+  return length(doubled_area(a, b, c)) / 2;
+}
+
+}  // namespace isoshell

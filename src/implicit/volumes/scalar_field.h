@@ -1,0 +1,70 @@
+// A sparse scalar field on an integer lattice, whatever file it came from: blocks of 8^3 values and tiles of one value.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "isoshell/advanced/lattice.h"
+
+namespace isoshell {
+
+constexpr int32_t kFieldBlock = 8;        ///< voxels along a block
+constexpr int32_t kFieldReach = 1 << 30;  ///< no block lies farther from the origin
+constexpr int kWindow = kFieldBlock + 1;  ///< a block and the first voxels of the next ones
+constexpr int kWindowStride[3] = {kWindow * kWindow, kWindow, 1};
+
+/// A cube of lattice points that all have one value.
+struct FieldTile {
+  Voxel origin;
+  int32_t size;  ///< points along an edge, a multiple of kFieldBlock
+  float value;
+};
+
+/// Index coordinates to the world: world[i] = at[i][0] x + at[i][1] y + at[i][2] z + at[i][3].
+struct AffineMap {
+  double at[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+};
+
+/// Length of a voxel's edges, 0 where they differ or are not square to each other.
+inline double cube_edge(const AffineMap& map) {
+  constexpr double kSlack = 0.01;
+  double dot[3][3] = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (const auto& row : map.at) dot[i][j] += row[i] * row[j];
+  const double sq = dot[0][0];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (std::abs(dot[i][j] - (i == j ? sq : 0)) > 2 * kSlack * sq) return 0;
+  return std::sqrt(sq);
+}
+
+class ScalarField {
+ public:
+  virtual ~ScalarField() = default;
+
+  /// Smallest corners of the blocks that hold values, in any order.
+  virtual std::vector<Voxel> blocks() const = 0;
+  /// Tiles, in any order; where there is neither block nor tile the field has the value of the background.
+  virtual std::vector<FieldTile> tiles() const = 0;
+  /// The first size[i] values along each axis of the block at `origin`, or of the tile there, at kWindowStride.
+  virtual void copy(Voxel origin, const int size[3], float* to) const = 0;
+
+  std::string title() const { return file + ": grid \"" + name + "\""; }
+
+  std::string file, name, grid_class;
+  double background = 0;
+  AffineMap to_world;
+};
+
+/// Copies from an array of 512 values, z fastest, `value(i)` giving the i-th.
+template <class Value>
+void copy_block(const int size[3], float* to, Value value) {
+  for (int x = 0; x < size[0]; ++x)
+    for (int y = 0; y < size[1]; ++y)
+      for (int z = 0; z < size[2]; ++z)
+        to[x * kWindowStride[0] + y * kWindowStride[1] + z] = float(value(x * 64 + y * 8 + z));
+}
+
+}  // namespace isoshell

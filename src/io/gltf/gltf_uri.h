@@ -1,0 +1,18 @@
+// What a uri of a glTF file stands for: data of its own, or a file beside it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/advanced/buffer.h"
+
+namespace isoshell {
+
+/// The bytes of "data:...;base64,..."; none where that is not sound.
+std::optional<std::vector<char>> decoded_data(const std::string& uri);
+/// A relative path with its %-codes resolved; none for what leads elsewhere: other schemes, absolute paths, "..".
+std::optional<std::string> file_name_of(const std::string& uri);
+std::string base64_of(View<const char> bytes);
+
+}  // namespace isoshell

@@ -1,0 +1,262 @@
+// glTF out: one mesh with a primitive for each material, in one file.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/attribute_values.h"
+#include "core/number_type.h"
+#include "io/gltf/gltf_materials.h"
+#include "io/gltf/gltf_uri.h"
+#include "io/gltf/gltf_vertices.h"
+#include "io/mesh/mesh_writers.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+enum ComponentType { kU8 = 5121, kU16 = 5123, kU32 = 5125, kF32 = 5126 };
+enum ViewTarget { kVertexData = 34962, kIndexData = 34963 };
+
+/// Little-endian, on any machine.
+template <class T>
+void put(std::vector<char>& out, T value) {
+  using Small = std::conditional_t<sizeof(T) == 1, uint8_t, uint16_t>;
+  using Bits = std::conditional_t<sizeof(T) == 4, uint32_t, Small>;
+  Bits bits;
+  std::memcpy(&bits, &value, sizeof value);
+  for (size_t i = 0; i < sizeof(T); ++i) out.push_back(char(bits >> 8 * i & 0xff));
+}
+
+double largest_of(NumberType type) {
+  return with_type(type, [](auto number) {
+    using T = decltype(number);
+    return std::is_integral_v<T> ? double(std::numeric_limits<T>::max()) : 1.0;
+  });
+}
+
+class GltfWriter {
+ public:
+  explicit GltfWriter(const TriangleMesh& mesh) : mesh_(mesh) {
+    for (const Attribute& a : mesh.attributes) {
+      if (is_kept_corner(a)) of_corners_.push_back(&a);
+      if (a.domain == AttributeDomain::face && a.name == kMaterialName && !a.labels.empty()) material_ = &a;
+    }
+    split_ = split_vertices(mesh, of_corners_);
+    if (needs_double(mesh)) origin_ = middle();
+    put_positions();
+    if (!mesh.gap.empty()) put_numbers("_GAP", [&](size_t v) { return double(mesh.gap[split_.vertex[v]]); });
+    for (const Attribute* a : of_corners_) put_corners(*a);
+    for (const Attribute& a : mesh.attributes)
+      if (a.domain == AttributeDomain::vertex) put_vertices(a);
+    put_triangles();
+    put_document();
+  }
+
+  /// Its buffer is `bytes()`, at the uri or in the file's binary chunk.
+  std::string json(const std::string& uri) const {
+    Json all = document_;
+    all["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
+    if (!uri.empty()) all["buffers"][0]["uri"] = uri;
+    return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  View<const char> bytes() const { return {bytes_.data(), int64_t(bytes_.size())}; }
+
+ private:
+  static bool is_kept_corner(const Attribute& a) {
+    if (a.domain != AttributeDomain::corner) return false;
+    return (a.name == kNormalName && a.components == 3) || (uv_number(a) >= 0 && a.components == 2);
+  }
+
+  /// 0 for uv, 7 for uv7, -1 for what is no set of texture coordinates.
+  static int uv_number(const Attribute& a) {
+    if (a.name == kUvName) return 0;
+    const std::string digits = a.name.rfind(kUvName, 0) == 0 ? a.name.substr(std::strlen(kUvName)) : "";
+    const bool is_number =
+        !digits.empty() && digits.size() < 4 && digits.find_first_not_of("0123456789") == std::string::npos;
+    return is_number ? std::stoi(digits) : -1;
+  }
+
+  WorldPoint middle() const {
+    WorldPoint low = mesh_.vertices[0], high = low;
+    for (const WorldPoint& p : mesh_.vertices) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const auto half = [](double a, double b) { return double(float(a / 2 + b / 2)); };  // exact for readers in floats
+    return {half(low.x, high.x), half(low.y, high.y), half(low.z, high.z)};
+  }
+
+  /// An accessor to what was put since byte `start`; its number.
+  size_t close(size_t start, int target, int64_t stride, Json accessor) {
+    Json view = {{"buffer", 0}, {"byteOffset", start}, {"byteLength", bytes_.size() - start}, {"target", target}};
+    if (stride > 0) view["byteStride"] = stride;
+    views_.push_back(view);
+    accessor["bufferView"] = views_.size() - 1;
+    accessors_.push_back(std::move(accessor));
+    return accessors_.size() - 1;
+  }
+
+  void put_positions() {
+    const size_t start = bytes_.size();
+    bytes_.reserve(12 * split_.vertex.size());
+    float low[3], high[3];
+    std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+    std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+    for (const uint32_t v : split_.vertex) {
+      const WorldPoint& p = mesh_.vertices[v];
+      const float values[] = {float(p.x - origin_.x), float(p.y - origin_.y), float(p.z - origin_.z)};
+      for (int i = 0; i < 3; ++i) {
+        put(bytes_, values[i]);
+        low[i] = std::min(low[i], values[i]);
+        high[i] = std::max(high[i], values[i]);
+      }
+    }
+    attributes_["POSITION"] = close(start, kVertexData, 12,
+                                    {{"componentType", kF32},
+                                     {"count", split_.vertex.size()},
+                                     {"type", "VEC3"},
+                                     {"min", {low[0], low[1], low[2]}},
+                                     {"max", {high[0], high[1], high[2]}}});
+  }
+
+  template <class At>
+  void put_numbers(const std::string& semantic, At at) {
+    const size_t start = bytes_.size();
+    for (size_t v = 0; v < split_.vertex.size(); ++v) put(bytes_, finite(float(at(v))));
+    attributes_[semantic] =
+        close(start, kVertexData, 4, {{"componentType", kF32}, {"count", split_.vertex.size()}, {"type", "SCALAR"}});
+  }
+
+  static float finite(float value) { return std::isfinite(value) ? value : 0; }  // the format has no other numbers
+
+  /// Sets of texture coordinates are numbered without a break.
+  std::string semantic_of(const Attribute& a) const {
+    if (a.name == kNormalName) return "NORMAL";
+    const auto before = std::count_if(of_corners_.begin(), of_corners_.end(), [&](const Attribute* other) {
+      return uv_number(*other) >= 0 && uv_number(*other) < uv_number(a);
+    });
+    return "TEXCOORD_" + std::to_string(before);
+  }
+
+  /// Corners without a value get 0; normals must have a direction.
+  void put_corners(const Attribute& a) {
+    const bool is_normal = a.name == kNormalName;
+    const size_t start = bytes_.size();
+    for (const size_t corner : split_.corner) {
+      const double* const value = corner == SIZE_MAX ? nullptr : value_of(a, corner);
+      const bool has_value = value && !std::isnan(value[0]);
+      for (int32_t c = 0; c < a.components; ++c)
+        put(bytes_, has_value ? finite(float(value[c])) : is_normal && c == 2 ? 1.0f : 0.0f);
+    }
+    attributes_[semantic_of(a)] =
+        close(start, kVertexData, 4 * a.components,
+              {{"componentType", kF32}, {"count", split_.vertex.size()}, {"type", is_normal ? "VEC3" : "VEC2"}});
+  }
+
+  void put_vertices(const Attribute& a) {
+    if (a.name == kColorName && a.components >= 3) return put_colors(a);
+    if (a.components != 1) return;
+    std::string semantic = a.name[0] == '_' ? a.name : "_" + a.name;
+    while (attributes_.contains(semantic)) semantic = "_" + semantic;
+    put_numbers(semantic, [&](size_t v) { return a.values[split_.vertex[v]]; });
+  }
+
+  /// Always with alpha: so the colours of bytes, too, are aligned.
+  void put_colors(const Attribute& a) {
+    const double largest = largest_of(a.type);
+    const int type = a.type == NumberType::u8 ? kU8 : a.type == NumberType::u16 ? kU16 : kF32;
+    const size_t start = bytes_.size();
+    for (const uint32_t v : split_.vertex)
+      for (int32_t c = 0; c < 4; ++c) {
+        const double value = c < a.components ? a.values[size_t(v) * size_t(a.components) + size_t(c)] : largest;
+        if (type == kU8) put(bytes_, nearest_of<uint8_t>(value));
+        if (type == kU16) put(bytes_, nearest_of<uint16_t>(value));
+        if (type == kF32) put(bytes_, finite(float(value / largest)));
+      }
+    attributes_["COLOR_0"] = close(
+        start, kVertexData,
+        type == kU8    ? 4
+        : type == kU16 ? 8
+                       : 16,
+        {{"componentType", type}, {"normalized", type != kF32}, {"count", split_.vertex.size()}, {"type", "VEC4"}});
+  }
+
+  /// A primitive for each material that has faces, those without one first; faces keep their order.
+  void put_triangles() {
+    std::vector<std::vector<uint32_t>> faces(material_ ? material_->labels.size() + 1 : 1);
+    for (size_t t = 0; t < split_.triangles.size(); ++t)
+      faces[material_ ? size_t(material_->values[t] + 1) : 0].push_back(uint32_t(t));
+    for (size_t m = 0; m < faces.size(); ++m) {
+      if (faces[m].empty()) continue;
+      const size_t start = bytes_.size();
+      for (const uint32_t t : faces[m])
+        for (const uint32_t v : split_.triangles[t]) put(bytes_, v);
+      Json primitive = {{"attributes", attributes_}};
+      primitive["indices"] =
+          close(start, kIndexData, 0, {{"componentType", kU32}, {"count", 3 * faces[m].size()}, {"type", "SCALAR"}});
+      if (m > 0) primitive["material"] = m - 1;
+      primitives_.push_back(primitive);
+    }
+  }
+
+  void put_document() {
+    Json node = {{"mesh", 0}};
+    if (origin_.x != 0 || origin_.y != 0 || origin_.z != 0) node["translation"] = {origin_.x, origin_.y, origin_.z};
+    document_ = {{"asset", {{"version", "2.0"}, {"generator", "isoshell"}}},
+                 {"scene", 0},
+                 {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                 {"nodes", Json::array({node})},
+                 {"meshes", Json::array({{{"primitives", primitives_}}})},
+                 {"accessors", accessors_},
+                 {"bufferViews", views_}};
+    if (material_) put_gltf_materials(mesh_.files.gltf_materials, material_->labels, document_, bytes_);
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<const Attribute*> of_corners_;
+  const Attribute* material_ = nullptr;
+  GltfVertexSplit split_;
+  WorldPoint origin_{0, 0, 0};  ///< where the node stands
+  std::vector<char> bytes_;
+  Json attributes_ = Json::object(), primitives_ = Json::array(), accessors_ = Json::array(), views_ = Json::array();
+  Json document_;  ///< all but the buffer
+};
+
+void require_triangles(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty())
+    throw Error(ErrorCode::unwritable_output, "write", "a glTF file cannot hold a mesh without triangles; write PLY");
+}
+
+}  // namespace
+
+void write_gltf(OutputFile& file, const TriangleMesh& mesh) {
+  require_triangles(mesh);
+  const GltfWriter writer(mesh);
+  file.write(writer.json("data:application/octet-stream;base64," + base64_of(writer.bytes())) + "\n");
+}
+
+void write_glb(OutputFile& file, const TriangleMesh& mesh) {
+  require_triangles(mesh);
+  const GltfWriter writer(mesh);
+  std::string json = writer.json("");
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const size_t total = 12 + 8 + json.size() + 8 + size_t(writer.bytes().size);  // a multiple of 4, as all elements have
+  if (total > 0xffffffffu)
+    throw Error(ErrorCode::unwritable_output, "write",
+                "the mesh needs " + std::to_string(total) + " bytes; a .glb file has at most 4294967295, write PLY");
+  std::vector<char> head;
+  for (const uint32_t number : {0x46546c67u, 2u, uint32_t(total), uint32_t(json.size()), 0x4e4f534au})
+    put(head, number);
+  std::vector<char> chunk;
+  for (const uint32_t number : {uint32_t(writer.bytes().size), 0x004e4942u}) put(chunk, number);
+  file.write(head.data(), int64_t(head.size()));
+  file.write(json);
+  file.write(chunk.data(), int64_t(chunk.size()));
+  file.write(writer.bytes().data, writer.bytes().size);
+}
+
+}  // namespace isoshell

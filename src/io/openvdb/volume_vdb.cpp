@@ -1,0 +1,146 @@
+// Scalar grids of .vdb files as fields.
+#include <openvdb/io/Compression.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cstring>
+#include <istream>
+
+#include "io/bytes/memory_stream.h"
+#include "io/openvdb/vdb_stream.h"
+#include "io/vdb/volume_readers.h"
+
+namespace isoshell {
+namespace {
+
+Voxel voxel_of(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
+
+template <class GridT>
+class VdbField : public ScalarField {
+ public:
+  using Tree = typename GridT::TreeType;
+  using Leaf = typename Tree::LeafNodeType;
+
+  explicit VdbField(typename GridT::ConstPtr grid) : grid_(std::move(grid)) {
+    background = double(grid_->background());
+    // Not by getAffineMap(), which throws where the determinant is almost 0.
+    const auto map = grid_->transform().baseMap();
+    for (int j = 0; j < 4; ++j) {
+      openvdb::Vec3d axis(0.0);
+      if (j < 3) axis[j] = 1;
+      const openvdb::Vec3d column = j < 3 ? map->applyJacobian(axis) : map->applyMap(axis);
+      for (int i = 0; i < 3; ++i) to_world.at[i][j] = column[i];
+    }
+  }
+
+  std::vector<Voxel> blocks() const override {
+    std::vector<Voxel> origins;
+    for (auto leaf = grid_->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(voxel_of(leaf->origin()));
+    return origins;
+  }
+
+  std::vector<FieldTile> tiles() const override {
+    std::vector<FieldTile> tiles;
+    auto value = grid_->tree().cbeginValueAll();
+    value.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; value; ++value) {
+      if (*value == grid_->background()) continue;
+      const openvdb::CoordBBox box = value.getBoundingBox();
+      tiles.push_back({voxel_of(box.min()), int32_t(box.dim().x()), float(*value)});
+    }
+    return tiles;
+  }
+
+  void copy(Voxel origin, const int size[3], float* to) const override {
+    const openvdb::Coord at(origin.x, origin.y, origin.z);
+    if (const Leaf* leaf = grid_->tree().probeConstLeaf(at)) {
+      const auto* values = leaf->buffer().data();
+      copy_block(size, to, [&](int i) { return values[i]; });
+    } else {
+      const auto value = grid_->tree().getValue(at);
+      copy_block(size, to, [&](int) { return value; });
+    }
+  }
+
+ private:
+  const typename GridT::ConstPtr grid_;
+};
+
+/// "Tree_float_5_4_3_HalfFloat" as users know it.
+std::string short_type(const std::string& type) {
+  const size_t begin = type.find('_') + 1, end = type.find("_5_4_3");
+  return end == std::string::npos || begin > end ? type : type.substr(begin, end - begin);
+}
+
+VolumeGrid describe(const VdbGridSpan& span) {
+  VolumeGrid grid;
+  grid.name = span.name.substr(0, span.name.find('\x1e'));  // behind it OpenVDB numbers grids of the same name
+  grid.type = short_type(span.type);
+  const auto found = span.texts.find(openvdb::GridBase::META_GRID_CLASS);
+  grid.grid_class = found == span.texts.end() ? "unknown" : found->second;
+  if (span.instance)
+    grid.flaw = "shares the values of another grid; name that one";
+  else if (grid.type == "bool" || grid.type == "mask")
+    grid.flaw = "holds no distances or densities, only which voxels are set";
+  else if (grid.type.compare(0, 3, "vec") == 0)
+    grid.flaw = "holds vectors, which have no surface";
+  else if (grid.type.compare(0, 6, "ptdata") == 0)
+    grid.flaw = "holds points; export them as .ply, .xyz or .pcd";
+  else if (grid.type != "float" && grid.type != "double")
+    grid.flaw = "holds values of a type that is not meshed; save it as float";
+  return grid;
+}
+
+}  // namespace
+
+// NanoVDB packs as OpenVDB does: the packed size in front. Blosc packs pieces of a GiB, and believes its own header.
+bool unpack_stream(View<const char> packed, bool zip, View<char> to) {
+  constexpr int64_t kPiece = int64_t(1) << 30, kBloscHeaderBytes = 16;
+  while (to.size > 0) {
+    const int64_t plain = zip ? to.size : std::min(to.size, kPiece);
+    int64_t bytes = 0;
+    if (packed.size < int64_t(sizeof bytes)) return false;
+    std::memcpy(&bytes, packed.data, sizeof bytes);
+    if (bytes <= (zip ? 0 : kBloscHeaderBytes) || bytes > packed.size - int64_t(sizeof bytes)) return false;
+    if (!zip) {
+      uint32_t sizes[3];  // of the plain data, of a block, of the packed data
+      std::memcpy(sizes, packed.data + sizeof bytes + 4, sizeof sizes);
+      if (sizes[0] != plain || sizes[2] != bytes) return false;
+    }
+    MemorySource source({packed.data, int64_t(sizeof bytes) + bytes}, {});
+    std::istream in(&source);
+    try {
+      if (zip)
+        openvdb::io::unzipFromStream(in, to.data, size_t(plain));
+      else
+        openvdb::io::bloscFromStream(in, to.data, size_t(plain));
+    } catch (const openvdb::Exception&) {
+      return false;
+    }
+    packed = packed.part(int64_t(sizeof bytes) + bytes, packed.size - int64_t(sizeof bytes) - bytes);
+    to = to.part(plain, to.size - plain);
+  }
+  return true;
+}
+
+std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions& options) {
+  initialize_openvdb();
+  const View<const char> bytes{source.begin(), source.size()};
+  const VdbLayout layout = read_vdb_layout(source.name(), bytes);
+  std::vector<VolumeGrid> grids;
+  for (const VdbGridSpan& span : layout.grids) grids.push_back(describe(span));
+  const size_t chosen = choose_grid(source.name(), grids, options);
+  const VdbGridSpan& span = layout.grids[chosen];
+  check_volume_memory(source.name(), grids[chosen], check_vdb_tree(source.name(), bytes, span), options);
+  const openvdb::GridBase::ConstPtr grid = read_vdb_grid(source.name(), bytes, span);
+  std::unique_ptr<ScalarField> field;
+  if (grids[chosen].type == "float")
+    field = std::make_unique<VdbField<openvdb::FloatGrid>>(openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid));
+  else
+    field = std::make_unique<VdbField<openvdb::DoubleGrid>>(openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid));
+  field->name = grids[chosen].name;
+  field->grid_class = grids[chosen].grid_class;
+  return field;
+}
+
+}  // namespace isoshell

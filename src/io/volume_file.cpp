@@ -1,0 +1,126 @@
+// Which reader a volume gets, which grid and which value.
+#include "isoshell/io/volume_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include "implicit/volumes/dense_field.h"
+#include "implicit/volumes/iso_surface.h"
+#include "implicit/volumes/unsigned_field.h"
+#include "io/vdb/volume_readers.h"
+#include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
+
+namespace isoshell {
+namespace {
+
+constexpr char kLevelSet[] = "level set", kUnknown[] = "unknown";
+
+constexpr double kCrustVoxels = 0.9;     // half a voxel's diagonal and a little: every voxel of the surface is inside
+constexpr double kLeastEnclosing = 0.5;  // of the zero set: with less it is an open surface
+
+[[noreturn]] void refuse_without_iso(const ScalarField& field, const ValueRange& range, const std::string& why) {
+  std::ostringstream text;
+  text << field.title();
+  if (range.low == range.high) {
+    text << " has no surface: all its values are " << range.low;
+    throw Error(ErrorCode::nothing_to_mesh, "read", text.str());
+  }
+  text << " is no level set (class " << field.grid_class << ", values " << range.low << " to " << range.high << ")"
+       << why << "; say by --iso at which value its surface lies, for example --iso "
+       << (double(range.low) + range.high) / 2;
+  throw Error(ErrorCode::usage, "read", text.str());
+}
+
+/// Whether the class leaves open what the values are, or says that they have no sign.
+bool may_be_unsigned(const std::string& grid_class) {
+  return grid_class == kUnknown || grid_class.find("unsigned") != std::string::npos;
+}
+
+/// The surface of unsigned distances: of their sides, or around the zero set where that encloses nothing.
+TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  const ValueRange range = value_range(field);
+  if (range.low == range.high) refuse_without_iso(field, range, "");
+  const DistanceKind kind = kind_of_distance(field);
+  if (kind.voxel == 0) refuse_without_iso(field, range, ", and no unsigned distance: " + kind.why);
+  if (field.background <= 0)
+    refuse_without_iso(field, range,
+                       ". Its values look like unsigned distances, but its background of 0 puts a surface at the end "
+                       "of the grid: save it with a background above its largest value");
+  info.kind = VolumeKind::unsigned_distance;
+  const SignedSides sides = find_sides(field, kind.voxel, options.memory_limit_bytes);
+  if (sides.enclosing_part >= kLeastEnclosing)
+    return extract_iso_surface(*sides.field, 0, options.memory_limit_bytes, options.creases);
+  info.kind = VolumeKind::open_unsigned_distance;
+  info.iso = kCrustVoxels * kind.voxel;
+  return extract_iso_surface(field, info.iso, options.memory_limit_bytes);
+}
+
+/// The surface at the value asked for, or at 0 in a level set; one that does not say so shows it by a background
+/// outside and values inside.
+TriangleSoup surface_of(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  if (options.iso) {
+    info.iso = *options.iso;
+  } else if (field.grid_class != kLevelSet) {
+    const ValueRange range = value_range(field);
+    if (range.low >= 0 && may_be_unsigned(field.grid_class)) return surface_of_unsigned(field, options, info);
+    if (field.grid_class != kUnknown || range.low >= 0 || field.background <= 0) refuse_without_iso(field, range, "");
+  }
+  return extract_iso_surface(field, info.iso, options.memory_limit_bytes, options.creases);
+}
+
+double voxel_size(const AffineMap& map) {
+  double longest_sq = 0;
+  for (int i = 0; i < 3; ++i) {
+    double sq = 0;
+    for (const auto& row : map.at) sq += row[i] * row[i];
+    longest_sq = std::max(longest_sq, sq);
+  }
+  return std::sqrt(longest_sq);
+}
+
+TriangleSoup described_surface_of(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  info.grid = field.name;
+  info.grid_class = field.grid_class;
+  info.voxel_size_world = voxel_size(field.to_world);
+  info.blocks = int64_t(field.blocks().size());
+  return surface_of(field, options, info);
+}
+
+void check_map(const ScalarField& field) {
+  const auto& m = field.to_world.at;
+  const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  bool finite = std::isfinite(det) && det != 0;
+  for (const auto& row : m)
+    for (const double value : row) finite = finite && std::isfinite(value);
+  if (!finite)
+    throw Error(ErrorCode::unreadable_input, "read",
+                field.title() + " has a transform that is not finite or has no inverse");
+}
+
+}  // namespace
+
+TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info) {
+  return read_volume(MeshSource(path), options, info);
+}
+
+TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
+  if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
+  const bool nano = source.size() >= 7 && std::memcmp(source.begin(), "NanoVDB", 7) == 0;
+  const std::unique_ptr<ScalarField> field =
+      nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
+  field->file = source.name();
+  check_map(*field);
+  return described_surface_of(*field, options, info);
+}
+
+TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
+                               VolumeInfo& info) {
+  return described_surface_of(DenseField(volume, name, options.iso), options, info);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,36 @@
+// Which edge lengths a run aims at: those of a field, shortened where the surface is curved, and bounded by what the
+// grid carries and by how fast lengths may grow.
+#pragma once
+
+#include "features/angles/patch_mesh.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+constexpr double kFewestCellVox = 3.5;  ///< width of a cell: narrower ones are no disks of sheet triangles
+
+/// Whether lengths may vary.
+bool wants_lengths(const RemeshOptions& options);
+
+/// Whether the field says how many vertices there are.
+bool field_decides(const RemeshOptions& options);
+
+/// What is asked for of a surface that is cut; nothing where lengths are all equal.
+AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p);
+
+/// A field that decides the count, and has one length at all vertices of the soup, is an edge length.
+RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup);
+
+/// Gives the sheet its edge lengths, none when they are all equal; then p.vertices where the field decides it.
+void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
+
+/// Width of the cells where they are smallest, in voxels.
+double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Context& context);
+
+/// How well the edges of the result have the lengths of the surface at the homes of their ends. Those of a surface that
+/// is not asked for lengths have no report, though its creases may make them vary.
+void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,
+                   Context& context);
+void measure_edges(const CutSurface& cut, const JoinedPatches& made, SizingReport& report);
+
+}  // namespace isoshell

@@ -1,0 +1,287 @@
+// See cut_curves.h.
+#include "pipeline/patches/cut_curves.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "core/watched.h"
+#include "features/cutting/curve_seeds.h"
+#include "features/cutting/free_seeds.h"
+#include "features/mesh/separate_fans.h"
+#include "geometry/half_edge_list.h"
+#include "geometry/world_vector.h"
+#include "isoshell/mesh_topology.h"
+#include "pipeline/grid/attempt.h"
+#include "pipeline/grid/choose_grid.h"
+#include "pipeline/grid/sizing.h"
+#include "pipeline/patches/feature_report.h"
+#include "pipeline/patches/lay_on_sheet.h"
+#include "pipeline/patches/sheet_when_needed.h"
+
+namespace isoshell {
+namespace {
+
+/// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
+double six_volumes(const FeatureMesh& mesh) {
+  double sum = 0;
+  const WorldPoint& o = mesh.vertices[0];
+  for (const auto& t : mesh.triangles)
+    sum += dot(mesh.vertices[t[0]] - o, cross(mesh.vertices[t[1]] - o, mesh.vertices[t[2]] - o));
+  return sum;
+}
+
+/// The same of a surface whose borders stay: gaps that had to be closed were closed by faces.
+std::string obstacle_to_borders(const CurveNetwork& network) {
+  if (count_kind(network, CurveKind::non_manifold) > 0)
+    return "the surface has edges of more than two faces, or faces that disagree about the outside";
+  return "";
+}
+
+/// What keeps the surface from being its own input's triangles; empty where nothing does. Faces that a union cut count
+/// as closed whatever their edges are.
+std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetwork& network) {
+  const InputTopology& input = p.surface.topology;
+  const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam) +
+                         count_kind(network, CurveKind::line);
+  if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
+    return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
+  if (six_volumes(mesh) < 0) return "the faces look inwards";
+  if (p.grown) return "walls without thickness had to be grown";
+  if (p.closing_vox > 0) return "gaps were closed";
+  return "";
+}
+
+/// The mesh once every fan of triangles has a vertex of its own, as in the result.
+struct SeparatedMesh {
+  int64_t more_places = 0;  ///< vertices of the result that are at places of others
+  int64_t border_loops = 0;
+};
+SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
+  TriangleMesh apart;
+  apart.vertices = mesh.vertices;
+  apart.triangles = mesh.triangles;
+  const bool is_other = !separate_fans(apart.vertices, apart.triangles).empty();
+  const bool has_borders = count_kind(network, CurveKind::border) + count_kind(network, CurveKind::non_manifold) > 0;
+  return {is_other ? count_separated_places(mesh, network, apart.triangles) : 0,
+          has_borders ? check_mesh(apart).boundary_loops : 0};
+}
+
+int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_open) {
+  return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
+}
+
+/// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
+int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
+  constexpr int64_t kBytesPerSeed = 21 * 350;
+  const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
+  if (limit > 0 && bytes > limit)
+    throw NoRoom("features", "the surface cut along them would take about " + std::to_string(bytes >> 20) +
+                                 " MiB, more than the limit of " + std::to_string(limit >> 20) +
+                                 "; raise --max-memory, or ask for fewer vertices");
+  return bytes;
+}
+
+std::vector<uint64_t> edges_of(const FeatureCurve& curve) {
+  std::vector<uint64_t> edges;
+  const size_t count = curve.vertex.size();
+  for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < count; ++i)
+    edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % count]));
+  return edges;
+}
+
+std::vector<uint64_t> edges_of(const CurveNetwork& network) {
+  std::vector<uint64_t> all;
+  for (const FeatureCurve& curve : network.curves) {
+    const std::vector<uint64_t> edges = edges_of(curve);
+    all.insert(all.end(), edges.begin(), edges.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// The curves of a network of which less than half is among some edges.
+std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& network,
+                                   const std::vector<uint64_t>& kept) {
+  std::vector<LostCurve> out;
+  const std::vector<LostCurve> all = describe(mesh, network);
+  for (size_t c = 0; c < all.size(); ++c) {
+    const std::vector<uint64_t> edges = edges_of(network.curves[c]);
+    const auto held = std::count_if(edges.begin(), edges.end(),
+                                    [&](uint64_t e) { return std::binary_search(kept.begin(), kept.end(), e); });
+    if (2 * size_t(held) >= edges.size()) continue;
+    out.push_back(all[c]);
+    out.back().reason = kEdgesTooLong;
+  }
+  return out;
+}
+
+/// What is to be cut, and how.
+struct CutPlan {
+  const FeatureMesh& mesh;
+  const CurveOptions& curves;
+  const LatticeFrame& frame;
+  int64_t seeds;  ///< of a surface whose lengths do not decide
+  CutOptions how = {};
+};
+
+SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport& found,
+                   Context& context) {
+  auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, plan.how, context));
+  if (cut->seeds == 0) cut->seeds = plan.seeds;
+  const SeedSet fixed = seeds_on_curves(*cut, 0);
+  FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
+  found.vertices = count_places(fixed.fixed);
+  found.patches = int64_t(patch_count(*cut));
+  found.given_up.clear();
+  cut->source = std::make_shared<const CutSource>(std::move(source));
+  return cut;
+}
+
+/// The same without the creases around patches that are too small for the edges of the result. Null where there are
+/// none to leave out. Throws: as cut_surface.
+SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSource source, RemeshReport& report,
+                          Context& context) {
+  const FeatureMesh& mesh = plan.mesh;
+  CurveOptions without_small = plan.curves;
+  without_small.drops_small_patches = true;
+  const CurveNetwork network = find_curves(mesh, without_small);
+  const std::vector<uint64_t> kept = edges_of(network);
+  if (kept == edges_of(all)) return nullptr;
+  source.found = describe(mesh, network);
+  for (LostCurve& curve : left_out_of(mesh, all, kept)) source.left_out.push_back(std::move(curve));
+  const int64_t border_loops = report.features.border_loops;
+  report_found(mesh, network, border_loops > 0, report.features);
+  report.features.border_loops = border_loops;
+  return make_cut(plan, network, std::move(source), report.features, context);
+}
+
+/// Cuts a mesh along its curves, or along fewer where there is no room for all. Throws: NoRoom where there is none.
+SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
+                      CutSource source, int64_t seeds, const RemeshOptions& options, const Prepared& p,
+                      RemeshReport& report, Context& context) {
+  CutPlan plan{mesh, curves, p.surface.frame, seeds};
+  report.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
+  CutOptions& how = plan.how;
+  how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(options, p)};
+  if (options.previous && p.previous) how.before = p.previous->carried;
+  const bool lengths_decide = how.asked.vary() && field_decides(options);
+  if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
+  SharedCut cut;
+  const auto why_not_all = [&] {
+    return reason_against([&] {
+      cut = make_cut(plan, network, source, report.features, context);
+      return std::string();
+    });
+  };
+  std::string refused = why_not_all();
+  if (!cut && !how.before.empty()) {  // curves may keep more seeds than there is room for
+    how.before.clear();
+    refused = why_not_all();
+  }
+  if (!cut) cut = cut_along_fewer(plan, network, std::move(source), report, context);
+  if (!cut) throw NoRoom("features", refused);
+  return cut;
+}
+
+/// Those of which less than half was laid onto the sheet.
+std::vector<LostCurve> not_laid(const std::vector<LostCurve>& curves, const std::vector<double>& laid_world) {
+  std::vector<LostCurve> lost;
+  for (size_t c = 0; c < curves.size(); ++c) {
+    const bool is_wanted =
+        curves[c].kind != name_of(CurveKind::border) && curves[c].kind != name_of(CurveKind::non_manifold);
+    if (!is_wanted || 2 * laid_world[c] >= curves[c].length_world) continue;
+    lost.push_back(curves[c]);
+    lost.back().reason = "the result does not pass there";
+  }
+  return lost;
+}
+
+/// Of each curve on the sheet the number of the one that was laid there.
+void name_as_laid(const LaidCurves& laid, const CurveNetwork& on_sheet, std::vector<LostCurve>& curves) {
+  std::unordered_map<uint64_t, uint32_t> curve_of;
+  for (const LaidPiece& piece : laid.pieces)
+    for (const auto& [a, b] : piece.edges) curve_of.emplace(edge_key(a, b), piece.curve);
+  for (size_t c = 0; c < curves.size(); ++c) {
+    const auto found = curve_of.find(edges_of(on_sheet.curves[c]).front());
+    if (found != curve_of.end()) curves[c].index = found->second;
+  }
+}
+
+/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Null where none of them
+/// is near it. Throws: NoRoom.
+SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
+                    const std::string& against, const RemeshOptions& options, const Prepared& p, RemeshReport& report,
+                    Context& context) {
+  if (!has_sheet(p)) return nullptr;
+  if (p.grown && !p.grown.only_flaps)  // the sheet is beside the surface everywhere
+    return nullptr;
+  const LaidCurves laid = lay_on_sheet(mesh, network, p, context);
+  CurveOptions given;
+  given.mode = CreaseMode::given;
+  given.edge_length_world = edge_length_world;
+  given.creases = laid.creases;
+  given.seams = laid.seams;
+  given.lines = laid.lines;
+  const CurveNetwork on_sheet = find_curves(laid.mesh, given);
+  if (on_sheet.curves.empty()) return nullptr;
+  const std::vector<LostCurve> all = describe(mesh, network);
+  CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.lengths_world(all.size())), true};
+  name_as_laid(laid, on_sheet, source.found);
+  report.features.on_sheet = against;
+  return cut_network(laid.mesh, on_sheet, given, std::move(source), vertex_target(options, p), options, p, report,
+                     context);
+}
+
+}  // namespace
+
+/// Of a surface that the options leave open.
+bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
+  return options.boundary == Boundary::keep && !p.surface.topology.closed;
+}
+
+SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
+                            const Prepared& p, RemeshReport& report, Context& context) {
+  if (!failed.input) return nullptr;
+  const CutInput& input = *failed.input;
+  SharedCut cut;
+  reason_against([&] {
+    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, options, p, report, context);
+    return std::string();
+  });
+  return cut;
+}
+
+bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
+               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {
+  CreaseReport creases;
+  FeatureReport& found = report.features;
+  std::vector<LostCurve> all;
+  const std::string why = reason_against([&]() -> std::string {
+    const CurveNetwork network = run_with_threads(context, [&] {
+      return find_curves(mesh, curves, known ? *std::move(known) : find_creases(mesh, curves), &creases);
+    });
+    const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
+    report_found(mesh, network, is_open, found);
+    warn_of_branches(mesh, network, report);
+    found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
+    if (found.curves == 0 && !is_open) return "";
+    all = describe(mesh, network);
+    const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
+    if (!against.empty() && is_open) return against;
+    if (!against.empty()) {
+      p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, options, p, report, context);
+      return p.cut ? "" : against;
+    }
+    const SeparatedMesh apart = separated(mesh, network);
+    found.border_loops = apart.border_loops;
+    CutSource source{all, all, {}};
+    if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
+    p.cut = cut_network(mesh, network, curves, std::move(source), vertices_of(options, p, is_open) - apart.more_places,
+                        options, p, report, context);
+    return "";
+  });
+  if (!why.empty()) give_up(report, all, why);
+  return why.empty();
+}
+
+}  // namespace isoshell

@@ -1,0 +1,46 @@
+// The surface of a run, cut along the curves that are found on it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "features/curves/find_curves.h"
+#include "features/cutting/cut_surface.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// What a surface was cut from.
+struct CutInput {
+  FeatureMesh mesh;
+  CurveNetwork network;
+  double edge_length_world;  ///< of CurveOptions
+};
+
+/// Along which curves a surface was cut.
+struct CutSource {
+  std::vector<LostCurve> if_lost;   ///< all curves of the mesh, as a report says them
+  std::vector<LostCurve> found;     ///< those that it was cut along
+  std::vector<LostCurve> left_out;  ///< those that it was not
+  bool is_sheet = false;            ///< the curves were laid onto the sheet: the input's own triangles cannot be it
+  std::shared_ptr<const CutInput> input = nullptr;  ///< of a closed surface that is no sheet
+};
+
+using SharedCut = std::shared_ptr<const CutSurface>;
+
+/// Of a surface that the options leave open.
+bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
+
+/// Cuts the surface along the curves of its mesh: p.cut, which stays empty where there are none. False where there are
+/// curves that could not be kept, as the report says. `known` are the mesh's creases, where those were found.
+bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
+               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
+
+/// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason. Null where that
+/// cannot be.
+SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
+                            const Prepared& p, RemeshReport& report, Context& context);
+
+}  // namespace isoshell

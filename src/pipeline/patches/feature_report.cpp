@@ -1,0 +1,127 @@
+// See feature_report.h.
+#include "pipeline/patches/feature_report.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "core/copy_product.h"
+#include "features/mesh/curve_paths.h"
+#include "geometry/world_vector.h"
+#include "isoshell/readable.h"
+
+namespace isoshell {
+namespace {
+
+double length_of(const FeatureMesh& mesh, const FeatureCurve& curve) {
+  CurvePath path;
+  path.vertex = curve.vertex;
+  path.is_loop = curve.is_loop;
+  measure_path(mesh.vertices, path);
+  return path.length;
+}
+
+}  // namespace
+
+const char* name_of(CurveKind kind) {
+  switch (kind) {
+    case CurveKind::border:
+      return "border";
+    case CurveKind::non_manifold:
+      return "edge of three faces";
+    case CurveKind::crease:
+      return "crease";
+    case CurveKind::seam:
+      return "seam";
+    default:
+      return "line";
+  }
+}
+
+int64_t count_kind(const CurveNetwork& network, CurveKind kind) {
+  return std::count_if(network.curves.begin(), network.curves.end(),
+                       [=](const FeatureCurve& curve) { return curve.kind == kind; });
+}
+
+void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool keeps_borders, FeatureReport& report) {
+  report.seams = count_kind(network, CurveKind::seam);
+  report.lines = count_kind(network, CurveKind::line);
+  report.curves = count_kind(network, CurveKind::crease) + report.seams + report.lines;
+  report.corners = int64_t(network.corners.size());
+  report.length_world = 0;
+  for (const FeatureCurve& curve : network.curves)
+    if (curve.kind != CurveKind::border && curve.kind != CurveKind::non_manifold)
+      report.length_world += length_of(mesh, curve);
+  if (keeps_borders) report.border_loops = count_kind(network, CurveKind::border);  // until they are put together
+}
+
+void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, RemeshReport& report) {
+  int64_t edges = 0;
+  const WorldPoint* at = nullptr;
+  for (const FeatureCurve& curve : network.curves) {
+    if (curve.kind != CurveKind::non_manifold) continue;
+    edges += int64_t(curve.vertex.size()) - (curve.is_loop ? 0 : 1);
+    if (!at) at = &mesh.vertices[curve.vertex.front()];
+  }
+  if (!at) return;
+  std::ostringstream text;
+  text << counted(edges, "edge") << " of more than two faces, or of two that disagree about the outside, the first at "
+       << at->x << ' ' << at->y << ' ' << at->z
+       << ": a result that is a manifold cannot have them, and follows the surface around";
+  std::vector<std::string>& all = report.warnings;
+  if (std::find(all.begin(), all.end(), text.str()) == all.end()) all.push_back(text.str());
+}
+
+std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network) {
+  std::vector<LostCurve> curves;
+  for (size_t c = 0; c < network.curves.size(); ++c) {
+    const FeatureCurve& curve = network.curves[c];
+    curves.push_back(
+        {int64_t(c), name_of(curve.kind), length_of(mesh, curve), mesh.vertices[curve.vertex.front()], ""});
+  }
+  return curves;
+}
+
+void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report) {
+  std::map<std::string, std::vector<const LostCurve*>> by_reason;
+  for (const LostCurve& curve : curves) by_reason[curve.reason].push_back(&curve);
+  for (const auto& [reason, of_it] : by_reason) {
+    const WorldPoint& at = of_it.front()->at;
+    std::ostringstream text;
+    text << counted(int64_t(of_it.size()), "crease is", "creases are") << " not kept, the first near " << at.x << ' '
+         << at.y << ' ' << at.z << ": "
+         << (reason == kEdgesTooLong ? "the edges are too long for them; ask for more --vertices" : reason);
+    report.warnings.push_back(text.str());
+  }
+  report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
+}
+
+void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why) {
+  FeatureReport& features = report.features;
+  const int64_t creases = features.curves - features.seams - features.lines;
+  std::string what;
+  const auto add = [&](const std::string& kind) { what += (what.empty() ? "" : " and ") + kind; };
+  if (features.border_loops > 0) add("borders");
+  if (creases > 0) add(counted(creases, "crease"));
+  if (features.seams > 0) add(counted(features.seams, "seam"));
+  if (features.lines > 0) add(counted(features.lines, "line"));
+  if (what.empty()) what = "creases";  // none was found yet
+  const bool is_one = features.border_loops == 0 && features.curves == 1;
+  report.warnings.push_back(what + (is_one ? " is not kept: " : " are not kept: ") + why +
+                            (features.border_loops > 0 ? "; the result is closed" : "") +
+                            (features.seams > 0 ? "; triangles lie across seams" : ""));
+  for (const LostCurve& curve : curves) {
+    const bool is_wanted = curve.kind != name_of(CurveKind::non_manifold) &&
+                           (curve.kind != name_of(CurveKind::border) || features.border_loops > 0);
+    if (!is_wanted) continue;
+    features.lost.push_back(curve);
+    features.lost.back().reason = why;
+  }
+  features.given_up = why;
+  features.on_sheet.clear();
+  features.kept_length_world = 0;
+  features.patches = features.vertices = features.segments = features.border_loops = 0;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,35 @@
+// What a run says of the curves of its input: which of them the result has, where, and which are lost.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "features/cutting/cut_surface.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// Why a curve is lost whose patches, or whose segments, have no room.
+constexpr const char* kEdgesTooLong = "the edges are too long for it";
+
+/// "border", "edge of three faces", "crease", "seam" or "line".
+const char* name_of(CurveKind kind);
+
+int64_t count_kind(const CurveNetwork& network, CurveKind kind);
+
+/// Fills in what was found. Borders of the input count as loops that are kept when `keeps_borders`.
+void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool keeps_borders, FeatureReport& report);
+
+/// Warns of edges of more than two faces, once, and says where: no result has them.
+void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, RemeshReport& report);
+
+/// Every curve as the report names it, should it be lost.
+std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);
+
+/// Says that some of the curves are not kept while others are, and warns.
+void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report);
+
+/// Says that none of the curves is kept, and warns.
+void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why);
+
+}  // namespace isoshell

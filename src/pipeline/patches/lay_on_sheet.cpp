@@ -1,0 +1,50 @@
+// See lay_on_sheet.h.
+#include "pipeline/patches/lay_on_sheet.h"
+
+#include "core/copy_product.h"
+#include "core/watched.h"
+#include "measure/crossings.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int kMostRounds = 5;
+
+std::vector<std::array<uint32_t, 2>> crossings_of(const FeatureMesh& mesh, const LatticeFrame& frame,
+                                                  const Context& context) {
+  Buffer<PointQ8> position(int64_t(mesh.vertices.size()));
+  for (int64_t v = 0; v < position.size(); ++v) position[v] = frame.snap(mesh.vertices[size_t(v)]);
+  Buffer<TriangleIndices> triangles(int64_t(mesh.triangles.size()));
+  for (int64_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[size_t(t)];
+    triangles[t] = {a, b, c};
+  }
+  return crossing_pairs(position.view(), triangles.view(), {}, context.cancel);
+}
+
+/// Result: whether any of the vertices was elsewhere.
+bool take_back(const std::vector<std::array<uint32_t, 2>>& pairs, LaidCurves& laid) {
+  bool any = false;
+  for (const auto& pair : pairs)
+    for (const uint32_t t : pair)
+      for (const uint32_t v : laid.mesh.triangles[t]) any |= laid.take_back(v);
+  return any;
+}
+
+}  // namespace
+
+LaidCurves lay_on_sheet(const FeatureMesh& mesh, const CurveNetwork& network, const Prepared& p, Context& context) {
+  const UntangledSheet sheet = untangle_sheet(host_copy(p.sheet), {}, context);
+  LaidCurves laid = run_with_threads(context, [&] {
+    LaidCurves all = lay_curves(mesh, network, *OnHost(sheet.sheet));
+    for (int round = 0; round < kMostRounds; ++round) {
+      if (!take_back(crossings_of(all.mesh, p.sheet.frame, context), all)) break;
+      all.take_back_turned();
+    }
+    return all;
+  });
+  check_cancel(context, "features");
+  return laid;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,98 @@
+// find_patch_defects (see patch_defects.h).
+#include "pipeline/patches/patch_defects.h"
+
+#include <algorithm>
+
+#include "core/copy_product.h"
+#include "features/mesh/edge_sides.h"
+
+namespace isoshell {
+namespace {
+
+MeshTriangles triangles_of(const DualMesh& mesh) {
+  MeshTriangles triangles;
+  for (int64_t t = 0; t < mesh.triangles.size(); ++t)
+    triangles.push_back({mesh.triangles[t].a, mesh.triangles[t].b, mesh.triangles[t].c});
+  return triangles;
+}
+
+/// An edge of a patch between vertices of the joined mesh.
+struct JoinedEdge {
+  uint64_t key;  ///< of the vertices of the joined mesh
+  bool is_inside;
+  std::array<uint32_t, 2> end;
+
+  bool operator<(const JoinedEdge& o) const { return key < o.key; }
+};
+
+class Defects {
+ public:
+  explicit Defects(const SeededMesh& made)
+      : mesh_(made.mesh),
+        seeds_(made.seeds),
+        triangles_(triangles_of(*mesh_)),
+        vertices_(size_t(mesh_->position.size())),
+        is_wrong_(vertices_, 0) {}
+
+  std::vector<uint32_t> find() {
+    look_at_edges();
+    look_at_fans();
+    look_at_joined_edges();
+    std::vector<uint32_t> wrong;
+    for (uint32_t v = 0; v < vertices_; ++v)
+      if (is_wrong_[v]) wrong.push_back(v);
+    return wrong;
+  }
+
+ private:
+  void look_at_edges() {
+    const EdgeSides sides = find_edge_sides(triangles_, vertices_);
+    for (uint32_t u = 0; u < vertices_; ++u)
+      for_each_edge_from(sides, u, [&](uint32_t v, View<const EdgeSide> on_edge) {
+        const bool is_inside = on_edge.size == 2 && start_of(on_edge[0]) != start_of(on_edge[1]);
+        if (on_edge.size > 1 && !is_inside) is_wrong_[u] = is_wrong_[v] = 1;
+        if (!is_inside) not_inside_.push_back(edge_key(u, v));
+        joined_.push_back({edge_key(joined(u), joined(v)), is_inside, {u, v}});
+      });
+  }
+
+  void look_at_fans() {
+    const MeshFans fans = find_fans(triangles_, int64_t(vertices_), not_inside_);
+    std::vector<uint32_t> count(vertices_, 0);
+    for (const uint32_t v : fans.vertex) ++count[v];
+    for (size_t v = 0; v < vertices_; ++v)
+      if (count[v] != 1) is_wrong_[v] = 1;
+  }
+
+  /// An edge inside of a patch must be the only one between its ends.
+  void look_at_joined_edges() {
+    std::sort(joined_.begin(), joined_.end());
+    for (size_t begin = 0, end = 0; begin < joined_.size(); begin = end) {
+      bool is_inside = false;
+      for (; end < joined_.size() && joined_[end].key == joined_[begin].key; ++end)
+        is_inside = is_inside || joined_[end].is_inside;
+      for (size_t i = begin; is_inside && end > begin + 1 && i < end; ++i)
+        for (const uint32_t v : joined_[i].end) is_wrong_[v] = 1;
+    }
+  }
+
+  uint32_t start_of(const EdgeSide& side) const { return triangles_[side.half_edge / 3][side.half_edge % 3]; }
+  uint32_t joined(uint32_t v) const {
+    const Buffer<uint32_t>& joined = seeds_->fixed.joined;
+    return int64_t(v) < joined.size() ? joined[v] : v;
+  }
+
+  OnHost<DualMesh> mesh_;
+  OnHost<SeedSet> seeds_;
+  MeshTriangles triangles_;
+  size_t vertices_;
+  std::vector<char> is_wrong_;
+  std::vector<uint64_t> not_inside_;  ///< ascending
+  std::vector<JoinedEdge> joined_;
+};
+
+}  // namespace
+
+std::vector<uint32_t> find_patch_defects(const SeededMesh& made) { return Defects(made).find(); }
+
+}  // namespace isoshell

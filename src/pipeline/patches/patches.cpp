@@ -1,0 +1,294 @@
+// See patches.h.
+#include "pipeline/patches/patches.h"
+
+#include <algorithm>
+
+#include "attributes/seams.h"
+#include "core/copy_product.h"
+#include "core/parallel_ranges.h"
+#include "core/watched.h"
+#include "features/angles/widen_angles.h"
+#include "features/curves/find_curves.h"
+#include "features/cutting/cut_surface.h"
+#include "features/mesh/split_edges.h"
+#include "geometry/triangle_grid.h"
+#include "geometry/world_vector.h"
+#include "isoshell/advanced/to_host.h"
+#include "isoshell/distance.h"
+#include "isoshell/error.h"
+#include "isoshell/mesh_topology.h"
+#include "isoshell/readable.h"
+#include "measure/crossing_corners.h"
+#include "pipeline/grid/attempt.h"
+#include "pipeline/grid/choose_grid.h"
+#include "pipeline/grid/shown_parts.h"
+#include "pipeline/grid/sizing.h"
+#include "pipeline/grid/timed.h"
+#include "pipeline/patches/cut_curves.h"
+#include "pipeline/patches/feature_report.h"
+#include "pipeline/patches/given_lines.h"
+#include "pipeline/patches/new_crossings.h"
+#include "pipeline/patches/part_fans.h"
+#include "pipeline/patches/patch_rounds.h"
+#include "pipeline/patches/sheet_when_needed.h"
+#include "pipeline/sheet/crease_search.h"
+#include "pipeline/sheet/flag_gaps.h"
+#include "pipeline/sheet/relax_meanwhile.h"
+
+namespace isoshell {
+namespace {
+
+/// Flags vertices on faces that close gaps.
+void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
+  const uint32_t first_cap = p.surface.first_cap;
+  if (first_cap == kNone) return;
+  const OnHost<LatticeSurface> surface(p.surface);
+  const TriangleMesh input = to_world(*surface);
+  const TriangleGrid grid(input);
+  mesh.gap.resize(mesh.vertices.size());
+  for (size_t v = 0; v < mesh.vertices.size(); ++v)
+    report.vertices += mesh.gap[v] = surface->source_face[grid.nearest(mesh.vertices[v]).triangle] >= first_cap;
+  for (size_t t = 0; t < input.triangles.size(); ++t) {
+    const auto& [a, b, c] = input.triangles[t];
+    if (surface->source_face[int64_t(t)] >= first_cap)
+      report.area_world += triangle_area(input.vertices[a], input.vertices[b], input.vertices[c]);
+  }
+}
+
+/// Per vertex of the result the nearest corner of a sheet's nearest triangle.
+std::vector<uint32_t> nearest_of_sheet(const Sheet& of, const TriangleMesh& mesh) {
+  const OnHost<Sheet> on(of);
+  TriangleMesh sheet;
+  for (const PointQ8& p : on->position) sheet.vertices.push_back(of.frame.to_world(p));
+  for (const TriangleIndices& t : on->triangles) sheet.triangles.push_back({t.a, t.b, t.c});
+  const TriangleGrid grid(sheet);
+  std::vector<uint32_t> nearest(mesh.vertices.size());
+  for_each_index(size_t(0), nearest.size(), [&](size_t v) {
+    const MeshPoint at = grid.nearest(mesh.vertices[v]);
+    const double a_part = 1 - at.b_part - at.c_part;
+    const size_t corner = at.b_part > std::max(a_part, at.c_part) ? 1 : at.c_part > a_part ? 2 : 0;
+    nearest[v] = sheet.triangles[at.triangle][corner];
+  });
+  return nearest;
+}
+
+/// The patches put together, with better angles beside curves; it intersects itself no more than before.
+JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made,
+                               const PatchOptions& options, const RemeshReport& report, Context& context) {
+  const bool may_cross = report.post.self_intersections > 0;  // where the input does
+  NewCrossings crossings(p, cut, context);
+  const auto wrong_corners = [&](const DualMesh& mesh) {
+    const TrianglePairs pairs = crossings.all(mesh, {});
+    return corners_of(mesh, may_cross ? crossings.wrong_of(mesh, pairs) : pairs);
+  };
+  return join_and_widen(cut, made, {options.seeds.count, options.previous != nullptr}, wrong_corners, context);
+}
+
+/// Of each curve that was found what is still one.
+std::vector<double> kept_lengths_world(const CutSurface& cut) {
+  std::vector<double> kept_world(cut.source->found.size(), 0);
+  for (const CutCurve& curve : cut.curves)
+    kept_world[curve.curve] += curve.length_q8 / kOneVoxelQ8 * cut.frame.voxel_size;
+  for (size_t c = 0; c < kept_world.size(); ++c)
+    kept_world[c] = std::min(kept_world[c], cut.source->found[c].length_world);
+  return kept_world;
+}
+
+/// How long the curves are that the result has, and which it does not have: those that were left out, and those of
+/// which less than half is kept.
+void report_kept(const CutSurface& cut, RemeshReport& report) {
+  const std::vector<double> kept_world = kept_lengths_world(cut);
+  std::vector<LostCurve> lost = cut.source->left_out;
+  for (size_t c = 0; c < kept_world.size(); ++c) {
+    const LostCurve& found = cut.source->found[c];
+    if (found.kind != name_of(CurveKind::border)) report.features.kept_length_world += kept_world[c];
+    if (2 * kept_world[c] >= found.length_world) continue;
+    lost.push_back(found);
+    lost.back().reason = kEdgesTooLong;
+  }
+  double& kept_length_world = report.features.kept_length_world;  // edges of three faces may be kept, too
+  kept_length_world = std::min(kept_length_world, report.features.length_world);
+  report_left_out(lost, report);
+}
+
+/// Says which attributes have none that could be kept.
+Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double edge_length_world, RemeshReport& report,
+               Context& context) {
+  if (!source || source->attributes.empty()) return {};
+  return timed(report, "features", context, [&] {
+    Seams seams = find_seams(*source, options.attributes, edge_length_world);
+    for (const DroppedAttribute& d : seams.dropped)
+      report.warnings.push_back("triangles may lie across the seams of " + d.name + ": " + d.reason);
+    return seams;
+  });
+}
+
+/// What the search found that began with the surface, or the surface alone.
+SearchedSurface searched_surface(const Prepared& p, const Context& context) {
+  if (p.creases && p.creases->has_result()) return p.creases->result();
+  return {feature_mesh_of(*OnHost(p.surface), context), {}};
+}
+
+/// The mesh's vertices where the ends of edges were snapped to; of edges that are no longer there none.
+EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const FeatureMesh& mesh,
+                     const LatticeFrame& frame) {
+  EdgeList found;
+  for (const auto& edge : edges) {
+    std::array<uint32_t, 2> vertex{kNone, kNone};
+    for (size_t i = 0; i < 2; ++i) {
+      const WorldPoint p = frame.to_world(frame.snap(edge[i]));
+      const auto at = std::lower_bound(mesh.vertices.begin(), mesh.vertices.end(), p, is_before);
+      if (at != mesh.vertices.end() && !is_before(p, *at)) vertex[i] = uint32_t(at - mesh.vertices.begin());
+    }
+    if (vertex[0] != kNone && vertex[1] != kNone && vertex[0] != vertex[1]) found.push_back(vertex);
+  }
+  return found;
+}
+
+/// Forgets which curves were lost beside seams, from the first on: they have another try.
+void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
+  const auto is_no_seam = [](const LostCurve& curve) { return curve.kind != name_of(CurveKind::seam); };
+  lost.erase(std::remove_if(lost.begin() + int64_t(first), lost.end(), is_no_seam), lost.end());
+}
+
+/// The mesh of patches, or why there is none.
+struct MeshOfPatches {
+  std::shared_ptr<const CutSurface> cut;  ///< that it is on in the end
+  TriangleMesh mesh;
+  JoinedPatches joined;
+  std::string why_not;
+};
+MeshOfPatches mesh_of_patches(const Prepared& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
+                              const PatchOptions& options, RemeshReport& report, Context& context) {
+  MeshOfPatches out;
+  out.why_not = reason_against([&]() -> std::string {
+    if (std::string why = mesh_in_rounds(p, cut, made, options, report, context); !why.empty()) return why;
+    out.joined =
+        timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, options, report, context); });
+    out.mesh = to_world(out.joined.mesh, p.surface.frame);
+    out.mesh.features = std::move(out.joined.features);
+    part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
+    const bool is_manifold = check_mesh(out.mesh).is_manifold_with(report.features.border_loops);
+    return is_manifold ? "" : "parts that touch would make no manifold";
+  });
+  out.cut = std::move(cut);
+  return out;
+}
+
+/// Of a frame that cannot be made from the one before, from new seeds.
+MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const Prepared& p, const PatchOptions& in_patches,
+                              SeededMesh& made, RemeshReport& report, Context& context) {
+  report.coherence.began_warm = false;
+  report.coherence.why_cold = failed.why_not;
+  RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*p.cut, in_patches, context); });
+  report.relax = std::move(relaxed.report);
+  made = {{}, std::move(relaxed.seeds)};
+  return mesh_of_patches(p, p.cut, made, in_patches, report, context);
+}
+
+/// From the curves on the sheet, which has no bad place, and from new seeds.
+MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, RemeshOptions options,
+                                    PatchOptions in_patches, SeededMesh& made, RemeshReport& report, Context& context) {
+  options.previous.reset();
+  const std::shared_ptr<const CutSurface> cut = timed(report, "features", context, [&] {
+    return cut_sheet_instead(*failed.cut->source, failed.why_not, options, p, report, context);
+  });
+  if (!cut) return failed;
+  in_patches.seeds.count = cut->seeds;
+  failed.why_not = reason_against([&] {
+    RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
+    report.relax = std::move(relaxed.report);
+    made = {{}, std::move(relaxed.seeds)};
+    return std::string();
+  });
+  if (!failed.why_not.empty()) return failed;
+  report.seeds = made.seeds.size();
+  return mesh_of_patches(p, cut, made, in_patches, report, context);
+}
+
+}  // namespace
+
+bool is_on_own_triangles(const Prepared& p) { return p.cut && !p.cut->source->is_sheet; }
+
+void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
+                      Context& context) {
+  if (options.method != Method::sheet) return;
+  const double edge_world = usual_edge_length(options, p);
+  const Seams seams = seams_of(source.soup, options, edge_world, report, context);
+  const std::shared_ptr<const Polylines>& lines = options.features.lines;
+  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines &&
+      !may_keep_borders(options, p))
+    return;
+  const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(options, p);
+  if (may_be_uncut) relax_meanwhile(options, p, report, context);
+  timed(report, "features", context, [&] {
+    SearchedSurface searched = searched_surface(p, context);
+    FeatureMesh& mesh = searched.mesh;
+    CurveOptions curves = curve_options(options, p.previous.get(), edge_world);
+    curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
+    if (curves.mode != CreaseMode::off) curves.lines = vertices_of(source.interfaces, mesh, p.surface.frame);
+    if (lines) {
+      MeshWithLines embedded = with_given_lines(std::move(mesh), *lines, {curves.seams, curves.lines}, edge_world,
+                                                p.surface.frame.voxel_size, report);
+      mesh = std::move(embedded.mesh);
+      curves.seams = std::move(embedded.followed[0]);
+      curves.lines = std::move(embedded.followed[1]);
+      curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
+    }
+    const size_t lost_lines = report.features.lost.size();
+    if (cut_along(mesh, curves, std::move(searched.creases), options, p, report, context) || curves.seams.empty()) {
+      if (p.creases) p.creases->free_meanwhile(std::move(searched));
+      return;
+    }
+    keep_lost_seams(report.features.lost, lost_lines);
+    const int64_t seams_apart = report.features.seams;  // from creases and borders
+    report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
+                             " are not kept: " + report.features.given_up + "; triangles lie across seams";
+    curves.seams.clear();
+    cut_along(mesh, curves, {}, options, p, report, context);
+  });
+}
+
+std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SheetWhenNeeded& sheet, SeededMesh& made,
+                                                const RemeshOptions& options, PatchOptions in_patches,
+                                                RemeshReport& report, Context& context) {
+  MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
+  if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr))
+    made_here = mesh_begun_cold(made_here, p, in_patches, made, report, context);
+  if (!made_here.why_not.empty())
+    made_here =
+        mesh_on_sheet_instead(std::move(made_here), sheet.get(report), options, in_patches, made, report, context);
+  if (!made_here.why_not.empty()) {
+    give_up(report, p.cut->source->if_lost, made_here.why_not);
+    return {};
+  }
+  const CutSurface& cut = *made_here.cut;
+  TriangleMesh& mesh = made_here.mesh;
+  if (const int64_t crossings = report.post.self_intersections; crossings > 0)
+    report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
+                              " where the input's own triangles do");
+  if (const int64_t vertices = made_here.joined.mesh.position.size(); vertices != cut.seeds)
+    report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
+                              std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
+  if (cut.source->is_sheet) {
+    const Prepared& whole = sheet.get(report);
+    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(whole.sheet, mesh); });
+    flag_gaps(whole, {at.data(), int64_t(at.size())}, mesh, report.gaps);
+    report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
+                              report.features.on_sheet);
+    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, options, report);
+  } else {
+    report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
+    report.topology_agrees = report.topology_compared;
+    report.sheet.bridged_vertices = 0;
+    flag_caps(p, mesh, report.gaps);
+  }
+  measure_edges(cut, made_here.joined, report.sizing);
+  report.features.vertices = made_here.joined.on_curves;
+  report.features.segments = int64_t(mesh.features.curve_edges.size());
+  report.features.kept = report.post_done = true;
+  report_kept(cut, report);
+  return std::move(mesh);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,116 @@
+// relax_in_patches and relax_in_patches_again (see patches.h).
+#include <algorithm>
+#include <numeric>
+
+#include "features/cutting/coarser_surface.h"
+#include "features/cutting/curve_seeds.h"
+#include "features/cutting/cut_piece.h"
+#include "features/cutting/free_seeds.h"
+#include "pipeline/grid/attempt.h"
+#include "pipeline/patches/patches.h"
+#include "pipeline/patches/warm_patches.h"
+#include "pipeline/sheet/relax_level.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
+constexpr int64_t kFewestPerPart = 12;           ///< seeds of a level; with fewer its dual is no mesh
+constexpr int32_t kLastPasses = 10;              ///< of the finest level, on all triangles of the surface
+
+RelaxOptions for_finest_patches(const PatchOptions& options) {
+  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_asked);
+  if (!options.tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
+  return relax;
+}
+
+/// The levels of seeds, and the surfaces with fewer triangles that they relax on. The finest is the first one.
+class PatchLevels {
+ public:
+  PatchLevels(const CutSurface& cut, const PatchOptions& options, Context& context)
+      : cut_(cut), free_seeds_(cut), options_(options), context_(context) {
+    for (int level = 0; level < kMaxLevels; ++level) {
+      const SeedSet fixed = seeds_on_curves(cut, level);
+      FreeSeeds::Counts free =
+          level == 0 ? free_seeds_.counts(fixed, options.seeds.count) : free_seeds_.coarser(fixed, counts_.back());
+      const int64_t fewest = std::max(kFewestSeeds, kFewestPerPart * free_seeds_.closed_parts(fixed));
+      if (level > 0 && std::accumulate(free.begin(), free.end(), fixed.size()) < fewest) break;
+      counts_.push_back(std::move(free));
+    }
+    const auto add_surfaces = [&]() -> std::string {
+      surfaces_.push_back(coarser_surface(cut, counts_[0], 0, context));
+      while (surfaces_.size() < counts_.size())
+        surfaces_.push_back(coarser_surface(surfaces_.back().cut, counts_[surfaces_.size()], 1, context));
+      return "";
+    };
+    reason_against(add_surfaces);  // the levels that there is no surface for are left out
+  }
+
+  RelaxedSeeds relax() {
+    for (size_t level = surfaces_.size(); level-- > 1;) relax_coarse(level);
+    if (!surfaces_.empty()) relax_finest();
+    RelaxOptions last = made_ ? for_finest_patches(options_) : options_.relax;
+    if (made_ && !options_.tolerance_asked) last.max_passes = std::min(last.max_passes, kLastPasses);
+    return relax_on_sheet(cut_.surface, seeds_on(cut_, free_seeds_, 0, 0), last, context_);
+  }
+
+ private:
+  /// The seeds of a level, on the surface of one that is so much finer.
+  SeedSet seeds_on(const CutSurface& surface, const FreeSeeds& free_seeds, size_t level, int finer) const {
+    SeedSet fixed = seeds_on_curves(surface, finer);
+    return made_ ? free_seeds.add_finer(std::move(fixed), counts_[level], *made_, options_.seeds.seed)
+                 : free_seeds.add(std::move(fixed), counts_[level], options_.seeds.seed);
+  }
+  std::optional<SeededMesh> relaxed_on(const CutSurface& surface, size_t level, int finer) const {
+    const RelaxOptions relax = for_coarse_level(options_.relax, options_.tolerance_asked);
+    SeedSet seeds = seeds_on(surface, FreeSeeds(surface), level, finer);
+    std::optional<SeededMesh> made = relax_level(surface.surface, relax, std::move(seeds), context_);
+    if (made) bring_to_host(*made);
+    return made;
+  }
+
+  /// On its own surface; on the finer one where that is too coarse for it.
+  void relax_coarse(size_t level) {
+    std::optional<SeededMesh> made = relaxed_on(surfaces_[level].cut, level, 0);
+    const bool is_done = made.has_value();
+    if (is_done) made_ = std::move(made);
+    if (made_) bring_to_finer(surfaces_[level], *made_);
+    if (!is_done) made_ = relaxed_on(surfaces_[level - 1].cut, level, 1);
+  }
+  void relax_finest() {
+    const CutSurface& on = surfaces_[0].cut;
+    const RelaxOptions relax = made_ ? for_finest_patches(options_) : options_.relax;
+    RelaxedSeeds relaxed = relax_on_sheet(on.surface, seeds_on(on, FreeSeeds(on), 0, 0), relax, context_);
+    made_ = SeededMesh{{}, std::move(relaxed.seeds)};
+    bring_to_host(*made_);
+    bring_to_finer(surfaces_[0], *made_);
+  }
+
+  const CutSurface& cut_;
+  const FreeSeeds free_seeds_;
+  const PatchOptions& options_;
+  Context& context_;
+  std::vector<FreeSeeds::Counts> counts_;  ///< of free seeds
+  std::vector<CoarserSurface> surfaces_;   ///< each of the one before it; fewer where one cannot be made
+  std::optional<SeededMesh> made_;         ///< by the level before, on the surface of the next one
+};
+
+}  // namespace
+
+RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
+  if (options.previous) return relax_patches_from_previous(cut, options, context);
+  return PatchLevels(cut, options, context).relax();
+}
+
+RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& before, const PatchOptions& options,
+                                    Context& context) {
+  const FreeSeeds free_seeds(cut);
+  SeedSet fixed = seeds_on_curves(cut, 0);
+  const FreeSeeds::Counts counts = free_seeds.counts(fixed, options.seeds.count);
+  RelaxOptions relax = for_finest_patches(options);
+  if (!options.tolerance_asked) relax.max_passes = std::min(relax.max_passes, kLastPasses);
+  return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed), relax,
+                        context);
+}
+
+}  // namespace isoshell

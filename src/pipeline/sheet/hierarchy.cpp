@@ -1,0 +1,135 @@
+// Levels of seeds, coarse to fine.
+#include "pipeline/sheet/hierarchy.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "core/copy_product.h"
+#include "core/seed_count.h"
+#include "isoshell/advanced/to_host.h"
+#include "pipeline/grid/choose_grid.h"
+#include "pipeline/grid/thin_walls.h"
+#include "pipeline/sheet/relax_level.h"
+#include "voxel/exact_int.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int64_t kFewestPerComponent = 12;
+constexpr int64_t kFewestSeedsPerHandle = 50;   // that a coarse proxy has too many or too few
+constexpr int64_t kFewestVerticesPerSeed = 24;  // of a coarse proxy: cells are nearly four voxels wide or more
+
+/// A triangulation with V vertices and Euler number chi has 4 V - 3 chi after one split.
+int64_t coarser_count(int64_t count, const SheetTopology& topology) {
+  const int64_t chi = 2 * (topology.components - topology.genus);
+  return (count + 3 * chi) / 4;
+}
+
+/// Counts from coarse to fine, as long as a level has seeds enough.
+std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
+  const int64_t fewest = std::max(kFewestSeeds, kFewestPerComponent * sheet.components);
+  std::vector<int64_t> counts{finest};
+  while (int(counts.size()) < kMaxLevels) {
+    const int64_t coarser = coarser_count(counts.back(), sheet);
+    if (coarser < fewest || coarser >= counts.back()) break;
+    counts.push_back(coarser);
+  }
+  std::reverse(counts.begin(), counts.end());
+  return counts;
+}
+
+/// How many cells of the smallest size would cover the sheet, over the number of its cells.
+double crowding_of(const Sheet& sheet, Context& context) {
+  if (sheet.lengths.at.empty()) return 1;
+  const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
+  return area_vox * 2 * kOneVoxelQ8 * kOneVoxelQ8 / double(seed_shares_q16(sheet, context));
+}
+
+/// What the levels relax on: the sheet for the finest, coarse proxies on coarser lattices for the others.
+class CoarseProxies {
+ public:
+  CoarseProxies(const Prepared& prepared, const std::vector<int64_t>& counts, Context& context)
+      : finest_(prepared.sheet) {
+    halvings_.assign(counts.size(), 0);
+    const SiteSet* sites = &solid_voxels_of(prepared);
+    SiteSet of_coarsest;  // proxy so far
+    const double crowding = crowding_of(finest_, context);
+    LatticeFrame frame = prepared.sheet.frame;
+    int32_t closing_vox = closing_of_solid(prepared);
+    for (int64_t level = int64_t(counts.size()) - 2; level >= 0; --level) {
+      halvings_[size_t(level)] = int(proxies_.size());
+      const double cells = crowding * double(counts[size_t(level)]);
+      while (double((proxies_.empty() ? finest_ : proxies_.back()).vertex_count()) >=
+             4 * kFewestVerticesPerSeed * cells) {
+        SiteSet coarser = coarsen_sites(*sites, context);
+        frame.voxel_size *= 2;
+        frame.resolution = (frame.resolution + 1) / 2;
+        for (int32_t& extent : frame.extent_vox) extent = (extent / 2 + 7) / 8 * 8;
+        closing_vox = (closing_vox + 1) / 2;
+        Sheet proxy = build_proxy(coarser, frame, {closing_vox, 0}, context);
+        if (have_merged(proxy.topology, cells)) {
+          std::fill(halvings_.begin(), halvings_.begin() + level + 1, int(proxies_.size()));
+          return;
+        }
+        if (!finest_.lengths.at.empty())
+          proxy.lengths = transfer_edge_lengths(finest_, int(proxies_.size()) + 1, proxy, context);
+        of_coarsest = std::move(coarser);
+        sites = &of_coarsest;
+        proxies_.push_back(std::move(proxy));
+        halvings_[size_t(level)] = int(proxies_.size());
+      }
+    }
+  }
+  /// How many times the edge of the level's voxels was doubled.
+  int halvings(size_t level) const { return halvings_[level]; }
+  const Sheet& sheet(size_t level) const {
+    return halvings_[level] == 0 ? finest_ : proxies_[size_t(halvings_[level]) - 1];
+  }
+  /// Frees the proxies that only coarser levels relax on: the finest level takes most memory, and needs none.
+  void drop_before(size_t level) { proxies_.erase(proxies_.begin() + halvings_[level], proxies_.end()); }
+
+ private:
+  /// Whether near parts of the surface are one in the coarse proxy, or join in places by many handles.
+  bool have_merged(const SheetTopology& proxy, double cells) const {
+    const auto handles = double(std::abs(proxy.genus - finest_.topology.genus));
+    return proxy.components != finest_.topology.components || handles * kFewestSeedsPerHandle > cells;
+  }
+
+  const Sheet& finest_;
+  std::vector<Sheet> proxies_;
+  std::vector<int> halvings_;
+};
+
+}  // namespace
+
+RelaxedSeeds relax_by_levels(const Prepared& prepared, const LevelOptions& options, Context& context,
+                             const std::function<bool()>& is_in_vain) {
+  require_seed_count(prepared.sheet, options.seeds.count);
+  std::vector<int64_t> counts = level_counts(options.seeds.count, prepared.sheet.topology);
+  const RelaxOptions coarse = for_coarse_level(options.relax, options.tolerance_asked);
+  CoarseProxies proxies(prepared, counts, context);
+  for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
+    counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
+  SeedSet seeds;
+  for (size_t level = 0; level + 1 < counts.size(); ++level) {
+    if (is_in_vain()) return {};
+    const Sheet& sheet = proxies.sheet(level);
+    if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seeds.seed}, context);
+    const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
+    seeds = {};
+    if (relaxed) seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
+    const int halvings = proxies.halvings(level) - proxies.halvings(level + 1);
+    proxies.drop_before(level + 1);
+    if (relaxed && halvings > 0) seeds = attach_to_sheet(proxies.sheet(level + 1), std::move(seeds), halvings, context);
+  }
+  if (is_in_vain()) return {};
+  RelaxOptions finest = options.relax;
+  if (seeds.size() > 0)
+    finest = for_finest_level(finest, options.tolerance_asked);
+  else
+    seeds = place_seeds(prepared.sheet, options.seeds, context);
+  return relax_on_sheet(prepared.sheet, std::move(seeds), finest, context);
+}
+
+}  // namespace isoshell

@@ -1,0 +1,203 @@
+// See prepare_surface.h.
+#include "pipeline/sheet/prepare_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/copy_product.h"
+#include "isoshell/advanced/to_host.h"
+#include "pipeline/grid/choose_grid.h"
+#include "pipeline/grid/shown_parts.h"
+#include "pipeline/grid/sizing.h"
+#include "pipeline/grid/thin_walls.h"
+#include "pipeline/grid/timed.h"
+#include "pipeline/sheet/crease_search.h"
+#include "pipeline/sheet/flaps.h"
+#include "pipeline/sheet/warm_start.h"
+#include "repair/solids/hollows.h"
+#include "repair/solids/joined_components.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int32_t kMaxAutoClosingVox = 4;
+constexpr double kSidesOfCrust = 0.75;  ///< of the area of both sides; a solid shows half of it
+
+/// Sites, samples and sheet of a surface, with the closing that is asked for or found.
+class Preparation {
+ public:
+  Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
+      : options_(options), report_(report), context_(context) {}
+
+  Prepared from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
+    Prepared p;
+    p.surface = std::move(surface);
+    if (!wants_lengths(options_))
+      choose_beginning(options_, vertex_target(options_, p.surface.topology.area_world), p, report_);
+    p.creases = begin_crease_search(options_, p, report_, context_);
+    p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
+    p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
+    const bool shows_handles = shows_most_handles(options_, p.surface.topology);
+    join_components(p);
+    mark_hollows(p);
+    if (!shows_handles) {
+      let_samples_go(p);
+      const int32_t grown = growth_for_edge(edge_vox(p));
+      p.closing_vox = 2 * grown;
+      grow(p, grown);
+      return p;
+    }
+    const bool is_open = !p.surface.topology.closed;
+    if (closing_vox) {
+      p.closing_vox = *closing_vox;
+      p.sheet = is_open || keeps_samples() ? sheet(p, p.closing_vox) : last_sheet(p);
+    } else {
+      close_leaks(p);
+    }
+    if (is_open && is_crust(p))
+      keep_sides_apart(p);
+    else if (is_open || p.surface.first_cap != kNone)  // a flap's cap may lie on it
+      thicken_flaps(p);
+    let_samples_go(p);
+    return p;
+  }
+
+ private:
+  /// They are a quarter of what there is where the sheet takes most.
+  bool keeps_samples() const {
+    return options_.want_samples || options_.want_digests || options_.want_shell || options_.method == Method::shell;
+  }
+  void let_samples_go(Prepared& p) const {
+    if (!keeps_samples()) p.samples = {};
+  }
+
+  /// Surfaces that pass through each other bound one solid, whose genus none of them tells.
+  void join_components(Prepared& p) {
+    InputTopology& input = p.surface.topology;
+    if (input.genus < 0 || input.components < 2) return;
+    const int64_t joins =
+        timed(report_, "topology", context_, [&] { return count_joins(*OnHost(p.surface), *OnHost(p.samples)); });
+    if (joins == 0) return;
+    input.components -= joins;
+    input.genus = -1;
+  }
+
+  /// What inner surfaces bound is open to the outside, as it were.
+  void mark_hollows(Prepared& p) {
+    const InputTopology& input = p.surface.topology;
+    if (!input.closed || !input.oriented || input.components < 2) return;
+    const std::vector<Voxel> hollows = timed(report_, "hollows", context_, [&] {
+      return find_hollows(*OnHost(p.surface), *OnHost(p.sites), *OnHost(p.samples));
+    });
+    if (hollows.empty()) return;
+    p.sites = to_host(p.sites);
+    p.sites.hollows = Buffer<Voxel>(int64_t(hollows.size()));
+    std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
+  }
+
+  double edge_vox(const Prepared& p) const {
+    return usual_edge_length(options_, p.surface.topology.area_world) / p.surface.frame.voxel_size;
+  }
+
+  /// Of what the sheet bounds, on average.
+  double thickness_vox(const Sheet& sheet) const {
+    const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
+    return double(six_volume_vox(sheet, context_)) / 3 / area_vox;
+  }
+
+  /// Whether the outside reaches both sides of the surface. Closing fills parts of a crust, but makes it no solid: that
+  /// would hide one of the two sides.
+  bool is_crust(const Prepared& p) {
+    const double here = thickness_vox(p.sheet);
+    if (here < 1) return true;
+    if (here >= std::min(edge_vox(p) / 2, 2. * p.closing_vox + 1)) return false;
+    const Sheet open = sheet(p, 0);
+    if (here < 2 * thickness_vox(open)) return true;
+    return sheet_area_world(p.sheet) > kSidesOfCrust * sheet_area_world(open);
+  }
+
+  /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not
+  /// close what no one asked to close.
+  void keep_sides_apart(Prepared& p) {
+    int32_t grown = growth_for_edge(std::sqrt(2) * edge_vox(p));  // both sides share the vertices
+    for (;; grown /= 2) {
+      grow(p, grown);
+      if (grown == 1 || thickness_vox(p.sheet) < 2 * grown + 3) return;
+    }
+  }
+
+  /// A solid whose false handles were cut is no longer that of its sites, and stays as it is.
+  void thicken_flaps(Prepared& p) {
+    if (p.sheet.topology.cut_handles > 0) return;
+    const double edge_vox = usual_edge_length(options_, sheet_area_world(p.sheet)) / p.surface.frame.voxel_size;
+    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    timed(report_, "sheet", context_, [&] { return grow_flaps(p, growth_for_edge(edge_vox), smallest, context_); });
+  }
+
+  void grow(Prepared& p, int32_t grown_vox) {
+    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
+    timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest, context_); });
+  }
+
+  SheetOptions sheet_options(const Prepared& p, int32_t closing_vox) const {
+    const InputTopology& input = p.surface.topology;
+    const int64_t genus = !input.closed || !input.oriented ? kNoGenus : input.genus < 0 ? kUnknownGenus : input.genus;
+    return {closing_vox, smallest_component_q16(options_, input, p.surface.frame), genus};
+  }
+  Sheet sheet(const Prepared& p, int32_t closing_vox) {
+    return timed(report_, "sheet", context_,
+                 [&] { return build_sheet(p.surface, p.sites, p.samples, sheet_options(p, closing_vox), context_); });
+  }
+  /// Frees the samples on the way.
+  Sheet last_sheet(Prepared& p) {
+    return timed(report_, "sheet", context_, [&] {
+      return build_sheet(p.surface, p.sites, std::move(p.samples), sheet_options(p, p.closing_vox), context_);
+    });
+  }
+
+  /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in
+  /// and the solid collapses to a crust.
+  void close_leaks(Prepared& p) {
+    Sheet widest = sheet(p, kMaxAutoClosingVox);
+    const int64_t widest_volume = six_volume_vox(widest, context_);
+    for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
+      p.sheet = {};
+      p.sheet = sheet(p, p.closing_vox);
+      if (10 * six_volume_vox(p.sheet, context_) >= 9 * widest_volume) return;
+    }
+    p.sheet = std::move(widest);
+  }
+
+  const RemeshOptions& options_;
+  RemeshReport& report_;
+  Context& context_;
+};
+
+}  // namespace
+
+Prepared prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox, const RemeshOptions& options,
+                         RemeshReport& report, Context& context) {
+  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+  if (p.creases) p.creases->wait_until_copied();
+  return p;
+}
+
+bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
+
+int64_t topology_gap(const Prepared& p) {
+  const InputTopology& input = p.surface.topology;
+  if (!can_compare(input)) return 0;
+  return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
+}
+
+void report_sheet(const Prepared& p, RemeshReport& report) {
+  report.closing_vox = p.closing_vox;
+  report.grown_vox = p.grown.distance_vox;
+  report.sites = p.sites.voxels.voxel_count();
+  report.sheet_vertices = p.sheet.vertex_count();
+  report.sheet = p.sheet.topology;
+  report.topology_compared = can_compare(p.surface.topology);
+  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
+}
+
+}  // namespace isoshell

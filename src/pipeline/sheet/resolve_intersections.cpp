@@ -1,0 +1,58 @@
+// See resolve_intersections.h.
+#include "pipeline/sheet/resolve_intersections.h"
+
+#include "core/copy_product.h"
+
+namespace isoshell {
+namespace {
+
+constexpr int kTriesOfFewerRounds = 4;
+
+/// With the cells of triangles that intersect split. Where a split leaves cells that no other one mends, those before
+/// it count: the rounds are halved until all cells are disks.
+Triangulation split_where_crossing(const SurfaceMesh& surface, const SeedSet& seeds, Context& context) {
+  DualOptions split;
+  split.most_against_crossing = seeds.size();
+  Triangulation dual;
+  for (int tries = kTriesOfFewerRounds; tries >= 0; --tries) {
+    dual = triangulate_dual(surface, host_copy(seeds), split, context);
+    if (dual.report.failed_cells == 0) break;
+    split.max_repair_rounds = dual.report.repair_rounds / 2;
+  }
+  return dual;
+}
+
+/// From `seeds` as many as `mesh` has.
+void make_again(const SurfaceMesh& surface, const SeedSet& seeds, const OptimizeOptions& options, bool keep_ids,
+                SeededMesh& mesh, RemeshReport& report, Context& context) {
+  const int64_t asked = mesh.seeds.size();
+  Triangulation dual = split_where_crossing(surface, seeds, context);
+  const DualReport found = dual.report;
+  if (found.failed_cells > 0) return;
+  SeededMesh again = collapse_edges(surface, std::move(dual), {asked, true, keep_ids}, context);
+  again = collapse_edges(surface, std::move(again), {asked, false, keep_ids},
+                         context);  // the count goes before what is left
+  if (again.seeds.size() != asked) return;
+  OptimizeOptions careful = options;
+  careful.keep_apart = true;
+  OptimizedMesh optimized = optimize_mesh(surface, std::move(again), careful, context);
+  if (optimized.report.self_intersections >= report.post.self_intersections) return;
+  report.post = optimized.report;
+  report.seeds_against_intersections = found.inserted_seeds;
+  mesh = std::move(optimized);
+}
+
+}  // namespace
+
+void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, bool keep_ids, SeededMesh& mesh,
+                           RemeshReport& report, Context& context) {
+  UntangledSheet start = untangle_sheet(host_copy(prepared.sheet), host_copy(mesh.seeds), context);
+  make_again(start.sheet, start.seeds, options, keep_ids, mesh, report, context);
+}
+
+void resolve_intersections(const SurfaceMesh& surface, const OptimizeOptions& options, SeededMesh& mesh,
+                           RemeshReport& report, Context& context) {
+  make_again(surface, mesh.seeds, options, false, mesh, report, context);
+}
+
+}  // namespace isoshell

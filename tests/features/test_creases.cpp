@@ -1,0 +1,127 @@
+// Which edges are creases: of facets, round shapes and scans, by a threshold, and where patches are small.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "features/curves/face_normals.h"
+#include "features/known_curves.h"
+#include "geometry/half_edge_list.h"
+#include "isoshell/io/mesh_file.h"
+#include "support/catch.h"
+#include "support/source_folder.h"
+
+using namespace isoshell;
+using namespace isoshell::known_curves;
+
+TEST_CASE("curves: a turn of degrees is one minus the cosine", "[curves][unit]") {
+  for (int degrees = 0; degrees <= 180; degrees += 5)
+    CHECK(turn_of_degrees(degrees) == Approx(1 - std::cos(degrees * kTau / 360)).margin(1e-14));
+}
+
+TEST_CASE("curves: edges between facets as wide as edges of the result are curves", "[curves][unit]") {
+  const FeatureMesh mesh = weld_for_features(cylinder(24, 3, 2));  // facets .26 wide, which turn by 15 degrees
+  CHECK(find_curves(mesh, {CreaseMode::automatic, 40, 0.2}).curves.size() == 24 + 2 * 24);
+  CHECK(find_curves(mesh, {CreaseMode::automatic, 40, 0.4}).curves.size() == 2);
+  const FeatureMesh cone = weld_for_features(cylinder(24, 3, 2, 0.5));  // facets that are too narrow on top
+  CHECK(find_curves(cone, {CreaseMode::automatic, 40, 0.2}).curves.size() == 2);
+}
+
+TEST_CASE("curves: an edge is on one curve where edges between facets go on from a crease", "[curves][unit]") {
+  // Flattened and drawn out: its long edges are creases here and there.
+  TriangleSoup ring = shapes::torus(2, 0.8, 32, 8);
+  for (WorldPoint& p : ring.vertices) p = {1.8 * p.x, 0.65 * p.y, 0.7 * p.z};
+  const FeatureMesh mesh = weld_for_features(ring);
+  for (const double length : {0.05, 0.1, 0.15, 0.2, 0.3}) {
+    std::vector<uint64_t> edges;
+    for (const FeatureCurve& curve : find_curves(mesh, {CreaseMode::automatic, 40, length}).curves)
+      for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < curve.vertex.size(); ++i)
+        edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % curve.vertex.size()]));
+    std::sort(edges.begin(), edges.end());
+    CHECK(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
+  }
+}
+
+TEST_CASE("curves: the facets of a round shape of triangles have none", "[curves][unit]") {
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 12);  // edges that turn by up to 15 degrees
+  CHECK(find_curves(weld_for_features(ball), {CreaseMode::automatic, 40, 0.05}).curves.empty());
+}
+
+TEST_CASE("curves: spheres have none, smooth or with bumps", "[curves][unit]") {
+  for (const uint32_t n : {16, 24, 64, 128}) {
+    const TriangleSoup sphere = shapes::sphere({0, 0, 0}, 1, n);
+    const TriangleSoup bumpy = moved(sphere, [](const WorldPoint& p) {
+      return (1 + .08 * std::sin(9 * p.x) * std::sin(8 * p.y + 1) * std::sin(9 * p.z)) * p;
+    });
+    for (const double h : {.05, .1, .3}) {
+      INFO(n << " meridians, edge length " << h);
+      CHECK(counts_of(sphere, h) == Counts{});
+      CHECK(counts_of(bumpy, h) == Counts{});
+      CHECK(counts_of(shaken(sphere, .3 / n), h) == Counts{});
+    }
+  }
+}
+
+TEST_CASE("curves: a scan has no creases", "[curves][unit]") {
+  const FeatureMesh scan = weld_for_features(read_mesh(source_folder() + "/tests/data/nefertiti.ply"));
+  double area = 0;
+  for (const auto& t : scan.triangles)
+    area += triangle_area(scan.vertices[t[0]], scan.vertices[t[1]], scan.vertices[t[2]]);
+  for (const double vertices : {300., 1000., 10000., 100000.}) {
+    INFO(vertices << " vertices");
+    CreaseReport report;
+    const CurveNetwork network =
+        find_curves(scan, {CreaseMode::automatic, 0, std::sqrt(1.1547 * area / vertices)}, &report);
+    CHECK(counts_of(network).creases == 0);
+    CHECK(report.candidate_length_world > 0);
+    CHECK(report.kept_length_world == 0);
+  }
+}
+
+TEST_CASE("curves: the threshold decides which bend is a crease", "[curves][unit]") {
+  const FeatureMesh mesh = weld_for_features(sheet(8, 8, .25, 25));
+  CHECK(counts_of(find_curves(mesh, {CreaseMode::threshold, 24, .1})) == Counts{1, 6, 0, 0, 6});
+  CHECK(counts_of(find_curves(mesh, {CreaseMode::threshold, 26, .1})) == Counts{0, 4, 0, 0, 4});
+  CHECK(counts_of(find_curves(weld_for_features(cube(3)), {CreaseMode::off, 0, .1})) == Counts{});
+}
+
+TEST_CASE("curves: patches too small for the edges lose sharp creases, too, where that is asked for, others none",
+          "[curves][unit]") {
+  std::set<std::array<int, 3>> plate_with_bump{{1, 1, 1}};
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 4; ++y) plate_with_bump.insert({x, y, 0});
+  const FeatureMesh mesh = weld_for_features(cells(plate_with_bump, 2));
+  CurveOptions options{CreaseMode::threshold, 40, .7};  // a face of the bump has 4 of border, a side of the plate 10
+  const auto length_on = [&](const CurveNetwork& network, bool is_plate) {
+    double sum = 0;
+    for (const FeatureCurve& curve : network.curves)
+      for (size_t i = 1; i < curve.vertex.size(); ++i) {
+        const WorldPoint &a = mesh.vertices[curve.vertex[i - 1]], &b = mesh.vertices[curve.vertex[i]];
+        const auto is_outside = [](const WorldPoint& p) { return p.x == 0 || p.x == 4 || p.y == 0 || p.y == 4; };
+        if ((is_outside(a) && is_outside(b)) == is_plate) sum += std::sqrt(distance_sq(a, b));
+      }
+    return sum;
+  };
+  const CurveNetwork all = find_curves(mesh, options);
+  CHECK(length_on(all, true) == Approx(36));
+  CHECK(length_on(all, false) == Approx(12));
+  options.drops_small_patches = true;
+  const CurveNetwork fewer = find_curves(mesh, options);
+  CHECK(length_on(fewer, true) == Approx(36));
+  CHECK(length_on(fewer, false) < 10);
+}
+
+TEST_CASE("curves: edges said to be smooth are no creases, borders stay what they are", "[curves][unit]") {
+  const FeatureMesh mesh = weld_for_features(cube(2));
+  CurveOptions options{CreaseMode::threshold, 40, .1};
+  for (const FeatureCurve& curve : find_curves(mesh, options).curves)
+    for (size_t i = 1; i < curve.vertex.size(); ++i)
+      if (mesh.vertices[curve.vertex[i]].z == mesh.vertices[curve.vertex[i - 1]].z)
+        options.smooth.push_back({curve.vertex[i], curve.vertex[i - 1]});
+  CHECK(find_curves(mesh, options).curves.size() == 4);
+  const FeatureMesh flat = weld_for_features(sheet(4, 4, .25, 25));
+  CurveOptions of_flat{CreaseMode::threshold, 26, .1};
+  const CurveNetwork borders = find_curves(flat, of_flat);
+  for (const FeatureCurve& curve : borders.curves) of_flat.smooth.push_back({curve.vertex[0], curve.vertex[1]});
+  CHECK(find_curves(flat, of_flat).curves.size() == borders.curves.size());
+}
