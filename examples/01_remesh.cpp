@@ -11,7 +11,7 @@ int main(int argc, char* argv[]) {
     options.vertices = 4000;
     const isoshell::TriangleSoup scan = isoshell::read_mesh(argv[1]);
     const isoshell::RemeshResult result = isoshell::remesh(scan, options, context);
-    isoshell::write_mesh(argv[2] + std::string(".ply"), result.mesh, {isoshell::MeshFormat::ply, true});
+    isoshell::write_mesh(argv[2] + std::string(".ply"), result.mesh, {"ply", true});
     std::cout << "mean quality " << isoshell::measure_quality(result.mesh).q_avg << "\n";
   } catch (const isoshell::Error& e) {
     std::cerr << e.stage() << ": " << e.what() << "\n";

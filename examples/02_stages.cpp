@@ -33,7 +33,7 @@ int main(int argc, char* argv[]) {
     std::cout << sites.voxels.voxel_count() << " sites, " << shell.voxels.voxel_count() << " shell voxels, genus "
               << sheet.topology.genus << ", " << relaxed.report.passes << " passes, " << mesh.triangles.size()
               << " triangles, labels " << digest_text(digest(labels)) << "\n";
-    write_mesh(argv[2] + std::string(".ply"), mesh, {MeshFormat::ply, true});
+    write_mesh(argv[2] + std::string(".ply"), mesh, {"ply", true});
     return dual.report.failed_cells == 0 ? 0 : 1;
   } catch (const Error& e) {
     std::cerr << e.stage() << ": " << e.what() << "\n";

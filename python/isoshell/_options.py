@@ -50,7 +50,7 @@ class Options(TypedDict, total=False):
 
     Files:
         iso: isovalue of a volume; required for a fog volume [0 in a level set and in unsigned distances].
-        input_format: format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
+        input_format: format of INPUT: ply, obj, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
         save_voronoi: also write the Voronoi volume, to resume from.

@@ -3,6 +3,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "isoshell/io/file_format.h"
+
 namespace nb = nanobind;
 
 namespace isoshell::python {
@@ -26,6 +28,23 @@ void bind_keywords(nb::module_& m) {
           "low", [](const tool::OptionEntry& o) { return o.range.low; }, "The least number that it takes.")
       .def_prop_ro(
           "high", [](const tool::OptionEntry& o) { return o.range.high; }, "The largest number that it takes.");
+  m.def(
+      "mesh_formats",
+      [] {
+        std::vector<std::string> names;
+        for (const FileFormat& format : file_formats())
+          if (format.writes_mesh) names.push_back(format.name);
+        return names;
+      },
+      "Of files that meshes are written to.");
+  m.def(
+      "input_formats",
+      [] {
+        std::vector<std::string> names;
+        for (const FileFormat& format : file_formats()) names.push_back(format.name);
+        return names;
+      },
+      "Of files that are read: meshes, points and volumes.");
   m.def("option_table", tool::option_table, "Every option of the command.");
 }
 

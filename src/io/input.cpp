@@ -15,6 +15,7 @@
 #include "io/faces/face_collector.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/volume_file.h"
@@ -90,26 +91,20 @@ class Reader {
     const std::string& path = request.path;
     if (path != "-") check_exists(path);
     const std::string format = request.format.empty() ? format_of_path(path) : request.format;
-    if (format == "obj") {
-      hold(read_mesh(path, MeshFormat::obj));
-    } else if (format == "stl") {
-      hold(read_mesh(path, MeshFormat::stl));
-    } else if (format == "off") {
-      hold(read_mesh(path, MeshFormat::off));
-    } else if (format == "glb" || format == "gltf") {
-      hold(read_mesh(path, MeshFormat::gltf));
-    } else if (format == "ply") {
+    const FileFormat* const known = find_format(format);
+    if (!known)
+      refuse(path + ": the format '" + format + "' is not one of " + listed_formats(reads_anything, ", ") +
+             "; say which by --input-format");
+    if (known->reads_mesh && known->reads_points)
       read_ply(request.creases);
-    } else if (format == "xyz" || format == "pcd") {
-      hold(read_points(path, format == "xyz" ? PointFormat::xyz : PointFormat::pcd), request.creases);
-    } else if (format == "vdb" && path != "-" && is_stage_file(path)) {
+    else if (known->reads_mesh)
+      hold(read_mesh(path, format));
+    else if (known->reads_points)
+      hold(read_points(path, format), request.creases);
+    else if (format == "vdb" && path != "-" && is_stage_file(path))
       read_stage_file();
-    } else if (format == "vdb" || format == "nvdb") {
+    else
       read_volume_file(request);
-    } else {
-      refuse(path + ": the format '" + format +
-             "' is not one of obj, ply, stl, off, glb, gltf, xyz, pcd, vdb, nvdb; say which by --input-format");
-    }
     if (request.iso && input_.facts.kind != InputKind::volume) refuse_use("--iso is for volumes; leave it out");
   }
 

@@ -6,11 +6,13 @@
 #include <new>
 #include <utility>
 
+#include "core/file_format.h"
 #include "geometry/world_vector.h"
 #include "io/bytes/text_scan.h"
 #include "io/faces/face_collector.h"
-#include "io/mesh/mesh_readers.h"
+#include "io/file_formats.h"
 #include "io/ply/ply_body.h"
+#include "io/ply/ply_reader.h"
 #include "io/points/point_readers.h"
 #include "isoshell/error.h"
 
@@ -169,13 +171,13 @@ auto read_or_say_why(const MeshSource& source, const char* what, Read read) {
 
 }  // namespace
 
-PointCloud read_points(const std::string& path, PointFormat format) {
+PointCloud read_points(const std::string& path, const std::string& format) {
+  const FormatRow* row = find_row(format.empty() ? format_of_path(path) : format);
+  if (!row || !row->read_points)
+    throw Error(ErrorCode::usage, "read",
+                path + ": the format of points must be one of " + listed_formats(reads_points));
   const MeshSource source(path);
-  return read_or_say_why(source, "points", [&] {
-    return finished(source, format == PointFormat::ply   ? read_ply_points(source)
-                            : format == PointFormat::xyz ? read_xyz(source)
-                                                         : read_pcd(source));
-  });
+  return read_or_say_why(source, "points", [&] { return finished(source, row->read_points(source)); });
 }
 
 PlyContent read_ply_content(const std::string& path) {

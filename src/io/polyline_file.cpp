@@ -6,9 +6,9 @@
 #include <unordered_set>
 
 #include "core/file_format.h"
-#include "io/mesh/mesh_readers.h"
 #include "io/mesh/obj_lines.h"
 #include "io/ply/ply_body.h"
+#include "io/polyline_readers.h"
 #include "isoshell/error.h"
 
 namespace isoshell {

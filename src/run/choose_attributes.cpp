@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 
 namespace isoshell {
 namespace {
@@ -19,45 +20,15 @@ std::string listed(const Names& names) {
   return text.empty() ? "none" : text;
 }
 
-bool obj_holds(const Attribute& a) {
-  if (a.domain == AttributeDomain::vertex) return a.name == kColorName && a.components >= 3;
-  if (a.domain == AttributeDomain::corner)
-    return (a.name == kUvName && a.components == 2) || (a.name == kNormalName && a.components == 3);
-  return !a.labels.empty() && (a.name == kMaterialName || a.name == kGroupName || a.name == kObjectName);
-}
-
-bool gltf_holds(const Attribute& a) {
-  if (a.domain == AttributeDomain::face) return a.name == kMaterialName && !a.labels.empty();
-  if (a.domain == AttributeDomain::vertex) return a.components == 1 || (a.name == kColorName && a.components >= 3);
-  return (a.name.rfind(kUvName, 0) == 0 && a.components == 2) || (a.name == kNormalName && a.components == 3);
-}
-
-/// Empty when files of the format hold the attribute.
-std::string reason_of_format(const std::string& format, const Attribute& attribute) {
-  if (format == "obj" && !obj_holds(attribute))
-    return attribute.domain == AttributeDomain::face ? "OBJ files hold no numbers of faces"
-                                                     : "OBJ files hold no numbers but colours";
-  if ((format == "glb" || format == "gltf") && !gltf_holds(attribute))
-    return attribute.domain == AttributeDomain::face ? "glTF files hold no numbers of faces but materials"
-                                                     : "glTF files hold no such numbers";
-  if (format == "ply" && attribute.domain == AttributeDomain::corner && attribute.name != kUvName &&
-      attribute.name != kNormalName)
-    return "PLY files hold one set of texture coordinates";
-  if (format == "stl") return "STL files are written without attributes";
-  if (format == "off") return "OFF files are written without attributes";
-  if (format == "vdb") return "stage files hold no attributes";
-  return "";
-}
-
 /// Of those that are kept.
 AttributeFiles files_of(const std::vector<Attribute>& kept, AttributeFiles all, const std::string& format) {
   const auto keeps = [&](const char* name) {
     return std::any_of(kept.begin(), kept.end(), [&](const Attribute& a) { return a.name == name; });
   };
-  const bool is_gltf = format == "glb" || format == "gltf";
+  const FileFormat* const file = find_format(format);
   if (!keeps(kMaterialName)) all.materials.clear();
-  if (!keeps(kMaterialName) || !is_gltf) all.gltf_materials.clear();
-  if (!keeps(kUvName) || format != "ply") all.textures.clear();
+  if (!keeps(kMaterialName) || !file || !file->holds_gltf_materials) all.gltf_materials.clear();
+  if (!keeps(kUvName) || !file || !file->holds_textures) all.textures.clear();
   return all;
 }
 
@@ -90,7 +61,7 @@ void choose_attributes(Input& input, const std::optional<Names>& names, const st
   report.dropped = std::move(soup.dropped_attributes);
   std::vector<Attribute> chosen;
   for (Attribute& a : soup.attributes) {
-    const std::string reason = names && !has(*names, a.name) ? "not asked for" : reason_of_format(format, a);
+    const std::string reason = names && !has(*names, a.name) ? "not asked for" : why_not_held(format, a);
     if (!reason.empty()) {
       report.dropped.push_back({a.name, reason});
       continue;

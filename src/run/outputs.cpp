@@ -9,6 +9,7 @@
 
 #include "core/file_format.h"
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/options/option_text.h"
@@ -50,8 +51,10 @@ OutputRequest named_output(const std::string& path, const std::string& format, S
   if (output.format.empty()) output.format = format_of_path(path);
   if (path.empty()) return output;
   if (stop_after == StopAfter::mesh) {
-    parse_choice<int>("the format of OUTPUT", output.format,
-                      {{"ply", 0}, {"obj", 0}, {"stl", 0}, {"off", 0}, {"glb", 0}, {"gltf", 0}});
+    const FileFormat* const written = find_format(output.format);
+    if (!written || !written->writes_mesh)
+      refuse_use("the format of OUTPUT is '" + output.format + "'; it must be one of " +
+                 listed_formats(writes_mesh, ", "));
   } else {
     if (output.format != "vdb") refuse_use("with --stop-after, OUTPUT is a .vdb file; it is '" + path + "'");
     if (path == "-") refuse_vdb_to_pipe();
@@ -81,7 +84,7 @@ void check_request(const RunRequest& r) {
   if (r.output.path == "-" && r.statistics == "-") refuse_use("OUTPUT and --stats cannot both be standard output");
   const OutputRequest output = named_output(r.output.path, r.output.format, r.stop_after);  // may refuse it
   if (r.options.values.color_features && r.stop_after == StopAfter::mesh && !output.path.empty() &&
-      output.format != "ply")
+      !find_format(output.format)->holds_edges)
     refuse_use("--color-features needs a PLY file; OUTPUT is '" + output.path + "'");
   if (!r.options.sizing.empty() && !can_write_vdb()) read_sizing(r.options.sizing);  // says that there is no OpenVDB
 }

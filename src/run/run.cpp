@@ -31,15 +31,6 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-MeshFormat mesh_format(const std::string& format) {
-  if (format == "ply") return MeshFormat::ply;
-  if (format == "obj") return MeshFormat::obj;
-  if (format == "stl") return MeshFormat::stl;
-  if (format == "glb") return MeshFormat::glb;
-  if (format == "gltf") return MeshFormat::gltf;
-  return MeshFormat::off;
-}
-
 class Run {
  public:
   Run(const RunRequest& request, Context& context) : request_(request), options_(request.options), context_(context) {
@@ -114,7 +105,7 @@ class Run {
     const OutputRequest& output = record_.output;
     if (!output.path.empty())
       write_step("write", output.path, [&] {
-        write_mesh(output.path, mesh, {mesh_format(output.format), request_.overwrite, options_.values.color_features});
+        write_mesh(output.path, mesh, {output.format, request_.overwrite, options_.values.color_features});
       });
     return finish(std::move(mesh));
   }

@@ -320,7 +320,7 @@ TEST_CASE("glTF: written meshes come back, also far from the origin and split at
     for (size_t c = 0; c < uv.index.size(); ++c) REQUIRE(read.values[2 * read.index[c]] == uv.values[2 * uv.index[c]]);
 
     for (WorldPoint& p : mesh.vertices) p.x += 1e6;
-    write_mesh(folder / name, mesh, {MeshFormat::from_name, true});
+    write_mesh(folder / name, mesh, {"", true});
     const TriangleSoup far = read_mesh(folder / name);
     REQUIRE(far.vertices.size() == mesh.vertices.size());
     for (size_t v = 0; v < mesh.vertices.size(); ++v) REQUIRE(std::abs(far.vertices[v].x - mesh.vertices[v].x) < 1e-6);

@@ -235,7 +235,7 @@ TEST_CASE("glTF: written files keep the rules of the specification", "[mesh_file
   write_mesh(folder / "full.glb", mesh);
   const Checked full(get_file(folder / "full.glb"));
   for (WorldPoint& p : mesh.vertices) p.x = p.x / 3 + 1e6;
-  write_mesh(folder / "far.glb", mesh, {MeshFormat::from_name, true});
+  write_mesh(folder / "far.glb", mesh, {"", true});
   const Checked far(get_file(folder / "far.glb"));
   mesh.attributes.clear();
   mesh.files = {};

@@ -216,5 +216,5 @@ TEST_CASE("attributes: a PLY file without faces is still a cloud", "[mesh_file][
   put_file(folder / "a.ply", "ply\nformat ascii 1.0\nelement vertex 2\n" + kPlace +
                                  "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
                                  "0 0 0 1 2 3\n1 1 1 4 5 6\n");
-  CHECK(read_points(folder / "a.ply", PointFormat::ply).position.size() == 2);
+  CHECK(read_points(folder / "a.ply", "ply").position.size() == 2);
 }

@@ -1,5 +1,5 @@
 // Damaged files either give a sound soup or an Error: every truncation, and thousands of changed bytes.
-#include "io/mesh/mesh_readers.h"
+#include "io/file_formats.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
@@ -35,15 +35,15 @@ std::vector<Sample> samples() {
       "s\n";
   const std::string polygons =
       "v 0 0 0\nv 4 0 0 # c\nv 4 4 0\nv 2 1 \\\n0\nv 0 4 nan\nv 0 3 1e0\nf 1/1 2//3 3/4/5 4 6\nf -1 -2 -3\nf 1 2 3 4\n";
-  return {{"obj", read_obj, get_file(folder / "a.obj")},
-          {"off", read_off, get_file(folder / "a.off")},
-          {"glb", read_gltf, get_file(folder / "a.glb")},
-          {"stl", read_stl, get_file(folder / "a.stl")},
-          {"ply", read_ply, get_file(folder / "a.ply")},
-          {"text ply", read_ply, text_ply},
-          {"mixed ply", read_ply, mixed_ply},
-          {"text stl", read_stl, text_stl},
-          {"polygons", read_obj, polygons}};
+  return {{"obj", find_row("obj")->read, get_file(folder / "a.obj")},
+          {"off", find_row("off")->read, get_file(folder / "a.off")},
+          {"glb", find_row("gltf")->read, get_file(folder / "a.glb")},
+          {"stl", find_row("stl")->read, get_file(folder / "a.stl")},
+          {"ply", find_row("ply")->read, get_file(folder / "a.ply")},
+          {"text ply", find_row("ply")->read, text_ply},
+          {"mixed ply", find_row("ply")->read, mixed_ply},
+          {"text stl", find_row("stl")->read, text_stl},
+          {"polygons", find_row("obj")->read, polygons}};
 }
 
 // True when a soup came back; a soup that breaks its promises fails the test.
@@ -81,7 +81,7 @@ TEST_CASE("damaged files: every truncation is refused or gives a sound soup", "[
     for (size_t length = 0; length < sample.bytes.size(); ++length) {
       const bool survived = survives(sample, sample.bytes.substr(0, length));
       // Whatever counts its rows or has an end mark notices the loss of a whole one.
-      if (sample.read != read_obj && length + 12 < sample.bytes.size()) CHECK_FALSE(survived);
+      if (sample.read != find_row("obj")->read && length + 12 < sample.bytes.size()) CHECK_FALSE(survived);
     }
   }
 }

@@ -4,7 +4,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "io/mesh/mesh_writers.h"
+#include "io/bytes/output_file.h"
+#include "io/mesh/precision.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
@@ -122,7 +123,7 @@ TEST_CASE("mesh files: an existing file is replaced only when asked, and keeps i
   CHECK(refused.code() == ErrorCode::unwritable_output);
   CHECK(says(refused, "exists already"));
   CHECK(get_file(folder / "a.obj") == "old");
-  write_mesh(folder / "a.obj", mesh, {MeshFormat::from_name, true});
+  write_mesh(folder / "a.obj", mesh, {"", true});
   CHECK(get_file(folder / "a.obj").substr(0, 2) == "v ");
   struct stat info;
   REQUIRE(stat((folder / "a.obj").c_str(), &info) == 0);
@@ -134,7 +135,7 @@ TEST_CASE("mesh files: a symbolic link stays one and its target is replaced", "[
   const TemporaryFolder folder;
   put_file(folder / "target.off", "old");
   std::filesystem::create_symlink(folder / "target.off", folder / "link.off");
-  write_mesh(folder / "link.off", mesh_of(shapes::box({0, 0, 0}, {1, 1, 1})), {MeshFormat::from_name, true});
+  write_mesh(folder / "link.off", mesh_of(shapes::box({0, 0, 0}, {1, 1, 1})), {"", true});
   CHECK(std::filesystem::is_symlink(folder / "link.off"));
   CHECK(get_file(folder / "target.off").substr(0, 3) == "OFF");
 }
@@ -146,14 +147,12 @@ TEST_CASE("mesh files: what cannot be written is refused and leaves nothing behi
   CHECK(absent.code() == ErrorCode::unwritable_output);
   CHECK(says(absent, "no/such/a.ply"));
   std::filesystem::create_directory(folder / "b.ply");
-  CHECK(error_of([&] {
-          write_mesh(folder / "b.ply", mesh, {MeshFormat::from_name, true});
-        }).code() == ErrorCode::unwritable_output);
+  CHECK(error_of([&] { write_mesh(folder / "b.ply", mesh, {"", true}); }).code() == ErrorCode::unwritable_output);
   CHECK(error_of([&] { write_mesh(folder / "a.dae", mesh); }).code() == ErrorCode::usage);
   CHECK(error_of([&] { write_mesh("-", mesh); }).code() == ErrorCode::usage);
   CHECK(folder.file_count() == 1);
   if (std::filesystem::exists("/dev/full")) {
-    const Error full = error_of([&] { write_mesh("/dev/full", mesh, {MeshFormat::ply, true}); });
+    const Error full = error_of([&] { write_mesh("/dev/full", mesh, {"ply", true}); });
     CHECK(full.code() == ErrorCode::unwritable_output);
     CHECK(std::filesystem::is_character_file("/dev/full"));
   }
@@ -181,10 +180,10 @@ TEST_CASE("mesh files: - is standard output and standard input", "[mesh_file][un
   const TriangleMesh mesh = rough_torus();
   {
     const StreamInstead out(STDOUT_FILENO, folder / "stream");
-    write_mesh("-", mesh, {MeshFormat::ply, false});
+    write_mesh("-", mesh, {"ply", false});
   }
   const StreamInstead in(STDIN_FILENO, folder / "stream");
-  check_same(read_mesh("-", MeshFormat::ply), mesh);
+  check_same(read_mesh("-", "ply"), mesh);
 }
 
 TEST_CASE("mesh files: when there is no room, the old file stays and the temporary goes", "[mesh_file][unit]") {
@@ -198,7 +197,7 @@ TEST_CASE("mesh files: when there is no room, the old file stays and the tempora
   std::string what;
   ErrorCode code = ErrorCode::internal;
   try {
-    write_mesh(folder / "a.off", rough_torus(), {MeshFormat::from_name, true});
+    write_mesh(folder / "a.off", rough_torus(), {"", true});
   } catch (const Error& error) {
     what = error.what();
     code = error.code();

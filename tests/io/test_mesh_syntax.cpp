@@ -324,7 +324,7 @@ TEST_CASE("read_mesh: names, folders and absent files", "[mesh_file][unit]") {
   std::filesystem::create_directory(folder / "b.obj");
   CHECK(says(error_of([&] { read_mesh(folder / "b.obj"); }), "is a folder"));
   put_file(folder / "c.dat", kTriangleObj + "f 1 2 3");
-  CHECK(read_mesh(folder / "c.dat", MeshFormat::obj).triangles.size() == 1);
+  CHECK(read_mesh(folder / "c.dat", "obj").triangles.size() == 1);
 }
 
 TEST_CASE("ply: a header of endless elements, properties or lines is refused at once", "[mesh_file][unit]") {

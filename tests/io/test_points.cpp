@@ -24,14 +24,12 @@ using namespace isoshell;
 
 namespace {
 
-PointCloud parse(const std::string& text, PointFormat format) {
+PointCloud parse(const std::string& text, const std::string& format) {
   const MeshSource source("cloud", {text.data(), int64_t(text.size())});
-  return format == PointFormat::ply   ? read_ply_points(source)
-         : format == PointFormat::xyz ? read_xyz(source)
-                                      : read_pcd(source);
+  return format == "ply" ? read_ply_points(source) : format == "xyz" ? read_xyz(source) : read_pcd(source);
 }
 
-ErrorCode refusal(const std::string& text, PointFormat format) {
+ErrorCode refusal(const std::string& text, const std::string& format) {
   try {
     parse(text, format);
   } catch (const Error& error) {
@@ -97,24 +95,24 @@ const std::string kPcd =
 }  // namespace
 
 TEST_CASE("points: rows of text with titles, comments, colours and normals", "[points][unit]") {
-  CHECK(parse("1 2 3\n4 5 6\n", PointFormat::xyz).position[1].z == 6);
-  CHECK(parse("2\n# two\n1 2 3\n4 5 6", PointFormat::xyz).position.size() == 2);
-  CHECK(parse("x y z\n1 2 3\n", PointFormat::xyz).position[0].y == 2);
-  const PointCloud normals = parse("1 2 3 0 0 1\n4 5 6 0.6 0 -0.8\n", PointFormat::xyz);
+  CHECK(parse("1 2 3\n4 5 6\n", "xyz").position[1].z == 6);
+  CHECK(parse("2\n# two\n1 2 3\n4 5 6", "xyz").position.size() == 2);
+  CHECK(parse("x y z\n1 2 3\n", "xyz").position[0].y == 2);
+  const PointCloud normals = parse("1 2 3 0 0 1\n4 5 6 0.6 0 -0.8\n", "xyz");
   REQUIRE(normals.normal.size() == 2);
   CHECK(normals.normal[1].z == -0.8);
-  CHECK(parse("1 2 3 255 0 12\n4 5 6 1 2 3\n", PointFormat::xyz).normal.empty());
-  CHECK(parse("1 2 3 255 0 12 0 1 0\n", PointFormat::xyz).normal.size() == 1);
-  CHECK(refusal("1 2 3\n4 five 6\n", PointFormat::xyz) == ErrorCode::unreadable_input);
-  CHECK(refusal("1 2\n", PointFormat::xyz) == ErrorCode::unreadable_input);
-  CHECK(refusal("# nothing\n", PointFormat::xyz) == ErrorCode::nothing_to_mesh);
+  CHECK(parse("1 2 3 255 0 12\n4 5 6 1 2 3\n", "xyz").normal.empty());
+  CHECK(parse("1 2 3 255 0 12 0 1 0\n", "xyz").normal.size() == 1);
+  CHECK(refusal("1 2 3\n4 five 6\n", "xyz") == ErrorCode::unreadable_input);
+  CHECK(refusal("1 2\n", "xyz") == ErrorCode::unreadable_input);
+  CHECK(refusal("# nothing\n", "xyz") == ErrorCode::nothing_to_mesh);
 }
 
 TEST_CASE("points: a PLY without faces, with its normals", "[points][unit]") {
   const PointCloud cloud = parse(
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty uchar red\nproperty float y\n"
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n1 7 2 3 0 1 0\n",
-      PointFormat::ply);
+      "ply");
   REQUIRE(cloud.normal.size() == 1);
   CHECK(cloud.position[0].y == 2);
   CHECK(cloud.normal[0].y == 1);
@@ -125,11 +123,9 @@ TEST_CASE("points: a PLY with more values or rows than its header declares gives
   const std::string head =
       "element vertex 2\nproperty uchar nx\nproperty uchar ny\nproperty uchar nz\nproperty uchar x\n"
       "property uchar y\nproperty uchar z\nend_header\n";
-  const PointCloud text =
-      parse("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6 7\n8 9\n", PointFormat::ply);
+  const PointCloud text = parse("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6 7\n8 9\n", "ply");
   const PointCloud binary =
-      parse("ply\nformat binary_big_endian 1.0\n" + head + std::string("\0\0\1\1\2\3\0\0\1\5\6\7\x8\x9", 14),
-            PointFormat::ply);
+      parse("ply\nformat binary_big_endian 1.0\n" + head + std::string("\0\0\1\1\2\3\0\0\1\5\6\7\x8\x9", 14), "ply");
   for (const PointCloud* cloud : {&text, &binary}) {
     REQUIRE(cloud->position.size() == 2);
     CHECK(cloud->position[1].x == 5);
@@ -138,10 +134,8 @@ TEST_CASE("points: a PLY with more values or rows than its header declares gives
   CHECK(text.dirt.long_rows == 1);
   CHECK(text.dirt.surplus_rows == 1);
   CHECK(binary.dirt.surplus_bytes == 2);
-  CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4 5 6 7\n", PointFormat::ply) ==
-        ErrorCode::unreadable_input);
-  CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6\n", PointFormat::ply) ==
-        ErrorCode::unreadable_input);
+  CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4 5 6 7\n", "ply") == ErrorCode::unreadable_input);
+  CHECK(refusal("ply\nformat ascii 1.0\n" + head + "0 0 1 1 2 3 4\n0 0 1 5 6\n", "ply") == ErrorCode::unreadable_input);
 }
 
 TEST_CASE("points: a PLY of which no face has area is a cloud, one with a face that has is a mesh", "[points][unit]") {
@@ -188,17 +182,15 @@ TEST_CASE("points: PCD as text, binary and packed", "[points][unit]") {
   const std::string text = kPcd + "ascii\n1 2 3 9\n4 5 6 9\n", binary = kPcd + "binary\n" + raw(rows, sizeof rows),
                     lzf = kPcd + "binary_compressed\n" + raw(sizes, sizeof sizes) + packed;
   for (const std::string& file : {text, binary, lzf}) {
-    const PointCloud cloud = parse(file, PointFormat::pcd);
+    const PointCloud cloud = parse(file, "pcd");
     REQUIRE(cloud.position.size() == 2);
     CHECK(cloud.position[0].x == 1);
     CHECK(cloud.position[1].y == 5);
     CHECK(cloud.position[1].z == 6);
-    CHECK(refusal(file.substr(0, file.size() - 8), PointFormat::pcd) == ErrorCode::unreadable_input);
+    CHECK(refusal(file.substr(0, file.size() - 8), "pcd") == ErrorCode::unreadable_input);
   }
-  CHECK(refusal("VERSION 0.7\nFIELDS x y z\nPOINTS 4294967295\nDATA binary\n", PointFormat::pcd) ==
-        ErrorCode::unreadable_input);
-  CHECK(refusal("VERSION 0.7\nFIELDS x y\nPOINTS 1\nDATA ascii\n1 2\n", PointFormat::pcd) ==
-        ErrorCode::unreadable_input);
+  CHECK(refusal("VERSION 0.7\nFIELDS x y z\nPOINTS 4294967295\nDATA binary\n", "pcd") == ErrorCode::unreadable_input);
+  CHECK(refusal("VERSION 0.7\nFIELDS x y\nPOINTS 1\nDATA ascii\n1 2\n", "pcd") == ErrorCode::unreadable_input);
 }
 
 TEST_CASE("points: a packed piece never reads before its beginning nor writes beyond its end", "[points][unit]") {

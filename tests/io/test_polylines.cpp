@@ -44,7 +44,7 @@ TEST_CASE("polylines: the edges of a PLY file are segments, in text and binary",
   const TemporaryFolder folder;
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{{0, 2, 1}}, {{0, 1, 3}}, {{1, 2, 3}}, {{0, 3, 2}}}};
   mesh.features.curve_edges = {{{0, 3}, 0}, {{1, 2}, 1}};
-  write_mesh(folder / "mesh.ply", mesh, {MeshFormat::ply, false, true});
+  write_mesh(folder / "mesh.ply", mesh, {"ply", false, true});
   const auto written = read_polylines(folder / "mesh.ply");
   CHECK(written->segments == Segments{{0, 3}, {1, 2}});
   CHECK(written->points.size() == 4);

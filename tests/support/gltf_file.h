@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_readers.h"
+#include "io/file_formats.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -62,7 +62,7 @@ std::string bytes_of(const std::vector<T>& values) {
 /// From an allocation of exactly this size, so that a look beyond it is seen by a memory checker.
 inline TriangleSoup read_glb(const std::string& bytes) {
   const std::vector<char> exact(bytes.begin(), bytes.end());
-  return read_gltf(MeshSource("memory", {exact.data(), int64_t(exact.size())}));
+  return find_row("gltf")->read(MeshSource("memory", {exact.data(), int64_t(exact.size())}));
 }
 
 /// Reads a file with one byte changed, many times: every result is a sound soup or an error of what is read.

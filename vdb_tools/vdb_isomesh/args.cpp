@@ -5,6 +5,7 @@
 #include <map>
 
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 #include "vdb_isomesh/help.h"
 #include "vdb_isomesh/options.h"
 
@@ -13,20 +14,26 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "command line", message); }
 
-constexpr const char* kDescription =
-    "vdb_isomesh INPUT OUTPUT [options]\n\n"
-    "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
-    "INPUT   a mesh (.obj .ply .stl .off .glb .gltf), a point cloud (.ply .xyz .pcd), a volume (.vdb\n"
-    "        .nvdb: a level set, unsigned distances, or with --iso a fog volume; FILE.vdb:NAME names a\n"
-    "        grid), or a stage file that this command wrote (.vdb); - reads standard input and needs\n"
-    "        --input-format\n"
-    "OUTPUT  a mesh (.ply .obj .stl .off .glb .gltf), or a .vdb file with --stop-after; - writes standard\n"
-    "        output and needs --output-format";
+std::string description() {
+  return "vdb_isomesh INPUT OUTPUT [options]\n\n"
+         "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
+         "INPUT   a mesh (" +
+         listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + "), a volume (" +
+         listed_endings(reads_volume) +
+         ":\n"
+         "        a level set, unsigned distances, or with --iso a fog volume; FILE.vdb:NAME names a grid),\n"
+         "        or a stage file that this command wrote (.vdb); - reads standard input and needs\n"
+         "        --input-format\n"
+         "OUTPUT  a mesh (" +
+         listed_endings(writes_mesh) +
+         "), or a .vdb file with --stop-after; - writes standard\n"
+         "        output and needs --output-format";
+}
 
 /// The command as CLI11 knows it. All values are text, which the options turn into what they are.
 class Parser {
  public:
-  Parser() : app_(kDescription), options_(command_options()) {
+  Parser() : app_(description()), options_(command_options()) {
     app_.set_help_flag();
     app_.allow_extras();
     app_.add_option("INPUT", input_);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 #include "isoshell/options/option_table.h"
 #include "isoshell/options/option_text.h"
 
@@ -83,10 +84,10 @@ std::vector<CommandOption> file_options() {
       {{group, "iso", "V", "isovalue of a volume; required for a fog volume",
         "0 in a level set and in unsigned distances", true},
        set_iso},
-      {{group, "input-format", "F", "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb",
-        "by its name"},
+      {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
-      {{group, "output-format", "F", "format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb", "by its name"},
+      {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",
+        "by its name"},
        [](const std::string& text, Arguments& a) { a.run.output.format = text; }},
       {{group, "save-shell", "F.vdb", "also write the shell, to resume from"}, text_of(&RunRequest::save_shell)},
       {{group, "save-voronoi", "F.vdb", "also write the Voronoi volume, to resume from"},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 #include "isoshell/options/option_text.h"
 #include "vdb_isomesh/help.h"
 
@@ -14,11 +15,13 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "command line", message); }
 
-constexpr const char* kDescription =
-    "vdb_meshinfo MESH [--ref INPUT] [options]\n\n"
-    "Counts and measures a triangle mesh as it is stored: topology, shapes of triangles, self-intersections,\n"
-    "and with --ref how far it is from a surface.\n\n"
-    "MESH    a mesh (.obj .ply .stl .off .glb .gltf); - reads standard input and needs --input-format";
+std::string description() {
+  return "vdb_meshinfo MESH [--ref INPUT] [options]\n\n"
+         "Counts and measures a triangle mesh as it is stored: topology, shapes of triangles, self-intersections,\n"
+         "and with --ref how far it is from a surface.\n\n"
+         "MESH    a mesh (" +
+         listed_endings(reads_mesh) + "); - reads standard input and needs --input-format";
+}
 
 constexpr const char* kExitStatus =
     "\nExit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read, 4 output cannot be\n"
@@ -35,7 +38,7 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
   app.allow_extras();
   app.add_option("MESH", raw.mesh);
   const auto option = [&](const char* group, const char* name, std::string& value, const char* value_name,
-                          const char* text, const char* fallback = "") {
+                          const std::string& text, const char* fallback = "") {
     app.add_option(name, value, text)->group(group)->type_name(value_name)->default_str(fallback);
   };
   const auto flag = [&](const char* group, const char* name, bool& value, const char* text) {
@@ -43,16 +46,17 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
   };
   const char* measure = "Measures";
   option(measure, "--ref", raw.reference, "INPUT",
-         "also measure distances and deviations of normals from this surface, both ways: a mesh (.obj .ply .stl .off "
-         ".glb .gltf), a point cloud (.ply .xyz .pcd) or a volume (.vdb .nvdb)");
+         "also measure distances and deviations of normals from this surface, both ways: a mesh (" +
+             listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + ") or a volume (" +
+             listed_endings(reads_volume) + ")");
   option(measure, "--require", raw.require, "LIST",
          "exit with status 6 unless the mesh meets every requirement of this comma-separated list: closed, manifold, "
          "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG, max-deviation=W (world units, "
          "from --ref), normal-deviation=DEG (mean, from --ref)");
   const char* files = "Files";
-  option(files, "--input-format", raw.format, "F", "format of MESH: obj, ply, stl, off, glb or gltf", "by its name");
-  option(files, "--ref-format", raw.reference_format, "F",
-         "format of INPUT: obj, ply, stl, off, glb, gltf, xyz, pcd, vdb or nvdb", "by its name");
+  option(files, "--input-format", raw.format, "F", "format of MESH: " + listed_formats(reads_mesh), "by its name");
+  option(files, "--ref-format", raw.reference_format, "F", "format of INPUT: " + listed_formats(reads_anything),
+         "by its name");
   flag(files, "--json", raw.json, "write everything as JSON to standard output instead of the table");
   option(files, "--stats", a.statistics, "F.json", "write everything as JSON; - is --json");
   flag(files, "--force", a.overwrite, "overwrite an existing file");
@@ -78,7 +82,7 @@ void refuse_leftovers(const CLI::App& app) {
 MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv) {
   MeshInfoArguments a;
   Raw raw;
-  CLI::App app(kDescription);
+  CLI::App app(description());
   describe(app, a, raw);
   std::vector<std::string> words(argv + 1, argv + argc);
   std::reverse(words.begin(), words.end());  // as CLI11 wants them

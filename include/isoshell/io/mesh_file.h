@@ -8,19 +8,18 @@
 
 namespace isoshell {
 
-enum class MeshFormat { from_name, ply, obj, stl, off, glb, gltf };
-
-/// Reads a mesh. `path` "-" reads standard input and needs a format. Polygons are split by ear clipping, triangle
-/// strips unrolled. Attributes are the numbers of PLY's vertices and faces and its lists of texture coordinates; of OBJ
-/// colours behind positions (white where only others have one), texture coordinates, normals, materials, groups and
-/// objects; of glTF colours, texture coordinates, normals, materials and scalars whose names begin with _. Other lists
-/// are not taken. The meshes of a glTF file stand where its nodes put them, and its up axis stays. Dirty geometry is
-/// dropped and counted in the result, a file that lies throws. Throws: unreadable_input (names file and line, element
-/// or byte, the value and the remedy), nothing_to_mesh when the file is sound but holds no usable triangle.
-TriangleSoup read_mesh(const std::string& path, MeshFormat format = MeshFormat::from_name);
+/// Reads a mesh. `format` is a name of file_format.h, empty: by the path. `path` "-" reads standard input and needs
+/// one. Polygons are split by ear clipping, triangle strips unrolled. Attributes are the numbers of PLY's vertices and
+/// faces and its lists of texture coordinates; of OBJ colours behind positions (white where only others have one),
+/// texture coordinates, normals, materials, groups and objects; of glTF colours, texture coordinates, normals,
+/// materials and scalars whose names begin with _. Other lists are not taken. The meshes of a glTF file stand where its
+/// nodes put them, and its up axis stays. Dirty geometry is dropped and counted in the result, a file that lies throws.
+/// Throws: unreadable_input (names file and line, element or byte, the value and the remedy), nothing_to_mesh when the
+/// file is sound but holds no usable triangle.
+TriangleSoup read_mesh(const std::string& path, const std::string& format = "");
 
 struct MeshWriteOptions {
-  MeshFormat format = MeshFormat::from_name;
+  std::string format = {};  ///< a name of file_format.h; empty: by the path
   bool overwrite = false;
   bool curve_edges = false;  ///< also the edges of the mesh's curves: an element edge, in PLY only
 };

@@ -9,18 +9,16 @@
 
 namespace isoshell {
 
-enum class PointFormat { ply, xyz, pcd };
-
 /// Points in world units; `normal` is empty, or one a point, of any length.
 struct PointCloud {
   std::vector<WorldPoint> position, normal;
   DirtCounts dirt;  ///< what was left out
 };
 
-/// Reads points: PLY whatever its faces, text rows of x y z and perhaps a normal (.xyz), and PCD as text, binary or
-/// packed. Colours and other columns are passed over. `path` "-" reads standard input. Throws: unreadable_input,
-/// nothing_to_mesh when there is no point.
-PointCloud read_points(const std::string& path, PointFormat format);
+/// Reads points. `format` is "ply", "xyz" or "pcd", empty: by the path: PLY whatever its faces, text rows of x y z and
+/// perhaps a normal (.xyz), and PCD as text, binary or packed. Colours and other columns are passed over. `path` "-"
+/// reads standard input. Throws: unreadable_input, nothing_to_mesh when there is no point.
+PointCloud read_points(const std::string& path, const std::string& format = "");
 
 /// A PLY file holds a mesh, or points: vertices of which no face makes a triangle with area.
 struct PlyContent {

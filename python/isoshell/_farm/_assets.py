@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from typing import Any, Dict, Iterable, Iterator, List
 
 from .._errors import Error
-from .._isoshell import ErrorCode
+from .._isoshell import ErrorCode, input_formats
 from .._keywords import is_flag, kinds
 from . import _places as places
 
-MESHES = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf", ".xyz", ".pcd", ".vdb", ".nvdb",
-          ".usd", ".usda", ".usdc", ".usdz")
+MESHES = (*(f".{name}" for name in input_formats()), ".usd", ".usda", ".usdc", ".usdz")
 TABLES = (".csv", ".jsonl", ".parquet")
 OF_SEQUENCES = ("frames", "velocity", "no_coherence", "keep_going")
 OF_THE_FARM = ("stats", "report", "force", "progress", "resume", "dry_run", "output_format", "save_shell",

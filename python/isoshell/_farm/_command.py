@@ -15,7 +15,7 @@ from ._admission import bytes_of
 from ._assets import OF_SEQUENCES, OF_THE_FARM, assets_of
 from ._progress import tell
 
-SUFFIXES = ("ply", "obj", "stl", "off", "glb", "gltf", "usda", "usdc", "usdz")
+SUFFIXES = (*_isoshell.mesh_formats(), "usda", "usdc", "usdz")
 PLACE = ("device", "threads", "max_memory")
 TETRAHEDRON = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 

@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "core/parallel_ranges.h"
+#include "io/bytes/mesh_source.h"
 #include "io/faces/face_corners.h"
 #include "io/faces/weld.h"
 #include "io/gltf/gltf_materials.h"
 #include "io/gltf/gltf_primitives.h"
 #include "io/gltf/gltf_unpack.h"
-#include "io/mesh/mesh_readers.h"
+#include "isoshell/surface_source.h"
 
 namespace isoshell {
 namespace {

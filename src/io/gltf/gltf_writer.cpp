@@ -7,11 +7,13 @@
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "io/bytes/output_file.h"
 #include "io/gltf/gltf_materials.h"
 #include "io/gltf/gltf_uri.h"
 #include "io/gltf/gltf_vertices.h"
-#include "io/mesh/mesh_writers.h"
+#include "io/mesh/precision.h"
 #include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
 
 namespace isoshell {
 namespace {
@@ -231,15 +233,27 @@ void require_triangles(const TriangleMesh& mesh) {
     throw Error(ErrorCode::unwritable_output, "write", "a glTF file cannot hold a mesh without triangles; write PLY");
 }
 
+bool gltf_holds(const Attribute& a) {
+  if (a.domain == AttributeDomain::face) return a.name == kMaterialName && !a.labels.empty();
+  if (a.domain == AttributeDomain::vertex) return a.components == 1 || (a.name == kColorName && a.components >= 3);
+  return (a.name.rfind(kUvName, 0) == 0 && a.components == 2) || (a.name == kNormalName && a.components == 3);
+}
+
 }  // namespace
 
-void write_gltf(OutputFile& file, const TriangleMesh& mesh) {
+std::string what_gltf_lacks(const Attribute& attribute) {
+  if (gltf_holds(attribute)) return "";
+  return attribute.domain == AttributeDomain::face ? "glTF files hold no numbers of faces but materials"
+                                                   : "glTF files hold no such numbers";
+}
+
+void write_gltf(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
   require_triangles(mesh);
   const GltfWriter writer(mesh);
   file.write(writer.json("data:application/octet-stream;base64," + base64_of(writer.bytes())) + "\n");
 }
 
-void write_glb(OutputFile& file, const TriangleMesh& mesh) {
+void write_glb(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
   require_triangles(mesh);
   const GltfWriter writer(mesh);
   std::string json = writer.json("");

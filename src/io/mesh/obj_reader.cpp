@@ -4,9 +4,10 @@
 #include <limits>
 #include <unordered_map>
 
+#include "io/bytes/mesh_source.h"
 #include "io/faces/face_corners.h"
-#include "io/mesh/mesh_readers.h"
 #include "io/mesh/obj_lines.h"
+#include "isoshell/surface_source.h"
 
 namespace isoshell {
 namespace {

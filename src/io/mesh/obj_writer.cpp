@@ -5,8 +5,9 @@
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "io/bytes/output_file.h"
 #include "io/bytes/row_buffer.h"
-#include "io/mesh/mesh_writers.h"
+#include "isoshell/io/mesh_file.h"
 
 namespace isoshell {
 namespace {
@@ -149,8 +150,21 @@ class ObjWriter {
   Names names_[3] = {{kMaterialName, "usemtl"}, {kObjectName, "o"}, {kGroupName, "g"}};
 };
 
+bool obj_holds(const Attribute& a) {
+  if (a.domain == AttributeDomain::vertex) return a.name == kColorName && a.components >= 3;
+  if (a.domain == AttributeDomain::corner)
+    return (a.name == kUvName && a.components == 2) || (a.name == kNormalName && a.components == 3);
+  return !a.labels.empty() && (a.name == kMaterialName || a.name == kGroupName || a.name == kObjectName);
+}
+
 }  // namespace
 
-void write_obj(OutputFile& file, const TriangleMesh& mesh) { ObjWriter(file, mesh).write(); }
+std::string what_obj_lacks(const Attribute& attribute) {
+  if (obj_holds(attribute)) return "";
+  return attribute.domain == AttributeDomain::face ? "OBJ files hold no numbers of faces"
+                                                   : "OBJ files hold no numbers but colours";
+}
+
+void write_obj(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) { ObjWriter(file, mesh).write(); }
 
 }  // namespace isoshell

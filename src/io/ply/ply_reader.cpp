@@ -1,10 +1,11 @@
 // PLY: positions and numbers of vertices, polygons with their numbers and corners, and triangle strips; everything else
 // is passed over.
+#include "io/ply/ply_reader.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "io/bytes/text_scan.h"
-#include "io/mesh/mesh_readers.h"
 #include "io/ply/ply_body.h"
 
 namespace isoshell {

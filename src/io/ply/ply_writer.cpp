@@ -3,10 +3,12 @@
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "io/bytes/output_file.h"
 #include "io/bytes/row_buffer.h"
-#include "io/mesh/mesh_writers.h"
+#include "io/mesh/precision.h"
 #include "io/ply/ply_attributes.h"
 #include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
 
 namespace isoshell {
 namespace {
@@ -150,8 +152,14 @@ class PlyWriter {
 
 }  // namespace
 
-void write_ply(OutputFile& file, const TriangleMesh& mesh, bool with_curve_edges) {
-  PlyWriter(file, mesh, with_curve_edges).write();
+std::string what_ply_lacks(const Attribute& attribute) {
+  const bool is_more =
+      attribute.domain == AttributeDomain::corner && attribute.name != kUvName && attribute.name != kNormalName;
+  return is_more ? "PLY files hold one set of texture coordinates" : "";
+}
+
+void write_ply(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions& options) {
+  PlyWriter(file, mesh, options.curve_edges).write();
 }
 
 }  // namespace isoshell

@@ -1,13 +1,27 @@
 // STL, binary and text. Normals are passed over; corners are welded by position.
 #include <algorithm>
 
+#include "geometry/world_vector.h"
+#include "io/bytes/mesh_source.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/row_buffer.h"
 #include "io/bytes/text_scan.h"
 #include "io/faces/face_collector.h"
 #include "io/faces/weld.h"
-#include "io/mesh/mesh_readers.h"
+#include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/surface_source.h"
 
 namespace isoshell {
 namespace {
+
+// Unit normal; zero where the triangle has no area.
+WorldPoint normal_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
+  const WorldPoint n = doubled_area(a, b, c);
+  const double size = length(n);
+  if (!(size > 0) || !std::isfinite(size)) return {0, 0, 0};
+  return {n.x / size, n.y / size, n.z / size};
+}
 
 constexpr int64_t kHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50;
 
@@ -182,5 +196,26 @@ TriangleSoup read_text(const MeshSource& source) {
 }  // namespace
 
 TriangleSoup read_stl(const MeshSource& source) { return is_binary(source) ? read_binary(source) : read_text(source); }
+
+void write_stl(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
+  if (mesh.triangles.size() > 0xffffffffu)
+    throw Error(ErrorCode::unwritable_output, "write",
+                "the mesh has " + std::to_string(mesh.triangles.size()) +
+                    " triangles; an STL file holds at most 4294967295, write PLY");
+  std::string header = "binary STL by isoshell";  // must not begin with "solid"
+  header.resize(80, ' ');
+  for (int i = 0; i < 4; ++i) header += char(mesh.triangles.size() >> 8 * i & 0xff);
+  file.write(header);
+  write_rows(file, int64_t(mesh.triangles.size()), 50, [&](int64_t i, RowBuffer& out) {
+    const auto& t = mesh.triangles[size_t(i)];
+    const WorldPoint corners[] = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    for (const WorldPoint& p : {normal_of(corners[0], corners[1], corners[2]), corners[0], corners[1], corners[2]}) {
+      out.put_binary(float(p.x));
+      out.put_binary(float(p.y));
+      out.put_binary(float(p.z));
+    }
+    out.put_binary(uint16_t(0));
+  });
+}
 
 }  // namespace isoshell

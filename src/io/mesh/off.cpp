@@ -1,12 +1,23 @@
 // OFF as text: a row of counts, a row a vertex, a row a face. Normals and colours are passed over.
 #include <algorithm>
 
+#include "io/bytes/mesh_source.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/row_buffer.h"
 #include "io/bytes/text_scan.h"
 #include "io/faces/face_collector.h"
-#include "io/mesh/mesh_readers.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/surface_source.h"
 
 namespace isoshell {
 namespace {
+
+void put_text(RowBuffer& out, const std::array<uint32_t, 3>& t) {
+  for (int i = 0; i < 3; ++i) {
+    out.put_number(t[size_t(i)]);
+    out.put(i < 2 ? ' ' : '\n');
+  }
+}
 
 struct OffHeader {
   int64_t vertices = 0, faces = 0;
@@ -126,6 +137,19 @@ TriangleSoup read_off(const MeshSource& source) {
     return p;
   });
   return join_soup(source, std::move(vertices), faces);
+}
+
+void write_off(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
+  file.write("OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.triangles.size()) + " 0\n");
+  write_rows(file, int64_t(mesh.vertices.size()), 3 * (kLongestDouble + 1), [&](int64_t i, RowBuffer& out) {
+    put_text(out, mesh.vertices[size_t(i)]);
+    out.put('\n');
+  });
+  write_rows(file, int64_t(mesh.triangles.size()), 2 + 3 * (kLongestIndex + 1), [&](int64_t i, RowBuffer& out) {
+    out.put('3');
+    out.put(' ');
+    put_text(out, mesh.triangles[size_t(i)]);
+  });
 }
 
 }  // namespace isoshell
