@@ -34,6 +34,24 @@ struct Attribute {
   std::vector<std::string> labels = {};  ///< what a value is the number of, -1 being none; empty: values are numbers
 };
 
+/// What a name says of an attribute. Others may hold any numbers.
+struct AttributeMeaning {
+  const char* name;
+  AttributeDomain domain;
+  int32_t least_components, most_components;
+  bool has_sets = false;      ///< name1, name2, ... mean the same
+  bool is_direction = false;  ///< its first three components are one, which a result has with length 1
+  bool makes_seams = false;   ///< where it jumps, no triangle of a result may lie on both sides
+};
+
+const std::vector<AttributeMeaning>& attribute_meanings();
+
+/// By the name alone, "uv2" as well as "uv"; null for one without a meaning.
+const AttributeMeaning* meaning_of(const std::string& name);
+
+/// Whether the attribute is of that meaning, by its name, domain and components.
+bool means(const Attribute& attribute, const char* name);
+
 /// What attributes speak of, as it stands in the file that was read: names of files, and materials.
 struct AttributeFiles {
   std::vector<std::string> materials;  ///< libraries of OBJ's materials

@@ -77,14 +77,9 @@ const char* domain_name(AttributeDomain domain) {
   throw Error(ErrorCode::usage, "arguments", "the attribute '" + name + "' " + what);
 }
 
-/// "uv", "uv1", "uv2": sets of texture coordinates.
-bool is_uv(const std::string& name) {
-  const size_t digits = std::string(kUvName).size();
-  return name.rfind(kUvName, 0) == 0 && name.find_first_not_of("0123456789", digits) == std::string::npos;
-}
-
 AttributeDomain domain_of(const std::string& name, const std::string& domain) {
-  const bool by_corner = is_uv(name) || name == kNormalName;
+  const AttributeMeaning* const meaning = meaning_of(name);
+  const bool by_corner = meaning && meaning->domain == AttributeDomain::corner;
   if (by_corner != (domain == "corner"))
     refuse(name, by_corner ? "is one of corners: give values[faces]" : "is one of vertices or of faces");
   if (name == kTextureName && domain != "face") refuse(name, "is one of faces");
@@ -93,12 +88,13 @@ AttributeDomain domain_of(const std::string& name, const std::string& domain) {
 }
 
 void check_components(const Attribute& a) {
-  const int32_t n = a.components;
-  if (a.name == kColorName && n != 3 && n != 4) refuse(a.name, "has 3 or 4 values each, not " + std::to_string(n));
-  if (is_uv(a.name) && n != 2) refuse(a.name, "has 2 values each, not " + std::to_string(n));
-  if (a.name == kNormalName && n != 3) refuse(a.name, "has 3 values each, not " + std::to_string(n));
-  if (a.name != kColorName && a.domain != AttributeDomain::corner && n != 1)
-    refuse(a.name, "has " + std::to_string(n) + " values each; give each of them a name of its own");
+  const AttributeMeaning* const meaning = meaning_of(a.name);
+  const int32_t n = a.components, least = meaning ? meaning->least_components : 1,
+                most = meaning ? meaning->most_components : 1;
+  if (n >= least && n <= most) return;
+  if (most == 1) refuse(a.name, "has " + std::to_string(n) + " values each; give each of them a name of its own");
+  refuse(a.name, "has " + (least < most ? std::to_string(least) + " or " : "") + std::to_string(most) +
+                     " values each, not " + std::to_string(n));
 }
 
 template <class T>

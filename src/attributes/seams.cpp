@@ -14,8 +14,10 @@ constexpr uint32_t kMostAtVertex = 6;
 
 /// Directions and colours may vary from face to face; where an image or a material ends, no triangle may lie on both.
 bool makes_seams(const Attribute& a) {
-  if (a.domain == AttributeDomain::corner) return a.name != kNormalName;
-  return a.domain == AttributeDomain::face && (!a.labels.empty() || a.name == kTextureName);
+  const AttributeMeaning* const meaning = meaning_of(a.name);
+  if (a.domain == AttributeDomain::corner) return !meaning || meaning->makes_seams;
+  return a.domain == AttributeDomain::face &&
+         (!a.labels.empty() || (meaning && meaning->name == std::string(kTextureName)));
 }
 
 class SeamFinder {

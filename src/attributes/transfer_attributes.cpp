@@ -96,14 +96,16 @@ void transfer_to_vertices(const TriangleSoup& source, const std::vector<const At
 }
 
 bool is_direction(const Attribute& a) {
-  return a.name == kNormalName && a.components == 3 && a.domain == AttributeDomain::corner;
+  const AttributeMeaning* const meaning = meaning_of(a.name);
+  return meaning && meaning->is_direction && means(a, meaning->name);
 }
 
-void make_units(Attribute& normals) {
-  for (size_t i = 0; i + 3 <= normals.values.size(); i += 3) {
-    double* const n = &normals.values[i];
-    const double size = length({n[0], n[1], n[2]});
-    for (int k = 0; size > 0 && k < 3; ++k) n[k] = nearest_of(normals.type, n[k] / size);
+void make_units(Attribute& directions) {
+  const auto components = size_t(directions.components);
+  for (size_t i = 0; i + components <= directions.values.size(); i += components) {
+    double* const d = &directions.values[i];
+    const double size = length({d[0], d[1], d[2]});
+    for (int k = 0; size > 0 && k < 3; ++k) d[k] = nearest_of(directions.type, d[k] / size);
   }
 }
 

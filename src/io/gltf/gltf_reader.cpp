@@ -10,6 +10,7 @@
 #include "io/faces/weld.h"
 #include "io/gltf/gltf_materials.h"
 #include "io/gltf/gltf_primitives.h"
+#include "io/gltf/gltf_semantics.h"
 #include "io/gltf/gltf_unpack.h"
 #include "isoshell/surface_source.h"
 
@@ -80,19 +81,17 @@ std::vector<Triangle> triangles_of_vertices(GltfTriangles& triangles, WeldedCorn
 }
 
 /// What becomes of an attribute of primitives; an empty name: it is not taken.
-struct Meaning {
+struct Taken {
   std::string name, reason;
   AttributeDomain domain = AttributeDomain::vertex;
   int32_t least = 1, most = 1;  ///< components
 };
 
-Meaning meaning_of(const std::string& semantic) {
-  if (semantic == "COLOR_0") return {kColorName, "", AttributeDomain::vertex, 3, 4};
-  if (semantic == "NORMAL") return {kNormalName, "", AttributeDomain::corner, 3, 3};
-  if (semantic == "TEXCOORD_0") return {kUvName, "", AttributeDomain::corner, 2, 2};
-  const std::string set = semantic.rfind("TEXCOORD_", 0) == 0 ? semantic.substr(9) : "";
-  if (!set.empty() && set.size() < 4 && set.find_first_not_of("0123456789") == std::string::npos)
-    return {kUvName + set, "", AttributeDomain::corner, 2, 2};
+Taken taken_as(const std::string& semantic) {
+  if (const std::string name = name_of_semantic(semantic); !name.empty()) {
+    const AttributeMeaning& meaning = *meaning_of(name);
+    return {name, "", meaning.domain, meaning.least_components, meaning.most_components};
+  }
   if (semantic == "_GAP") return {"", "the result has its own flag of that name"};
   const bool is_word = std::all_of(semantic.begin(), semantic.end(), [](unsigned char c) { return c > ' '; });
   if (semantic.size() < 2 || semantic[0] != '_' || !is_word) return {"", "glTF attributes of this kind are not kept"};
@@ -117,7 +116,7 @@ class AttributeReader {
         if (semantic != "POSITION" && std::find(semantics.begin(), semantics.end(), semantic) == semantics.end())
           semantics.push_back(semantic);
     for (const std::string& semantic : semantics) {
-      const Meaning meaning = meaning_of(semantic);
+      const Taken meaning = taken_as(semantic);
       const std::string reason = meaning.name.empty() ? meaning.reason : add(semantic, meaning);
       if (!reason.empty()) soup_.dropped_attributes.push_back({semantic, reason});
     }
@@ -125,7 +124,7 @@ class AttributeReader {
 
  private:
   /// Result: why it was not taken; empty if it was.
-  std::string add(const std::string& semantic, const Meaning& meaning) {
+  std::string add(const std::string& semantic, const Taken& meaning) {
     std::vector<std::optional<GltfAccessor>> accessors;
     Attribute attribute{meaning.name, NumberType::f32, 0, {}, meaning.domain};
     bool is_integer = true, is_everywhere = true;

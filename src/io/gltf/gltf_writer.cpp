@@ -9,6 +9,7 @@
 #include "core/number_type.h"
 #include "io/bytes/output_file.h"
 #include "io/gltf/gltf_materials.h"
+#include "io/gltf/gltf_semantics.h"
 #include "io/gltf/gltf_uri.h"
 #include "io/gltf/gltf_vertices.h"
 #include "io/mesh/precision.h"
@@ -40,12 +41,18 @@ double largest_of(NumberType type) {
   });
 }
 
+bool gltf_holds(const Attribute& a) {
+  if (a.domain == AttributeDomain::face) return means(a, kMaterialName) && !a.labels.empty();
+  if (a.domain == AttributeDomain::vertex && a.components == 1) return true;
+  return semantic_of_name(a.name) && means(a, meaning_of(a.name)->name);
+}
+
 class GltfWriter {
  public:
   explicit GltfWriter(const TriangleMesh& mesh) : mesh_(mesh) {
     for (const Attribute& a : mesh.attributes) {
-      if (is_kept_corner(a)) of_corners_.push_back(&a);
-      if (a.domain == AttributeDomain::face && a.name == kMaterialName && !a.labels.empty()) material_ = &a;
+      if (a.domain == AttributeDomain::corner && gltf_holds(a)) of_corners_.push_back(&a);
+      if (means(a, kMaterialName) && !a.labels.empty()) material_ = &a;
     }
     split_ = split_vertices(mesh, of_corners_);
     if (needs_double(mesh)) origin_ = middle();
@@ -68,20 +75,6 @@ class GltfWriter {
   View<const char> bytes() const { return {bytes_.data(), int64_t(bytes_.size())}; }
 
  private:
-  static bool is_kept_corner(const Attribute& a) {
-    if (a.domain != AttributeDomain::corner) return false;
-    return (a.name == kNormalName && a.components == 3) || (uv_number(a) >= 0 && a.components == 2);
-  }
-
-  /// 0 for uv, 7 for uv7, -1 for what is no set of texture coordinates.
-  static int uv_number(const Attribute& a) {
-    if (a.name == kUvName) return 0;
-    const std::string digits = a.name.rfind(kUvName, 0) == 0 ? a.name.substr(std::strlen(kUvName)) : "";
-    const bool is_number =
-        !digits.empty() && digits.size() < 4 && digits.find_first_not_of("0123456789") == std::string::npos;
-    return is_number ? std::stoi(digits) : -1;
-  }
-
   WorldPoint middle() const {
     WorldPoint low = mesh_.vertices[0], high = low;
     for (const WorldPoint& p : mesh_.vertices) {
@@ -137,30 +130,32 @@ class GltfWriter {
 
   /// Sets of texture coordinates are numbered without a break.
   std::string semantic_of(const Attribute& a) const {
-    if (a.name == kNormalName) return "NORMAL";
+    const char* const semantic = semantic_of_name(a.name);
+    const int set = set_of_name(a.name);
+    if (set < 0) return semantic;
     const auto before = std::count_if(of_corners_.begin(), of_corners_.end(), [&](const Attribute* other) {
-      return uv_number(*other) >= 0 && uv_number(*other) < uv_number(a);
+      return semantic_of_name(other->name) == semantic && set_of_name(other->name) < set;
     });
-    return "TEXCOORD_" + std::to_string(before);
+    return semantic + std::to_string(before);
   }
 
-  /// Corners without a value get 0; normals must have a direction.
+  /// Corners without a value get 0; what is a direction must have one.
   void put_corners(const Attribute& a) {
-    const bool is_normal = a.name == kNormalName;
+    const bool is_direction = meaning_of(a.name)->is_direction;
     const size_t start = bytes_.size();
     for (const size_t corner : split_.corner) {
       const double* const value = corner == SIZE_MAX ? nullptr : value_of(a, corner);
       const bool has_value = value && !std::isnan(value[0]);
       for (int32_t c = 0; c < a.components; ++c)
-        put(bytes_, has_value ? finite(float(value[c])) : is_normal && c == 2 ? 1.0f : 0.0f);
+        put(bytes_, has_value ? finite(float(value[c])) : is_direction && c == 2 ? 1.0f : 0.0f);
     }
-    attributes_[semantic_of(a)] =
-        close(start, kVertexData, 4 * a.components,
-              {{"componentType", kF32}, {"count", split_.vertex.size()}, {"type", is_normal ? "VEC3" : "VEC2"}});
+    attributes_[semantic_of(a)] = close(
+        start, kVertexData, 4 * a.components,
+        {{"componentType", kF32}, {"count", split_.vertex.size()}, {"type", "VEC" + std::to_string(a.components)}});
   }
 
   void put_vertices(const Attribute& a) {
-    if (a.name == kColorName && a.components >= 3) return put_colors(a);
+    if (means(a, kColorName)) return put_colors(a);
     if (a.components != 1) return;
     std::string semantic = a.name[0] == '_' ? a.name : "_" + a.name;
     while (attributes_.contains(semantic)) semantic = "_" + semantic;
@@ -231,12 +226,6 @@ class GltfWriter {
 void require_triangles(const TriangleMesh& mesh) {
   if (mesh.triangles.empty())
     throw Error(ErrorCode::unwritable_output, "write", "a glTF file cannot hold a mesh without triangles; write PLY");
-}
-
-bool gltf_holds(const Attribute& a) {
-  if (a.domain == AttributeDomain::face) return a.name == kMaterialName && !a.labels.empty();
-  if (a.domain == AttributeDomain::vertex) return a.components == 1 || (a.name == kColorName && a.components >= 3);
-  return (a.name.rfind(kUvName, 0) == 0 && a.components == 2) || (a.name == kNormalName && a.components == 3);
 }
 
 }  // namespace

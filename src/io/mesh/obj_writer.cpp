@@ -24,9 +24,9 @@ class ObjWriter {
  public:
   ObjWriter(OutputFile& file, const TriangleMesh& mesh) : file_(file), mesh_(mesh) {
     for (const Attribute& a : mesh.attributes) {
-      if (a.domain == AttributeDomain::vertex && a.name == kColorName && a.components >= 3) color_ = &a;
-      if (a.domain == AttributeDomain::corner && a.name == kUvName && a.components == 2) uv_ = &a;
-      if (a.domain == AttributeDomain::corner && a.name == kNormalName && a.components == 3) normal_ = &a;
+      if (means(a, kColorName)) color_ = &a;
+      if (a.name == kUvName && means(a, kUvName)) uv_ = &a;
+      if (means(a, kNormalName)) normal_ = &a;
       for (Names& names : names_)
         if (a.domain == AttributeDomain::face && a.name == names.attribute && !a.labels.empty()) names.of = &a;
     }
@@ -151,10 +151,9 @@ class ObjWriter {
 };
 
 bool obj_holds(const Attribute& a) {
-  if (a.domain == AttributeDomain::vertex) return a.name == kColorName && a.components >= 3;
-  if (a.domain == AttributeDomain::corner)
-    return (a.name == kUvName && a.components == 2) || (a.name == kNormalName && a.components == 3);
-  return !a.labels.empty() && (a.name == kMaterialName || a.name == kGroupName || a.name == kObjectName);
+  if (a.domain == AttributeDomain::face)
+    return !a.labels.empty() && (means(a, kMaterialName) || means(a, kGroupName) || means(a, kObjectName));
+  return means(a, kColorName) || means(a, kNormalName) || (a.name == kUvName && means(a, kUvName));
 }
 
 }  // namespace

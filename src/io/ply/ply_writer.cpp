@@ -16,7 +16,7 @@ namespace {
 /// Of corners, but the same all around every vertex, and PLY has names for it there: then vertices have it.
 bool is_of_vertices(const Attribute& a, const TriangleMesh& mesh) {
   if (a.domain != AttributeDomain::corner) return a.domain == AttributeDomain::vertex;
-  if (a.name != kNormalName || a.components != 3 || a.index.empty()) return false;
+  if (!means(a, kNormalName) || a.index.empty()) return false;
   std::vector<uint32_t> of_vertex(mesh.vertices.size(), UINT32_MAX);
   for (size_t corner = 0; corner < a.index.size(); ++corner) {
     uint32_t& here = of_vertex[mesh.triangles[corner / 3][corner % 3]];
