@@ -1,6 +1,9 @@
 #include "isoshell/run/gates.h"
 
+#include <algorithm>
+#include <limits>
 #include <sstream>
+#include <variant>
 
 #include "isoshell/error.h"
 #include "isoshell/options/option_text.h"
@@ -11,45 +14,17 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "gates", message); }
 
-void set_gate(const std::string& gate, Gates& gates) {
-  const size_t equals = gate.find('=');
-  const bool has_value = equals != std::string::npos;
-  const std::string name = gate.substr(0, equals), value = has_value ? gate.substr(equals + 1) : "";
-  if (name == "closed" && !has_value)
-    gates.closed = true;
-  else if (name == "manifold" && !has_value)
-    gates.manifold = true;
-  else if (name == "no-self-intersections" && !has_value)
-    gates.no_self_intersections = true;
-  else if (name == "features" && !has_value)
-    gates.features = true;
-  else if (name == "genus" && has_value)
-    gates.genus = parse_count("--require genus", value);
-  else if (name == "components" && has_value)
-    gates.components = parse_count("--require components", value);
-  else if (name == "boundary-loops" && has_value)
-    gates.boundary_loops = parse_count("--require boundary-loops", value);
-  else if (name == "min-angle" && has_value) {
-    gates.min_angle_deg = parse_number("--require min-angle", value);
-    check_range("--require min-angle", *gates.min_angle_deg, {0, 60});
-  } else if (name == "max-deviation" && has_value) {
-    gates.max_deviation_world = parse_number("--require max-deviation", value);
-    check_range("--require max-deviation", *gates.max_deviation_world, {});
-  } else if (name == "normal-deviation" && has_value) {
-    gates.normal_deviation_deg = parse_number("--require normal-deviation", value);
-    check_range("--require normal-deviation", *gates.normal_deviation_deg, {0, 90});
-  } else if (name == "kept-edges" && has_value) {
-    gates.kept_edges_pct = parse_number("--require kept-edges", value);
-    check_range("--require kept-edges", *gates.kept_edges_pct, {0, 100});
-  } else if (name == "born" && has_value) {
-    gates.born = parse_count("--require born", value);
-  } else {
-    refuse(
-        "--require has '" + gate +
-        "'; gates are closed, manifold, no-self-intersections, genus=G, components=N, "
-        "boundary-loops=N, min-angle=DEG, max-deviation=W, normal-deviation=DEG, features, kept-edges=PERCENT, born=N");
-  }
-}
+enum class GateOf { mesh, distance, curves, frame };
+
+/// A gate. Flags hold or not, others have a limit, or the number that must be.
+struct GateRow {
+  const char *name, *value_name, *words;  ///< words: empty where the name says it
+  std::variant<bool Gates::*, std::optional<int64_t> Gates::*, std::optional<double> Gates::*> member;
+  OptionRange range;
+  GateOf of;
+  /// What was found where the gate is not met; empty where it is.
+  std::string (*miss)(const Gates& gates, const Measured& m);
+};
 
 /// What was measured, or a refusal.
 template <class T>
@@ -57,42 +32,196 @@ const T& measured(const std::optional<T>& value, const char* what) {
   if (!value) refuse(std::string("the run did not measure the ") + what + " that a gate asks for");
   return *value;
 }
+const MeshTopology& topology(const Measured& m) { return measured(m.topology, "topology"); }
 
-std::string intersections_text(const RemeshReport& report) {
-  if (!report.post_done) return "the mesh is no closed 2-manifold and was not tested";
-  return counted(report.post.self_intersections, "pair", "pairs") + " intersect";
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream out;
+  (out << ... << parts);
+  return out.str();
 }
 
-std::string deviation_text(double limit_world, const MeshDistance& distance) {
-  std::ostringstream text;
-  text << "max-deviation=" << limit_world << ": the result is up to " << distance.to_reference.max
-       << " from the input, the input up to " << distance.from_reference.max << " from the result";
-  return text.str();
+std::string miss_closed(const Gates&, const Measured& m) {
+  const MeshTopology& t = topology(m);
+  return t.closed ? "" : "the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries");
 }
 
-std::string normals_text(double limit_deg, const MeshDistance& distance) {
-  std::ostringstream text;
-  text << "normal-deviation=" << limit_deg << ": normals of the result deviate by "
-       << distance.normal_to_reference.mean_deg << " degrees on average from the input's, and those of the input by "
-       << distance.normal_from_reference.mean_deg << " from the result's";
-  return text.str();
+std::string miss_manifold(const Gates&, const Measured& m) {
+  if (topology(m).is_manifold_with(m.border_loops())) return "";
+  return m.border_loops() > 0 ? "the mesh is not a 2-manifold with the borders that were kept"
+                              : "the mesh is not a closed 2-manifold";
 }
 
-std::string lost_text(const FeatureReport& features) {
-  if (features.lost.empty()) return "features: " + features.given_up;
-  const LostCurve& first = features.lost.front();
-  std::ostringstream text;
-  text << "features: " << counted(int64_t(features.lost.size()), "curve") << " of the input "
-       << (features.lost.size() == 1 ? "is" : "are") << " lost; the first, a " << first.kind << " of length "
-       << first.length_world << " from " << first.at.x << ' ' << first.at.y << ' ' << first.at.z << ": "
-       << first.reason;
-  return text.str();
+std::string miss_no_intersections(const Gates&, const Measured& m) {
+  if (!m.self_intersections) return "the mesh is no closed 2-manifold and was not tested";
+  return *m.self_intersections == 0 ? "" : counted(*m.self_intersections, "pair", "pairs") + " intersect";
+}
+
+std::string miss_genus(const Gates& g, const Measured& m) {
+  const int64_t genus = topology(m).genus;
+  if (genus == *g.genus) return "";
+  return "the mesh has " + (genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(genus));
+}
+
+std::string miss_components(const Gates& g, const Measured& m) {
+  const int64_t count = topology(m).components;
+  return count == *g.components ? "" : text("the mesh has ", count);
+}
+
+std::string miss_boundary_loops(const Gates& g, const Measured& m) {
+  const int64_t count = topology(m).boundary_loops;
+  return count == *g.boundary_loops ? "" : text("the mesh has ", count);
+}
+
+std::string miss_min_angle(const Gates& g, const Measured& m) {
+  const double smallest = measured(m.quality, "quality").theta_min_deg;
+  return smallest >= *g.min_angle_deg ? "" : text("the smallest angle is ", smallest);
+}
+
+std::string miss_max_deviation(const Gates& g, const Measured& m) {
+  const MeshDistance& distance = measured(m.distance, "distance");
+  if (distance.largest() <= *g.max_deviation_world) return "";
+  return text("the result is up to ", distance.to_reference.max, " from the input, the input up to ",
+              distance.from_reference.max, " from the result");
+}
+
+std::string miss_normal_deviation(const Gates& g, const Measured& m) {
+  const MeshDistance& distance = measured(m.distance, "deviation of normals");
+  if (distance.normal_deviation_deg() <= *g.normal_deviation_deg) return "";
+  return text("normals of the result deviate by ", distance.normal_to_reference.mean_deg,
+              " degrees on average from the input's, and those of the input by ",
+              distance.normal_from_reference.mean_deg, " from the result's");
+}
+
+std::string miss_features(const Gates&, const Measured& m) {
+  if (!m.features || m.features->lost.empty()) return m.features ? m.features->given_up : "";
+  const std::vector<LostCurve>& lost = m.features->lost;
+  const LostCurve& first = lost.front();
+  return text(counted(int64_t(lost.size()), "curve"), " of the input ", lost.size() == 1 ? "is" : "are",
+              " lost; the first, a ", first.kind, " of length ", first.length_world, " from ", first.at.x, ' ',
+              first.at.y, ' ', first.at.z, ": ", first.reason);
+}
+
+std::string miss_kept_edges(const Gates& g, const Measured& m) {
+  if (!m.coherence || m.coherence->kept_edges_pct >= *g.kept_edges_pct) return "";
+  return text("the frame before has ", m.coherence->kept_edges_pct, " % of the edges");
+}
+
+std::string miss_born(const Gates& g, const Measured& m) {
+  if (!m.coherence || m.coherence->born <= *g.born) return "";
+  return counted(m.coherence->born, "vertex is", "vertices are") + " not where those of the frame before went";
+}
+
+constexpr OptionRange kCount{0, 1e15};
+
+/// In the order of their messages.
+const std::vector<GateRow>& rows() {
+  static const std::vector<GateRow> all = {
+      {"closed", "", "", &Gates::closed, {}, GateOf::mesh, miss_closed},
+      {"manifold", "", "", &Gates::manifold, {}, GateOf::mesh, miss_manifold},
+      {"no-self-intersections", "", "", &Gates::no_self_intersections, {}, GateOf::mesh, miss_no_intersections},
+      {"genus", "G", "", &Gates::genus, kCount, GateOf::mesh, miss_genus},
+      {"components", "N", "", &Gates::components, kCount, GateOf::mesh, miss_components},
+      {"boundary-loops", "N", "", &Gates::boundary_loops, kCount, GateOf::mesh, miss_boundary_loops},
+      {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
+      {"max-deviation",
+       "W",
+       "distance between result and input in world units",
+       &Gates::max_deviation_world,
+       {},
+       GateOf::distance,
+       miss_max_deviation},
+      {"normal-deviation",
+       "DEG",
+       "mean angle between normals of result and input",
+       &Gates::normal_deviation_deg,
+       {0, 90},
+       GateOf::distance,
+       miss_normal_deviation},
+      {"features", "", "no curve of the input is lost", &Gates::features, {}, GateOf::curves, miss_features},
+      {"kept-edges",
+       "PERCENT",
+       "of a frame that follows another: edges that it keeps, at least",
+       &Gates::kept_edges_pct,
+       {0, 100},
+       GateOf::frame,
+       miss_kept_edges},
+      {"born", "N", "of a frame that follows another: vertices that are new, at most", &Gates::born, kCount,
+       GateOf::frame, miss_born},
+  };
+  return all;
+}
+
+template <class Holds>
+bool any_row(Holds holds) {
+  return std::any_of(rows().begin(), rows().end(), holds);
+}
+
+bool is_asked(const GateRow& row, const Gates& gates) {
+  return std::visit([&](auto member) { return bool(gates.*member); }, row.member);
+}
+
+/// As in "genus=3", with the limit as it holds.
+std::string asked_text(const GateRow& row, const Gates& gates) {
+  return std::visit(
+      [&](auto member) -> std::string {
+        if constexpr (std::is_same_v<decltype(member), bool Gates::*>)
+          return row.name;
+        else
+          return text(row.name, '=', *(gates.*member));
+      },
+      row.member);
+}
+
+void set(const GateRow& row, const std::string& value, Gates& gates) {
+  const std::string shown = std::string("--require ") + row.name;
+  std::visit(
+      [&](auto member) {
+        if constexpr (std::is_same_v<decltype(member), bool Gates::*>) {
+          gates.*member = true;
+        } else if constexpr (std::is_same_v<decltype(member), std::optional<int64_t> Gates::*>) {
+          gates.*member = parse_count(shown, value);
+        } else {
+          gates.*member = parse_number(shown, value);
+          check_range(shown, *(gates.*member), row.range);
+        }
+      },
+      row.member);
+}
+
+void set_gate(const std::string& gate, Gates& gates) {
+  const size_t equals = gate.find('=');
+  const bool has_value = equals != std::string::npos;
+  for (const GateRow& row : rows())
+    if (gate.substr(0, equals) == row.name && has_value == (*row.value_name != '\0'))
+      return set(row, has_value ? gate.substr(equals + 1) : "", gates);
+  refuse("--require has '" + gate + "'; gates are " + listed_gates(false));
+}
+
+template <class Holds>
+std::string listed(bool with_words, Holds holds) {
+  std::string list;
+  for (const GateRow& row : rows()) {
+    if (!holds(row)) continue;
+    list += (list.empty() ? "" : ", ") + std::string(row.name);
+    if (*row.value_name) list += std::string("=") + row.value_name;
+    if (with_words && *row.words) list += std::string(" (") + row.words + ")";
+  }
+  return list;
 }
 
 /// With borders that are kept, triangles intersect only where the input's do.
 bool are_the_inputs(const RunRecord& record) { return record.report.features.border_loops > 0; }
 
 }  // namespace
+
+bool Gates::any() const {
+  return any_row([&](const GateRow& row) { return is_asked(row, *this); });
+}
+
+bool Gates::needs_distance() const {
+  return any_row([&](const GateRow& row) { return row.of == GateOf::distance && is_asked(row, *this); });
+}
 
 Gates parse_gates(const std::string& list) {
   Gates gates;
@@ -104,60 +233,46 @@ Gates parse_gates(const std::string& list) {
   return gates;
 }
 
-std::vector<std::string> missed_gates(const Gates& g, const RunRecord& record) {
+std::string listed_gates(bool with_words) {
+  return listed(with_words, [](const GateRow&) { return true; });
+}
+
+std::string listed_gates_of_meshes(bool with_words) {
+  return listed(with_words, [](const GateRow& row) { return row.of == GateOf::mesh || row.of == GateOf::distance; });
+}
+
+void check_gates_of_mesh(const Gates& gates, bool has_reference) {
+  for (const GateRow& row : rows()) {
+    if (!is_asked(row, gates)) continue;
+    const std::string asked = std::string("--require ") + row.name;
+    if (row.of == GateOf::curves) refuse(asked + " is for a run that keeps curves; leave it out");
+    if (row.of == GateOf::frame) refuse(asked + " is for the frames of a sequence; leave it out");
+    if (row.of == GateOf::distance && !has_reference) refuse(asked + " compares with a reference; give one by --ref");
+  }
+}
+
+std::vector<std::string> missed_gates(const Gates& gates, const Measured& m) {
   std::vector<std::string> missed;
-  if (const auto pairs = record.report.post.self_intersections;
-      pairs > 0 && !g.allow_intersections && !g.no_self_intersections && !are_the_inputs(record))
-    missed.push_back("the result intersects itself in " + counted(pairs, "pair", "pairs") +
-                     " of triangles; --allow-intersections takes it as it is");
-  if (!g.any()) return missed;
-  const MeshTopology& t = measured(record.topology, "topology");
+  if (gates.any()) topology(m);  // refuses a run that measured nothing
+  for (const GateRow& row : rows()) {
+    if (!is_asked(row, gates)) continue;
+    if (const std::string what = row.miss(gates, m); !what.empty())
+      missed.push_back(asked_text(row, gates) + ": " + what);
+  }
+  return missed;
+}
+
+std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& record) {
   const RemeshReport& report = record.report;
-  const auto gate = [&](bool met, const std::string& text) {
-    if (!met) missed.push_back(text);
-  };
-  if (g.closed) gate(t.closed, "closed: the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries"));
-  if (g.manifold)
-    gate(t.is_manifold_with(report.features.border_loops),
-         report.features.border_loops > 0 ? "manifold: the mesh is not a 2-manifold with the borders that were kept"
-                                          : "manifold: the mesh is not a closed 2-manifold");
-  if (g.no_self_intersections)
-    gate(report.post_done && report.post.self_intersections == 0,
-         "no-self-intersections: " + intersections_text(report));
-  if (g.genus)
-    gate(t.genus == *g.genus, "genus=" + std::to_string(*g.genus) + ": the mesh has " +
-                                  (t.genus < 0 ? "none, it is no closed 2-manifold" : std::to_string(t.genus)));
-  if (g.components)
-    gate(t.components == *g.components,
-         "components=" + std::to_string(*g.components) + ": the mesh has " + std::to_string(t.components));
-  if (g.boundary_loops)
-    gate(t.boundary_loops == *g.boundary_loops,
-         "boundary-loops=" + std::to_string(*g.boundary_loops) + ": the mesh has " + std::to_string(t.boundary_loops));
-  if (g.min_angle_deg) {
-    const double smallest = measured(record.quality, "quality").theta_min_deg;
-    std::ostringstream text;
-    text << "min-angle=" << *g.min_angle_deg << ": the smallest angle is " << smallest;
-    gate(smallest >= *g.min_angle_deg, text.str());
-  }
-  if (g.max_deviation_world) {
-    const MeshDistance& distance = measured(record.distance, "distance");
-    gate(distance.largest() <= *g.max_deviation_world, deviation_text(*g.max_deviation_world, distance));
-  }
-  if (g.normal_deviation_deg) {
-    const MeshDistance& distance = measured(record.distance, "deviation of normals");
-    gate(distance.normal_deviation_deg() <= *g.normal_deviation_deg, normals_text(*g.normal_deviation_deg, distance));
-  }
-  if (g.features) gate(report.features.lost.empty() && report.features.given_up.empty(), lost_text(report.features));
-  if (record.options.previous) {
-    const CoherenceReport& coherence = report.coherence;
-    std::ostringstream kept;
-    kept << "kept-edges=" << g.kept_edges_pct.value_or(0) << ": the frame before has " << coherence.kept_edges_pct
-         << " % of the edges";
-    gate(coherence.kept_edges_pct >= g.kept_edges_pct.value_or(0), kept.str());
-    gate(coherence.born <= g.born.value_or(INT64_MAX), "born=" + std::to_string(g.born.value_or(0)) + ": " +
-                                                           counted(coherence.born, "vertex is", "vertices are") +
-                                                           " not where those of the frame before went");
-  }
+  const int64_t pairs = report.post.self_intersections;
+  Measured m{record.topology, record.quality, record.distance};
+  if (report.post_done) m.self_intersections = pairs;
+  m.features = &report.features;
+  if (record.options.previous) m.coherence = &report.coherence;
+  std::vector<std::string> missed = missed_gates(gates, m);
+  if (pairs > 0 && !gates.allow_intersections && !gates.no_self_intersections && !are_the_inputs(record))
+    missed.insert(missed.begin(), "the result intersects itself in " + counted(pairs, "pair", "pairs") +
+                                      " of triangles; --allow-intersections takes it as it is");
   return missed;
 }
 

@@ -12,14 +12,6 @@ constexpr int64_t kSamples = 200000;
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "mesh_info", message); }
 
-void check_gates(const Gates& gates, bool has_reference) {
-  if (gates.features) refuse("--require features is for a run that keeps curves; leave it out");
-  if (gates.kept_edges_pct || gates.born)
-    refuse("--require kept-edges and born are for the frames of a sequence; leave them out");
-  if (gates.needs_distance() && !has_reference)
-    refuse("--require max-deviation and normal-deviation compare with a reference; give one by --ref");
-}
-
 template <class Work>
 void step(const char* name, const Context& context, Work work) {
   if (context.progress) context.progress(name, 0);
@@ -49,21 +41,19 @@ MeshTopology topology_of(const ComplexCounts& c) {
   return t;
 }
 
-/// Gates ask records of runs: one with what they look at, as it was measured here.
-RunRecord record_of(const MeshInfo& info) {
-  RunRecord record;
-  record.topology = topology_of(info.census.counts);
-  record.quality.emplace().theta_min_deg = info.census.shapes.angle_min_deg;
-  record.distance = info.distance;
-  record.report.post_done = true;
-  record.report.post.self_intersections = info.census.intersecting_pairs;
-  return record;
+std::vector<std::string> missed_of(const MeshInfo& info, const Gates& gates) {
+  const std::optional<MeshTopology> topology = topology_of(info.census.counts);
+  std::optional<MeshQuality> quality(std::in_place);
+  quality->theta_min_deg = info.census.shapes.angle_min_deg;
+  Measured measured{topology, quality, info.distance};
+  measured.self_intersections = info.census.intersecting_pairs;
+  return missed_gates(gates, measured);
 }
 
 }  // namespace
 
 MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gates, Context& context) {
-  check_gates(gates, reference.has_value());
+  check_gates_of_mesh(gates, reference.has_value());
   if (mesh.facts.kind != InputKind::mesh)
     refuse(mesh.facts.name() + " is no mesh but " + kind_name(mesh.facts.kind) + "; make a mesh of it by vdb_isomesh");
   if (reference && reference->stage)
@@ -78,16 +68,12 @@ MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gate
     const TriangleMesh other = mesh_of(std::move(reference->soup));
     step("distance", context, [&] { info.distance = measure_distance(measured, other, context, {kSamples, true}); });
   }
-  if (gates.any()) {
-    Gates asked = gates;
-    asked.allow_intersections = true;  // they are told, and a gate only where one was asked for
-    info.missed_gates = missed_gates(asked, record_of(info));
-  }
+  info.missed_gates = missed_of(info, gates);
   return info;
 }
 
 MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell) {
-  check_gates(request.gates, request.reference.has_value());
+  check_gates_of_mesh(request.gates, request.reference.has_value());
   Input mesh;
   std::optional<Input> reference;
   step("read", context, [&] {

@@ -50,9 +50,8 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
              listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + ") or a volume (" +
              listed_endings(reads_volume) + ")");
   option(measure, "--require", raw.require, "LIST",
-         "exit with status 6 unless the mesh meets every requirement of this comma-separated list: closed, manifold, "
-         "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG, max-deviation=W (world units, "
-         "from --ref), normal-deviation=DEG (mean, from --ref)");
+         "exit with status 6 unless the mesh meets every requirement of this comma-separated list: " +
+             listed_gates_of_meshes(true));
   const char* files = "Files";
   option(files, "--input-format", raw.format, "F", "format of MESH: " + listed_formats(reads_mesh), "by its name");
   option(files, "--ref-format", raw.reference_format, "F", "format of INPUT: " + listed_formats(reads_anything),

@@ -21,20 +21,37 @@ struct Gates {
   std::optional<double> kept_edges_pct;  ///< of a frame that follows another; others meet them
   std::optional<int64_t> born;
 
-  bool any() const {
-    return closed || manifold || no_self_intersections || features || genus || components || boundary_loops ||
-           min_angle_deg || kept_edges_pct || born || needs_distance();
-  }
-  bool needs_distance() const { return max_deviation_world || normal_deviation_deg; }
+  bool any() const;
+  bool needs_distance() const;
 };
 
-/// From a list as --require takes it: "closed,manifold,no-self-intersections,genus=3,components=2,boundary-loops=1,
-/// min-angle=20.5,max-deviation=0.1,normal-deviation=1.5,features,kept-edges=99,born=10", any of them. Throws: usage.
+/// What gates look at. References to what is there for as long as they are asked.
+struct Measured {
+  const std::optional<MeshTopology>& topology;
+  const std::optional<MeshQuality>& quality;
+  const std::optional<MeshDistance>& distance;
+  std::optional<int64_t> self_intersections = {};  ///< pairs of triangles; none where the mesh was not tested
+  const FeatureReport* features = nullptr;         ///< of a run
+  const CoherenceReport* coherence = nullptr;      ///< of a frame that follows another
+
+  int64_t border_loops() const { return features ? features->border_loops : 0; }
+};
+
+/// From a list as --require takes it, of the gates that listed_gates() names. Throws: usage.
 Gates parse_gates(const std::string& list);
 
-/// A sentence for each gate that the record does not meet, in the order of Gates. That the result is known to intersect
-/// itself is one of them unless allowed. The record must hold what the gates ask for: topology and quality, the
-/// distance for both deviations. Throws: usage when it does not.
+/// "closed, manifold, min-angle=DEG", with a word on each that needs one, or not.
+std::string listed_gates(bool with_words);
+/// The same of those that any mesh can be asked, whoever made it.
+std::string listed_gates_of_meshes(bool with_words);
+
+/// Throws: usage for a gate that only a run can be asked, or that asks for distances where there is no reference.
+void check_gates_of_mesh(const Gates& gates, bool has_reference);
+
+/// A sentence for each gate that is not met, in the order of listed_gates(). All that the gates ask for must be there:
+/// topology and quality, the distance for both deviations. Throws: usage when it is not.
+std::vector<std::string> missed_gates(const Gates& gates, const Measured& measured);
+/// The same of a run. That its result is known to intersect itself is one of them unless allowed.
 std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& record);
 
 }  // namespace isoshell
