@@ -41,7 +41,8 @@ struct AttributeMeaning {
   int32_t least_components, most_components;
   bool has_sets = false;      ///< name1, name2, ... mean the same
   bool is_direction = false;  ///< its first three components are one, which a result has with length 1
-  bool makes_seams = false;   ///< where it jumps, no triangle of a result may lie on both sides
+  bool makes_seams = false;   ///< where it jumps, no triangle of a result may lie on both sides; labels of
+                              ///< faces always do
 };
 
 const std::vector<AttributeMeaning>& attribute_meanings();

@@ -15,9 +15,9 @@ constexpr uint32_t kMostAtVertex = 6;
 /// Directions and colours may vary from face to face; where an image or a material ends, no triangle may lie on both.
 bool makes_seams(const Attribute& a) {
   const AttributeMeaning* const meaning = meaning_of(a.name);
-  if (a.domain == AttributeDomain::corner) return !meaning || meaning->makes_seams;
-  return a.domain == AttributeDomain::face &&
-         (!a.labels.empty() || (meaning && meaning->name == std::string(kTextureName)));
+  const bool is_meant = meaning && meaning->domain == a.domain;
+  if (a.domain == AttributeDomain::corner) return !is_meant || meaning->makes_seams;
+  return a.domain == AttributeDomain::face && (!a.labels.empty() || (is_meant && meaning->makes_seams));
 }
 
 class SeamFinder {

@@ -24,9 +24,9 @@ const std::vector<AttributeMeaning>& attribute_meanings() {
       {kUvName, AttributeDomain::corner, 2, 2, true, false, true},
       {kNormalName, AttributeDomain::corner, 3, 3, false, true},
       {kTextureName, AttributeDomain::face, 1, 1, false, false, true},
-      {kMaterialName, AttributeDomain::face, 1, 1, false, false, true},
-      {kGroupName, AttributeDomain::face, 1, 1, false, false, true},
-      {kObjectName, AttributeDomain::face, 1, 1, false, false, true},
+      {kMaterialName, AttributeDomain::face, 1, 1},
+      {kGroupName, AttributeDomain::face, 1, 1},
+      {kObjectName, AttributeDomain::face, 1, 1},
   };
   return all;
 }

@@ -25,52 +25,54 @@ PointCloud read_pcd(const MeshSource&);
 
 namespace {
 
-/// A format of meshes, in and out.
-FileFormat of_meshes(const char* name) {
-  FileFormat format{name};
-  format.reads_mesh = format.writes_mesh = true;
-  return format;
+FormatRow of_meshes(const char* name, TriangleSoup (*read)(const MeshSource&),
+                    void (*write)(OutputFile&, const TriangleMesh&, const MeshWriteOptions&),
+                    std::string (*lacks)(const Attribute&)) {
+  FormatRow row{{name}, read, nullptr, write, lacks};
+  row.format.reads_mesh = row.format.writes_mesh = true;
+  return row;
 }
 
-FileFormat of_ply() {
-  FileFormat format = of_meshes("ply");
-  format.reads_points = format.holds_edges = format.holds_textures = true;
-  return format;
+FormatRow of_ply() {
+  FormatRow row = of_meshes("ply", read_ply, write_ply, what_ply_lacks);
+  row.read_points = read_ply_points;
+  row.format.reads_points = row.format.holds_edges = row.format.holds_textures = true;
+  return row;
 }
 
-FileFormat of_gltf(const char* name) {
-  FileFormat format = of_meshes(name);
-  format.holds_gltf_materials = true;
-  return format;
+FormatRow of_gltf(const char* name, void (*write)(OutputFile&, const TriangleMesh&, const MeshWriteOptions&)) {
+  FormatRow row = of_meshes(name, read_gltf, write, what_gltf_lacks);
+  row.format.holds_gltf_materials = true;
+  return row;
 }
 
-FileFormat of_points(const char* name) {
-  FileFormat format{name};
-  format.reads_points = true;
-  return format;
+FormatRow of_points(const char* name, PointCloud (*read)(const MeshSource&)) {
+  FormatRow row{{name}, nullptr, read};
+  row.format.reads_points = true;
+  return row;
 }
 
-FileFormat of_volumes(const char* name) {
-  FileFormat format{name};
-  format.reads_volume = true;
-  return format;
+FormatRow of_volumes(const char* name) {
+  FormatRow row{{name}};
+  row.format.reads_volume = true;
+  row.lacks = [](const Attribute&) -> std::string { return "stage files hold no attributes"; };
+  return row;
 }
 
 const std::vector<FormatRow>& rows() {
   static const std::vector<FormatRow> all = {
-      {of_ply(), read_ply, read_ply_points, write_ply, what_ply_lacks},
-      {of_meshes("obj"), read_obj, nullptr, write_obj, what_obj_lacks},
-      {of_meshes("stl"), read_stl, nullptr, write_stl,
-       [](const Attribute&) -> std::string { return "STL files are written without attributes"; }},
-      {of_meshes("off"), read_off, nullptr, write_off,
-       [](const Attribute&) -> std::string { return "OFF files are written without attributes"; }},
-      {of_gltf("glb"), read_gltf, nullptr, write_glb, what_gltf_lacks},
-      {of_gltf("gltf"), read_gltf, nullptr, write_gltf, what_gltf_lacks},
-      {of_points("xyz"), nullptr, read_xyz},
-      {of_points("pcd"), nullptr, read_pcd},
-      {of_volumes("vdb"), nullptr, nullptr, nullptr,
-       [](const Attribute&) -> std::string { return "stage files hold no attributes"; }},
-      {of_volumes("nvdb")},
+      of_ply(),
+      of_meshes("obj", read_obj, write_obj, what_obj_lacks),
+      of_meshes("stl", read_stl, write_stl,
+                [](const Attribute&) -> std::string { return "STL files are written without attributes"; }),
+      of_meshes("off", read_off, write_off,
+                [](const Attribute&) -> std::string { return "OFF files are written without attributes"; }),
+      of_gltf("glb", write_glb),
+      of_gltf("gltf", write_gltf),
+      of_points("xyz", read_xyz),
+      of_points("pcd", read_pcd),
+      of_volumes("vdb"),
+      of_volumes("nvdb"),
   };
   return all;
 }

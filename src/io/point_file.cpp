@@ -172,7 +172,7 @@ auto read_or_say_why(const MeshSource& source, const char* what, Read read) {
 }  // namespace
 
 PointCloud read_points(const std::string& path, const std::string& format) {
-  const FormatRow* row = find_row(format.empty() ? format_of_path(path) : format);
+  const FormatRow* row = find_row(format.empty() ? format_of_path(path) : format_name(format));
   if (!row || !row->read_points)
     throw Error(ErrorCode::usage, "read",
                 path + ": the format of points must be one of " + listed_formats(reads_points));

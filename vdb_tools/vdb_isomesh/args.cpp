@@ -18,12 +18,11 @@ std::string description() {
   return "vdb_isomesh INPUT OUTPUT [options]\n\n"
          "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
          "INPUT   a mesh (" +
-         listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + "), a volume (" +
+         listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + "),\n        a volume (" +
          listed_endings(reads_volume) +
-         ":\n"
-         "        a level set, unsigned distances, or with --iso a fog volume; FILE.vdb:NAME names a grid),\n"
-         "        or a stage file that this command wrote (.vdb); - reads standard input and needs\n"
-         "        --input-format\n"
+         ": a level set, unsigned distances, or with --iso a fog volume;\n"
+         "        FILE.vdb:NAME names a grid), or a stage file that this command wrote (.vdb); - reads\n"
+         "        standard input and needs --input-format\n"
          "OUTPUT  a mesh (" +
          listed_endings(writes_mesh) +
          "), or a .vdb file with --stop-after; - writes standard\n"
@@ -50,7 +49,7 @@ class Parser {
     }
   }
 
-  bool has(const std::string& name) const { return app_.get_option("--" + name)->count() > 0; }
+  bool has_flag(const std::string& name) const { return flags_.at(name); }
   const CLI::App& app() const { return app_; }
   const std::string& input() const { return input_; }
   const std::string& output() const { return output_; }
@@ -58,9 +57,10 @@ class Parser {
   void set_options(Arguments& a) const {
     for (const CommandOption& option : options_) {
       const std::string& name = option.entry.name;
-      if (!has(name)) continue;
+      if (app_.get_option("--" + name)->count() == 0) continue;
       a.run.options.given.push_back(name);
-      option.set(texts_.at(name), a);
+      const bool is_flag = option.entry.value.empty();
+      if (!is_flag || flags_.at(name)) option.set(is_flag ? "" : texts_.at(name), a);
     }
   }
 
@@ -68,15 +68,16 @@ class Parser {
   void add(const CommandOption& option) {
     const OptionEntry& entry = option.entry;
     const std::string names = (option.short_name.empty() ? "" : "-" + option.short_name + ",") + "--" + entry.name;
-    std::string& text = texts_[entry.name];
-    CLI::Option* added = entry.value.empty() ? app_.add_flag(names) : app_.add_option(names, text);
+    CLI::Option* added =
+        entry.value.empty() ? app_.add_flag(names, flags_[entry.name]) : app_.add_option(names, texts_[entry.name]);
     added->description(entry.text)->group(entry.group)->type_name(entry.value)->default_str(entry.fallback);
     if (!option.instead_of.empty()) added->excludes(app_.get_option("--" + option.instead_of));
   }
 
   CLI::App app_;
   std::vector<CommandOption> options_;
-  std::map<std::string, std::string> texts_;  ///< of options by name; of flags empty
+  std::map<std::string, std::string> texts_;  ///< of options with a value, by name
+  std::map<std::string, bool> flags_;         ///< --force=false is none
   std::string input_, output_;
 };
 
@@ -92,7 +93,7 @@ Arguments settled(const Parser& parser, const std::string& output) {
   parser.set_options(a);
   if (run.options.was_given("sizing") && run.options.sizing.empty()) refuse("--sizing needs the name of a .vdb file");
   check_sequence(a);
-  if (parser.has("verbose") && parser.has("quiet")) refuse("--verbose and --quiet exclude each other");
+  if (parser.has_flag("verbose") && parser.has_flag("quiet")) refuse("--verbose and --quiet exclude each other");
   if (a.verbosity == 0) run.measures = Measures::none;
   run.output.path = output;
   check_request(run);
@@ -128,8 +129,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     words.push_back(word);
   }
   parser.split(std::move(words));
-  if (parser.has("help")) return {std::nullopt, help_text(parser.app())};
-  if (parser.has("version")) return {std::nullopt, version_text()};
+  if (parser.has_flag("help")) return {std::nullopt, help_text(parser.app())};
+  if (parser.has_flag("version")) return {std::nullopt, version_text()};
   refuse_leftovers(parser.app());
   Arguments a = settled(parser, parser.output());
   if (parser.input().empty()) refuse("INPUT is missing; see --help");

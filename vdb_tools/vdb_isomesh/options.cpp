@@ -69,9 +69,17 @@ Set verbosity(int value) {
 
 void nothing(const std::string&, Arguments&) {}
 
+/// An option without text is as if it were not given.
+Set unless_empty(Set set) {
+  return [set = std::move(set)](const std::string& text, Arguments& a) {
+    if (!text.empty()) set(text, a);
+  };
+}
+
 CommandOption of_run(const OptionRow& row) {
   return {{row.group, row.name, row.value_name, row.text, row.fallback, row.is_real(), false, row.range},
           [&row](const std::string& text, Arguments& a) {
+            if (row.is_text() && text.empty()) return;  // as if it were not given
             set_from_text(row, std::string("--") + row.name, text, a.run.options);
           },
           "",
@@ -92,7 +100,8 @@ std::vector<CommandOption> file_options() {
       {{group, "save-shell", "F.vdb", "also write the shell, to resume from"}, text_of(&RunRequest::save_shell)},
       {{group, "save-voronoi", "F.vdb", "also write the Voronoi volume, to resume from"},
        text_of(&RunRequest::save_voronoi)},
-      {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"}, set_stop_after},
+      {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"},
+       unless_empty(set_stop_after)},
       {{group, "stats", "F.json", "write all statistics as JSON; - writes to standard output"},
        text_of(&RunRequest::statistics)},
       {{group, "report", "F.html",
@@ -110,7 +119,7 @@ std::vector<CommandOption> sequence_options() {
       {{group, "frames", "A-B[xSTEP]",
         "mesh the frames from A to B, every STEP-th, each beginning with the one before, so that vertices keep their "
         "numbers; INPUT, OUTPUT and --stats have #### or %04d where the number is"},
-       [](const std::string& text, Arguments& a) { a.frames = parse_frames(text); }},
+       unless_empty([](const std::string& text, Arguments& a) { a.frames = parse_frames(text); })},
       {{group, "velocity", "GRID",
         "grid of velocities in the .vdb file of a frame, in world units a frame: where its surface goes until the "
         "next"},
@@ -129,23 +138,21 @@ std::vector<CommandOption> process_options() {
   const char* group = "Run";
   return {
       {{group, "require", "LIST",
-        "exit with status 6 unless the result meets every requirement of this comma-separated list: closed, manifold, "
-        "no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG (smallest angle in degrees), "
-        "max-deviation=W (distance between result and input in world units), normal-deviation=DEG (mean angle between "
-        "normals of result and input), features (no curve of the input is lost), kept-edges=PERCENT and born=N (of a "
-        "frame that follows another: edges that it keeps, at least, and vertices that are new, at most)"},
+        "exit with status 6 unless the result meets every requirement of this comma-separated list: " +
+            listed_gates(true)},
        set_requirements},
       {{group, "allow-intersections", "", "exit with status 0, not 6, where the result intersects itself"},
        [](const std::string&, Arguments& a) { a.run.gates.allow_intersections = true; }},
-      {{group, "device", "auto|cpu|cuda[:N]", "device to run on", "auto"}, set_device},
+      {{group, "device", "auto|cpu|cuda[:N]", "device to run on", "auto"}, unless_empty(set_device)},
       {{group, "threads", "N", "number of CPU threads", "all"}, set_threads},
       {{group, "max-memory", "SIZE",
         "refuse a run that would need more memory than this (of the device, for a run there), as 512M or 8G",
         "80 % of the free memory"},
-       [](const std::string& text, Arguments& a) { a.max_memory_bytes = parse_size_bytes(text); }},
+       unless_empty([](const std::string& text, Arguments& a) { a.max_memory_bytes = parse_size_bytes(text); })},
       {{group, "dry-run", "", "print the grid and the memory estimate, and exit", "", false, true},
        flag_of(&Arguments::dry_run)},
-      {{group, "progress", "auto|always|never|json", "report progress on standard error", "auto"}, set_progress},
+      {{group, "progress", "auto|always|never|json", "report progress on standard error", "auto"},
+       unless_empty(set_progress)},
       {{group, "verbose", "", "print more messages"}, verbosity(2), "v"},
       {{group, "quiet", "", "print errors only"}, verbosity(0), "q"},
       {{group, "help", "", "print this help and exit", "", false, true}, nothing, "h"},
