@@ -10,7 +10,7 @@ import time
 
 import isoshell
 import numpy as np
-from isoshell._usd_samples import SampledStage
+from isoshell._usd._samples import SampledStage
 
 
 class Moved:

@@ -17,7 +17,7 @@ def main() -> int:
 
         return farm(words[1:])
     if any(".usd" in word.lower() for word in words):
-        from ._usd_command import names_usd, run
+        from ._usd._command import names_usd, run
 
         if names_usd(words):
             return run(words)

@@ -46,6 +46,6 @@ class RunWarning(UserWarning):
 def warn(text: str) -> None:
     """A warning at the line that called this package."""
     level, frame = 1, sys._getframe()
-    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+    while frame.f_back is not None and frame.f_globals.get("__package__", "").partition(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
     warnings.warn(text, RunWarning, stacklevel=level)

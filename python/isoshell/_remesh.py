@@ -105,7 +105,7 @@ def result_of(made: _isoshell.RunResult, start: _isoshell.Source, keywords: Keyw
 
 def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> None:
     """Before a run whose output is a stage of USD: whether it can be."""
-    from ._usd_write import check_target
+    from ._usd._write import check_target
 
     refused = [name for name in OF_OTHER_OUTPUTS if options.get(name)]
     if refused:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._options import Options
-    from ._usd_samples import SampledStage
+    from ._usd._samples import SampledStage
 
 Path = Union[str, "os.PathLike[str]"]
 Number = Union[int, float]
@@ -212,7 +212,7 @@ class _Sequence:
         return ((n, lambda n=n: _isoshell.path_of_frame(name, n)) for n in numbers)  # type: ignore[misc]
 
     def _frames_of_stage(self, name: str, frames: Optional[str]) -> Iterator[Frame]:
-        from ._usd_read import Scene
+        from ._usd._read import Scene
 
         if self._velocity:
             raise Error(f"velocity names a grid of .vdb files, and {name} is none; leave it out", stage="options")
@@ -253,7 +253,7 @@ class _Sequence:
         if not is_usd(target) or _is_pattern(target):
             return None
         from ._remesh import check_stage
-        from ._usd_samples import SampledStage
+        from ._usd._samples import SampledStage
 
         check_stage(target, self._options, [])
         return SampledStage(target)

@@ -18,8 +18,8 @@ from typing import Optional, Sequence
 
 from ._sources import Mesh
 from ._usd import Origin, is_usd
-from ._usd_read import PURPOSES, Scene
-from ._usd_write import write
+from ._usd._read import PURPOSES, Scene
+from ._usd._write import write
 
 __all__ = ["Origin", "is_usd", "read", "write"]
 

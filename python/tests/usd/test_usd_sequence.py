@@ -234,7 +234,7 @@ def test_a_stage_for_each_frame_in_and_out(moving, tmp_path):
 
 
 def test_the_memory_of_a_stage_does_not_grow_with_its_samples(tmp_path, monkeypatch):
-    monkeypatch.setattr("isoshell._usd_samples.HELD_BYTES", 0)
+    monkeypatch.setattr("isoshell._usd._samples.HELD_BYTES", 0)
     made, sizes = [], [0]
     for result in isoshell.remesh_sequence([twisted(n) for n in range(6)], output=tmp_path / "out.usda", **SMALL):
         made.append(result)

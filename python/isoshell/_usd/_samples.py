@@ -7,11 +7,11 @@ import shutil
 import tempfile
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-from ._result import Result
-from ._usd import Origin, library
-from ._usd_attributes import PrimvarWriter
-from ._usd_materials import write_materials
-from ._usd_write import MATERIALS, begin_stage, define_mesh, offset_of, save_stage, write_shape, writing
+from .._result import Result
+from . import Origin, library
+from ._attributes import PrimvarWriter
+from ._materials import write_materials
+from ._write import MATERIALS, begin_stage, define_mesh, offset_of, save_stage, write_shape, writing
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,8 +7,8 @@ import struct
 from dataclasses import dataclass
 from typing import Any, Iterator
 
-from ._errors import Error
-from ._isoshell import ErrorCode
+from .._errors import Error
+from .._isoshell import ErrorCode
 
 MAGIC = 0x56444220
 OLDEST = 222  # of the format: since then grids say how they are compressed

@@ -8,9 +8,9 @@ import os
 from collections import Counter
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._errors import Error, warn
-from ._isoshell import ErrorCode
-from ._usd import reason_of, unreadable
+from .._errors import Error, warn
+from .._isoshell import ErrorCode
+from . import reason_of, unreadable
 
 Placed = tuple[Any, Any]  # a prim, and its matrix to the world
 MAX_DEPTH = 32  # of instancers in instancers, which may go round

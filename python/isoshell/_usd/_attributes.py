@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Optional
 
-from ._errors import warn
-from ._result import Result
-from ._usd import Origin
-from ._usd_primvars import base_of, is_of_corners
+from .._errors import warn
+from .._result import Result
+from . import Origin
+from ._primvars import base_of, is_of_corners
 
 if TYPE_CHECKING:
     import numpy as np

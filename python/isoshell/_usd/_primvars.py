@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Optional
 
-from ._errors import warn
-from ._usd import Origin
-from ._usd_faces import Column, Triangles, turned_normals
-from ._usd_scene import note
+from .._errors import warn
+from . import Origin
+from ._faces import Column, Triangles, turned_normals
+from ._scene import note
 
 if TYPE_CHECKING:
     import numpy as np

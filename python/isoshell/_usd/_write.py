@@ -7,12 +7,12 @@ import os
 import tempfile
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional
 
-from ._errors import Error
-from ._isoshell import VERSION, ErrorCode
-from ._result import Result
-from ._usd import Origin, library, reason_of, split_name
-from ._usd_attributes import PrimvarWriter
-from ._usd_materials import relative_asset, write_materials
+from .._errors import Error
+from .._isoshell import VERSION, ErrorCode
+from .._result import Result
+from . import Origin, library, reason_of, split_name
+from ._attributes import PrimvarWriter
+from ._materials import relative_asset, write_materials
 from ._vdb_header import Box, Grid, grids_of
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Optional
 
-from . import _isoshell
-from ._errors import Error
-from ._usd import unreadable
+from .. import _isoshell
+from .._errors import Error
+from . import unreadable
 
 if TYPE_CHECKING:
     import numpy as np

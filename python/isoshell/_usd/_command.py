@@ -8,13 +8,13 @@ import time
 import warnings
 from typing import Any, Optional
 
-from ._errors import Error, RunWarning
-from ._isoshell import ErrorCode
-from ._keywords import kinds
-from ._remesh import estimate, remesh
-from ._result import Result
-from ._sequence import Frames, remesh_sequence
-from ._usd import is_usd
+from .._errors import Error, RunWarning
+from .._isoshell import ErrorCode
+from .._keywords import kinds
+from .._remesh import estimate, remesh
+from .._result import Result
+from .._sequence import Frames, remesh_sequence
+from . import is_usd
 
 OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
 SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help"}

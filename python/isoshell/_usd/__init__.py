@@ -7,8 +7,8 @@ import os
 import re
 from typing import Any, Optional
 
-from ._errors import Error
-from ._isoshell import ErrorCode
+from .._errors import Error
+from .._isoshell import ErrorCode
 
 ENDINGS = (".usd", ".usda", ".usdc", ".usdz")
 NAMED = re.compile(r"(?P<file>.*\.usd[acz]?)(?::(?P<prim>[^:\\]*))?", re.IGNORECASE | re.DOTALL)
