@@ -18,7 +18,6 @@
 namespace isoshell::fuzz {
 namespace {
 
-constexpr int64_t kMemory = 8 << 20;
 constexpr int64_t kVolumeMemory = 1 << 20;  // a surface that fills more takes seconds a run
 
 /// Every vertex, corner or face has its values.
