@@ -46,6 +46,11 @@ class RunWarning(UserWarning):
 def warn(text: str) -> None:
     """A warning at the line that called this package."""
     level, frame = 1, sys._getframe()
-    while frame.f_back is not None and frame.f_globals.get("__package__", "").partition(".")[0] == __package__:
+    while frame.f_back is not None and _is_ours(frame.f_globals.get("__package__")):
         level, frame = level + 1, frame.f_back
     warnings.warn(text, RunWarning, stacklevel=level)
+
+
+def _is_ours(package: str | None) -> bool:
+    """Whether that is this package or one in it; programs have none."""
+    return package is not None and package.partition(".")[0] == __package__

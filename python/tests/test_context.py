@@ -165,3 +165,10 @@ def test_memory_stays_flat_over_many_runs(ball):
     before = resident_kib()
     runs(int(os.environ.get("ISOSHELL_TEST_RUNS", 100)))
     assert resident_kib() - before < 4096
+
+
+def test_a_warning_reaches_a_program_that_calls_from_a_function(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text("from isoshell._errors import warn\ndef call():\n    warn('look')\ncall()\n")
+    done = subprocess.run([sys.executable, program], capture_output=True, text=True)
+    assert done.returncode == 0 and f"{program}:3: RunWarning: look" in done.stderr

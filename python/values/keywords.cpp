@@ -9,6 +9,17 @@ namespace nb = nanobind;
 
 namespace isoshell::python {
 
+namespace {
+
+std::vector<std::string> names_of(bool (*is_one)(const FileFormat&)) {
+  std::vector<std::string> names;
+  for (const FileFormat& format : file_formats())
+    if (is_one(format)) names.push_back(format.name);
+  return names;
+}
+
+}  // namespace
+
 tool::Arguments arguments_of(const Keywords& keywords, const std::string& output) {
   std::vector<tool::GivenOption> given;
   for (const auto& [name, value] : keywords) given.push_back({name, value});
@@ -29,22 +40,9 @@ void bind_keywords(nb::module_& m) {
       .def_prop_ro(
           "high", [](const tool::OptionEntry& o) { return o.range.high; }, "The largest number that it takes.");
   m.def(
-      "mesh_formats",
-      [] {
-        std::vector<std::string> names;
-        for (const FileFormat& format : file_formats())
-          if (format.writes_mesh) names.push_back(format.name);
-        return names;
-      },
-      "Of files that meshes are written to.");
+      "mesh_formats", [] { return names_of(writes_mesh); }, "Of files that meshes are written to.");
   m.def(
-      "input_formats",
-      [] {
-        std::vector<std::string> names;
-        for (const FileFormat& format : file_formats()) names.push_back(format.name);
-        return names;
-      },
-      "Of files that are read: meshes, points and volumes.");
+      "input_formats", [] { return names_of(reads_anything); }, "Of files that are read: meshes, points and volumes.");
   m.def("option_table", tool::option_table, "Every option of the command.");
 }
 

@@ -1,33 +1,9 @@
 #include "options/check_options.h"
 
-#include <sstream>
-
 #include "isoshell/error.h"
 #include "isoshell/options/option_table.h"
 
 namespace isoshell {
-namespace {
-
-/// All digits that a count or a bound has, where a stream would round to six.
-std::string number_text(double value) {
-  std::ostringstream text;
-  text.precision(10);
-  text << value;
-  return text.str();
-}
-
-}  // namespace
-
-std::string OptionRange::refusal(const std::string& option, double value) const {
-  std::string text =
-      option + " is " + number_text(value) + "; it must be " + (above ? "more than " : "") + number_text(low);
-  if (high == std::numeric_limits<double>::max())
-    text += above ? "" : " or more";
-  else
-    text += (above ? " and at most " : " to ") + number_text(high);
-  return text;
-}
-
 RemeshOptions checked(RemeshOptions values) {
   AskedOptions options{std::move(values), "", {}};
   for (const OptionRow& row : option_rows()) {

@@ -11,6 +11,8 @@
 namespace isoshell {
 namespace {
 
+constexpr int kShownDigits = 10;  // of a count or a bound all, where a stream would round to six
+
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "options", message); }
 
 /// Of all of `text`, before which one plus may stand.
@@ -21,11 +23,11 @@ bool holds_number(const std::string& text, Number& value) {
   return failed == std::errc() && stop == end;
 }
 
-/// With all digits.
-std::string number_text(double value) {
+/// With all digits that a double has, or fewer.
+std::string number_text(double value, int digits = 17) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  text.precision(17);
+  text.precision(digits);
   text << value;
   return text.str();
 }
@@ -35,6 +37,13 @@ std::string number_text(double value) {
 int64_t parse_whole(const std::string& option, const std::string& text) {
   int64_t value = 0;
   if (!holds_number(text, value)) refuse(option + " is '" + text + "'; it must be a whole number");
+  return value;
+}
+
+uint64_t parse_seed(const std::string& option, const std::string& text) {
+  uint64_t value = 0;
+  if (!holds_number(text, value))
+    refuse(option + " is '" + text + "'; it must be a whole number, 0 to 18446744073709551615");
   return value;
 }
 
@@ -58,6 +67,16 @@ int64_t parse_count(const std::string& option, const std::string& text) {
   if (value != std::floor(value) || value < 0 || value > 1e15)
     refuse(option + " is '" + text + "'; it must be a whole number, 0 or more");
   return int64_t(value);
+}
+
+std::string OptionRange::refusal(const std::string& option, double value) const {
+  std::string text = option + " is " + number_text(value, kShownDigits) + "; it must be " +
+                     (above ? "more than " : "") + number_text(low, kShownDigits);
+  if (high == std::numeric_limits<double>::max())
+    text += above ? "" : " or more";
+  else
+    text += (above ? " and at most " : " to ") + number_text(high, kShownDigits);
+  return text;
 }
 
 void check_range(const std::string& option, double value, const OptionRange& range) {

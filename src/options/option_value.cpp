@@ -1,5 +1,4 @@
 // What is done with any option of the table.
-#include <charconv>
 #include <locale>
 #include <sstream>
 #include <type_traits>
@@ -35,16 +34,6 @@ decltype(auto) visit_member(const OptionRow& row, Text&& text, Value&& value) {
           return value(member);
       },
       row.member);
-}
-
-/// All 64 bits, which a double does not hold.
-uint64_t parse_seed(const std::string& shown_name, const std::string& text) {
-  uint64_t value = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failed != std::errc() || end != text.data() + text.size())
-    throw Error(ErrorCode::usage, "options",
-                shown_name + " is '" + text + "'; it must be a whole number, 0 to 18446744073709551615");
-  return value;
 }
 
 template <class T>

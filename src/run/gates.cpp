@@ -1,7 +1,6 @@
 #include "isoshell/run/gates.h"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 #include <variant>
 
@@ -20,7 +19,7 @@ enum class GateOf { mesh, distance, curves, frame };
 struct GateRow {
   const char *name, *value_name, *words;  ///< words: empty where the name says it
   std::variant<bool Gates::*, std::optional<int64_t> Gates::*, std::optional<double> Gates::*> member;
-  OptionRange range;
+  OptionRange range;  ///< of a real number
   GateOf of;
   /// What was found where the gate is not met; empty where it is.
   std::string (*miss)(const Gates& gates, const Measured& m);
@@ -112,17 +111,15 @@ std::string miss_born(const Gates& g, const Measured& m) {
   return counted(m.coherence->born, "vertex is", "vertices are") + " not where those of the frame before went";
 }
 
-constexpr OptionRange kCount{0, 1e15};
-
 /// In the order of their messages.
 const std::vector<GateRow>& rows() {
   static const std::vector<GateRow> all = {
       {"closed", "", "", &Gates::closed, {}, GateOf::mesh, miss_closed},
       {"manifold", "", "", &Gates::manifold, {}, GateOf::mesh, miss_manifold},
       {"no-self-intersections", "", "", &Gates::no_self_intersections, {}, GateOf::mesh, miss_no_intersections},
-      {"genus", "G", "", &Gates::genus, kCount, GateOf::mesh, miss_genus},
-      {"components", "N", "", &Gates::components, kCount, GateOf::mesh, miss_components},
-      {"boundary-loops", "N", "", &Gates::boundary_loops, kCount, GateOf::mesh, miss_boundary_loops},
+      {"genus", "G", "", &Gates::genus, {}, GateOf::mesh, miss_genus},
+      {"components", "N", "", &Gates::components, {}, GateOf::mesh, miss_components},
+      {"boundary-loops", "N", "", &Gates::boundary_loops, {}, GateOf::mesh, miss_boundary_loops},
       {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
       {"max-deviation",
        "W",
@@ -146,8 +143,13 @@ const std::vector<GateRow>& rows() {
        {0, 100},
        GateOf::frame,
        miss_kept_edges},
-      {"born", "N", "of a frame that follows another: vertices that are new, at most", &Gates::born, kCount,
-       GateOf::frame, miss_born},
+      {"born",
+       "N",
+       "of a frame that follows another: vertices that are new, at most",
+       &Gates::born,
+       {},
+       GateOf::frame,
+       miss_born},
   };
   return all;
 }

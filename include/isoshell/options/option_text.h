@@ -17,6 +17,9 @@ namespace isoshell {
 /// Any whole number of 64 bits. Throws: usage.
 int64_t parse_whole(const std::string& option, const std::string& text);
 
+/// A whole number from 0 on, of all 64 bits, which a double does not hold. Throws: usage.
+uint64_t parse_seed(const std::string& option, const std::string& text);
+
 /// Any number, "nan" and "inf" too, which ranges refuse. Throws: usage.
 double parse_real(const std::string& option, const std::string& text);
 
