@@ -12,25 +12,24 @@ int main(int argc, char* argv[]) {
     RemeshOptions options;
     options.vertices = 1500;
     options.want_shell = true;
-    RemeshReport report;
     const std::string stage_path = argv[2] + std::string(".voronoi.vdb");
     uint64_t digest_in_one_go = 0;
 
     {
-      const Prepared prepared = prepare(read_mesh(argv[1]), options, report, context);
-      SeedSet seeds = relax(prepared, options, report, context);
-      const VoronoiLabels labels = flood_shell(prepared.shell, seeds, context);
+      const Prepared prepared = prepare(read_mesh(argv[1]), options, context);
+      Relaxed relaxed = relax(prepared, context);
+      const VoronoiLabels labels = flood_shell(prepared.shell(), relaxed.seeds, context);
       StageWriteOptions keep;
-      keep.closing_vox = prepared.closing_vox;
+      keep.closing_vox = prepared.closing_vox();
       keep.overwrite = true;
-      save_voronoi(stage_path, prepared.surface, prepared.samples, prepared.shell, seeds, labels, keep);
-      digest_in_one_go = digest(triangulate(prepared, seeds, options, report, context));
+      save_voronoi(stage_path, prepared.surface(), prepared.samples(), prepared.shell(), relaxed.seeds, labels, keep);
+      digest_in_one_go = digest(triangulate(prepared, std::move(relaxed), context).mesh);
     }
 
     StageFile stage = read_stage(stage_path);
-    const Prepared prepared = prepare(std::move(stage.surface), stage.info.closing_vox, options, report, context);
-    const TriangleMesh resumed = triangulate(prepared, *stage.seeds, options, report, context);
-    const bool same = digest(resumed) == digest_in_one_go;
+    const Prepared prepared = prepare(std::move(stage.surface), stage.info.closing_vox, options, context);
+    const RemeshResult resumed = triangulate(prepared, {std::move(*stage.seeds), prepared.report()}, context);
+    const bool same = digest(resumed.mesh) == digest_in_one_go;
     std::cout << "resumed from " << stage_path << ": " << (same ? "same bytes" : "DIFFERENT BYTES") << "\n";
     return same ? 0 : 1;
   } catch (const Error& e) {

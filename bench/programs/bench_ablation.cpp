@@ -25,12 +25,12 @@ struct Bench {
   Context& context;
 
   SeedSet from_levels(int32_t passes) const {
-    return relax_by_levels(prepared, {start, {passes, kTolerancePpb, 0}, true}, context).seeds;
+    return relax_by_levels(prepared.parts(), {start, {passes, kTolerancePpb, 0}, true}, context).seeds;
   }
-  SeedSet from_strata() const { return place_seeds(prepared.sheet, start, context); }
+  SeedSet from_strata() const { return place_seeds(prepared.sheet(), start, context); }
 
   RelaxReport relax(SeedSet& s, int32_t passes) const {
-    RelaxedSeeds relaxed = relax_on_sheet(prepared.sheet, std::move(s), {passes, 0, 0}, context);
+    RelaxedSeeds relaxed = relax_on_sheet(prepared.sheet(), std::move(s), {passes, 0, 0}, context);
     s = std::move(relaxed.seeds);
     return relaxed.report;
   }
@@ -43,14 +43,14 @@ struct Bench {
 
   /// Quality of the dual of a copy of the seeds, improved as asked.
   json judged(const SeedSet& seeds, const OptimizeOptions* optimize) const {
-    SeededMesh dual = triangulate_dual(prepared.sheet, to_host(seeds), {}, context);
+    SeededMesh dual = triangulate_dual(prepared.sheet(), to_host(seeds), {}, context);
     json row = json::object();
     if (optimize) {
-      OptimizedMesh optimized = optimize_mesh(prepared.sheet, std::move(dual), *optimize, context);
+      OptimizedMesh optimized = optimize_mesh(prepared.sheet(), std::move(dual), *optimize, context);
       row["self_intersections"] = optimized.report.self_intersections;
       dual = std::move(optimized);
     }
-    const MeshQuality q = measure_quality(to_world(dual.mesh, prepared.surface.frame));
+    const MeshQuality q = measure_quality(to_world(dual.mesh, prepared.surface().frame));
     row.update({{"q_avg", q.q_avg},
                 {"q_min", q.q_min},
                 {"theta_avg", q.theta_avg_deg},
@@ -92,9 +92,8 @@ int main(int argc, char** argv) {
     if (key == "--threads") context.threads = std::atoi(argv[i + 1]);
   }
   options.vertices = vertices;
-  RemeshReport report;
   const TriangleSoup soup = read_mesh(argv[1]);
-  const Prepared prepared = prepare(soup, options, report, context);
+  const Prepared prepared = prepare(soup, options, context);
   const Bench bench{prepared, {vertices, options.seed}, context};
 
   const SeedSet levels = bench.from_levels(0), strata = bench.from_strata();
@@ -130,7 +129,7 @@ int main(int argc, char** argv) {
   const json out = {{"machine", bench::machine()},
                     {"mesh", argv[1]},
                     {"vertices", vertices},
-                    {"sheet_vertices", prepared.sheet.vertex_count()},
+                    {"sheet_vertices", prepared.sheet().vertex_count()},
                     {"curves", curves},
                     {"final", finals}};
   std::printf("%s\n", out.dump(1).c_str());

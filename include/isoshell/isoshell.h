@@ -33,5 +33,6 @@
 #include "isoshell/run/mesh_info.h"
 #include "isoshell/run/run.h"
 #include "isoshell/run/sequence.h"
+#include "isoshell/run/steps.h"
 #include "isoshell/transfer_attributes.h"
 #include "isoshell/workers.h"

@@ -11,19 +11,22 @@
 namespace isoshell {
 
 /// By indices; triangles that repeat a corner belong to none of it but their own count.
-struct ComplexCounts {
-  int64_t vertices = 0, triangles = 0;  ///< as stored
-  int64_t edges = 0;
-  int64_t referenced_vertices = 0;
-  int64_t duplicate_vertices = 0;   ///< at the position of another one, beyond the first
-  int64_t repeated_corners = 0;     ///< triangles with a corner repeated
-  int64_t duplicate_triangles = 0;  ///< with the corners of another one, in any order, beyond the first
+struct ComponentCounts {
   int64_t components = 0;           ///< of referenced vertices, connected through edges
   int64_t closed_components = 0;    ///< that are closed 2-manifolds
   int64_t bordered_components = 0;  ///< that are 2-manifolds with borders
   int64_t nonorientable_components = 0;
-  int64_t inverted_components = 0;   ///< closed, consistently oriented ones of negative volume
-  int64_t genus = 0;                 ///< sum over the closed orientable components
+  int64_t inverted_components = 0;  ///< closed, consistently oriented ones of negative volume
+  int64_t genus = 0;                ///< sum over the closed orientable components
+};
+
+struct ComplexCounts : ComponentCounts {
+  int64_t vertices = 0, triangles = 0;  ///< as stored
+  int64_t edges = 0;
+  int64_t referenced_vertices = 0;
+  int64_t duplicate_vertices = 0;    ///< at the position of another one, beyond the first
+  int64_t repeated_corners = 0;      ///< triangles with a corner repeated
+  int64_t duplicate_triangles = 0;   ///< with the corners of another one, in any order, beyond the first
   int64_t euler = 0;                 ///< V - E + F of the referenced vertices
   int64_t boundary_edges = 0;        ///< with one face
   int64_t boundary_loops = 0;        ///< of these, followed through the faces around each vertex

@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from ._options import Options
 
 OF_WHOLE_RUNS = ("save_shell", "save_voronoi", "stop_after", "stats", "report", "force", "require",
-                 "allow_intersections", "output_format", "color_features", "attributes")
+                 "allow_intersections", "output_format", "color_features")
 
 
 class Stages:
     """The stages of a run, to stop between them and look at their products.
 
     Each runs those before it that have not run yet, and what it made is kept. All of them together make the mesh of
-    remesh() for a source without attributes.
+    remesh().
 
     Args:
-        source, context, options: as remesh() takes them, but for what concerns files, requirements and attributes.
+        source, context, options: as remesh() takes them, but for what concerns files and requirements.
 
     Raises:
         Error: as remesh() does. After prepare() or relax() failed, or were interrupted, the stages refuse to go on.
@@ -84,5 +84,5 @@ class Stages:
         self._run.save_shell(os.fsdecode(path), overwrite)
 
     def save_voronoi(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the stage file of the Voronoi volume. Surfaces with creases or borders that are kept have none."""
+        """Write the stage file of the Voronoi volume, and its preview. Surfaces with creases or borders that are kept have none."""
         self._run.save_voronoi(os.fsdecode(path), overwrite)

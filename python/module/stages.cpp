@@ -9,17 +9,12 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
-#include "isoshell/advanced/digest.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
-#include "isoshell/io/polyline_file.h"
-#include "isoshell/io/sizing_vdb.h"
-#include "isoshell/io/vdb_file.h"
+#include "isoshell/run/steps.h"
 #include "module/watched.h"
 #include "values/arrays.h"
 
@@ -30,24 +25,15 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "stages", message); }
 
-/// Everything that stages have made; shared with the thread that works on it.
-struct Products {
-  InputFacts facts;
-  RemeshOptions options;
-  RemeshReport report;
-  std::optional<Prepared> prepared;
-  std::optional<SeedSet> seeds;
-};
+RunRequest request_of_stages(RunRequest request) {
+  request.options.values.want_shell = request.options.values.want_digests = true;
+  return request;
+}
 
-RemeshOptions settled_options(const AskedOptions& asked, const Context& context) {
-  RemeshOptions options = asked.values;
-  options.want_shell = options.want_digests = true;
-  if (!asked.sizing.empty()) {
-    if (!asked.was_given("vertices")) options.vertices.reset();
-    options.sizing = read_sizing(asked.sizing, context.memory_limit_bytes);
-  }
-  if (!options.features.line_file.empty()) options.features.lines = read_polylines(options.features.line_file);
-  return options;
+TriangleMesh in_world(const Buffer<PointQ8>& points, const LatticeFrame& frame) {
+  TriangleMesh mesh;
+  for (const PointQ8& q : points) mesh.vertices.push_back(frame.to_world(q));
+  return mesh;
 }
 
 class StageRun {
@@ -56,85 +42,55 @@ class StageRun {
       : place_(&place),
         source_(source),
         asked_(asked_of(source_, keywords, "", std::move(progress), std::move(tell))),
-        products_(std::make_shared<Products>()) {}
+        steps_(std::make_shared<RunSteps>(request_of_stages(asked_.arguments.run))) {}
 
-  void prepare() {
-    if (products().prepared) return;
-    add("prepare", [products = products_, read = source_.read](const RunRequest& request, Context& context) {
-      const Input input = input_of_run(read, request, context);
-      if (input.stage) refuse(input.facts.name() + " is a stage file; isoshell.remesh resumes from it");
-      products->facts = input.facts;
-      products->options = settled_options(request.options, context);
-      products->prepared = isoshell::prepare(input.soup, products->options, products->report, context);
-      products->report.digests["shell"] = digest_text(digest(products->prepared->shell));
-      return true;
-    });
+  const Prepared& prepare() {
+    if (!prepared_)
+      prepared_ = add([read = source_.read](RunSteps& steps, const RunRequest& request, Context& context) {
+        steps.take(input_of_run(read, request, context), context);
+        if (steps.input().stage)
+          refuse(steps.input().facts.name() + " is a stage file; isoshell.remesh resumes from it");
+        return &steps.prepare(context);
+      });
+    return *prepared_;
   }
 
-  void relax() {
+  const Relaxed& relax() {
     prepare();
-    if (products().seeds) return;
-    add("relax", [products = products_](const RunRequest&, Context& context) {
-      products->seeds = isoshell::relax(*products->prepared, products->options, products->report, context);
-      return true;
-    });
+    if (!relaxed_)
+      relaxed_ = add([](RunSteps& steps, const RunRequest&, Context& context) { return &steps.relax(context); });
+    return *relaxed_;
   }
 
   RunResult triangulate() {
     relax();
-    return work("triangulate", [products = products_](const RunRequest&, Context& context) {
-      RunResult result;
-      SeedSet seeds = to_host(*products->seeds);  // they change, and may be looked at afterwards
-      RemeshReport report = products->report;
-      result.mesh = isoshell::triangulate(*products->prepared, seeds, products->options, report, context);
-      result.record.options = products->options;
-      result.record.input = products->facts;
-      result.record.report = std::move(report);
-      result.record.topology = check_mesh(result.mesh);
-      result.record.quality = measure_quality(result.mesh);
-      result.record.vertices = int64_t(result.mesh.vertices.size());
-      result.record.triangles = int64_t(result.mesh.triangles.size());
-      result.record.device = device_info(context);
-      return result;
-    });
+    return work([](RunSteps& steps, const RunRequest&, Context& context) { return steps.finish(context, true); });
   }
 
   void save_shell(const std::string& path, bool overwrite) {
     prepare();
-    work("save-shell", [products = products_, path, overwrite](const RunRequest& request, Context&) {
-      const Prepared& p = *products->prepared;
-      request.around_write(path, [&] {
-        isoshell::save_shell(path, p.surface, p.samples, p.shell, write_options(*products, overwrite));
-      });
+    work([path, overwrite](RunSteps& steps, const RunRequest&, Context& context) {
+      steps.save_shell(path, overwrite, context);
       return true;
     });
   }
 
   void save_voronoi(const std::string& path, bool overwrite) {
     relax();
-    if (products().prepared->cut)
-      refuse(
-          "a Voronoi stage file does not hold the seeds of creases, borders and lines; give --features off and "
-          "--boundary close, or save the shell");
-    work("save-voronoi", [products = products_, path, overwrite](const RunRequest& request, Context& context) {
-      const Prepared& p = *products->prepared;
-      const VoronoiLabels labels = flood_shell(p.shell, *products->seeds, context);
-      request.around_write(path, [&] {
-        isoshell::save_voronoi(path, p.surface, p.samples, p.shell, *products->seeds, labels,
-                               write_options(*products, overwrite));
-      });
+    work([path, overwrite](RunSteps& steps, const RunRequest&, Context& context) {
+      steps.save_voronoi(path, overwrite, context);
       return true;
     });
   }
 
-  std::map<std::string, std::string> digests() const { return products().report.digests; }
+  std::map<std::string, std::string> digests() const {
+    if (relaxed_) return relaxed_->report.digests;
+    return prepared_ ? prepared_->report().digests : std::map<std::string, std::string>();
+  }
 
   nb::tuple sheet() {
-    prepare();
-    const Prepared& p = *products().prepared;
-    const SurfaceMesh sheet = to_host(p.sheet);
-    TriangleMesh mesh;
-    for (const PointQ8& q : sheet.position) mesh.vertices.push_back(p.surface.frame.to_world(q));
+    const SurfaceMesh sheet = to_host(prepare().sheet());
+    TriangleMesh mesh = in_world(sheet.position, prepared_->surface().frame);
     for (const TriangleIndices& t : sheet.triangles) mesh.triangles.push_back({t.a, t.b, t.c});
     const nb::object owner = nb::cast(std::move(mesh));
     const auto& kept = nb::cast<const TriangleMesh&>(owner);
@@ -142,17 +98,13 @@ class StageRun {
   }
 
   nb::object seeds() {
-    relax();
-    const SeedSet seeds = to_host(*products().seeds);
-    TriangleMesh mesh;
-    for (const PointQ8& q : seeds.position) mesh.vertices.push_back(products().prepared->surface.frame.to_world(q));
-    const nb::object owner = nb::cast(std::move(mesh));
+    const Buffer<PointQ8> position = relax().seeds.position.to_host();
+    const nb::object owner = nb::cast(in_world(position, prepared_->surface().frame));
     return nb::cast(rows_of(nb::cast<const TriangleMesh&>(owner).vertices, owner));
   }
 
   nb::dict frame() {
-    prepare();
-    const LatticeFrame& f = products().prepared->surface.frame;
+    const LatticeFrame& f = prepare().surface().frame;
     nb::dict dict;
     dict["origin"] = nb::make_tuple(f.origin.x, f.origin.y, f.origin.z);
     dict["voxel_size"] = f.voxel_size;
@@ -162,39 +114,27 @@ class StageRun {
   }
 
  private:
-  static StageWriteOptions write_options(const Products& products, bool overwrite) {
-    StageWriteOptions options;
-    options.options_json = options_json(products.options);
-    options.closing_vox = products.prepared->closing_vox;
-    options.overwrite = overwrite;
-    return options;
-  }
-
-  Products& products() const {
-    if (!products_) refuse("these stages were interrupted or failed; begin anew");
-    return *products_;
-  }
+  template <class Work>
+  using Made = std::invoke_result_t<Work, RunSteps&, const RunRequest&, Context&>;
 
   template <class Work>
-  std::invoke_result_t<Work, const RunRequest&, Context&> work(const char* name, Work stage) {
-    return watched(*place_, source_, asked_, [name, stage](const RunRequest& request, Context& context) {
-      const auto tell_progress = [&](double fraction) {
-        if (context.progress) context.progress(name, fraction);
-      };
-      tell_progress(0);
-      auto made = stage(request, context);
-      tell_progress(1);
-      return made;
+  Made<Work> work(Work stage) {
+    if (!steps_) refuse("these stages were interrupted or failed; begin anew");
+    return watched(*place_, source_, asked_, [steps = steps_, stage](const RunRequest& request, Context& context) {
+      steps->report_to(request.tell, request.around_write);
+      return stage(*steps, request, context);
     });
   }
 
   /// What a stage that adds to the products leaves behind when it fails may be anything: then nothing is left.
   template <class Work>
-  void add(const char* name, Work stage) {
+  Made<Work> add(Work stage) {
     try {
-      work(name, std::move(stage));
+      return work(std::move(stage));
     } catch (...) {
-      products_.reset();
+      steps_.reset();
+      prepared_ = nullptr;
+      relaxed_ = nullptr;
       throw;
     }
   }
@@ -202,7 +142,9 @@ class StageRun {
   Place* place_;  // kept alive by the Python object around it
   Source source_;
   Asked asked_;
-  std::shared_ptr<Products> products_;
+  std::shared_ptr<RunSteps> steps_;     ///< shared with the thread that works on it
+  const Prepared* prepared_ = nullptr;  ///< of the steps, once it is there
+  const Relaxed* relaxed_ = nullptr;
 };
 
 }  // namespace
@@ -212,8 +154,8 @@ void bind_stages(nb::module_& m) {
   nb::class_<StageRun>(m, "StageRun", "The stages of one run.")
       .def(nb::init<Place&, const Source&, const Keywords&, nb::object, nb::object>(), nb::arg("place"),
            nb::arg("source"), nb::arg("keywords"), nb::arg("progress").none(), nb::arg("tell"), nb::keep_alive<1, 2>())
-      .def("prepare", &StageRun::prepare)
-      .def("relax", &StageRun::relax)
+      .def("prepare", [](StageRun& run) { run.prepare(); })
+      .def("relax", [](StageRun& run) { run.relax(); })
       .def("triangulate", &StageRun::triangulate)
       .def("save_shell", &StageRun::save_shell, nb::arg("path"), nb::arg("overwrite"))
       .def("save_voronoi", &StageRun::save_voronoi, nb::arg("path"), nb::arg("overwrite"))

@@ -5,8 +5,8 @@
 namespace isoshell {
 namespace {
 
-/// A name of `Value`, which one function reads and another writes.
-template <class Value, Value RemeshOptions::*Member, Value (*Parse)(const std::string&, const std::string&), auto Name>
+/// Names of the values of a member of RemeshOptions, which one function reads and another writes.
+template <auto Member, auto Parse, auto Name>
 TextOption named(TextOption::Number number = TextOption::Number::refused, void (*check)(RemeshOptions&) = nullptr) {
   return {[](const std::string& shown, const std::string& text, AskedOptions& to) {
             to.values.*Member = Parse(shown, text);
@@ -20,8 +20,7 @@ void check_features(RemeshOptions& o) {
 }
 
 TextOption features_option() {
-  return named<Features, &RemeshOptions::features, parse_features, features_text>(TextOption::Number::read,
-                                                                                  check_features);
+  return named<&RemeshOptions::features, parse_features, features_text>(TextOption::Number::read, check_features);
 }
 
 TextOption gap_option() {
@@ -82,7 +81,7 @@ std::vector<OptionRow> relaxation_rows() {
   return {
       {group, "method", "sheet|shell",
        "sheet: exact clipped Voronoi cells on the closed sheet; shell: the paper's iteration on voxels of the shell",
-       "sheet", "method", named<Method, &RemeshOptions::method, parse_method, method_name>(), OnResume::of_seeds},
+       "sheet", "method", named<&RemeshOptions::method, parse_method, method_name>(), OnResume::of_seeds},
       {group, "iterations", "N", "maximum number of relaxation passes on the finest level of seeds", "the method's own",
        "max_passes", &RemeshOptions::max_passes, OnResume::of_seeds, option_range::iterations},
       {group, "tolerance", "E", "stop when the energy falls by less than this fraction per pass", "the method's own",
@@ -96,11 +95,10 @@ std::vector<OptionRow> relaxation_rows() {
 
 std::vector<OptionRow> shape_rows() {
   const char* group = "Shape of the result";
-  using Names = std::optional<std::vector<std::string>>;
   return {
       {group, "fit", "balanced|surface",
        "balanced: vertices where the mesh is closest to the surface; surface: vertices on the surface", "balanced",
-       "fit", named<Fit, &RemeshOptions::fit, parse_fit, fit_name>(), OnResume::of_file},
+       "fit", named<&RemeshOptions::fit, parse_fit, fit_name>(), OnResume::of_file},
       {group, "features", "auto|off|DEG[,FILE]",
        "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
        "or more; off: none; and the lines of FILE, OBJ (l) or PLY (edges), as auto,curves.obj",
@@ -108,13 +106,11 @@ std::vector<OptionRow> shape_rows() {
       {group, "boundary", "close|keep",
        "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
        "--close-gaps are borders of the result",
-       "close", "boundary", named<Boundary, &RemeshOptions::boundary, parse_boundary, boundary_name>(),
-       OnResume::of_shell},
+       "close", "boundary", named<&RemeshOptions::boundary, parse_boundary, boundary_name>(), OnResume::of_shell},
       {group, "attributes", "all|none|LIST",
        "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
        "normal, material, group",
-       "all", "attributes", named<Names, &RemeshOptions::attributes, parse_attributes, attributes_text>(),
-       OnResume::of_run},
+       "all", "attributes", named<&RemeshOptions::attributes, parse_attributes, attributes_text>(), OnResume::of_run},
       {group, "color-features", "",
        "colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY", "",
        "color_features", &RemeshOptions::color_features, OnResume::of_file},

@@ -26,7 +26,7 @@ std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const I
                                                RemeshReport& report, Context& context) {
   if ((given.boundary_loops > 0 && !may_be_open) || (given.components < 2 && given.genus >= 0)) return {};
   return timed(report, "unite", context, [&]() -> std::optional<JoinedParts> {
-    std::optional<repair::JoinedSolids> solids = repair::join_solids(soup, report.join, context);
+    std::optional<repair::JoinedSolids> solids = repair::join_solids(soup, report.input.joined, context);
     if (!solids) return {};
     JoinedParts joined;
     joined.soup = std::move(solids->soup);
@@ -36,7 +36,7 @@ std::optional<JoinedParts> join_crossing_parts(const TriangleSoup& soup, const I
     const bool is_whole =
         given.boundary_loops > 0 ? found.boundary_loops == given.boundary_loops : found.closed && found.oriented;
     if (is_whole) return joined;
-    report.join = {"their union is not closed", {}, 0};
+    report.input.joined = {"their union is not closed", {}, 0};
     return {};
   });
 }

@@ -1,4 +1,4 @@
-// prepare (see remesh.h): repairs and unites what was given, chooses the grid, voxelises, builds the sheet. The grid is
+// prepare (see remesh.h): has the input repaired and united, chooses the grid, voxelises, builds the sheet. The grid is
 // made finer while the sheet lacks the input's topology.
 #include <algorithm>
 #include <cmath>
@@ -6,20 +6,18 @@
 
 #include "core/copy_product.h"
 #include "isoshell/error.h"
-#include "isoshell/memory_estimate.h"
 #include "isoshell/remesh.h"
-#include "isoshell/repair.h"
 #include "options/check_options.h"
-#include "pipeline/grid/choose_grid.h"
+#include "pipeline/grid/memory_estimate.h"
+#include "pipeline/grid/prepared_surface.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
-#include "pipeline/joined_parts.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
+#include "pipeline/repaired_input.h"
 #include "pipeline/sheet/prepare_surface.h"
 #include "pipeline/sheet/warm_start.h"
-#include "repair/holes/open_soup.h"
 
 namespace isoshell {
 namespace {
@@ -27,8 +25,8 @@ namespace {
 constexpr int32_t kCoarsestGrid = 8;
 
 /// None when the run finds it.
-std::optional<int32_t> asked_closing(const RemeshOptions& options, const InputTopology& input,
-                                     const LatticeFrame& frame) {
+std::optional<int32_t> asked_closing(const Plan& plan, const LatticeFrame& frame) {
+  const RemeshOptions& options = plan.options;
   if (options.closing_world) {
     const double r = std::ceil(*options.closing_world / frame.voxel_size / 2);
     if (r > kMaxClosingVox && options.boundary == Boundary::keep) return kMaxClosingVox;  // caps close wider gaps
@@ -40,7 +38,7 @@ std::optional<int32_t> asked_closing(const RemeshOptions& options, const InputTo
     }
     return int32_t(r);
   }
-  return !options.closing_vox && input.closed ? 0 : options.closing_vox;
+  return !options.closing_vox && plan.input.closed ? 0 : options.closing_vox;
 }
 
 /// A surface of slivers alone gives a sheet around a line, not a mesh that anyone asked for.
@@ -50,25 +48,11 @@ void check_area(const InputTopology& input) {
                 "no face has an area: the surface is a line or a point; give one with faces that span an area");
 }
 
-/// Edge of a voxel of the first grid.
-double voxel_edge(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options) {
-  const auto [lo, hi] = bounding_box(soup);
-  return LatticeFrame::around(lo, hi, first_resolution(options, input.area_world, lo, hi)).voxel_size;
-}
-
-/// Of faces that were cut: closed, whatever their edges say, and of a genus that nobody knows.
-InputTopology topology_of_union(InputTopology input, const UnionReport& unite) {
-  input.closed = input.oriented = true;
-  input.components = unite.joined_components;
-  input.genus = -1;
-  return input;
-}
-
 /// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
 /// yet.
 bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
   if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) {
-    report.memory_estimate_bytes = std::max(report.memory_estimate_bytes, estimate.bytes);
+    report.grid.memory_estimate_bytes = std::max(report.grid.memory_estimate_bytes, estimate.bytes);
     return true;
   }
   const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
@@ -83,7 +67,8 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
   return false;
 }
 
-void note_digests(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+void note_digests(const PreparedSurface& p, RemeshReport& report, Context& context) {
+  const RemeshOptions& options = p.options;
   note_digest(options, report, context, "surface", p.surface);
   if (!has_sheet(p)) return;
   note_digest(options, report, context, "sites", p.sites);
@@ -91,54 +76,54 @@ void note_digests(const Prepared& p, const RemeshOptions& options, RemeshReport&
   note_digest(options, report, context, "sheet", p.sheet);
 }
 
-void report_surface(const Prepared& p, const RemeshOptions& options, RemeshReport& report) {
-  report.input = p.surface.topology;
-  report.frame = p.surface.frame;
-  report.band_vox = options.band_vox;
+void report_surface(const PreparedSurface& p, RemeshReport& report) {
+  report.input.topology = p.surface.topology;
+  report.grid.frame = p.surface.frame;
+  report.grid.band_vox = p.options.band_vox;
   report_sheet(p, report);
 }
 
-void finish(Prepared& p, const PatchSource& source, const RemeshOptions& options, RemeshReport& report,
-            Context& context) {
+void finish(PreparedSurface& p, const PatchSource& source, RemeshReport& report, Context& context) {
+  const RemeshOptions& options = p.options;
   if (options.want_shell || options.method == Method::shell) {
     p.shell = timed(report, "shell", context, [&] { return build_shell(p.sites, {options.band_vox}, context); });
-    report.active_voxels = p.shell.voxels.voxel_count();
-    report.leaves = p.shell.voxels.leaf_count();
+    report.grid.active_voxels = p.shell.voxels.voxel_count();
+    report.grid.leaves = p.shell.voxels.leaf_count();
     note_digest(options, report, context, "shell", p.shell);
   }
-  report_surface(p, options, report);
-  timed(report, "lengths", context, [&] { set_lengths(options, p, report, context); });
-  if (wants_lengths(options)) choose_beginning(options, vertex_target(options, p), p, report);
-  cut_into_patches(options, source, p, report, context);
-  note_digests(p, options, report, context);
+  report_surface(p, report);
+  timed(report, "lengths", context, [&] { set_lengths(p, report, context); });
+  set_target(p);
+  if (wants_lengths(options)) choose_beginning(p, report);
+  cut_into_patches(source, p, report, context);
+  note_digests(p, report, context);
 }
 
 /// Width of the smallest cells that the lengths ask for, as far as the grid that even cells would have carries them.
 /// They are looked for on that grid, but curvature asks for the smallest ones anyway. None where lengths are even.
-std::optional<double> smallest_cell_world(const TriangleSoup& soup, const InputTopology& input,
-                                          const RemeshOptions& options, const LatticeFrame& usual, RemeshReport& report,
-                                          Context& context) {
-  if (options.adaptivity > 0) return kFewestCellVox * usual.voxel_size;
+std::optional<double> smallest_cell_world(const TriangleSoup& soup, const Plan& plan, const LatticeFrame& usual,
+                                          RemeshReport& report, Context& context) {
+  if (plan.options.adaptivity > 0) return kFewestCellVox * usual.voxel_size;
   LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, usual, context); });
-  surface.topology = input;
-  Prepared p = prepare_surface(std::move(surface), asked_closing(options, input, usual), options, report, context);
+  surface.topology = plan.input;
+  PreparedSurface p = prepare_surface(std::move(surface), asked_closing(plan, usual), plan.options, report, context);
   RemeshReport unsaid;
-  timed(report, "lengths", context, [&] { set_lengths(options, p, unsaid, context); });
+  timed(report, "lengths", context, [&] { set_lengths(p, unsaid, context); });
+  set_target(p);
   if (p.sheet.lengths.at.empty()) return {};
-  return smallest_cell_vox(options, p, context) * usual.voxel_size;
+  return smallest_cell_vox(p, context) * usual.voxel_size;
 }
 
 /// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
-int32_t resolution_for_lengths(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
-                               const RemeshOptions& options, int32_t usual, RemeshReport& report, Context& context) {
-  memory_allows(estimate_run(soup, box, input, options, usual), false, report, context);
-  const LatticeFrame frame = LatticeFrame::around(box.min, box.max, usual);
-  const std::optional<double> cell_world = smallest_cell_world(soup, input, options, frame, report, context);
+int32_t resolution_for_lengths(const TriangleSoup& soup, const Plan& plan, int32_t usual, RemeshReport& report,
+                               Context& context) {
+  memory_allows(estimate_plan(plan, soup, usual), false, report, context);
+  const LatticeFrame frame = LatticeFrame::around(plan.box.min, plan.box.max, usual);
+  const std::optional<double> cell_world = smallest_cell_world(soup, plan, frame, report, context);
   if (!cell_world) return usual;
-  int32_t resolution =
-      resolution_for_cell(frame.voxel_size * (usual - 1), *cell_world, vertex_target(options, input.area_world));
+  int32_t resolution = resolution_for_cell(frame.voxel_size * (usual - 1), *cell_world, plan.target.vertices);
   while (resolution > usual && context.memory_limit_bytes > 0 &&
-         estimate_run(soup, box, input, options, resolution).bytes > context.memory_limit_bytes)
+         estimate_plan(plan, soup, resolution).bytes > context.memory_limit_bytes)
     resolution = std::max(usual, resolution - resolution / 8);
   return resolution;
 }
@@ -147,73 +132,74 @@ int32_t resolution_for_lengths(const TriangleSoup& soup, const WorldBox& box, co
 class GridSearch {
  public:
   /// The soup is that of `source`, repaired.
-  GridSearch(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input, const PatchSource& source,
-             const RemeshOptions& options, RemeshReport& report, Context& context)
-      : soup_(soup), box_(box), input_(input), source_(source), options_(options), report_(report), context_(context) {}
+  GridSearch(const TriangleSoup& soup, const Plan& plan, const PatchSource& source, RemeshReport& report,
+             Context& context)
+      : soup_(soup), plan_(plan), source_(source), report_(report), context_(context) {}
 
   /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
-  Prepared best_grid() {
-    const bool free_grid = !options_.resolution && !options_.voxel_size_world;
-    const int32_t usual = first_resolution(options_, input_.area_world, box_.min, box_.max);
-    const int32_t first = free_grid && wants_lengths(options_)
-                              ? resolution_for_lengths(soup_, box_, input_, options_, usual, report_, context_)
+  PreparedSurface best_grid() {
+    const bool free_grid = plan_.chooses_grid();
+    const int32_t usual = plan_.first_resolution();
+    const int32_t first = free_grid && wants_lengths(plan_.options)
+                              ? resolution_for_lengths(soup_, plan_, usual, report_, context_)
                               : usual;
     // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
-    const bool reachable = can_compare(input_) && shows_all_parts(options_, input_);
+    const bool reachable = can_compare(plan_.input) && shows_all_parts(plan_.target.vertices, plan_.input);
     const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
-    const bool had_curves = options_.previous && options_.previous->had_curves;
+    const bool had_curves = plan_.options.previous && plan_.options.previous->had_curves;
     if (had_curves && allows(first, false))
-      if (std::optional<Prepared> cut = cut_at_once(snapped(first))) return std::move(*cut);
-    Prepared best;
+      if (std::optional<PreparedSurface> cut = cut_at_once(snapped(first))) return std::move(*cut);
+    PreparedSurface best;
     int64_t best_gap = INT64_MAX;
     int fruitless = 0;
     for (int32_t resolution = first; resolution <= cap && best_gap > 0 && fruitless < 2;
          resolution += std::max(1, resolution / 2)) {
       const bool is_refining = best_gap < INT64_MAX;
       if (!allows(resolution, is_refining)) break;
-      std::optional<Prepared> p = with_sheet(snapped(resolution), is_refining);
+      std::optional<PreparedSurface> p = with_sheet(snapped(resolution), is_refining);
       if (!p) break;
       const int64_t gap = topology_gap(*p);
       if (gap > 0 && !is_refining && !had_curves)
-        if (std::optional<Prepared> cut = cut_at_once(host_copy(p->surface))) return std::move(*cut);
+        if (std::optional<PreparedSurface> cut = cut_at_once(host_copy(p->surface))) return std::move(*cut);
       fruitless = gap < best_gap ? 0 : fruitless + 1;
       if (gap < best_gap) {
         best_gap = gap;
         best = std::move(*p);
       }
     }
-    finish(best, source_, options_, report_, context_);
-    if (!is_on_own_triangles(best)) warn_of_topology(best, input_, options_, report_);
+    finish(best, source_, report_, context_);
+    if (!is_on_own_triangles(best)) warn_of_topology(best, plan_.input, report_);
     return best;
   }
 
  private:
   bool allows(int32_t resolution, bool is_refining) {
-    return memory_allows(estimate_run(soup_, box_, input_, options_, resolution), is_refining, report_, context_);
+    return memory_allows(estimate_plan(plan_, soup_, resolution), is_refining, report_, context_);
   }
 
   LatticeSurface snapped(int32_t resolution) {
-    const LatticeFrame frame = LatticeFrame::around(box_.min, box_.max, resolution);
+    const LatticeFrame frame = LatticeFrame::around(plan_.box.min, plan_.box.max, resolution);
     LatticeSurface surface = timed(report_, "snap", context_, [&] { return snap_surface(soup_, frame, context_); });
-    surface.topology = input_;
+    surface.topology = plan_.input;
     return surface;
   }
 
   /// A frame that keeps its curves takes the first grid. None where it is no such frame.
-  std::optional<Prepared> cut_at_once(LatticeSurface surface) {
-    if (!may_be_cut_at_once(options_, input_, surface.first_cap != kNone)) return {};
-    std::optional<Prepared> p = prepare_patches_alone(std::move(surface), options_, source_, report_, context_);
+  std::optional<PreparedSurface> cut_at_once(LatticeSurface surface) {
+    if (!may_be_cut_at_once(plan_, surface.first_cap != kNone)) return {};
+    std::optional<PreparedSurface> p =
+        prepare_patches_alone(std::move(surface), plan_.options, source_, report_, context_);
     if (!p) return {};
-    report_surface(*p, options_, report_);
-    note_digests(*p, options_, report_, context_);
+    report_surface(*p, report_);
+    note_digests(*p, report_, context_);
     return p;
   }
 
   /// None where a finer grid takes more memory than there is: what is there is better than nothing.
-  std::optional<Prepared> with_sheet(LatticeSurface surface, bool is_refining) {
-    const std::optional<int32_t> closing_vox = asked_closing(options_, input_, surface.frame);
+  std::optional<PreparedSurface> with_sheet(LatticeSurface surface, bool is_refining) {
+    const std::optional<int32_t> closing_vox = asked_closing(plan_, surface.frame);
     try {
-      return prepare_surface(std::move(surface), closing_vox, options_, report_, context_);
+      return prepare_surface(std::move(surface), closing_vox, plan_.options, report_, context_);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::out_of_memory || !is_refining) throw;
       report_.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
@@ -222,87 +208,39 @@ class GridSearch {
   }
 
   const TriangleSoup& soup_;
-  const WorldBox& box_;
-  const InputTopology& input_;
+  const Plan& plan_;
   const PatchSource& source_;
-  const RemeshOptions& options_;
   RemeshReport& report_;
   Context& context_;
 };
 
-/// Borders that are kept are those wider than the gaps that were asked to be closed; where nothing was, those of no
-/// holes.
-TriangleSoup repaired(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
-                      RepairReport& report) {
-  const bool is_chosen = !options.closing_vox && !options.closing_world;
-  if (options.boundary == Boundary::close || is_chosen) return repair_soup(soup, {is_chosen}, report);
-  const double widest_gap_world =
-      options.closing_world ? *options.closing_world : 2. * *options.closing_vox * voxel_edge(soup, input, options);
-  return repair::repair_open_soup(soup, widest_gap_world, report);
-}
-
 }  // namespace
 
-Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& asked, RemeshReport& report,
-                 Context& context) {
-  const RemeshOptions options = checked(asked);
+Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context) {
+  RemeshReport report;
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
-  Prepared p = prepare_surface(std::move(surface), closing, options, report, context);
-  finish(p, {}, options, report, context);
-  return p;
+  PreparedSurface p = prepare_surface(std::move(surface), closing, checked(options), report, context);
+  finish(p, {}, report, context);
+  p.report = std::move(report);
+  return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
 }
 
-Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, RemeshReport& report, Context& context) {
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, Context& context) {
+  RemeshReport report;
   const RemeshOptions options = with_even_length(checked(asked), soup);
   const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
-  const InputTopology& given = measured.topology;
-  report.dirt = measured.dirt;
-  check_area(given);
-  const WorldBox box = bounding_box(soup);
-  memory_allows(estimate_run(soup, box, given, options, kCoarsestGrid), false, report, context);  // repair comes first
-  TriangleSoup changed;
-  const TriangleSoup* current = &soup;
-  InputTopology input = given;
-  const auto measure = [&] { return measure_topology(*current, context).topology; };
-  PatchSource source{&soup, {}};
-  int64_t cut_faces = 0;
-  const auto take = [&](JoinedParts&& joined) {
-    changed = std::move(joined.soup);
-    source.interfaces = std::move(joined.interfaces);
-    cut_faces = joined.cut_faces;
-    current = &changed;
-    input = joined.topology;
-  };
-  if (std::optional<JoinedParts> joined = join_parts(soup, measured, false, report, context)) {
-    take(std::move(*joined));
-  } else if (!given.closed || !given.oriented) {
-    changed = timed(report, "mend", context, [&] { return repaired(soup, given, options, report.mend); });
-    current = &changed;
-    const SoupTopology left = timed(report, "topology", context, [&] { return measure_topology(changed, context); });
-    input = left.topology;
-    if (auto mended = join_parts(changed, left, options.boundary == Boundary::keep, report, context))
-      take(std::move(*mended));
-  }
-  if (input.closed && input.oriented && input.components > 1) {
-    const UnionOptions union_options{options.outer_only, voxel_edge(*current, input, options) / 2};
-    TriangleSoup united =
-        timed(report, "unite", context, [&] { return boolean_union(*current, union_options, report.unite, context); });
-    if (report.unite.changed_anything()) {
-      changed = std::move(united);
-      current = &changed;
-      input = timed(report, "topology", context, measure);
-      if (report.unite.cut_faces > 0) input = topology_of_union(input, report.unite);
-      if (report.unite.cut_faces > 0 && cut_faces == 0 && report.join.given_up.empty())
-        report.join.given_up = source.interfaces.empty() ? "fewer than two of them look outward" : "others share walls";
-    }
-  }
-  report.unite.cut_faces += cut_faces;
-  if (cut_faces > 0 && report.unite.joined_components == 0) report.unite.joined_components = input.components;
-  const WorldBox current_box = current == &soup ? box : bounding_box(changed);
-  Prepared prepared = GridSearch(*current, current_box, input, source, options, report, context).best_grid();
-  report.input = given;
-  return prepared;
+  report.input.dirt = measured.dirt;
+  check_area(measured.topology);
+  const Plan given = plan_of(options, measured.topology, bounding_box(soup));
+  memory_allows(estimate_plan(given, soup, kCoarsestGrid), false, report, context);  // repair comes first
+  const RepairedInput input = repair_and_unite(soup, measured, given, report, context);
+  const TriangleSoup& meshed = input.soup(soup);
+  const Plan plan = plan_of(options, input.topology, input.is_changed() ? bounding_box(meshed) : given.box);
+  PreparedSurface p = GridSearch(meshed, plan, {&soup, input.interfaces}, report, context).best_grid();
+  report.input.topology = measured.topology;
+  p.report = std::move(report);
+  return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
 }
 
 }  // namespace isoshell

@@ -10,9 +10,8 @@
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
 #include "measure/crossing_corners.h"
-#include "options/check_options.h"
 #include "pipeline/grid/attempt.h"
-#include "pipeline/grid/choose_grid.h"
+#include "pipeline/grid/prepared_surface.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/thin_walls.h"
@@ -30,62 +29,61 @@
 namespace isoshell {
 namespace {
 
-PatchOptions patch_options(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize,
-                           bool is_warm) {
-  return {{p.cut->seeds, options.seed},
-          relax_options(options),
-          options.tolerance.has_value(),
-          optimize,
-          is_warm ? options.previous : nullptr};
+PatchOptions patch_options(const PreparedSurface& p, bool is_warm) {
+  return {{p.cut->seeds, p.options.seed},
+          relax_options(p.options),
+          p.options.tolerance.has_value(),
+          optimize_options(p.options),
+          is_warm ? p.previous : nullptr};
+}
+
+/// Where a mesh goes on from: the vertices of the frame before, if the run has one, or new seeds.
+enum class Begin { as_prepared, cold };
+
+RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, RemeshReport& report, Context& context) {
+  const SeedOptions seeds{p.target.vertices, p.options.seed};
+  SeedSet start = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seeds, context); });
+  RelaxedSeeds relaxed = timed(report, "relax", context, [&] {
+    return relax_in_shell(p.shell, p.sites, p.samples, std::move(start), relax_options(p.options), context);
+  });
+  relaxed.seeds =
+      timed(report, "attach", context, [&] { return attach_to_sheet(p.sheet, std::move(relaxed.seeds), 0, context); });
+  return relaxed;
 }
 
 /// On the patches of a cut surface, or on the sheet.
-SeedSet relax_seeds(const Prepared& p, const RemeshOptions& asked, bool in_patches, RemeshReport& report,
-                    Context& context) {
-  const RemeshOptions options = checked(asked);
-  const SeedOptions seed_options{in_patches ? p.cut->seeds : vertex_target(options, p), options.seed};
-  const bool is_warm = report.coherence.began_warm = options.previous && p.previous;
+SeedSet relax_seeds(const PreparedSurface& p, Begin begin, bool in_patches, RemeshReport& report, Context& context) {
+  const bool is_warm = report.coherence.began_warm = begin == Begin::as_prepared && p.previous;
   RelaxedSeeds relaxed;
-  if (in_patches) {
-    relaxed = timed(report, "relax", context,
-                    [&] { return relax_in_patches(*p.cut, patch_options(p, options, {}, is_warm), context); });
-  } else if (is_warm) {
-    relaxed = timed(report, "relax", context, [&] { return relaxed_from_previous(p, options, context); });
-  } else if (options.method == Method::sheet) {
-    relaxed = timed(report, "relax", context, [&] { return relaxed_by_levels(p, options, context); });
-  } else {
-    SeedSet start =
-        timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seed_options, context); });
+  if (!in_patches && !is_warm && p.options.method == Method::shell)
+    relaxed = relaxed_in_shell(p, report, context);
+  else
     relaxed = timed(report, "relax", context, [&] {
-      return relax_in_shell(p.shell, p.sites, p.samples, std::move(start), relax_options(options), context);
+      if (in_patches) return relax_in_patches(*p.cut, patch_options(p, is_warm), context);
+      return is_warm ? relaxed_from_previous(p, context) : relaxed_by_levels(p, context);
     });
-    relaxed.seeds = timed(report, "attach", context,
-                          [&] { return attach_to_sheet(p.sheet, std::move(relaxed.seeds), 0, context); });
-  }
   report.relax = std::move(relaxed.report);
-  SeedSet seeds = std::move(relaxed.seeds);
-  report.seeds = seeds.size();
-  note_digest(options, report, context, "seeds", seeds);
-  return seeds;
+  report.seeds = relaxed.seeds.size();
+  note_digest(p.options, report, context, "seeds", relaxed.seeds);
+  return std::move(relaxed.seeds);
 }
 
 /// Dual, repair and the final mesh on the sheet.
-void mesh_on_sheet(const Prepared& p, const RemeshOptions& asked, OptimizeOptions options, SeededMesh& made,
-                   RemeshReport& report, Context& context) {
-  report.post = {};
-  report.post_done = false;
+void mesh_on_sheet(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Context& context) {
+  report.optimize = {};
+  report.is_optimized = false;
   const bool is_warm = report.coherence.began_warm;
-  if (is_warm) options = for_warm_frame(options);
-  const int64_t count = is_warm ? vertex_target(asked, p) : made.seeds.size();
+  const OptimizeOptions options = is_warm ? for_warm_frame(optimize_options(p.options)) : optimize_options(p.options);
+  const int64_t count = is_warm ? p.target.vertices : made.seeds.size();
   make_dual_of_seeds(p.sheet, {count, false, is_warm}, made, report, context);
   if (report.dual.failed_cells > 0) return;
   OptimizedMesh optimized =
       timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), options, context); });
-  report.post = optimized.report;
+  report.optimize = optimized.report;
   made = std::move(optimized);
-  if (report.post.self_intersections > 0)
+  if (report.optimize.self_intersections > 0)
     timed(report, "untangle", context, [&] { resolve_intersections(p, options, is_warm, made, report, context); });
-  report.post_done = true;
+  report.is_optimized = true;
 }
 
 /// A mesh on a sheet, and how it came about. Of two attempts that is kept which has fewer flaws.
@@ -94,29 +92,16 @@ struct Attempt {
   RemeshReport report;
 
   /// Cells that are no disks, before pairs of triangles that intersect.
-  std::pair<int64_t, int64_t> flaws() const { return {report.dual.failed_cells, report.post.self_intersections}; }
-};
-
-/// Gives the caller the seeds and the report of an attempt, whether a stage returned or threw: stages take seeds by
-/// moving.
-struct GiveBack {
-  Attempt& from;
-  SeedSet& seeds;
-  RemeshReport& report;
-  ~GiveBack() {
-    seeds = std::move(from.made.seeds);
-    report = std::move(from.report);
-  }
+  std::pair<int64_t, int64_t> flaws() const { return {report.dual.failed_cells, report.optimize.self_intersections}; }
 };
 
 /// From new seeds. Result: why there is none, because of room or memory; empty otherwise.
-std::string try_on_sheet(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize,
-                         Attempt& attempt, Context& context) {
+std::string try_on_sheet(const PreparedSurface& p, Attempt& attempt, Context& context) {
   try {
     return reason_against([&]() -> std::string {
       attempt.made = {};
-      attempt.made.seeds = relax_seeds(p, options, false, attempt.report, context);
-      mesh_on_sheet(p, options, optimize, attempt.made, attempt.report, context);
+      attempt.made.seeds = relax_seeds(p, Begin::cold, false, attempt.report, context);
+      mesh_on_sheet(p, attempt.made, attempt.report, context);
       return "";
     });
   } catch (const Error& error) {
@@ -127,10 +112,9 @@ std::string try_on_sheet(const Prepared& p, const RemeshOptions& options, const 
 
 /// Puts another attempt on a sheet in the place of the one that there is, where it has fewer flaws. Its time counts
 /// anyway.
-bool keep_better(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize, Attempt& best,
-                 Context& context) {
+bool keep_better(const PreparedSurface& p, Attempt& best, Context& context) {
   Attempt other{{}, best.report};
-  const bool is_made = try_on_sheet(p, options, optimize, other, context).empty();
+  const bool is_made = try_on_sheet(p, other, context).empty();
   if (is_made && other.flaws() < best.flaws()) {
     best = std::move(other);
     return true;
@@ -141,31 +125,26 @@ bool keep_better(const Prepared& p, const RemeshOptions& options, const Optimize
 
 /// Merges walls where triangles intersect, and makes the mesh anew, while that leaves fewer that do. Null where nothing
 /// was merged.
-std::unique_ptr<MergedWalls> merge_where_crossing(const Prepared& p, RemeshOptions asked,
-                                                  const OptimizeOptions& optimize, Attempt& best, Context& context) {
-  asked.method = Method::sheet;
-  const RemeshOptions options = checked(asked);
+std::unique_ptr<MergedWalls> merge_where_crossing(const PreparedSurface& p, Attempt& best, Context& context) {
   std::unique_ptr<MergedWalls> kept;
   std::vector<PointQ8> points;
-  for (int merge = 0; merge < kMostMerges && best.report.post.self_intersections > 0; ++merge) {
+  for (int merge = 0; merge < kMostMerges && best.report.optimize.self_intersections > 0; ++merge) {
     const std::vector<PointQ8> more = crossing_corners(*OnHost(best.made.mesh), {});
     points.insert(points.end(), more.begin(), more.end());
     sort_places(points);  // a mesh that stays has the same ones again
     auto merged = std::make_unique<MergedWalls>(
-        timed(best.report, "merge", context, [&] { return merge_walls(p, points, merge, options, context); }));
-    if (keep_better(merged->prepared, options, optimize, best, context)) kept = std::move(merged);
+        timed(best.report, "merge", context, [&] { return merge_walls(p, points, merge, context); }));
+    if (keep_better(merged->prepared, best, context)) kept = std::move(merged);
   }
   if (kept) report_merge(*kept, points, best.report);
   return kept;
 }
 
 /// A frame that cannot be meshed from the one before begins cold, where that gives a better mesh.
-void begin_again_cold(const Prepared& p, RemeshOptions options, const OptimizeOptions& optimize, Attempt& best,
-                      Context& context) {
+void begin_again_cold(const PreparedSurface& p, Attempt& best, Context& context) {
   const auto [failed, crossing] = best.flaws();
   if (!best.report.coherence.began_warm || (failed == 0 && crossing == 0)) return;
-  options.previous.reset();
-  if (!keep_better(p, options, optimize, best, context)) return;
+  if (!keep_better(p, best, context)) return;
   best.report.coherence.why_cold =
       failed > 0 ? "cells of the carried vertices are no disks" : "triangles of the carried vertices intersect";
 }
@@ -178,9 +157,9 @@ void follow_previous(const RemeshOptions& options, bool has_numbers, TriangleMes
 }
 
 /// Where the grid is too coarse for that, too, the error says why it is tried.
-SeedSet relax_without_creases(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
+SeedSet relax_without_creases(const PreparedSurface& p, RemeshReport& report, Context& context) {
   try {
-    return relax_seeds(p, options, false, report, context);
+    return relax_seeds(p, Begin::as_prepared, false, report, context);
   } catch (const NoRoom& error) {
     throw NoRoom(error.stage(),
                  std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
@@ -188,7 +167,7 @@ SeedSet relax_without_creases(const Prepared& p, const RemeshOptions& options, R
 }
 
 /// What is not as it should be.
-void warn_of_mesh(const Prepared& p, const SeededMesh& made, int64_t asked, RemeshReport& report) {
+void warn_of_mesh(const PreparedSurface& p, const SeededMesh& made, int64_t asked, RemeshReport& report) {
   if (report.dual.failed_cells > 0)
     report.warnings.push_back(
         std::to_string(report.dual.failed_cells) +
@@ -196,73 +175,70 @@ void warn_of_mesh(const Prepared& p, const SeededMesh& made, int64_t asked, Reme
   if (made.seeds.size() != asked)
     report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
                               std::to_string(asked) + ": its topology needs them at this resolution");
-  if (report.post.self_intersections == 0) return;
+  if (report.optimize.self_intersections == 0) return;
   const std::vector<PointQ8> corners = crossing_corners(*OnHost(made.mesh), {});
   const WorldPoint at = p.surface.frame.to_world(corners.empty() ? made.mesh.position[0] : corners.front());
   report.intersection_at = at;
   std::ostringstream text;
-  text << report.post.self_intersections << " pairs of triangles intersect, near " << at.x << ' ' << at.y << ' ' << at.z
-       << ": parts of the surface are nearer to one another than its edges are long; ask for more --vertices";
+  text << report.optimize.self_intersections << " pairs of triangles intersect, near " << at.x << ' ' << at.y << ' '
+       << at.z << ": parts of the surface are nearer to one another than its edges are long; ask for more --vertices";
   report.warnings.push_back(text.str());
 }
 
 /// From relaxed seeds, with all that is tried where the mesh has flaws.
-TriangleMesh triangulate_on_sheet(const Prepared& p, const RemeshOptions& options, const OptimizeOptions& optimize,
-                                  Attempt& best, Context& context) {
-  const int64_t asked = best.report.coherence.began_warm ? vertex_target(options, p) : best.made.seeds.size();
-  mesh_on_sheet(p, options, optimize, best.made, best.report, context);
-  begin_again_cold(p, options, optimize, best, context);
-  const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, options, optimize, best, context);
-  const Prepared& meshed = merged ? merged->prepared : p;
+TriangleMesh triangulate_on_sheet(const PreparedSurface& p, Attempt& best, Context& context) {
+  const int64_t asked = best.report.coherence.began_warm ? p.target.vertices : best.made.seeds.size();
+  mesh_on_sheet(p, best.made, best.report, context);
+  begin_again_cold(p, best, context);
+  const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, best, context);
+  const PreparedSurface& meshed = merged ? merged->prepared : p;
   warn_of_mesh(meshed, best.made, asked, best.report);
   measure_edges(meshed.sheet, best.made.seeds, best.made.mesh, best.report.sizing, context);
   TriangleMesh mesh = to_world(best.made.mesh, meshed.surface.frame);
   flag_gaps(meshed, OnHost(best.made.seeds)->home.view(), mesh, best.report.gaps);
-  follow_previous(options, best.report.coherence.began_warm, mesh, best.report);
-  note_digest(options, best.report, context, "mesh", mesh);
   return mesh;
+}
+
+/// On its patches, or where that fails on the sheet without curves.
+TriangleMesh triangulate_anyhow(const PreparedSurface& p, Attempt& best, Context& context) {
+  SheetWhenNeeded sheet(p, context);
+  if (!p.cut || best.made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(best.report), best, context);
+  const PatchOptions in_patches = patch_options(p, best.report.coherence.began_warm);
+  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, sheet, best.made, in_patches, best.report, context))
+    return std::move(*mesh);
+  best.report.optimize = {};
+  const PreparedSurface& whole = sheet.get(best.report);
+  if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, best.report);
+  best.made.seeds = relax_without_creases(whole, best.report, context);
+  return triangulate_on_sheet(whole, best, context);
 }
 
 }  // namespace
 
-SeedSet relax(const Prepared& p, const RemeshOptions& options, RemeshReport& report, Context& context) {
-  return relax_seeds(p, options, p.cut != nullptr, report, context);
+Relaxed relax(const Prepared& prepared, Context& context) {
+  const PreparedSurface& p = prepared.parts();
+  Relaxed relaxed{{}, p.report};
+  relaxed.seeds = relax_seeds(p, Begin::as_prepared, p.cut != nullptr, relaxed.report, context);
+  return relaxed;
 }
 
-TriangleMesh triangulate(const Prepared& p, SeedSet& seeds, const RemeshOptions& as_asked, RemeshReport& report,
-                         Context& context) {
-  const RemeshOptions options = checked(as_asked);
-  OptimizeOptions optimize;
-  optimize.fit = options.fit;
-  optimize.uniform_area = options.uniform_area;
-  Attempt best{{}, std::exchange(report, {})};
-  const GiveBack give_back{best, seeds, report};
-  best.made.seeds = std::move(seeds);
-  SheetWhenNeeded sheet(p, options, context);
-  if (p.cut && best.made.seeds.fixed.count > 0) {
-    const PatchOptions in_patches = patch_options(p, options, optimize, best.report.coherence.began_warm);
-    if (std::optional<TriangleMesh> mesh =
-            triangulate_patches(p, sheet, best.made, options, in_patches, best.report, context)) {
-      follow_previous(options, false, *mesh, best.report);
-      note_digest(options, best.report, context, "mesh", *mesh);
-      return std::move(*mesh);
-    }
-    best.report.post = {};
-    if (is_on_own_triangles(p)) warn_of_topology(sheet.get(best.report), p.surface.topology, options, best.report);
-    best.made.seeds = relax_without_creases(sheet.get(best.report), options, best.report, context);
-  }
-  return triangulate_on_sheet(sheet.get(best.report), options, optimize, best, context);
+RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& context) {
+  const PreparedSurface& p = prepared.parts();
+  Attempt best{{}, std::move(relaxed.report)};
+  best.made.seeds = std::move(relaxed.seeds);
+  TriangleMesh mesh = triangulate_anyhow(p, best, context);
+  const bool is_in_patches = best.report.features.kept;
+  follow_previous(p.options, best.report.coherence.began_warm && !is_in_patches, mesh, best.report);
+  note_digest(p.options, best.report, context, "mesh", mesh);
+  return {std::move(mesh), std::move(best.report)};
 }
 
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& asked, Context& context) {
-  RemeshResult result;
   RemeshOptions options = asked;
   options.want_samples = false;
-  Prepared prepared = prepare(soup, options, result.report, context);
-  if (options.method == Method::sheet) prepared.samples = {};  // made the sheet, and are not read again
-  SeedSet seeds = relax(prepared, options, result.report, context);
-  result.mesh = triangulate(prepared, seeds, options, result.report, context);
-  return result;
+  Prepared prepared = prepare(soup, options, context);
+  if (options.method == Method::sheet) prepared.free_samples();
+  return triangulate(prepared, relax(prepared, context), context);
 }
 
 }  // namespace isoshell

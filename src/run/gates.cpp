@@ -266,9 +266,9 @@ std::vector<std::string> missed_gates(const Gates& gates, const Measured& m) {
 
 std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& record) {
   const RemeshReport& report = record.report;
-  const int64_t pairs = report.post.self_intersections;
+  const int64_t pairs = report.optimize.self_intersections;
   Measured m{record.topology, record.quality, record.distance};
-  if (report.post_done) m.self_intersections = pairs;
+  if (report.is_optimized) m.self_intersections = pairs;
   m.features = &report.features;
   if (record.options.previous) m.coherence = &report.coherence;
   std::vector<std::string> missed = missed_gates(gates, m);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "isoshell/error.h"
+#include "run/step.h"
 
 namespace isoshell {
 namespace {
@@ -11,13 +12,6 @@ namespace {
 constexpr int64_t kSamples = 200000;
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "mesh_info", message); }
-
-template <class Work>
-void step(const char* name, const Context& context, Work work) {
-  if (context.progress) context.progress(name, 0);
-  work();
-  if (context.progress) context.progress(name, 1);
-}
 
 TriangleMesh mesh_of(TriangleSoup soup) { return {std::move(soup.vertices), std::move(soup.triangles)}; }
 

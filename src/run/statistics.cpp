@@ -66,14 +66,14 @@ Json options_of_schema(const RemeshOptions& options) {
 }
 
 Json input_json(const RunRecord& r) {
-  const InputTopology& t = r.report.input;
+  const InputTopology& t = r.report.input.topology;
   return {{"path", r.input.path},
           {"kind", kind_name(r.input.kind)},
           {"vertices", known(r.input.vertices)},
           {"faces", known(r.input.faces)},
-          {"dropped", dirt_json(r.report.dirt)},
-          {"mended", repair_json(r.report.mend)},
-          {"united", union_json(r.report.unite, r.report.join)},
+          {"dropped", dirt_json(r.report.input.dirt)},
+          {"mended", repair_json(r.report.input.repair)},
+          {"united", union_json(r.report.input.united, r.report.input.joined)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},
           {"genus", known(t.genus)},
@@ -83,7 +83,7 @@ Json input_json(const RunRecord& r) {
           {"area", t.area_world}};
 }
 
-Json grid_json(const RemeshReport& r) {
+Json grid_json(const GridReport& r) {
   return {{"resolution", r.frame.resolution},
           {"voxel_size", r.frame.voxel_size},
           {"band", r.band_vox},
@@ -92,10 +92,10 @@ Json grid_json(const RemeshReport& r) {
 }
 
 Json counts_json(const RunRecord& r) {
-  return {{"sites", r.report.sites},
-          {"active_voxels", r.report.active_voxels > 0 ? Json(r.report.active_voxels) : Json()},
-          {"leaves", r.report.leaves > 0 ? Json(r.report.leaves) : Json()},
-          {"sheet_vertices", r.report.sheet_vertices},
+  return {{"sites", r.report.grid.sites},
+          {"active_voxels", r.report.grid.active_voxels > 0 ? Json(r.report.grid.active_voxels) : Json()},
+          {"leaves", r.report.grid.leaves > 0 ? Json(r.report.grid.leaves) : Json()},
+          {"sheet_vertices", r.report.sheet.vertices},
           {"seeds", r.report.seeds},
           {"vertices", known(r.vertices)},
           {"triangles", known(r.triangles)}};
@@ -104,10 +104,10 @@ Json counts_json(const RunRecord& r) {
 /// Holes that faces closed and gaps that voxels bridged, and how much of the result lies where the input has no
 /// surface.
 Json gaps_json(const RunRecord& r) {
-  const RepairReport& m = r.report.mend;
+  const RepairReport& m = r.report.input.repair;
   return {{"loops", m.capped_loops + r.report.gaps.bridges},
           {"widest", std::max(m.widest_cap_world, r.report.gaps.widest_bridge_world)},
-          {"bridged_sheet_vertices", r.report.sheet.bridged_vertices},
+          {"bridged_sheet_vertices", r.report.sheet.topology.bridged_vertices},
           {"area", r.report.gaps.area_world},
           {"vertices", r.report.gaps.vertices},
           {"risky_sites", known(r.risky_sites)}};
@@ -123,7 +123,8 @@ Json attributes_json(const AttributeReport& r) {
 /// Walls that became one.
 Json merged_json(const RemeshReport& r) {
   if (r.merged.grown_vox == 0) return nullptr;
-  return {{"grown", r.merged.grown_vox * r.frame.voxel_size}, {"places", r.merged.places}, {"at", point(r.merged.at)}};
+  return {
+      {"grown", r.merged.grown_vox * r.grid.frame.voxel_size}, {"places", r.merged.places}, {"at", point(r.merged.at)}};
 }
 
 Json topology_json(const RunRecord& r) {
@@ -134,13 +135,13 @@ Json topology_json(const RunRecord& r) {
             {"boundary_loops", nullptr},
             {"nonmanifold_edges", nullptr},
             {"nonmanifold_vertices", nullptr},
-            {"self_intersections", r.report.post_done ? Json(r.report.post.self_intersections) : Json()},
+            {"self_intersections", r.report.is_optimized ? Json(r.report.optimize.self_intersections) : Json()},
             {"intersection_at", point(r.report.intersection_at)},
             {"merged", merged_json(r.report)},
-            {"sheet_components", r.report.sheet.components},
-            {"sheet_genus", r.report.sheet.genus},
-            {"cut_handles", r.report.sheet.cut_handles},
-            {"agrees_with_input", r.report.topology_compared ? Json(r.report.topology_agrees) : Json()},
+            {"sheet_components", r.report.sheet.topology.components},
+            {"sheet_genus", r.report.sheet.topology.genus},
+            {"cut_handles", r.report.sheet.topology.cut_handles},
+            {"agrees_with_input", r.report.sheet.is_compared ? Json(r.report.sheet.agrees) : Json()},
             {"failed_cells", r.report.dual.failed_cells},
             {"inserted_seeds", r.report.dual.inserted_seeds},
             {"seeds_against_intersections", r.report.seeds_against_intersections}};
@@ -280,7 +281,7 @@ std::string statistics_json(const RunRecord& r) {
   j["options"] = options_of_schema(r.options);
   j["input"] = input_json(r);
   j["output"] = {{"path", r.output.path}, {"format", r.output.format}};
-  j["grid"] = grid_json(r.report);
+  j["grid"] = grid_json(r.report.grid);
   j["counts"] = counts_json(r);
   j["gaps"] = gaps_json(r);
   j["attributes"] = attributes_json(r.attributes);
@@ -297,7 +298,7 @@ std::string statistics_json(const RunRecord& r) {
   j["memory_bytes"] = {
       {"host_peak", r.host_peak_bytes},
       {"device_peak", r.device.backend == "cuda" ? Json(r.device_peak_bytes) : Json()},
-      {"estimate", r.report.memory_estimate_bytes > 0 ? Json(r.report.memory_estimate_bytes) : Json()}};
+      {"estimate", r.report.grid.memory_estimate_bytes > 0 ? Json(r.report.grid.memory_estimate_bytes) : Json()}};
   j["device"] = r.device.backend;
   j["device_details"] = device_json(r.device);
   j["digests"] = r.report.digests.empty() ? Json::object() : Json(r.report.digests);

@@ -11,7 +11,7 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   const auto note = [&](int64_t count, const std::string& what) {
     if (count > 0) warnings.push_back(input + ": " + with_commas(count) + " " + what);
   };
-  const DirtCounts& d = report.dirt;
+  const DirtCounts& d = report.input.dirt;
   note(d.long_rows, "rows with values behind their last declared property, which were left out");
   note(d.surplus_rows, "rows left out behind the last that the header promises");
   note(d.surplus_bytes, "bytes left out behind the last one that the header promises");
@@ -25,7 +25,7 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   note(d.unreferenced_vertices, "vertices that no face uses");
   note(d.nonmanifold_edges, "edges that more than two faces share");
   note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
-  const RepairReport& m = report.mend;
+  const RepairReport& m = report.input.repair;
   note(m.joined_vertices, "vertices of boundaries joined over cracks");
   note(m.fins, "fins dropped: small patches that hang on edges of more than two faces");
   note(m.islands, "islands dropped: small open patches apart from the rest");
@@ -34,13 +34,13 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   caps << "holes closed by new faces, up to " << m.widest_cap_world << " wide";
   note(m.capped_loops, caps.str());
   note(m.tubes, "pairs of them joined: they face each other like the ends of a tube");
-  const UnionReport& u = report.unite;
+  const UnionReport& u = report.input.united;
   note(u.turned_components, "closed components turned outward");
   note(u.swallowed_components, "closed components dropped, they lie inside of others");
   note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
   note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
   note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
-  const JoinReport& j = report.join;
+  const JoinReport& j = report.input.joined;
   note(j.left_components, "open or inward looking components left as they are, others were united beside them");
   if (!j.given_up.empty()) {
     std::ostringstream text;

@@ -154,11 +154,11 @@ inline std::string run(const Case& c, Context& context) {
   const auto count = [&](const char* name, int64_t value) {
     text += std::string("  ") + name + " " + std::to_string(value) + "\n";
   };
-  count("sites", r.sites);
-  count("active_voxels", r.active_voxels);
-  count("sheet_vertices", r.sheet_vertices);
-  count("components", r.sheet.components);
-  count("genus", r.sheet.genus);
+  count("sites", r.grid.sites);
+  count("active_voxels", r.grid.active_voxels);
+  count("sheet_vertices", r.sheet.vertices);
+  count("components", r.sheet.topology.components);
+  count("genus", r.sheet.topology.genus);
   count("passes", r.relax.passes);
   count("inserted_seeds", r.dual.inserted_seeds);
   count("failed_cells", r.dual.failed_cells);

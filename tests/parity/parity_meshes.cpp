@@ -56,19 +56,19 @@ ProductDigests run(const TriangleSoup& soup, const RemeshOptions& options, Backe
   Context context;
   context.backend = backend;
   ProductDigests result;
-  RemeshReport report;
   const auto start = std::chrono::steady_clock::now();
   try {
-    const Prepared prepared = prepare(soup, options, report, context);
-    SeedSet seeds = relax(prepared, options, report, context);
-    report.digests["labels"] = digest_text(digest(flood_shell(prepared.shell, seeds, context)));
-    triangulate(prepared, seeds, options, report, context);
+    const Prepared prepared = prepare(soup, options, context);
+    result.digests = prepared.report().digests;
+    Relaxed relaxed = relax(prepared, context);
+    relaxed.report.digests["labels"] = digest_text(digest(flood_shell(prepared.shell(), relaxed.seeds, context)));
+    result.digests = relaxed.report.digests;
+    result.digests["passes"] = std::to_string(relaxed.report.relax.passes);
+    result.digests["mesh"] = triangulate(prepared, std::move(relaxed), context).report.digests["mesh"];
   } catch (const Error& e) {
     result.error = e.stage() + ": " + e.what();
   }
   result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  result.digests = report.digests;
-  result.digests["passes"] = std::to_string(report.relax.passes);
   return result;
 }
 

@@ -96,19 +96,19 @@ TEST_CASE("creases: a search leaves it to others to refuse, and stops when it is
 TEST_CASE("creases: the search begins early on a device alone, at the edge length of the run", "[curves][unit]") {
   TestContext context;
   const TriangleSoup soup = shapes::box({0, 0, 0}, {1, 1, 1});
-  Prepared prepared;
-  prepared.surface = snap_surface(soup, frame_of(soup, 200), context.plain());
-  prepared.surface.topology.area_world = 6;
-  RemeshOptions options;
+  LatticeSurface surface = snap_surface(soup, frame_of(soup, 200), context.plain());
+  surface.topology.area_world = 6;
+  PreparedSurface prepared = begin_with(std::move(surface), {});
+  RemeshOptions& options = prepared.options;
   RemeshReport report;
   const bool is_on_device = test_backend() == Backend::cuda;
-  const auto search = begin_crease_search(options, prepared, report, context);
+  const auto search = begin_crease_search(prepared, report, context);
   CHECK((search != nullptr) == is_on_device);
   CHECK(report.times.empty() == !is_on_device);
   if (search) CHECK(search->result().mesh.vertices.size() == 8);
   options.features.creases = Features::Creases::off;
-  CHECK_FALSE(begin_crease_search(options, prepared, report, context));
+  CHECK_FALSE(begin_crease_search(prepared, report, context));
   options.features.creases = Features::Creases::automatic;
   options.adaptivity = .5;
-  CHECK_FALSE(begin_crease_search(options, prepared, report, context));
+  CHECK_FALSE(begin_crease_search(prepared, report, context));
 }

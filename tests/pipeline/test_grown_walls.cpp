@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "isoshell/isoshell.h"
+#include "pipeline/grid/prepared_surface.h"
 #include "support/catch.h"
 #include "support/prepared_run.h"
 #include "support/shapes.h"
@@ -64,9 +65,9 @@ TEST_CASE("prepare: an open plate that closing makes solid stays as thin as it i
   options.resolution = 200;  // four voxels thick, less than half an edge
   options.closing_vox = 6;
   const PreparedRun run = prepare_with(plate, options);
-  CHECK(run.report.grown_vox == 0);
+  CHECK(run.report.grid.grown_vox == 0);
   TestContext context;
-  CHECK(double(six_volume_vox(run.prepared.sheet, context)) / 6 == Approx(200. * 200 * 4).epsilon(.1));
+  CHECK(double(six_volume_vox(run.prepared.sheet(), context)) / 6 == Approx(200. * 200 * 4).epsilon(.1));
 }
 
 TEST_CASE("prepare: an open sheet of which closing fills a fold grows walls", "[prepare]") {
@@ -88,7 +89,7 @@ TEST_CASE("prepare: an open sheet of which closing fills a fold grows walls", "[
   options.vertices = 300;
   options.resolution = 100;
   options.closing_vox = 4;
-  CHECK(prepare_with(sheet, options).report.grown_vox > 0);
+  CHECK(prepare_with(sheet, options).report.grid.grown_vox > 0);
 }
 
 TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]") {
@@ -97,20 +98,20 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const PreparedRun run = prepare_with(bowl, options);
-  CHECK(run.prepared.grown.distance_vox > 0);
+  CHECK(run.prepared.parts().grown.distance_vox > 0);
   REQUIRE(run.report.warnings.size() == 1);
   CHECK(run.report.warnings[0].find("both of its sides") != std::string::npos);
-  CHECK(run.report.sheet.components == 1);
+  CHECK(run.report.sheet.topology.components == 1);
   TestContext context;
   const RemeshResult result = remesh(bowl, options, context);
   CHECK(result.mesh.gap.empty());
-  CHECK(result.report.sheet.bridged_vertices == 0);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.sheet.topology.bridged_vertices == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(measure_quality(result.mesh).theta_min_deg > 30);
   CHECK(measure_quality(result.mesh).q_avg > .92);
   const PreparedRun ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
-  CHECK(ball.prepared.grown.distance_vox == 0);
+  CHECK(ball.prepared.parts().grown.distance_vox == 0);
 }
 
 TEST_CASE("prepare: open parts of a solid get walls that edges turn around, the solid stays where it is", "[prepare]") {
@@ -132,8 +133,8 @@ TEST_CASE("prepare: open parts of a solid get walls that edges turn around, the 
   options.vertices = 2000;
   TestContext context;
   const RemeshResult result = remesh(ball_with_flag, options, context);
-  CHECK(result.report.grown_vox > 0);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.grid.grown_vox > 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(check_mesh(result.mesh).genus == 0);
   CHECK(measure_quality(result.mesh).theta_min_deg > 30);
@@ -151,9 +152,9 @@ TEST_CASE("prepare: a solid with flaps keeps the points that its sheet misses", 
   options.vertices = 2000;
   options.resolution = 100;
   const PreparedRun run = prepare_with(crown, options);
-  CHECK(run.report.mend.capped_loops == 1);
-  REQUIRE(run.prepared.grown.only_flaps);
-  const Sheet sheet = to_host(run.prepared.sheet);
+  CHECK(run.report.input.repair.capped_loops == 1);
+  REQUIRE(run.prepared.parts().grown.only_flaps);
+  const Sheet sheet = to_host(run.prepared.sheet());
   const PointQ8 bottom = sheet.frame.snap(pit);
   int64_t at_pit = 0, on_brim = 0;
   for (int64_t i = 0; i < sheet.missed.size(); ++i) {
@@ -175,9 +176,9 @@ TEST_CASE("prepare: a solid with flaps whose topology is not the input's says bo
   options.resolution = 150;
   options.features.creases = Features::Creases::off;
   const PreparedRun run = prepare_with(shapes::together(hat(), ring), options);
-  REQUIRE(run.prepared.grown.only_flaps);
-  REQUIRE(run.report.topology_compared);
-  REQUIRE(run.report.sheet.genus == 0);
+  REQUIRE(run.prepared.parts().grown.only_flaps);
+  REQUIRE(run.report.sheet.is_compared);
+  REQUIRE(run.report.sheet.topology.genus == 0);
   REQUIRE(run.report.warnings.size() == 2);
   CHECK(run.report.warnings[0].find("open and bound nothing") != std::string::npos);
   CHECK(run.report.warnings[1].find("2 components and genus 0, the input 2 and 1") != std::string::npos);
@@ -191,8 +192,8 @@ TEST_CASE("prepare: walls of what the widest closing does not close grow too", "
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const PreparedRun run = prepare_with(bowl, options);
-  CHECK(run.report.closing_vox == kMaxClosingVox);
-  CHECK(run.prepared.grown.distance_vox > 2);
-  CHECK(run.report.sheet.components == 1);
-  CHECK(run.report.sheet.genus == 0);
+  CHECK(run.report.grid.closing_vox == kMaxClosingVox);
+  CHECK(run.prepared.parts().grown.distance_vox > 2);
+  CHECK(run.report.sheet.topology.components == 1);
+  CHECK(run.report.sheet.topology.genus == 0);
 }

@@ -39,8 +39,8 @@ RemeshResult remeshed(const TriangleSoup& soup, int32_t resolution, int64_t vert
   RemeshResult result = remesh(soup, options, context);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(int64_t(result.mesh.vertices.size()) == vertices);
-  CHECK(result.report.post_done);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.is_optimized);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK_FALSE(result.report.intersection_at);
   return result;
 }
@@ -80,8 +80,8 @@ TEST_CASE("near walls: thin plates a hair apart become one", "[near]") {
   CHECK(report.merged.places > 0);
   CHECK(report.merged.at.z > -.05);
   CHECK(report.merged.at.z < .08);
-  CHECK(report.sheet.components == 1);
-  CHECK_FALSE(report.topology_agrees);
+  CHECK(report.sheet.topology.components == 1);
+  CHECK_FALSE(report.sheet.agrees);
   CHECK(warns_of(report, "walls nearer to one another than edges can follow were merged"));
 }
 
@@ -95,5 +95,5 @@ TEST_CASE("near walls: plates with room between them are not merged", "[near]") 
       shapes::together(shapes::box({0, 0, 0}, {1, .7, .1}), shapes::box({0, 0, .3}, {1, .7, .4}));
   const RemeshReport report = remeshed(plates, 64, 800).report;
   CHECK(report.merged.grown_vox == 0);
-  CHECK(report.sheet.components == 2);
+  CHECK(report.sheet.topology.components == 2);
 }

@@ -17,8 +17,8 @@ namespace {
 /// Volume inside the sheet in terms of a ball whose diameter is the grid's longest side.
 double volume_in_balls(const PreparedRun& run) {
   TestContext context;
-  const double radius_vox = .5 * run.report.frame.resolution;
-  return double(six_volume_vox(run.prepared.sheet, context)) / (8 * 3.14159 * radius_vox * radius_vox * radius_vox);
+  const double radius_vox = .5 * run.report.grid.frame.resolution;
+  return double(six_volume_vox(run.prepared.sheet(), context)) / (8 * 3.14159 * radius_vox * radius_vox * radius_vox);
 }
 
 /// A unit ball's surface with a slot of this width along a quarter of its equator.
@@ -54,17 +54,17 @@ TEST_CASE("prepare: balls through each other are one body, on the first grid; ba
   options.vertices = 500;
   const TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 32);
   const PreparedRun joined = prepare_with(shapes::together(ball, shapes::sphere({1, .1, 0}, 1, 32)), options);
-  CHECK(joined.report.input.components == 2);
-  CHECK(joined.report.sheet.components == 1);
-  CHECK(joined.report.sheet.genus == 0);
-  CHECK(joined.report.topology_agrees);  // with the union, which is one mesh
+  CHECK(joined.report.input.topology.components == 2);
+  CHECK(joined.report.sheet.topology.components == 1);
+  CHECK(joined.report.sheet.topology.genus == 0);
+  CHECK(joined.report.sheet.agrees);  // with the union, which is one mesh
   CHECK(joined.report.warnings.empty());
   TriangleSoup two = shapes::together(ball, shapes::sphere({2.3, .1, 0}, 1, 32));
   const PreparedRun apart = prepare_with(two, options);
-  CHECK(apart.report.sheet.components == 2);
-  CHECK(apart.report.topology_agrees);
+  CHECK(apart.report.sheet.topology.components == 2);
+  CHECK(apart.report.sheet.agrees);
   two = shapes::together(two, shapes::sphere({0, 2, 0}, 1e-7, 8));  // a point on the lattice: joined with nothing
-  CHECK(prepare_with(two, options).report.topology_compared);
+  CHECK(prepare_with(two, options).report.sheet.is_compared);
 }
 
 TEST_CASE("prepare: a hollow ball stays hollow, unless only outer surfaces are wanted", "[prepare]") {
@@ -75,19 +75,19 @@ TEST_CASE("prepare: a hollow ball stays hollow, unless only outer surfaces are w
   RemeshOptions outer_only = options;
   outer_only.outer_only = true;
   const PreparedRun outer = prepare_with(hollow, outer_only);
-  CHECK(outer.report.sheet.components == 1);
-  CHECK(outer.report.topology_agrees);
+  CHECK(outer.report.sheet.topology.components == 1);
+  CHECK(outer.report.sheet.agrees);
   const double ball = volume_in_balls(outer);
   for (const TriangleSoup& soup : {hollow, shapes::inside_out(hollow)}) {
     const PreparedRun kept = prepare_with(soup, options);
-    CHECK(kept.report.unite.inner_surfaces == 1);
-    CHECK(kept.report.sheet.components == 2);
-    CHECK(kept.report.topology_agrees);
+    CHECK(kept.report.input.united.inner_surfaces == 1);
+    CHECK(kept.report.sheet.topology.components == 2);
+    CHECK(kept.report.sheet.agrees);
     CHECK(volume_in_balls(kept) / ball == Approx(1 - .216).margin(.01));
   }
   const PreparedRun nested = prepare_with(shapes::together(hollow, shapes::sphere({.1, 0, 0}, .3, 32)), options);
-  CHECK(nested.report.sheet.components == 3);
-  CHECK(nested.report.topology_agrees);
+  CHECK(nested.report.sheet.topology.components == 3);
+  CHECK(nested.report.sheet.agrees);
   CHECK(volume_in_balls(nested) / ball == Approx(1 - .216 + .027).margin(.01));
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("prepare: hollows about as small as a voxel do not open the solid arou
     ball = shapes::together(ball, shapes::inside_out(shapes::sphere({at, .2, .1 - at}, radius_vox * 2 / 39, 12)));
   }
   const PreparedRun run = prepare_with(ball, options);
-  CHECK(run.report.unite.inner_surfaces == 5);
+  CHECK(run.report.input.united.inner_surfaces == 5);
   CHECK(volume_in_balls(run) > .9);
 }
 
@@ -115,11 +115,10 @@ TEST_CASE("prepare: a hollow survives coarse levels, and a run from the lattice"
   CHECK(topology.is_closed_manifold());
   CHECK(topology.components == 2);
   CHECK(result.mesh.vertices.size() == 1000);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   const PreparedRun first = prepare_with(hollow, options);
-  RemeshReport again;
-  const Prepared resumed = prepare(to_host(first.prepared.surface), 0, options, again, context);
-  CHECK(digest(resumed.sheet) == digest(first.prepared.sheet));
+  const Prepared resumed = prepare(to_host(first.prepared.surface()), 0, options, context);
+  CHECK(digest(resumed.sheet()) == digest(first.prepared.sheet()));
 }
 
 TEST_CASE("prepare: bars through each other that make a frame have its handle", "[prepare]") {
@@ -130,9 +129,9 @@ TEST_CASE("prepare: bars through each other that make a frame have its handle", 
   frame = shapes::together(frame, shapes::box({.1, -.3, .2}, {1.1, 4.2, .8}));
   frame = shapes::together(frame, shapes::box({3, -.2, -.1}, {4, 4.3, 1.1}));
   const PreparedRun run = prepare_with(frame, options);
-  CHECK(run.report.unite.joined_components == 1);
-  CHECK(run.report.sheet.components == 1);
-  CHECK(run.report.sheet.genus == 1);
+  CHECK(run.report.input.united.joined_components == 1);
+  CHECK(run.report.sheet.topology.components == 1);
+  CHECK(run.report.sheet.topology.genus == 1);
 }
 
 TEST_CASE("prepare: vertices over a hole are flagged, whether faces closed it or voxels", "[prepare]") {
@@ -156,13 +155,13 @@ TEST_CASE("prepare: vertices over a hole are flagged, whether faces closed it or
   }
   CHECK(flagged > 5);
   CHECK(capped.report.gaps.vertices == flagged);
-  CHECK(capped.report.gaps.area_world == Approx(capped.report.mend.cap_area_world).epsilon(.2));
+  CHECK(capped.report.gaps.area_world == Approx(capped.report.input.repair.cap_area_world).epsilon(.2));
   CHECK(remesh(shapes::sphere({0, 0, 0}, 1, 32), options, context).mesh.gap.empty());
 
   options.resolution = 100;
   options.closing_world = 12 * 2. / 99;
   const RemeshResult bridged = remesh(slotted_ball(8 * 2. / 99), options, context);
-  CHECK(bridged.report.mend.capped_loops == 0);
+  CHECK(bridged.report.input.repair.capped_loops == 0);
   CHECK(bridged.report.gaps.vertices > 0);
   CHECK(bridged.report.gaps.bridges == 1);
   for (size_t i = 0; i < bridged.mesh.gap.size(); ++i)
@@ -174,10 +173,10 @@ TEST_CASE("prepare: sites that hold both sides of a thin plate are risky, those 
   options.vertices = 200;
   options.resolution = 40;
   const PreparedRun plate = prepare_with(shapes::box({0, 0, 0}, {1, 1, .003}), options);
-  const std::vector<uint8_t> risks = find_risks(plate.prepared.surface, plate.prepared.samples);
+  const std::vector<uint8_t> risks = find_risks(plate.prepared.surface(), plate.prepared.samples());
   CHECK(std::count(risks.begin(), risks.end(), 1) > int64_t(risks.size()) / 3);
   const PreparedRun cube = prepare_with(shapes::box({0, 0, 0}, {1, 1, 1}), options);
-  const std::vector<uint8_t> none = find_risks(cube.prepared.surface, cube.prepared.samples);
+  const std::vector<uint8_t> none = find_risks(cube.prepared.surface(), cube.prepared.samples());
   CHECK(std::count(none.begin(), none.end(), 1) == 0);
 }
 
@@ -188,16 +187,19 @@ TEST_CASE("prepare: a limit that the faces alone exceed ends it before they are 
   options.vertices = 100;
   TestContext context;
   context.memory_limit_bytes = 1 << 20;
-  RemeshReport report;
-  CHECK_THROWS_AS(prepare(open, options, report, context), Error);
-  CHECK_FALSE(report.mend.changed_anything());
+  try {
+    prepare(open, options, context);
+    FAIL_CHECK("was prepared");
+  } catch (const Error& error) {  // says so of a limit that no grid would meet
+    CHECK(std::string(error.what()).find("which its faces take; raise --max-memory") != std::string::npos);
+  }
 }
 
 TEST_CASE("prepare: where closing fills open surfaces to less than half an edge, walls are grown", "[prepare]") {
   RemeshOptions options;
   options.vertices = 2000;
   const PreparedRun run = prepare_with(shapes::random_soup(60, 2, .7, 11), options);
-  CHECK(run.report.grown_vox > 0);
+  CHECK(run.report.grid.grown_vox > 0);
   options.vertices = 100;  // edges as long as the faces: solid
   CHECK(volume_in_balls(prepare_with(slotted_ball(.05), options)) > .9);
 }
@@ -209,17 +211,17 @@ TEST_CASE("prepare: more handles than vertices can show are closed, and it is sa
   const TriangleSoup sieve = shapes::sieve(9, 1, 1, 1);
   TestContext context;
   const RemeshResult few = remesh(sieve, options, context);
-  CHECK(few.report.input.genus == 81);
-  CHECK(few.report.grown_vox > 0);
-  CHECK(few.report.sheet.genus < 81);
+  CHECK(few.report.input.topology.genus == 81);
+  CHECK(few.report.grid.grown_vox > 0);
+  CHECK(few.report.sheet.topology.genus < 81);
   REQUIRE(few.report.warnings.size() == 1);
   CHECK(few.report.warnings[0].find("81 handles are more than so few vertices can show") != std::string::npos);
   CHECK(check_mesh(few.mesh).is_closed_manifold());
-  CHECK(few.report.post.self_intersections == 0);
+  CHECK(few.report.optimize.self_intersections == 0);
   options.vertices = 3000;
   const PreparedRun all = prepare_with(sieve, options);
-  CHECK(all.report.grown_vox == 0);
-  CHECK(all.report.topology_agrees);
+  CHECK(all.report.grid.grown_vox == 0);
+  CHECK(all.report.sheet.agrees);
 }
 
 TEST_CASE("prepare: a slot closes when its width is asked for, and stays open from four voxels below on", "[prepare]") {
@@ -235,15 +237,15 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
       options.vertices = asked_vox == width_vox ? 10000 : 2500;  // walls grow as far as edges are long
       const PreparedRun run = prepare_with(ball, options);
       INFO("slot of " << width_vox << " voxels, closing " << asked_vox << ", volume " << volume_in_balls(run));
-      CHECK(run.report.mend.capped_loops == 0);
+      CHECK(run.report.input.repair.capped_loops == 0);
       if (asked_vox == width_vox) {
         CHECK(volume_in_balls(run) > .9);
         GapReport gaps;
-        const std::vector<uint8_t> bridges = find_bridges(run.prepared.sites, run.prepared.sheet);
-        measure_bridges(run.prepared.sheet, bridges, gaps);
-        const std::vector<Voxel> voxels = bridging_voxels(run.prepared.sheet, bridges);
+        const std::vector<uint8_t> bridges = find_bridges(run.prepared.sites(), run.prepared.sheet());
+        measure_bridges(run.prepared.sheet(), bridges, gaps);
+        const std::vector<Voxel> voxels = bridging_voxels(run.prepared.sheet(), bridges);
         CHECK(voxels.empty() == (std::count(bridges.begin(), bridges.end(), 1) == 0));
-        const SiteSet sites = to_host(run.prepared.sites);
+        const SiteSet sites = to_host(run.prepared.sites());
         for (const Voxel v : voxels) CHECK(find_voxel(sites.voxels.view(), v) < 0);
         if (width_vox >= 4) CHECK(gaps.bridges == 1);
         if (width_vox >= 4) CHECK(gaps.widest_bridge_world / voxel == Approx(width_vox).margin(1.2 + .08 * width_vox));
@@ -253,8 +255,8 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
     RemeshOptions automatic;
     automatic.resolution = kResolution;
     const PreparedRun run = prepare_with(ball, automatic);
-    CHECK(run.report.mend.capped_loops == 1);
-    CHECK(run.report.closing_vox == 0);
+    CHECK(run.report.input.repair.capped_loops == 1);
+    CHECK(run.report.grid.closing_vox == 0);
     CHECK(volume_in_balls(run) > .9);
   }
 }
@@ -297,30 +299,27 @@ TEST_CASE("prepare: options out of range are refused with their name", "[prepare
 TEST_CASE("relax: an asked tolerance holds, also one that is the default of a single level", "[relax][stage]") {
   RemeshOptions options;
   options.vertices = 600;
-  PreparedRun run = prepare_with(shapes::torus(2, .7, 60, 30), options);
   const auto passes = [&](double tolerance, int32_t most) {
     options.tolerance = tolerance;
     options.max_passes = most;
     TestContext context;
-    RemeshReport report;
-    relax(run.prepared, options, report, context);
-    return report.relax.passes;
+    const Prepared prepared = prepare(shapes::torus(2, .7, 60, 30), options, context);
+    return relax(prepared, context).report.relax.passes;
   };
   CHECK(passes(1, 0) < passes(-1, 0));
   CHECK(passes(-1, 0) < passes(1e-5, 0));
   CHECK(passes(0, 7) == 7);
 }
 
-TEST_CASE("triangulate: seeds stay the caller's when it is cancelled", "[triangulate][stage]") {
+TEST_CASE("triangulate: goes on from a copy of the seeds after it was cancelled", "[triangulate][stage]") {
   RemeshOptions options;
   options.vertices = 300;
   TestContext context;
-  RemeshReport report;
-  const Prepared prepared = prepare(shapes::torus(2, 0.7, 80, 35), options, report, context);
-  SeedSet seeds = relax(prepared, options, report, context);
+  const Prepared prepared = prepare(shapes::torus(2, 0.7, 80, 35), options, context);
+  const Relaxed relaxed = relax(prepared, context);
+  const auto mesh = [&] { return triangulate(prepared, {to_host(relaxed.seeds), relaxed.report}, context).mesh; };
   context.cancel = true;
-  CHECK_THROWS_AS(triangulate(prepared, seeds, options, report, context), Error);
-  CHECK(seeds.size() == 300);
+  CHECK_THROWS_AS(mesh(), Error);
   context.cancel = false;
-  CHECK(triangulate(prepared, seeds, options, report, context).vertices.size() == 300);
+  CHECK(mesh().vertices.size() == 300);
 }

@@ -25,7 +25,7 @@ TriangleMesh remeshed(const TriangleSoup& soup, int64_t vertices, int64_t compon
   CHECK(t.components == components);
   CHECK(t.genus == 0);
   CHECK(int64_t(result.mesh.vertices.size()) == vertices);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   return std::move(result.mesh);
 }
 

@@ -89,10 +89,10 @@ void check_kept(const RemeshResult& result, const TriangleSoup& input, int64_t v
   CHECK(result.report.features.border_loops == loops);
   CHECK(topology.components == components);
   CHECK(int64_t(result.mesh.vertices.size()) == vertices);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   Context context;
   const BorderMeasures borders = measure_borders(result.mesh, mesh_of(input), context);
-  CHECK(borders.to_reference_max < result.report.frame.voxel_size / 128);
+  CHECK(borders.to_reference_max < result.report.grid.frame.voxel_size / 128);
   CHECK(std::abs(borders.length_world / borders.reference_length_world - 1) < .01);
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("borders: a wavy sheet keeps its four sides and its corners", "[border
       double nearest = 1;
       for (const WorldPoint& p : result.mesh.vertices)
         nearest = std::min(nearest, std::hypot(p.x - x, p.y - y, p.z - wavy(x, y)));
-      CHECK(nearest < result.report.frame.voxel_size / 128);
+      CHECK(nearest < result.report.grid.frame.voxel_size / 128);
     }
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("borders: holes that are narrower than the gaps to close are closed, w
   options.closing_world = .9;  // the smaller one is .77 wide
   const RemeshResult result = remesh(input, options, context);
   CHECK(result.report.features.kept);
-  CHECK(result.report.mend.capped_loops == 1);
+  CHECK(result.report.input.repair.capped_loops == 1);
   CHECK(check_mesh(result.mesh).is_manifold_with(1));
   CHECK(result.report.gaps.vertices > 0);
   CHECK(result.mesh.gap.size() == result.mesh.vertices.size());
@@ -209,7 +209,7 @@ TEST_CASE("borders: sheets that pass through each other stay, and the intersecti
   const RemeshResult result = remesh(input, keeping_borders(800), context);
   CHECK(result.report.features.kept);
   CHECK(check_mesh(result.mesh).is_manifold_with(2));
-  CHECK(result.report.post.self_intersections > 0);
+  CHECK(result.report.optimize.self_intersections > 0);
   bool is_said = false;
   for (const std::string& text : result.report.warnings)
     is_said |= text.find("where the input's own triangles do") != std::string::npos;
@@ -286,7 +286,7 @@ TEST_CASE("borders: a run measures those it kept", "[borders]") {
   REQUIRE(result.record.borders);
   CHECK(result.record.borders->loops == 2);
   CHECK(result.record.borders->reference_loops == 2);
-  CHECK(result.record.borders->to_reference_max < result.record.report.frame.voxel_size / 128);
+  CHECK(result.record.borders->to_reference_max < result.record.report.grid.frame.voxel_size / 128);
   CHECK(result.missed_gates == std::vector<std::string>{"closed: the mesh has 2 open boundaries"});
   CHECK(result.record.warnings.empty());
 }

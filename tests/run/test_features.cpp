@@ -81,7 +81,7 @@ void check_valid(const RemeshResult& result, int64_t vertices, int64_t genus) {
   CHECK(topology.is_closed_manifold());
   CHECK(topology.components == 1);
   CHECK(topology.genus == genus);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK(int64_t(result.mesh.vertices.size()) == vertices);
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("features: the edges of a box are edges of the result, and its corners
     CHECK(result.report.features.curves == 12);
     CHECK(result.report.features.corners == 8);
     CHECK(result.report.features.patches == 6);
-    const double fine = result.report.frame.voxel_size / 128;
+    const double fine = result.report.grid.frame.voxel_size / 128;
     for (int edge = 0; edge < 12; ++edge) {
       const int axis = edge / 4, u = edge & 1, v = edge >> 1 & 1;
       const int a = u << (axis + 1) % 3 | v << (axis + 2) % 3, b = a | 1 << axis;
@@ -170,11 +170,11 @@ TEST_CASE("features: a box that a fin stands on keeps its other edges, on the sh
   soup.triangles.push_back({4, 5, 8});  // on an upper edge
   const RemeshResult result = remesh(soup, keeping_creases(1500), one);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK(result.report.features.kept);
   CHECK_FALSE(result.report.features.on_sheet.empty());
   CHECK(result.report.features.curves == 11);  // one edge has three faces
-  const double fine = result.report.frame.voxel_size / 128;
+  const double fine = result.report.grid.frame.voxel_size / 128;
   double kept = 0;
   for (const uint32_t a : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u})
     for (const uint32_t axis : {1u, 2u, 4u})

@@ -22,7 +22,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 /// A ball, as measured.
 RunRecord good_record() {
   RunRecord record;
-  record.report.post_done = true;
+  record.report.is_optimized = true;
   record.topology.emplace();
   record.topology->closed = record.topology->manifold = true;
   record.topology->components = 1;
@@ -82,7 +82,7 @@ TEST_CASE("gates: each that is missed is one sentence with what is there", "[gat
   bad.topology->boundary_loops = 2;
   bad.topology->genus = -1;
   bad.topology->components = 4;
-  bad.report.post.self_intersections = 1;
+  bad.report.optimize.self_intersections = 1;
   CHECK(missed_gates(
             parse_gates("closed,manifold,no-self-intersections,genus=0,components=1,min-angle=36,max-deviation=0.4"),
             bad) ==
@@ -95,13 +95,13 @@ TEST_CASE("gates: each that is missed is one sentence with what is there", "[gat
             "min-angle=36: the smallest angle is 35",
             "max-deviation=0.4: the result is up to 0.25 from the input, the input up to 0.5 from the result",
         });
-  bad.report.post_done = false;
+  bad.report.is_optimized = false;
   CHECK(contains(missed_gates(parse_gates("no-self-intersections"), bad).at(0), "was not tested"));
 }
 
 TEST_CASE("gates: a result that intersects itself is missed once, unless that is allowed", "[gates]") {
   RunRecord bad = good_record();
-  bad.report.post.self_intersections = 3;
+  bad.report.optimize.self_intersections = 3;
   Gates gates;
   CHECK_FALSE(gates.any());
   CHECK(missed_gates(gates, bad) ==

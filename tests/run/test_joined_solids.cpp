@@ -121,5 +121,5 @@ TEST_CASE("joined solids: bars that cross are joined beside a sheet whose border
   CHECK(result.record.topology->components == 2);
   CHECK(result.record.topology->boundary_loops == 1);
   CHECK(united(result)["left_components"] == 1);
-  CHECK(result.record.report.post.self_intersections == 0);
+  CHECK(result.record.report.optimize.self_intersections == 0);
 }

@@ -46,7 +46,7 @@ Circle great_circle() {
 
 void check_valid(const RemeshResult& result, int64_t vertices) {
   CHECK(check_mesh(result.mesh).is_closed_manifold());
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK(int64_t(result.mesh.vertices.size()) == vertices);
   CHECK(result.report.features.kept);
   CHECK(result.report.features.lost.empty());
@@ -74,7 +74,7 @@ TEST_CASE("lines: a great circle on a sphere becomes edges of the result", "[lin
   CHECK(result.report.features.lines == 1);
   CHECK(result.report.features.curves == 1);
   CHECK(result.report.features.patches == 2);
-  const double fine = result.report.frame.voxel_size / 32;
+  const double fine = result.report.grid.frame.voxel_size / 32;
   const double on =
       length_where(result.mesh, [&](const WorldPoint& p) { return std::abs(dot(p, circle.axis)) < fine; });
   CHECK(on == Approx(6.283185307179586).epsilon(.01));
@@ -113,7 +113,7 @@ TEST_CASE("lines: those of a box meet its creases, and are edges beside them", "
       remesh(shapes::box({-1, -1, -1}, {1, 1, 1}), keeping(cross, 1500, Features::Creases::automatic), context);
   check_valid(result, 1500);
   CHECK(result.report.features.lines >= 4);
-  const double fine = result.report.frame.voxel_size / 32;
+  const double fine = result.report.grid.frame.voxel_size / 32;
   const auto on_top = [&](const WorldPoint& p) { return std::abs(p.z - 1) < fine; };
   CHECK(length_where(result.mesh, [&](const WorldPoint& p) { return on_top(p) && std::abs(p.x - p.y) < fine; }) ==
         Approx(2 * std::sqrt(2.)).epsilon(1e-3));
@@ -192,7 +192,7 @@ TEST_CASE("interfaces: parts that share a wall become one solid, and the ring ar
     check_valid(result, 1000);
     CHECK(result.report.features.lines == 4);
     CHECK(result.report.features.curves == 20);
-    const double fine = result.report.frame.voxel_size / 32;
+    const double fine = result.report.grid.frame.voxel_size / 32;
     CHECK(length_where(result.mesh, [&](const WorldPoint& p) { return std::abs(p.x - 1) < fine; }) ==
           Approx(4).epsilon(1e-3));
     REQUIRE_FALSE(result.report.warnings.empty());

@@ -148,10 +148,10 @@ TEST_CASE("parts: turned and drawn ones keep their creases, with good triangles 
     CHECK(topology.components == 1);
     CHECK(topology.genus == part.genus);
     CHECK(result.report.features.kept);
-    CHECK(result.report.post.self_intersections == 0);
+    CHECK(result.report.optimize.self_intersections == 0);
     CHECK(int64_t(result.mesh.vertices.size()) == kVertices);
     CHECK(measure_quality(result.mesh).theta_min_deg > 20);
-    const double edge = std::sqrt(result.report.input.area_world * 1.1547 / kVertices);
+    const double edge = std::sqrt(result.report.input.topology.area_world * 1.1547 / kVertices);
     CHECK(farthest_sharp_edge(part.soup, result.mesh) < 0.1 * edge);
   }
 }

@@ -83,7 +83,7 @@ TEST_CASE("sequence: vertices keep their numbers and most edges, and every frame
     meshes.push_back(r.mesh);
     CHECK(r.record.quality->theta_min_deg > 30);
     CHECK(check_mesh(r.mesh).is_closed_manifold());
-    CHECK(r.record.report.post.self_intersections == 0);
+    CHECK(r.record.report.optimize.self_intersections == 0);
     CHECK(r.mesh.vertices.size() == 600);
   };
   const SequenceResult result = run_sequence(request, context);
@@ -170,7 +170,7 @@ TEST_CASE("sequence: parts that become one mesh on with the right topology", "[s
   std::vector<int64_t> components;
   request.after_frame = [&](int64_t, const RunResult& r) {
     CHECK(check_mesh(r.mesh).is_closed_manifold());
-    CHECK(r.record.report.post.self_intersections == 0);
+    CHECK(r.record.report.optimize.self_intersections == 0);
     components.push_back(r.record.topology->components);
   };
   run_sequence(request, context);
@@ -245,7 +245,7 @@ TEST_CASE("sequence: parts that come to touch along an edge are meshed where the
   REQUIRE(made.size() == 2);
   CHECK(made[0].record.report.features.kept_length_world == Approx(24).epsilon(0.001));
   for (const RunResult& r : made) CHECK(check_mesh(r.mesh).is_closed_manifold());
-  CHECK(made[1].record.report.sheet_vertices > 0);
+  CHECK(made[1].record.report.sheet.vertices > 0);
 }
 
 TEST_CASE("sequence: frames with creases are the same with other threads, and resumed", "[sequence]") {

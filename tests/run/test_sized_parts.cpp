@@ -187,7 +187,7 @@ TEST_CASE("sized parts: edges of a cube follow a field in both directions, and i
   const RemeshResult result = meshed(cube(), with_field(1500));
   CHECK(result.mesh.vertices.size() == 1500);
   CHECK(result.report.features.kept);
-  CHECK(result.report.post.self_intersections == 0);
+  CHECK(result.report.optimize.self_intersections == 0);
   CHECK(std::abs(volume(result.mesh) - 8) < .001);  // an edge that is rounded off takes part of it
   check_follows(result.mesh);
   CHECK(result.report.sizing.varies);
@@ -252,7 +252,7 @@ TEST_CASE("sized parts: on planes adaptivity finds nothing to shorten edges for"
   CHECK(adapted.report.features.kept);
   CHECK(adapted.mesh.vertices.size() == 500);
   CHECK(std::abs(volume(adapted.mesh) - 8) < .001);
-  CHECK(adapted.report.post.self_intersections == even.report.post.self_intersections);
+  CHECK(adapted.report.optimize.self_intersections == even.report.optimize.self_intersections);
 }
 
 TEST_CASE("sized parts: both fits and even areas keep creases and the count", "[sizing][features]") {
@@ -267,8 +267,8 @@ TEST_CASE("sized parts: both fits and even areas keep creases and the count", "[
         const RemeshResult result = meshed(cube(), options);
         CHECK(result.mesh.vertices.size() == 700);
         CHECK(result.report.features.kept);
-        CHECK(result.report.post.self_intersections == 0);
-        CHECK(largest_distance_from_cube(result.mesh) < .1 * result.report.frame.voxel_size);
+        CHECK(result.report.optimize.self_intersections == 0);
+        CHECK(largest_distance_from_cube(result.mesh) < .1 * result.report.grid.frame.voxel_size);
         CHECK(std::abs(volume(result.mesh) - 8) < .002);  // a balanced fit takes vertices a few steps off planes
       }
 }
@@ -286,14 +286,14 @@ TEST_CASE("sized parts: both fits, even areas and adaptivity keep borders and se
         const RemeshResult slab = meshed(slab_with_seam(), options);
         CHECK(slab.mesh.vertices.size() == 600);
         CHECK(slab.report.features.kept);
-        CHECK(slab.report.post.self_intersections == 0);
+        CHECK(slab.report.optimize.self_intersections == 0);
         CHECK(farthest_across_seam(slab.mesh) < .005);
         options.boundary = Boundary::keep;
         options.closing_vox = 0;
         const RemeshResult open = meshed(square(24), options);
         CHECK(open.mesh.vertices.size() == 600);
         CHECK(open.report.features.kept);
-        CHECK(open.report.post.self_intersections == 0);
+        CHECK(open.report.optimize.self_intersections == 0);
         CHECK(check_mesh(open.mesh).boundary_loops == 1);
         double area = 0;
         for (const auto& t : open.mesh.triangles)

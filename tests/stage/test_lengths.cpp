@@ -116,8 +116,8 @@ TEST_CASE("lengths: the curvature of a ball is one over its radius, of a flat wa
   TestContext context;
   RemeshOptions options;
   options.resolution = 100;
-  RemeshReport report;
-  const Sheet ball = prepare(shapes::sphere({0, 0, 0}, 1, 80), options, report, context).sheet;
+  const Prepared prepared = prepare(shapes::sphere({0, 0, 0}, 1, 80), options, context);
+  const Sheet& ball = prepared.sheet();
   const double radius_vox = 1 / ball.frame.voxel_size;
   const Buffer<uint32_t> turn = measure_curvature(ball, 16, context).to_host();
   double mean = 0;

@@ -202,7 +202,7 @@ TEST_CASE("untangle: a thin wavy plate with few vertices becomes a mesh without 
     TestContext context;
     context.plain().threads = threads;
     const RemeshResult result = remesh(wavy_plate(60, 0.07), options, context.plain());
-    CHECK(result.report.post.self_intersections == 0);
+    CHECK(result.report.optimize.self_intersections == 0);
     CHECK(result.mesh.vertices.size() == 200);
     CHECK(result.report.seeds_against_intersections > 0);
   }

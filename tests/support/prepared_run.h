@@ -7,15 +7,13 @@
 namespace isoshell {
 
 struct PreparedRun {
-  RemeshReport report;
   Prepared prepared;
+  RemeshReport report = prepared.report();
 };
 
 inline PreparedRun prepare_with(const TriangleSoup& soup, const RemeshOptions& options) {
   TestContext context;
-  PreparedRun run;
-  run.prepared = prepare(soup, options, run.report, context);
-  return run;
+  return {prepare(soup, options, context)};
 }
 
 }  // namespace isoshell

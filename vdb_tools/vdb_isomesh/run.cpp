@@ -64,7 +64,7 @@ void tell_result(const RunRecord& record, Console& console) {
   if (record.vertices >= 0)
     text << counted(record.vertices, "vertex", "vertices") << ", " << counted(record.triangles, "triangle") << ", ";
   else
-    text << counted(record.report.active_voxels, "active voxel") << ", ";
+    text << counted(record.report.grid.active_voxels, "active voxel") << ", ";
   if (record.topology) {
     const MeshTopology& t = *record.topology;
     text << counted(t.components, "component") << ", "

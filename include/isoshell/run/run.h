@@ -1,4 +1,5 @@
-// A whole run, from what is read to what is written: the call behind the command, and behind every other front.
+// A whole run, from what is read to what is written: the call behind the command, and behind every other front. steps.h
+// has it step by step.
 #pragma once
 
 #include <functional>
@@ -22,6 +23,9 @@ enum class Measures {
   all,   ///< also its distance from the input, sites with two walls, digests of all products
 };
 
+/// Calls `write`, which writes that file; for who must know while one is being written.
+using AroundWrite = std::function<void(const std::string& path, const std::function<void()>& write)>;
+
 struct RunRequest {
   InputRequest input;
   AskedOptions options;  ///< a sizing field without "vertices" among the given ones decides their number
@@ -35,8 +39,7 @@ struct RunRequest {
   bool overwrite = false;
 
   Tell tell;
-  /// Calls `write`, which writes that file; for who must know while one is being written. Empty: it is just written.
-  std::function<void(const std::string& path, const std::function<void()>& write)> around_write;
+  AroundWrite around_write;  ///< empty: files are just written
 };
 
 /// The output that a person's words mean: its format is the path's unless one is given. Throws: usage when nothing says
@@ -66,7 +69,7 @@ RunResult run(Input input, const RunRequest& request, Context& context);
 /// does.
 RunEstimate dry_run(const RunRequest& request, Context& context);
 /// The same of what is in memory already.
-RunEstimate dry_run(const Input& input, const RunRequest& request, Context& context);
+RunEstimate dry_run(Input input, const RunRequest& request, Context& context);
 
 /// How a run with these features has a volume read; a run from a file does so by itself.
 VolumeCreases volume_creases(const Features& features);

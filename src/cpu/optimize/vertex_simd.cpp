@@ -26,12 +26,12 @@ ISOSHELL_INLINE void add_triangles(VertexSimd& s, double evenness) {
     if (kEven) scale = (1 - evenness) + evenness * s.radius_q8[i] / rounded_sqrt(arm_sq > 0 ? arm_sq : 1);
     const Vector to_middle = (2.0 / 3) * middle, to_corner = to_middle + scale * arm;
     const double there = s.is_there[i], w = kPull ? s.weight[i] : 1;
-    add_to(s.corners_x[i], arm_sq > 0 ? to_corner.x : to_middle.x, there);
-    add_to(s.corners_y[i], arm_sq > 0 ? to_corner.y : to_middle.y, there);
-    add_to(s.corners_z[i], arm_sq > 0 ? to_corner.z : to_middle.z, there);
-    add_to(s.normal_x[i], n.x, there);
-    add_to(s.normal_y[i], n.y, there);
-    add_to(s.normal_z[i], n.z, there);
+    add_to(s.corners.x[i], arm_sq > 0 ? to_corner.x : to_middle.x, there);
+    add_to(s.corners.y[i], arm_sq > 0 ? to_corner.y : to_middle.y, there);
+    add_to(s.corners.z[i], arm_sq > 0 ? to_corner.z : to_middle.z, there);
+    add_to(s.normal.x[i], n.x, there);
+    add_to(s.normal.y[i], n.y, there);
+    add_to(s.normal.z[i], n.z, there);
     add_to(s.xx[i], w * d.x * d.x, there);
     add_to(s.xy[i], w * d.x * d.y, there);
     add_to(s.xz[i], w * d.x * d.z, there);
@@ -39,9 +39,9 @@ ISOSHELL_INLINE void add_triangles(VertexSimd& s, double evenness) {
     add_to(s.yz[i], w * d.y * d.z, there);
     add_to(s.zz[i], w * d.z * d.z, there);
     if (kPull) {
-      add_to(s.pull_x[i], s.pull[i] * d.x, there);
-      add_to(s.pull_y[i], s.pull[i] * d.y, there);
-      add_to(s.pull_z[i], s.pull[i] * d.z, there);
+      add_to(s.pulls.x[i], s.pull[i] * d.x, there);
+      add_to(s.pulls.y[i], s.pull[i] * d.y, there);
+      add_to(s.pulls.z[i], s.pull[i] * d.z, there);
     }
   }
 }
@@ -57,8 +57,8 @@ ISOSHELL_VECTOR_VERSIONS void add_even_pulls_simd(VertexSimd& s, double evenness
 
 void VertexSimd::clear() {
   for (int i = 0; i < kLanes; ++i) {
-    corners_x[i] = corners_y[i] = corners_z[i] = normal_x[i] = normal_y[i] = normal_z[i] = 0;
-    pull_x[i] = pull_y[i] = pull_z[i] = xx[i] = xy[i] = xz[i] = yy[i] = yz[i] = zz[i] = 0;
+    corners.x[i] = corners.y[i] = corners.z[i] = normal.x[i] = normal.y[i] = normal.z[i] = 0;
+    pulls.x[i] = pulls.y[i] = pulls.z[i] = xx[i] = xy[i] = xz[i] = yy[i] = yz[i] = zz[i] = 0;
     radius_q8[i] = 1;
   }
 }

@@ -21,9 +21,11 @@ struct VertexSimd {
   double weight[kLanes], pull[kLanes];
 
   // Sums over such.
-  double corners_x[kLanes], corners_y[kLanes], corners_z[kLanes];
-  double normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];
-  double pull_x[kLanes], pull_y[kLanes], pull_z[kLanes];
+  struct Vectors {
+    double x[kLanes], y[kLanes], z[kLanes];
+    optimize::Vector at(int i) const { return {x[i], y[i], z[i]}; }
+  };
+  Vectors corners, normal, pulls;
   double xx[kLanes], xy[kLanes], xz[kLanes], yy[kLanes], yz[kLanes], zz[kLanes];
 
   void clear();
@@ -32,10 +34,7 @@ struct VertexSimd {
   void add_with_pulls(double evenness);
 
   optimize::FitSums sums(int i) const {
-    return {{corners_x[i], corners_y[i], corners_z[i]},
-            {normal_x[i], normal_y[i], normal_z[i]},
-            {xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]},
-            {pull_x[i], pull_y[i], pull_z[i]}};
+    return {corners.at(i), normal.at(i), {xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]}, pulls.at(i)};
   }
 };
 

@@ -1,12 +1,11 @@
 // Memory from area. The coefficients are bytes an element, set so that the estimate lies above the peaks that whole
 // processes showed (0.1 to 2.6 million sites, open and closed surfaces, with and without stage files) by a quarter or
 // more.
-#include "isoshell/memory_estimate.h"
+#include "pipeline/grid/memory_estimate.h"
 
 #include <algorithm>
 
 #include "options/check_options.h"
-#include "pipeline/grid/choose_grid.h"
 
 namespace isoshell {
 namespace {
@@ -27,14 +26,18 @@ RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, c
 }
 
 RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
-                         const RemeshOptions& asked, int32_t resolution) {
-  const RemeshOptions options = checked(asked);
-  const auto [lo, hi] = box;
+                         const RemeshOptions& options, int32_t resolution) {
+  return estimate_plan(plan_of(checked(options), input, box), soup, resolution);
+}
+
+RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t resolution) {
+  const RemeshOptions& options = plan.options;
+  const InputTopology& input = plan.input;
   RunEstimate e;
-  e.resolution = resolution > 0 ? resolution : first_resolution(options, input.area_world, lo, hi);
-  const LatticeFrame frame = LatticeFrame::around(lo, hi, e.resolution);
+  e.resolution = resolution > 0 ? resolution : plan.first_resolution();
+  const LatticeFrame frame = LatticeFrame::around(plan.box.min, plan.box.max, e.resolution);
   e.voxel_size_world = frame.voxel_size;
-  e.vertices = vertex_target(options, input.area_world);
+  e.vertices = plan.target.vertices;
 
   const double area_vox = input.area_world / (frame.voxel_size * frame.voxel_size);
   double box_vox = 1;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "pipeline/grid/choose_grid.h"
-
 namespace isoshell {
 namespace {
 
@@ -20,7 +18,7 @@ std::string length_text(double world) {
   return text.str();
 }
 
-void warn_of_grown_solid(const Prepared& p, const InputTopology& input, RemeshReport& report) {
+void warn_of_grown_solid(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {
   const double voxel = p.surface.frame.voxel_size;
   const std::string thickness = length_text((2 * p.grown.distance_vox + 1) * voxel);
   if (p.grown.only_flaps) {
@@ -44,35 +42,35 @@ void warn_of_grown_solid(const Prepared& p, const InputTopology& input, RemeshRe
 
 }  // namespace
 
-bool shows_all_parts(const RemeshOptions& options, const InputTopology& input) {
-  return vertex_target(options, input.area_world) >= vertices_for_parts(input);
+bool shows_all_parts(int64_t vertices, const InputTopology& input) { return vertices >= vertices_for_parts(input); }
+
+bool shows_most_handles(int64_t vertices, const InputTopology& input) {
+  if (!input.closed || !input.oriented || shows_all_parts(vertices, input)) return true;
+  return vertices >= 2 * kFewestVerticesPerPart * input.genus;
 }
 
-bool shows_most_handles(const RemeshOptions& options, const InputTopology& input) {
-  if (!input.closed || !input.oriented || shows_all_parts(options, input)) return true;
-  return vertex_target(options, input.area_world) >= 2 * kFewestVerticesPerPart * input.genus;
-}
-
-int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame) {
-  if (input.closed && input.oriented && shows_all_parts(options, input)) return 0;
-  const double cell_world = input.area_world / double(std::max<int64_t>(64, vertex_target(options, input.area_world)));
-  const double cell_vox = cell_world / (frame.voxel_size * frame.voxel_size);
+int64_t smallest_component_q16(const PreparedSurface& p) {
+  const InputTopology& input = p.surface.topology;
+  const int64_t vertices = p.target_of_input.vertices;
+  if (input.closed && input.oriented && shows_all_parts(vertices, input)) return 0;
+  const double cell_world = input.area_world / double(std::max<int64_t>(64, vertices));
+  const double voxel = p.surface.frame.voxel_size, cell_vox = cell_world / (voxel * voxel);
   return int64_t(4 * cell_vox * 65536);
 }
 
-void warn_of_topology(const Prepared& p, const InputTopology& input, const RemeshOptions& options,
-                      RemeshReport& report) {
+void warn_of_topology(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {
   if (p.grown) warn_of_grown_solid(p, input, report);
   if (p.grown && !p.grown.only_flaps) return;  // all of the solid is another one than the input's
-  if (input.closed && report.sheet.components < input.components && !shows_all_parts(options, input))
+  if (input.closed && report.sheet.topology.components < input.components &&
+      !shows_all_parts(p.target_of_input.vertices, input))
     report.warnings.push_back(std::to_string(input.components) +
                               " components and their handles are more than so few vertices can show: those smaller "
                               "than four cells were left out, " +
-                              std::to_string(report.sheet.components) + " stay; ask for more --vertices");
-  else if (report.topology_compared && !report.topology_agrees)
-    report.warnings.push_back("the solid has " + std::to_string(report.sheet.components) + " components and genus " +
-                              std::to_string(report.sheet.genus) + ", the input " + std::to_string(input.components) +
-                              " and " + std::to_string(input.genus) +
+                              std::to_string(report.sheet.topology.components) + " stay; ask for more --vertices");
+  else if (report.sheet.is_compared && !report.sheet.agrees)
+    report.warnings.push_back("the solid has " + std::to_string(report.sheet.topology.components) +
+                              " components and genus " + std::to_string(report.sheet.topology.genus) + ", the input " +
+                              std::to_string(input.components) + " and " + std::to_string(input.genus) +
                               "; a higher --resolution may tell near parts apart");
 }
 

@@ -2,22 +2,21 @@
 // cannot.
 #pragma once
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
-/// Whether the vertices asked for can show each component and each handle of the input; clouds of smoke have hundreds.
-bool shows_all_parts(const RemeshOptions& options, const InputTopology& input);
+/// Whether so many vertices can show each component and each handle of the input; clouds of smoke have hundreds.
+bool shows_all_parts(int64_t vertices, const InputTopology& input);
 
 /// False for smoke and foam: walls and gaps are as narrow as handles are many, and would cross.
-bool shows_most_handles(const RemeshOptions& options, const InputTopology& input);
+bool shows_most_handles(int64_t vertices, const InputTopology& input);
 
 /// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose, unless there are
 /// more than the vertices can show.
-int64_t smallest_component_q16(const RemeshOptions& options, const InputTopology& input, const LatticeFrame& frame);
+int64_t smallest_component_q16(const PreparedSurface& prepared);
 
 /// Warns where the sheet is not of the input's topology.
-void warn_of_topology(const Prepared& prepared, const InputTopology& input, const RemeshOptions& options,
-                      RemeshReport& report);
+void warn_of_topology(const PreparedSurface& prepared, const InputTopology& input, RemeshReport& report);
 
 }  // namespace isoshell

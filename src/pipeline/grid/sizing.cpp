@@ -5,8 +5,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "pipeline/grid/choose_grid.h"
-
 namespace isoshell {
 namespace {
 
@@ -43,9 +41,10 @@ double shortest_edge_world(double voxel_size, double cell_of_length) {
   return kFewestCellVox * voxel_size / cell_of_length;
 }
 
-std::vector<double> wanted_lengths(const RemeshOptions& options, const Prepared& p, Context& context) {
+std::vector<double> wanted_lengths(const PreparedSurface& p, Context& context) {
+  const RemeshOptions& options = p.options;
   const Sheet& sheet = p.sheet;
-  const double usual = usual_edge_length(options, p.surface.topology.area_world);
+  const double usual = p.target_of_input.edge_length_world;
   std::vector<double> length(size_t(sheet.vertex_count()), usual);
   if (options.sizing) {
     const Buffer<PointQ8> position = sheet.position.to_host();
@@ -158,13 +157,14 @@ double even_length_world(const SizingField& field, const TriangleSoup& soup) {
 
 bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
 
-AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p) {
+AskedLengths asked_lengths(const PreparedSurface& p) {
+  const RemeshOptions& options = p.options;
   AskedLengths asked;
   asked.growth = options.gradation - 1;
   if (p.sheet.lengths.at.empty()) return asked;
   asked.field = options.sizing.get();
   asked.adaptivity = options.adaptivity;
-  asked.usual_world = usual_edge_length(options, p.surface.topology.area_world);
+  asked.usual_world = p.target_of_input.edge_length_world;
   asked.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
   return asked;
 }
@@ -177,19 +177,20 @@ RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) 
   return options;
 }
 
-void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {
+void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
+  const RemeshOptions& options = p.options;
   if (!wants_lengths(options)) return;
   Sheet& sheet = p.sheet;
-  const std::vector<double> wanted = wanted_lengths(options, p, context);
+  const std::vector<double> wanted = wanted_lengths(p, context);
   const double first = wanted[0], voxel_size = sheet.frame.voxel_size;
   if (std::all_of(wanted.begin(), wanted.end(), [&](double l) { return l == first; })) {
     if (!field_decides(options)) return;
     RemeshOptions even = options;
     even.edge_length_world = first;
-    p.vertices = vertex_target(even, sheet_area_world(sheet));
+    p.vertices_of_lengths = target_of(even, sheet_area_world(sheet)).vertices;
     return;
   }
-  const int64_t asked = field_decides(options) ? 0 : vertex_target(options, sheet_area_world(sheet));
+  const int64_t asked = field_decides(options) ? 0 : target_of(options, sheet_area_world(sheet)).vertices;
   double cell = kCellOfEdge;
   if (asked > 0) {
     sheet.lengths = limit_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
@@ -209,12 +210,11 @@ void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report
   }
   if (options.adaptivity > 0)
     smooth_lengths(asked > 0 ? asked : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
-  if (asked == 0) p.vertices = vertices_of_lengths(sheet, context);
+  if (asked == 0) p.vertices_of_lengths = vertices_of_lengths(sheet, context);
 }
 
-double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Context& context) {
-  const int64_t vertices = p.vertices ? *p.vertices : vertex_target(options, sheet_area_world(p.sheet));
-  return cell_of_length(p.sheet, vertices, context) * double(p.sheet.lengths.least) / kOneVoxelQ8;
+double smallest_cell_vox(const PreparedSurface& p, Context& context) {
+  return cell_of_length(p.sheet, p.target.vertices, context) * double(p.sheet.lengths.least) / kOneVoxelQ8;
 }
 
 void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "features/angles/patch_mesh.h"
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -16,16 +16,17 @@ bool wants_lengths(const RemeshOptions& options);
 bool field_decides(const RemeshOptions& options);
 
 /// What is asked for of a surface that is cut; nothing where lengths are all equal.
-AskedLengths asked_lengths(const RemeshOptions& options, const Prepared& p);
+AskedLengths asked_lengths(const PreparedSurface& p);
 
 /// A field that decides the count, and has one length at all vertices of the soup, is an edge length.
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup);
 
-/// Gives the sheet its edge lengths, none when they are all equal; then p.vertices where the field decides it.
-void set_lengths(const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
+/// Gives the sheet its edge lengths, none when they are all equal; then p.vertices_of_lengths where the field decides
+/// it.
+void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context);
 
 /// Width of the cells where they are smallest, in voxels.
-double smallest_cell_vox(const RemeshOptions& options, const Prepared& p, Context& context);
+double smallest_cell_vox(const PreparedSurface& p, Context& context);
 
 /// How well the edges of the result have the lengths of the surface at the homes of their ends. Those of a surface that
 /// is not asked for lengths have no report, though its creases may make them vary.

@@ -14,7 +14,7 @@ int32_t growth_for_edge(double edge_vox) {
   return std::clamp(int32_t(kThicknessPerEdge * edge_vox / 2), 1, kMostGrownVox);
 }
 
-void grow_solid(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
+void grow_solid(PreparedSurface& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
   p.sheet = {};
   p.grown.distance_vox = grown_vox;
   p.grown.voxels.voxels = build_shell(p.sites, {grown_vox}, context).voxels;

@@ -2,7 +2,7 @@
 // then.
 #pragma once
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -12,11 +12,11 @@ int32_t growth_for_edge(double edge_vox);
 
 /// Gives a prepared surface the sheet of all voxels within `grown_vox` of a site. Gaps up to twice its closing close,
 /// or twice the growth if that is more; hollows too.
-void grow_solid(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
+void grow_solid(PreparedSurface& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 /// The voxels whose solid the sheet bounds, and by how much that is closed.
-inline const SiteSet& solid_voxels_of(const Prepared& p) { return p.grown ? p.grown.voxels : p.sites; }
-inline int32_t closing_of_solid(const Prepared& p) {
+inline const SiteSet& solid_voxels_of(const PreparedSurface& p) { return p.grown ? p.grown.voxels : p.sites; }
+inline int32_t closing_of_solid(const PreparedSurface& p) {
   if (p.grown.only_flaps) return p.closing_vox;
   return p.closing_vox > p.grown.distance_vox ? p.closing_vox - p.grown.distance_vox : 0;
 }

@@ -12,7 +12,6 @@
 #include "geometry/world_vector.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/grid/attempt.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/lay_on_sheet.h"
@@ -39,7 +38,7 @@ std::string obstacle_to_borders(const CurveNetwork& network) {
 
 /// What keeps the surface from being its own input's triangles; empty where nothing does. Faces that a union cut count
 /// as closed whatever their edges are.
-std::string obstacle(const Prepared& p, const FeatureMesh& mesh, const CurveNetwork& network) {
+std::string obstacle(const PreparedSurface& p, const FeatureMesh& mesh, const CurveNetwork& network) {
   const InputTopology& input = p.surface.topology;
   const int64_t inside = count_kind(network, CurveKind::crease) + count_kind(network, CurveKind::seam) +
                          count_kind(network, CurveKind::line);
@@ -66,14 +65,15 @@ SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
           has_borders ? check_mesh(apart).boundary_loops : 0};
 }
 
-int64_t vertices_of(const RemeshOptions& options, const Prepared& p, bool is_open) {
-  return is_open && !p.vertices ? vertex_target(options, p.surface.topology.area_world) : vertex_target(options, p);
+/// The borders of the sheet are no part of a surface that is open.
+int64_t vertices_of(const PreparedSurface& p, bool is_open) {
+  return is_open && !p.vertices_of_lengths ? p.target_of_input.vertices : p.target.vertices;
 }
 
 /// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
 int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
   constexpr int64_t kBytesPerSeed = 21 * 350;
-  const int64_t bytes = report.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
+  const int64_t bytes = report.grid.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
   if (limit > 0 && bytes > limit)
     throw NoRoom("features", "the surface cut along them would take about " + std::to_string(bytes >> 20) +
                                  " MiB, more than the limit of " + std::to_string(limit >> 20) +
@@ -157,14 +157,14 @@ SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSourc
 
 /// Cuts a mesh along its curves, or along fewer where there is no room for all. Throws: NoRoom where there is none.
 SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
-                      CutSource source, int64_t seeds, const RemeshOptions& options, const Prepared& p,
+                      CutSource source, int64_t seeds, const PreviousFrame* before, const PreparedSurface& p,
                       RemeshReport& report, Context& context) {
   CutPlan plan{mesh, curves, p.surface.frame, seeds};
-  report.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
+  report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
-  how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(options, p)};
-  if (options.previous && p.previous) how.before = p.previous->carried;
-  const bool lengths_decide = how.asked.vary() && field_decides(options);
+  how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(p)};
+  if (before) how.before = before->carried;
+  const bool lengths_decide = how.asked.vary() && field_decides(p.options);
   if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
   SharedCut cut;
   const auto why_not_all = [&] {
@@ -210,8 +210,8 @@ void name_as_laid(const LaidCurves& laid, const CurveNetwork& on_sheet, std::vec
 /// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Null where none of them
 /// is near it. Throws: NoRoom.
 SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
-                    const std::string& against, const RemeshOptions& options, const Prepared& p, RemeshReport& report,
-                    Context& context) {
+                    const std::string& against, const PreviousFrame* before, const PreparedSurface& p,
+                    RemeshReport& report, Context& context) {
   if (!has_sheet(p)) return nullptr;
   if (p.grown && !p.grown.only_flaps)  // the sheet is beside the surface everywhere
     return nullptr;
@@ -228,31 +228,30 @@ SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double
   CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.lengths_world(all.size())), true};
   name_as_laid(laid, on_sheet, source.found);
   report.features.on_sheet = against;
-  return cut_network(laid.mesh, on_sheet, given, std::move(source), vertex_target(options, p), options, p, report,
-                     context);
+  return cut_network(laid.mesh, on_sheet, given, std::move(source), p.target.vertices, before, p, report, context);
 }
 
 }  // namespace
 
 /// Of a surface that the options leave open.
-bool may_keep_borders(const RemeshOptions& options, const Prepared& p) {
-  return options.boundary == Boundary::keep && !p.surface.topology.closed;
+bool may_keep_borders(const PreparedSurface& p) {
+  return p.options.boundary == Boundary::keep && !p.surface.topology.closed;
 }
 
-SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
-                            const Prepared& p, RemeshReport& report, Context& context) {
+SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
+                            RemeshReport& report, Context& context) {
   if (!failed.input) return nullptr;
   const CutInput& input = *failed.input;
   SharedCut cut;
   reason_against([&] {
-    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, options, p, report, context);
+    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, nullptr, p, report, context);
     return std::string();
   });
   return cut;
 }
 
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
-               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context) {
+               PreparedSurface& p, RemeshReport& report, Context& context) {
   CreaseReport creases;
   FeatureReport& found = report.features;
   std::vector<LostCurve> all;
@@ -260,7 +259,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     const CurveNetwork network = run_with_threads(context, [&] {
       return find_curves(mesh, curves, known ? *std::move(known) : find_creases(mesh, curves), &creases);
     });
-    const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(options, p);
+    const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(p);
     report_found(mesh, network, is_open, found);
     warn_of_branches(mesh, network, report);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
@@ -269,15 +268,15 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
     if (!against.empty() && is_open) return against;
     if (!against.empty()) {
-      p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, options, p, report, context);
+      p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, p.previous.get(), p, report, context);
       return p.cut ? "" : against;
     }
     const SeparatedMesh apart = separated(mesh, network);
     found.border_loops = apart.border_loops;
     CutSource source{all, all, {}};
     if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
-    p.cut = cut_network(mesh, network, curves, std::move(source), vertices_of(options, p, is_open) - apart.more_places,
-                        options, p, report, context);
+    p.cut = cut_network(mesh, network, curves, std::move(source), vertices_of(p, is_open) - apart.more_places,
+                        p.previous.get(), p, report, context);
     return "";
   });
   if (!why.empty()) give_up(report, all, why);

@@ -8,7 +8,7 @@
 
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -31,16 +31,16 @@ struct CutSource {
 using SharedCut = std::shared_ptr<const CutSurface>;
 
 /// Of a surface that the options leave open.
-bool may_keep_borders(const RemeshOptions& options, const Prepared& p);
+bool may_keep_borders(const PreparedSurface& p);
 
 /// Cuts the surface along the curves of its mesh: p.cut, which stays empty where there are none. False where there are
 /// curves that could not be kept, as the report says. `known` are the mesh's creases, where those were found.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
-               const RemeshOptions& options, Prepared& p, RemeshReport& report, Context& context);
+               PreparedSurface& p, RemeshReport& report, Context& context);
 
 /// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason. Null where that
 /// cannot be.
-SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const RemeshOptions& options,
-                            const Prepared& p, RemeshReport& report, Context& context);
+SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
+                            RemeshReport& report, Context& context);
 
 }  // namespace isoshell

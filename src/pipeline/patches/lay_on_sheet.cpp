@@ -33,7 +33,8 @@ bool take_back(const std::vector<std::array<uint32_t, 2>>& pairs, LaidCurves& la
 
 }  // namespace
 
-LaidCurves lay_on_sheet(const FeatureMesh& mesh, const CurveNetwork& network, const Prepared& p, Context& context) {
+LaidCurves lay_on_sheet(const FeatureMesh& mesh, const CurveNetwork& network, const PreparedSurface& p,
+                        Context& context) {
   const UntangledSheet sheet = untangle_sheet(host_copy(p.sheet), {}, context);
   LaidCurves laid = run_with_threads(context, [&] {
     LaidCurves all = lay_curves(mesh, network, *OnHost(sheet.sheet));

@@ -8,7 +8,7 @@
 
 namespace isoshell {
 
-NewCrossings::NewCrossings(const Prepared& p, const CutSurface& cut, Context& context)
+NewCrossings::NewCrossings(const PreparedSurface& p, const CutSurface& cut, Context& context)
     : p_(p),
       context_(context),
       may_be_old_(!p.surface.topology.closed && !cut.source->is_sheet),

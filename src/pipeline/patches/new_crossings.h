@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "features/cutting/cut_surface.h"
-#include "isoshell/remesh.h"
 #include "measure/box_tree.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -17,7 +17,7 @@ using TrianglePairs = std::vector<std::array<uint32_t, 2>>;
 /// input must outlive it, and is looked at only where a result intersects. In host memory. Cost: as crossing_pairs.
 class NewCrossings {
  public:
-  NewCrossings(const Prepared& p, const CutSurface& cut, Context& context);
+  NewCrossings(const PreparedSurface& p, const CutSurface& cut, Context& context);
 
   /// All pairs of triangles that intersect. `joined`: as of crossing_pairs.
   TrianglePairs all(const DualMesh& mesh, View<const uint32_t> joined) const;
@@ -25,7 +25,7 @@ class NewCrossings {
   TrianglePairs wrong_of(const DualMesh& mesh, const TrianglePairs& pairs);
 
  private:
-  const Prepared& p_;
+  const PreparedSurface& p_;
   Context& context_;
   bool may_be_old_;  ///< the result is open as the input is
   int32_t edge_q8_;

@@ -87,13 +87,13 @@ struct Wrong {
 
 class PatchRounds {
  public:
-  PatchRounds(const Prepared& p, const CutSurface& cut, const PatchOptions& options, RemeshReport& report,
+  PatchRounds(const PreparedSurface& p, const CutSurface& cut, const PatchOptions& options, RemeshReport& report,
               Context& context)
       : options_(options), report_(report), context_(context), crossings_(p, cut, context) {}
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
     report_.dual = {};
-    report_.post = {};
+    report_.optimize = {};
     Wrong wrong = left_of(*cut, made, mesh_patches(*cut, made));
     if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
@@ -154,8 +154,8 @@ class PatchRounds {
         return optimize_mesh(part.surface, std::move(mesh), optimize_options(), context_);
       });
       crossing = optimized.report.self_intersections;
-      report_.post.flips += optimized.report.flips;
-      report_.post.undone_vertices += optimized.report.undone_vertices;
+      report_.optimize.flips += optimized.report.flips;
+      report_.optimize.undone_vertices += optimized.report.undone_vertices;
       mesh = std::move(optimized);
     });
     if (crossing > 0) untangle(cut, made);
@@ -200,7 +200,7 @@ class PatchRounds {
     timed(report_, "untangle", context_, [&] {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
         RemeshReport here;
-        here.post.self_intersections = int64_t(all_crossing(mesh).size());
+        here.optimize.self_intersections = int64_t(all_crossing(mesh).size());
         resolve_intersections(part.surface, optimize_options(), mesh, here, context_);
         report_.seeds_against_intersections += here.seeds_against_intersections;
       });
@@ -226,7 +226,7 @@ class PatchRounds {
     defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
     add_defects(cut, made, defects, wrong);
     const auto pairs = all_crossing(made);
-    report_.post.self_intersections = int64_t(pairs.size());
+    report_.optimize.self_intersections = int64_t(pairs.size());
     add_crossing(cut, made, crossings_.wrong_of(made.mesh, pairs), wrong);
     return wrong;
   }
@@ -331,7 +331,7 @@ class PatchRounds {
 
 }  // namespace
 
-std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
+std::string mesh_in_rounds(const PreparedSurface& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
                            const PatchOptions& options, RemeshReport& report, Context& context) {
   return PatchRounds(p, *cut, options, report, context).run(cut, made);
 }

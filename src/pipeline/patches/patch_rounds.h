@@ -14,7 +14,7 @@ namespace isoshell {
 /// leaving less wrong where the curves can be laid on the sheet instead. A frame that follows another loses no crease:
 /// it ends there, to begin cold. In the end `cut` is the surface that the mesh is on. Result: why there is no mesh;
 /// empty where there is one, which may have another number of vertices.
-std::string mesh_in_rounds(const Prepared& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
+std::string mesh_in_rounds(const PreparedSurface& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
                            const PatchOptions& options, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

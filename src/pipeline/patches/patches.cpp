@@ -20,7 +20,6 @@
 #include "isoshell/readable.h"
 #include "measure/crossing_corners.h"
 #include "pipeline/grid/attempt.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
@@ -39,7 +38,7 @@ namespace isoshell {
 namespace {
 
 /// Flags vertices on faces that close gaps.
-void flag_caps(const Prepared& p, TriangleMesh& mesh, GapReport& report) {
+void flag_caps(const PreparedSurface& p, TriangleMesh& mesh, GapReport& report) {
   const uint32_t first_cap = p.surface.first_cap;
   if (first_cap == kNone) return;
   const OnHost<LatticeSurface> surface(p.surface);
@@ -73,9 +72,9 @@ std::vector<uint32_t> nearest_of_sheet(const Sheet& of, const TriangleMesh& mesh
 }
 
 /// The patches put together, with better angles beside curves; it intersects itself no more than before.
-JoinedPatches with_wide_angles(const Prepared& p, const CutSurface& cut, const SeededMesh& made,
+JoinedPatches with_wide_angles(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made,
                                const PatchOptions& options, const RemeshReport& report, Context& context) {
-  const bool may_cross = report.post.self_intersections > 0;  // where the input does
+  const bool may_cross = report.optimize.self_intersections > 0;  // where the input does
   NewCrossings crossings(p, cut, context);
   const auto wrong_corners = [&](const DualMesh& mesh) {
     const TrianglePairs pairs = crossings.all(mesh, {});
@@ -124,7 +123,7 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
 }
 
 /// What the search found that began with the surface, or the surface alone.
-SearchedSurface searched_surface(const Prepared& p, const Context& context) {
+SearchedSurface searched_surface(const PreparedSurface& p, const Context& context) {
   if (p.creases && p.creases->has_result()) return p.creases->result();
   return {feature_mesh_of(*OnHost(p.surface), context), {}};
 }
@@ -158,7 +157,7 @@ struct MeshOfPatches {
   JoinedPatches joined;
   std::string why_not;
 };
-MeshOfPatches mesh_of_patches(const Prepared& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
+MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
                               const PatchOptions& options, RemeshReport& report, Context& context) {
   MeshOfPatches out;
   out.why_not = reason_against([&]() -> std::string {
@@ -176,7 +175,7 @@ MeshOfPatches mesh_of_patches(const Prepared& p, std::shared_ptr<const CutSurfac
 }
 
 /// Of a frame that cannot be made from the one before, from new seeds.
-MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const Prepared& p, const PatchOptions& in_patches,
+MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const PreparedSurface& p, const PatchOptions& in_patches,
                               SeededMesh& made, RemeshReport& report, Context& context) {
   report.coherence.began_warm = false;
   report.coherence.why_cold = failed.why_not;
@@ -187,11 +186,10 @@ MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const Prepared& p, co
 }
 
 /// From the curves on the sheet, which has no bad place, and from new seeds.
-MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, RemeshOptions options,
-                                    PatchOptions in_patches, SeededMesh& made, RemeshReport& report, Context& context) {
-  options.previous.reset();
+MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const PreparedSurface& p, PatchOptions in_patches,
+                                    SeededMesh& made, RemeshReport& report, Context& context) {
   const std::shared_ptr<const CutSurface> cut = timed(report, "features", context, [&] {
-    return cut_sheet_instead(*failed.cut->source, failed.why_not, options, p, report, context);
+    return cut_sheet_instead(*failed.cut->source, failed.why_not, p, report, context);
   });
   if (!cut) return failed;
   in_patches.seeds.count = cut->seeds;
@@ -208,19 +206,18 @@ MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const Prepared& p, Rem
 
 }  // namespace
 
-bool is_on_own_triangles(const Prepared& p) { return p.cut && !p.cut->source->is_sheet; }
+bool is_on_own_triangles(const PreparedSurface& p) { return p.cut && !p.cut->source->is_sheet; }
 
-void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
-                      Context& context) {
+void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshReport& report, Context& context) {
+  const RemeshOptions& options = p.options;
   if (options.method != Method::sheet) return;
-  const double edge_world = usual_edge_length(options, p);
+  const double edge_world = p.target.edge_length_world;
   const Seams seams = seams_of(source.soup, options, edge_world, report, context);
   const std::shared_ptr<const Polylines>& lines = options.features.lines;
-  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines &&
-      !may_keep_borders(options, p))
+  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines && !may_keep_borders(p))
     return;
-  const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(options, p);
-  if (may_be_uncut) relax_meanwhile(options, p, report, context);
+  const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(p);
+  if (may_be_uncut) relax_meanwhile(p, report, context);
   timed(report, "features", context, [&] {
     SearchedSurface searched = searched_surface(p, context);
     FeatureMesh& mesh = searched.mesh;
@@ -236,7 +233,7 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
       curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
     }
     const size_t lost_lines = report.features.lost.size();
-    if (cut_along(mesh, curves, std::move(searched.creases), options, p, report, context) || curves.seams.empty()) {
+    if (cut_along(mesh, curves, std::move(searched.creases), p, report, context) || curves.seams.empty()) {
       if (p.creases) p.creases->free_meanwhile(std::move(searched));
       return;
     }
@@ -245,48 +242,46 @@ void cut_into_patches(const RemeshOptions& options, const PatchSource& source, P
     report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
                              " are not kept: " + report.features.given_up + "; triangles lie across seams";
     curves.seams.clear();
-    cut_along(mesh, curves, {}, options, p, report, context);
+    cut_along(mesh, curves, {}, p, report, context);
   });
 }
 
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SheetWhenNeeded& sheet, SeededMesh& made,
-                                                const RemeshOptions& options, PatchOptions in_patches,
-                                                RemeshReport& report, Context& context) {
+std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
+                                                PatchOptions in_patches, RemeshReport& report, Context& context) {
   MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
   if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr))
     made_here = mesh_begun_cold(made_here, p, in_patches, made, report, context);
   if (!made_here.why_not.empty())
-    made_here =
-        mesh_on_sheet_instead(std::move(made_here), sheet.get(report), options, in_patches, made, report, context);
+    made_here = mesh_on_sheet_instead(std::move(made_here), sheet.get(report), in_patches, made, report, context);
   if (!made_here.why_not.empty()) {
     give_up(report, p.cut->source->if_lost, made_here.why_not);
     return {};
   }
   const CutSurface& cut = *made_here.cut;
   TriangleMesh& mesh = made_here.mesh;
-  if (const int64_t crossings = report.post.self_intersections; crossings > 0)
+  if (const int64_t crossings = report.optimize.self_intersections; crossings > 0)
     report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
                               " where the input's own triangles do");
   if (const int64_t vertices = made_here.joined.mesh.position.size(); vertices != cut.seeds)
     report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
                               std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
   if (cut.source->is_sheet) {
-    const Prepared& whole = sheet.get(report);
+    const PreparedSurface& whole = sheet.get(report);
     const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(whole.sheet, mesh); });
     flag_gaps(whole, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
                               report.features.on_sheet);
-    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, options, report);
+    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, report);
   } else {
-    report.closing_vox = report.grown_vox = 0;  // those of the sheet, which is not used
-    report.topology_agrees = report.topology_compared;
-    report.sheet.bridged_vertices = 0;
+    report.grid.closing_vox = report.grid.grown_vox = 0;  // those of the sheet, which is not used
+    report.sheet.agrees = report.sheet.is_compared;
+    report.sheet.topology.bridged_vertices = 0;
     flag_caps(p, mesh, report.gaps);
   }
   measure_edges(cut, made_here.joined, report.sizing);
   report.features.vertices = made_here.joined.on_curves;
   report.features.segments = int64_t(mesh.features.curve_edges.size());
-  report.features.kept = report.post_done = true;
+  report.features.kept = report.is_optimized = true;
   report_kept(cut, report);
   return std::move(mesh);
 }

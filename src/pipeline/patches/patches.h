@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -20,11 +20,10 @@ struct PatchSource {
 /// surface along them. Leaves p.cut empty where there are none, and says in the report why where there are some that
 /// cannot be kept. Seams are found again by the positions of their ends: what repair left as it was, and no union cut,
 /// has them, and so are interfaces.
-void cut_into_patches(const RemeshOptions& options, const PatchSource& source, Prepared& p, RemeshReport& report,
-                      Context& context);
+void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshReport& report, Context& context);
 
 /// Whether the surface was cut there, and not the sheet.
-bool is_on_own_triangles(const Prepared& p);
+bool is_on_own_triangles(const PreparedSurface& p);
 
 struct PatchOptions {
   SeedOptions seeds;  ///< the count is that of the result's vertices: a place of a curve counts once
@@ -47,8 +46,7 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
 /// are relaxed again. Where that does not end it the same is tried on the sheet, with the curves laid onto it. None
 /// where that fails, too: cells are no disks, or patches touch along edges that are on no curve: report.features says
 /// so. With borders that are kept triangles may intersect where the input's do.
-std::optional<TriangleMesh> triangulate_patches(const Prepared& p, SheetWhenNeeded& sheet, SeededMesh& made,
-                                                const RemeshOptions& options, PatchOptions in_patches,
-                                                RemeshReport& report, Context& context);
+std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
+                                                PatchOptions in_patches, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

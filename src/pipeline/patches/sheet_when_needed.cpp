@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/copy_product.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/sheet/prepare_surface.h"
@@ -12,21 +11,23 @@
 
 namespace isoshell {
 
-bool may_be_cut_at_once(const RemeshOptions& options, const InputTopology& input, bool has_caps) {
+bool may_be_cut_at_once(const Plan& plan, bool has_caps) {
+  const RemeshOptions& options = plan.options;
+  const InputTopology& input = plan.input;
   const bool needs_sheet = options.method != Method::sheet || options.want_shell || wants_lengths(options) ||
                            options.edge_length_world || options.closing_vox || options.closing_world;
   return options.previous && !needs_sheet && input.closed && input.oriented && !has_caps &&
-         shows_most_handles(options, input);
+         shows_most_handles(plan.target.vertices, input);
 }
 
-std::optional<Prepared> prepare_patches_alone(LatticeSurface surface, const RemeshOptions& options,
-                                              const PatchSource& source, RemeshReport& report, Context& context) {
-  Prepared p;
-  p.surface = std::move(surface);
+std::optional<PreparedSurface> prepare_patches_alone(LatticeSurface surface, const RemeshOptions& options,
+                                                     const PatchSource& source, RemeshReport& report,
+                                                     Context& context) {
+  PreparedSurface p = begin_with(std::move(surface), options);
   RemeshReport tried = report;
-  choose_beginning(options, vertex_target(options, p.surface.topology.area_world), p, tried);
+  choose_beginning(p, tried);
   if (!p.previous) return {};
-  cut_into_patches(options, source, p, tried, context);
+  cut_into_patches(source, p, tried, context);
   if (!is_on_own_triangles(p)) {
     report.times = std::move(tried.times);
     return {};
@@ -35,10 +36,10 @@ std::optional<Prepared> prepare_patches_alone(LatticeSurface surface, const Reme
   return p;
 }
 
-const Prepared& SheetWhenNeeded::get(RemeshReport& report) {
+const PreparedSurface& SheetWhenNeeded::get(RemeshReport& report) {
   if (has_sheet(prepared_)) return prepared_;
   if (!made_) {
-    RemeshOptions options = options_;
+    RemeshOptions options = prepared_.options;
     options.features.creases = Features::Creases::off;  // they are cut along already
     options.previous.reset();                           // it is said already how the frame begins
     made_ = prepare_surface(host_copy(prepared_.surface), 0, options, report, context_);

@@ -7,7 +7,6 @@
 
 #include "core/watched.h"
 #include "features/mesh/weld_for_features.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
 
@@ -94,12 +93,12 @@ void CreaseSearch::free_meanwhile(SearchedSurface found) {
                       [found = std::move(found)]() mutable { const auto ends_here = std::move(found); });
 }
 
-std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const Prepared& p, RemeshReport& report,
-                                                  Context& context) {
+std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, RemeshReport& report, Context& context) {
+  const RemeshOptions& options = p.options;
   const bool is_wanted = options.method == Method::sheet && options.features.creases != Features::Creases::off;
   const bool is_known = !options.features.lines && !wants_lengths(options);
   if (p.surface.points.space() == MemorySpace::host || !is_wanted || !is_known) return nullptr;
-  const double edge_world = usual_edge_length(options, p.surface.topology.area_world);
+  const double edge_world = p.target_of_input.edge_length_world;
   return timed(report, "features", context, [&]() -> std::shared_ptr<CreaseSearch> {
     try {
       return std::make_shared<CreaseSearch>(p.surface, curve_options(options, p.previous.get(), edge_world), context);

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "features/curves/find_curves.h"
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -54,7 +54,6 @@ class CreaseSearch {
 /// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a
 /// device. Null elsewhere, where the edge length depends on the sheet, and where there is no thread. Reports the time
 /// of the beginning alone.
-std::shared_ptr<CreaseSearch> begin_crease_search(const RemeshOptions& options, const Prepared& p, RemeshReport& report,
-                                                  Context& context);
+std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -18,7 +18,7 @@ void leave_out_grown(const Sheet& of, const std::vector<uint8_t>& bridges, std::
 
 }  // namespace
 
-void flag_gaps(const Prepared& p, View<const uint32_t> at, TriangleMesh& mesh, GapReport& report) {
+void flag_gaps(const PreparedSurface& p, View<const uint32_t> at, TriangleMesh& mesh, GapReport& report) {
   if (p.grown && !p.grown.only_flaps) return;
   std::vector<uint8_t> bridges;
   if (p.closing_vox > 0) {

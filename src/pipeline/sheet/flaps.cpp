@@ -154,7 +154,8 @@ void keep_off_surface(const Sheet& laid, const std::vector<uint32_t>& now, Sheet
 
 }  // namespace
 
-void grow_at(Prepared& p, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
+void grow_at(PreparedSurface& p, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16,
+             Context& context) {
   const SiteSet solid = host_copy(solid_voxels_of(p));
   const SheetOptions options{closing_of_solid(p), smallest_component_q16, kNoGenus, false};
   const Sheet laid = std::move(on_host(p.sheet));
@@ -171,7 +172,7 @@ void grow_at(Prepared& p, const SiteSet& where, int32_t grown_vox, int64_t small
   p.sheet.topology.bridged_vertices = laid.topology.bridged_vertices;  // the proxy has no sources of its own
 }
 
-bool grow_flaps(Prepared& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
+bool grow_flaps(PreparedSurface& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
   const SiteSet flaps = sites_of_flaps(*OnHost(p.sites), *OnHost(p.sheet));
   if (flaps.voxels.voxel_count() == 0) return false;
   grow_at(p, flaps, grown_vox, smallest_component_q16, context);

@@ -2,18 +2,18 @@
 // be laid onto the same faces, and cross.
 #pragma once
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
 /// Gives a prepared surface that has flaps the sheet of its solid together with all voxels within `grown_vox` of a
 /// flap: laid onto the surface but for the flaps, which it follows at that distance. Off-surface points stay but for
 /// those at flaps. Returns whether there are any flaps.
-bool grow_flaps(Prepared& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
+bool grow_flaps(PreparedSurface& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
 /// Gives a prepared surface the sheet of its solid together with all voxels within `grown_vox` of some of its sites.
 /// What is not within that of them stays as it was laid.
-void grow_at(Prepared& prepared, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16,
+void grow_at(PreparedSurface& prepared, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16,
              Context& context);
 
 /// The sites within about this reach of points.

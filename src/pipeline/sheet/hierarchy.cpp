@@ -8,7 +8,6 @@
 #include "core/copy_product.h"
 #include "core/seed_count.h"
 #include "isoshell/advanced/to_host.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/thin_walls.h"
 #include "pipeline/sheet/relax_level.h"
 #include "voxel/exact_int.h"
@@ -49,7 +48,7 @@ double crowding_of(const Sheet& sheet, Context& context) {
 /// What the levels relax on: the sheet for the finest, coarse proxies on coarser lattices for the others.
 class CoarseProxies {
  public:
-  CoarseProxies(const Prepared& prepared, const std::vector<int64_t>& counts, Context& context)
+  CoarseProxies(const PreparedSurface& prepared, const std::vector<int64_t>& counts, Context& context)
       : finest_(prepared.sheet) {
     halvings_.assign(counts.size(), 0);
     const SiteSet* sites = &solid_voxels_of(prepared);
@@ -103,7 +102,7 @@ class CoarseProxies {
 
 }  // namespace
 
-RelaxedSeeds relax_by_levels(const Prepared& prepared, const LevelOptions& options, Context& context,
+RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions& options, Context& context,
                              const std::function<bool()>& is_in_vain) {
   require_seed_count(prepared.sheet, options.seeds.count);
   std::vector<int64_t> counts = level_counts(options.seeds.count, prepared.sheet.topology);

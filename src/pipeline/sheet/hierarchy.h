@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -24,7 +24,7 @@ struct LevelOptions {
 /// as large beside their cells as those of the sheet are beside the finest level's. `is_in_vain` is asked between
 /// stages; once it says so, the result has no seeds.
 RelaxedSeeds relax_by_levels(
-    const Prepared& prepared, const LevelOptions& options, Context& context,
+    const PreparedSurface& prepared, const LevelOptions& options, Context& context,
     const std::function<bool()>& is_in_vain = [] { return false; });
 
 }  // namespace isoshell

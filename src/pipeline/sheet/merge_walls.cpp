@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "core/copy_product.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/thin_walls.h"
@@ -18,33 +17,35 @@ constexpr int32_t kMostGrownVox = 9;  // as of thin walls: fits into the lattice
 
 }  // namespace
 
-MergedWalls merge_walls(const Prepared& prepared, const std::vector<PointQ8>& points, int times_before,
-                        const RemeshOptions& options, Context& context) {
+MergedWalls merge_walls(const PreparedSurface& prepared, const std::vector<PointQ8>& points, int times_before,
+                        Context& context) {
   MergedWalls merged;
-  Prepared& p = merged.prepared;
-  p.surface = host_copy(prepared.surface);
+  PreparedSurface& p = merged.prepared;
+  p = begin_with(host_copy(prepared.surface), prepared.options);
+  p.options.method = Method::sheet;  // whatever it was: there is no shell of the merged solid
   p.sites = host_copy(prepared.sites);
   p.sheet = host_copy(prepared.sheet);
   p.closing_vox = prepared.closing_vox;
-  p.vertices = prepared.vertices;
+  p.vertices_of_lengths = prepared.vertices_of_lengths;
   p.grown = {prepared.grown.distance_vox, prepared.grown.only_flaps, host_copy(prepared.grown.voxels)};
-  const double edge_vox = usual_edge_length(options, sheet_area_world(p.sheet)) / p.surface.frame.voxel_size;
+  const double edge_world = target_of(p.options, sheet_area_world(p.sheet)).edge_length_world;
+  const double edge_vox = edge_world / p.surface.frame.voxel_size;
   merged.grown_vox = std::min(std::max(1, growth_for_edge(edge_vox) / 4) << times_before, kMostGrownVox);
-  grow_at(p, sites_near(p.sites, points, edge_vox), merged.grown_vox,
-          smallest_component_q16(options, p.surface.topology, p.surface.frame), context);
+  grow_at(p, sites_near(p.sites, points, edge_vox), merged.grown_vox, smallest_component_q16(p), context);
   RemeshReport unsaid;
-  set_lengths(options, p, unsaid, context);
+  set_lengths(p, unsaid, context);
+  set_target(p);
   return merged;
 }
 
 void report_merge(const MergedWalls& merged, const std::vector<PointQ8>& points, RemeshReport& report) {
-  const Prepared& p = merged.prepared;
+  const PreparedSurface& p = merged.prepared;
   report.merged = {merged.grown_vox, int64_t(points.size()), p.surface.frame.to_world(points.front())};
-  report.sheet = p.sheet.topology;
-  report.sheet_vertices = p.sheet.vertex_count();
+  report.sheet.topology = p.sheet.topology;
+  report.sheet.vertices = p.sheet.vertex_count();
   const InputTopology& input = p.surface.topology;
-  report.topology_agrees =
-      report.topology_compared && report.sheet.components == input.components && report.sheet.genus == input.genus;
+  report.sheet.agrees = report.sheet.is_compared && report.sheet.topology.components == input.components &&
+                        report.sheet.topology.genus == input.genus;
   std::ostringstream text;
   text << "walls nearer to one another than edges can follow were merged, grown by "
        << merged.grown_vox * p.surface.frame.voxel_size << " to each side, near " << report.merged.at.x << ' '

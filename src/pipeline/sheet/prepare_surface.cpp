@@ -6,7 +6,6 @@
 
 #include "core/copy_product.h"
 #include "isoshell/advanced/to_host.h"
-#include "pipeline/grid/choose_grid.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/thin_walls.h"
@@ -29,15 +28,13 @@ class Preparation {
   Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
       : options_(options), report_(report), context_(context) {}
 
-  Prepared from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
-    Prepared p;
-    p.surface = std::move(surface);
-    if (!wants_lengths(options_))
-      choose_beginning(options_, vertex_target(options_, p.surface.topology.area_world), p, report_);
-    p.creases = begin_crease_search(options_, p, report_, context_);
+  PreparedSurface from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
+    PreparedSurface p = begin_with(std::move(surface), options_);
+    if (!wants_lengths(options_)) choose_beginning(p, report_);
+    p.creases = begin_crease_search(p, report_, context_);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
-    const bool shows_handles = shows_most_handles(options_, p.surface.topology);
+    const bool shows_handles = shows_most_handles(p.target_of_input.vertices, p.surface.topology);
     join_components(p);
     mark_hollows(p);
     if (!shows_handles) {
@@ -67,12 +64,12 @@ class Preparation {
   bool keeps_samples() const {
     return options_.want_samples || options_.want_digests || options_.want_shell || options_.method == Method::shell;
   }
-  void let_samples_go(Prepared& p) const {
+  void let_samples_go(PreparedSurface& p) const {
     if (!keeps_samples()) p.samples = {};
   }
 
   /// Surfaces that pass through each other bound one solid, whose genus none of them tells.
-  void join_components(Prepared& p) {
+  void join_components(PreparedSurface& p) {
     InputTopology& input = p.surface.topology;
     if (input.genus < 0 || input.components < 2) return;
     const int64_t joins =
@@ -83,7 +80,7 @@ class Preparation {
   }
 
   /// What inner surfaces bound is open to the outside, as it were.
-  void mark_hollows(Prepared& p) {
+  void mark_hollows(PreparedSurface& p) {
     const InputTopology& input = p.surface.topology;
     if (!input.closed || !input.oriented || input.components < 2) return;
     const std::vector<Voxel> hollows = timed(report_, "hollows", context_, [&] {
@@ -95,8 +92,8 @@ class Preparation {
     std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
   }
 
-  double edge_vox(const Prepared& p) const {
-    return usual_edge_length(options_, p.surface.topology.area_world) / p.surface.frame.voxel_size;
+  double edge_vox(const PreparedSurface& p) const {
+    return p.target_of_input.edge_length_world / p.surface.frame.voxel_size;
   }
 
   /// Of what the sheet bounds, on average.
@@ -107,7 +104,7 @@ class Preparation {
 
   /// Whether the outside reaches both sides of the surface. Closing fills parts of a crust, but makes it no solid: that
   /// would hide one of the two sides.
-  bool is_crust(const Prepared& p) {
+  bool is_crust(const PreparedSurface& p) {
     const double here = thickness_vox(p.sheet);
     if (here < 1) return true;
     if (here >= std::min(edge_vox(p) / 2, 2. * p.closing_vox + 1)) return false;
@@ -118,7 +115,7 @@ class Preparation {
 
   /// Where the outside reaches both sides of an open surface, they would lie on each other and cross. Growth must not
   /// close what no one asked to close.
-  void keep_sides_apart(Prepared& p) {
+  void keep_sides_apart(PreparedSurface& p) {
     int32_t grown = growth_for_edge(std::sqrt(2) * edge_vox(p));  // both sides share the vertices
     for (;; grown /= 2) {
       grow(p, grown);
@@ -127,29 +124,28 @@ class Preparation {
   }
 
   /// A solid whose false handles were cut is no longer that of its sites, and stays as it is.
-  void thicken_flaps(Prepared& p) {
+  void thicken_flaps(PreparedSurface& p) {
     if (p.sheet.topology.cut_handles > 0) return;
-    const double edge_vox = usual_edge_length(options_, sheet_area_world(p.sheet)) / p.surface.frame.voxel_size;
-    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    timed(report_, "sheet", context_, [&] { return grow_flaps(p, growth_for_edge(edge_vox), smallest, context_); });
+    const double edge_world = target_of(options_, sheet_area_world(p.sheet)).edge_length_world;
+    const int32_t grown_vox = growth_for_edge(edge_world / p.surface.frame.voxel_size);
+    timed(report_, "sheet", context_, [&] { return grow_flaps(p, grown_vox, smallest_component_q16(p), context_); });
   }
 
-  void grow(Prepared& p, int32_t grown_vox) {
-    const int64_t smallest = smallest_component_q16(options_, p.surface.topology, p.surface.frame);
-    timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest, context_); });
+  void grow(PreparedSurface& p, int32_t grown_vox) {
+    timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest_component_q16(p), context_); });
   }
 
-  SheetOptions sheet_options(const Prepared& p, int32_t closing_vox) const {
+  SheetOptions sheet_options(const PreparedSurface& p, int32_t closing_vox) const {
     const InputTopology& input = p.surface.topology;
     const int64_t genus = !input.closed || !input.oriented ? kNoGenus : input.genus < 0 ? kUnknownGenus : input.genus;
-    return {closing_vox, smallest_component_q16(options_, input, p.surface.frame), genus};
+    return {closing_vox, smallest_component_q16(p), genus};
   }
-  Sheet sheet(const Prepared& p, int32_t closing_vox) {
+  Sheet sheet(const PreparedSurface& p, int32_t closing_vox) {
     return timed(report_, "sheet", context_,
                  [&] { return build_sheet(p.surface, p.sites, p.samples, sheet_options(p, closing_vox), context_); });
   }
   /// Frees the samples on the way.
-  Sheet last_sheet(Prepared& p) {
+  Sheet last_sheet(PreparedSurface& p) {
     return timed(report_, "sheet", context_, [&] {
       return build_sheet(p.surface, p.sites, std::move(p.samples), sheet_options(p, p.closing_vox), context_);
     });
@@ -157,7 +153,7 @@ class Preparation {
 
   /// The smallest closing whose solid holds nine tenths of what the largest one holds: below it the outside leaks in
   /// and the solid collapses to a crust.
-  void close_leaks(Prepared& p) {
+  void close_leaks(PreparedSurface& p) {
     Sheet widest = sheet(p, kMaxAutoClosingVox);
     const int64_t widest_volume = six_volume_vox(widest, context_);
     for (p.closing_vox = 0; p.closing_vox < kMaxAutoClosingVox; ++p.closing_vox) {
@@ -175,29 +171,29 @@ class Preparation {
 
 }  // namespace
 
-Prepared prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox, const RemeshOptions& options,
-                         RemeshReport& report, Context& context) {
-  Prepared p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+PreparedSurface prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox,
+                                const RemeshOptions& options, RemeshReport& report, Context& context) {
+  PreparedSurface p = Preparation(options, report, context).from(std::move(surface), closing_vox);
   if (p.creases) p.creases->wait_until_copied();
   return p;
 }
 
 bool can_compare(const InputTopology& input) { return input.closed && input.oriented && input.genus >= 0; }
 
-int64_t topology_gap(const Prepared& p) {
+int64_t topology_gap(const PreparedSurface& p) {
   const InputTopology& input = p.surface.topology;
   if (!can_compare(input)) return 0;
   return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
 }
 
-void report_sheet(const Prepared& p, RemeshReport& report) {
-  report.closing_vox = p.closing_vox;
-  report.grown_vox = p.grown.distance_vox;
-  report.sites = p.sites.voxels.voxel_count();
-  report.sheet_vertices = p.sheet.vertex_count();
-  report.sheet = p.sheet.topology;
-  report.topology_compared = can_compare(p.surface.topology);
-  report.topology_agrees = report.topology_compared && topology_gap(p) == 0;
+void report_sheet(const PreparedSurface& p, RemeshReport& report) {
+  report.grid.closing_vox = p.closing_vox;
+  report.grid.grown_vox = p.grown.distance_vox;
+  report.grid.sites = p.sites.voxels.voxel_count();
+  report.sheet.vertices = p.sheet.vertex_count();
+  report.sheet.topology = p.sheet.topology;
+  report.sheet.is_compared = can_compare(p.surface.topology);
+  report.sheet.agrees = report.sheet.is_compared && topology_gap(p) == 0;
 }
 
 }  // namespace isoshell

@@ -3,22 +3,22 @@
 
 #include <optional>
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
 /// With the closing that is asked for, or the least one that lets nothing leak in. Walls without thickness are grown,
 /// and surfaces that are open on both sides.
-Prepared prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox, const RemeshOptions& options,
-                         RemeshReport& report, Context& context);
+PreparedSurface prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox,
+                                const RemeshOptions& options, RemeshReport& report, Context& context);
 
 /// Whether components and genus of an input can be compared with those of a sheet.
 bool can_compare(const InputTopology& input);
 
 /// How far the sheet's topology is from the input's; 0 when they agree, or when the input's is not known.
-int64_t topology_gap(const Prepared& p);
+int64_t topology_gap(const PreparedSurface& p);
 
 /// What there is to say of sites and sheet.
-void report_sheet(const Prepared& p, RemeshReport& report);
+void report_sheet(const PreparedSurface& p, RemeshReport& report);
 
 }  // namespace isoshell

@@ -5,10 +5,8 @@
 
 namespace isoshell {
 
-/// How the options of a run relax the sheet, by levels.
-LevelOptions level_options(const Prepared& prepared, const RemeshOptions& options);
-/// How they relax whatever is relaxed.
-RelaxOptions relax_options(const RemeshOptions& options);
+/// How a run relaxes its sheet, by levels.
+LevelOptions level_options(const PreparedSurface& prepared);
 
 /// What a run that finds no creases goes on from.
 struct RelaxedMeanwhile {
@@ -18,11 +16,11 @@ struct RelaxedMeanwhile {
 };
 
 /// Sets prepared.relaxed, where a search for creases goes on that has found none when the sheet is relaxed.
-void relax_meanwhile(const RemeshOptions& options, Prepared& prepared, RemeshReport& report, Context& context);
+void relax_meanwhile(PreparedSurface& prepared, RemeshReport& report, Context& context);
 
-/// Takes what was relaxed meanwhile, if it is what these options make; else relaxes by levels.
-RelaxedSeeds relaxed_by_levels(const Prepared& prepared, const RemeshOptions& options, Context& context);
-/// The same from the frame before, which options name.
-RelaxedSeeds relaxed_from_previous(const Prepared& prepared, const RemeshOptions& options, Context& context);
+/// Takes what was relaxed meanwhile, if it began so; else relaxes by levels.
+RelaxedSeeds relaxed_by_levels(const PreparedSurface& prepared, Context& context);
+/// The same from prepared.previous.
+RelaxedSeeds relaxed_from_previous(const PreparedSurface& prepared, Context& context);
 
 }  // namespace isoshell

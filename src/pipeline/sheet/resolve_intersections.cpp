@@ -36,16 +36,16 @@ void make_again(const SurfaceMesh& surface, const SeedSet& seeds, const Optimize
   OptimizeOptions careful = options;
   careful.keep_apart = true;
   OptimizedMesh optimized = optimize_mesh(surface, std::move(again), careful, context);
-  if (optimized.report.self_intersections >= report.post.self_intersections) return;
-  report.post = optimized.report;
+  if (optimized.report.self_intersections >= report.optimize.self_intersections) return;
+  report.optimize = optimized.report;
   report.seeds_against_intersections = found.inserted_seeds;
   mesh = std::move(optimized);
 }
 
 }  // namespace
 
-void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, bool keep_ids, SeededMesh& mesh,
-                           RemeshReport& report, Context& context) {
+void resolve_intersections(const PreparedSurface& prepared, const OptimizeOptions& options, bool keep_ids,
+                           SeededMesh& mesh, RemeshReport& report, Context& context) {
   UntangledSheet start = untangle_sheet(host_copy(prepared.sheet), host_copy(mesh.seeds), context);
   make_again(start.sheet, start.seeds, options, keep_ids, mesh, report, context);
 }

@@ -1,7 +1,7 @@
 // What is done where triangles of the result intersect although their vertices went back to where they began.
 #pragma once
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
@@ -9,8 +9,8 @@ namespace isoshell {
 /// intersects, and as many taken out elsewhere; then once more without flips, which are what cannot be undone. Of all
 /// these the mesh with the fewest intersections counts, the first among equals; `mesh` and the report become its
 /// own. Ids are kept where that is asked for.
-void resolve_intersections(const Prepared& prepared, const OptimizeOptions& options, bool keep_ids, SeededMesh& mesh,
-                           RemeshReport& report, Context& context);
+void resolve_intersections(const PreparedSurface& prepared, const OptimizeOptions& options, bool keep_ids,
+                           SeededMesh& mesh, RemeshReport& report, Context& context);
 
 /// The same on a surface as it is, of whose seeds some are fixed.
 void resolve_intersections(const SurfaceMesh& surface, const OptimizeOptions& options, SeededMesh& mesh,

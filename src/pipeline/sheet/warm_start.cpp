@@ -71,10 +71,11 @@ std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) 
 
 }  // namespace
 
-void choose_beginning(const RemeshOptions& options, int64_t vertices, Prepared& p, RemeshReport& report) {
-  if (!options.previous) return;
-  report.coherence.why_cold = reason_to_begin_cold(*options.previous, vertices);
-  if (report.coherence.why_cold.empty()) p.previous = options.previous;
+void choose_beginning(PreparedSurface& p, RemeshReport& report) {
+  const std::shared_ptr<const PreviousFrame>& before = p.options.previous;
+  if (!before) return;
+  report.coherence.why_cold = reason_to_begin_cold(*before, p.target.vertices);
+  if (report.coherence.why_cold.empty()) p.previous = before;
 }
 
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "isoshell/remesh.h"
+#include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
-/// Decides whether a run that is to have so many vertices begins with the frame before, once that is known: sets
+/// Decides whether a run begins with the frame before, once it is known how many vertices it is to have: sets
 /// p.previous, and says in the report why not where there is one.
-void choose_beginning(const RemeshOptions& options, int64_t vertices, Prepared& p, RemeshReport& report);
+void choose_beginning(PreparedSurface& p, RemeshReport& report);
 
 /// Seeds where the vertices of the frame before are now, with their numbers, and more in the middles of the longest
 /// edges where more are wanted; relaxed without levels, and in few passes: every pass takes vertices from where they

@@ -1,5 +1,5 @@
-// Resolution and vertex count from what was asked for and the area of the surface.
-#include "pipeline/grid/choose_grid.h"
+// See plan.h.
+#include "pipeline/grid/plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,8 @@ int32_t asked_voxel_resolution(double longest, double voxel_size) {
   throw Error(ErrorCode::usage, "grid", text.str());
 }
 
-}  // namespace
-
-int64_t vertex_target(const RemeshOptions& options, double area_world) {
-  if (!options.edge_length_world) return options.vertices.value_or(kUsualVertices);
-  const double edge_world = *options.edge_length_world, per_vertex = kAreaPerEdgeSq * edge_world * edge_world;
-  const double vertices = area_world / per_vertex;
+int64_t vertices_of_edge(double edge_world, double area_world) {
+  const double vertices = area_world / (kAreaPerEdgeSq * edge_world * edge_world);
   if (!(vertices <= double(kMaxVertices))) {  // a tiny length squares to 0
     std::ostringstream text;
     text << "an edge length of " << edge_world << " asks for more than " << kMaxVertices << " vertices; use at least "
@@ -55,33 +51,51 @@ int64_t vertex_target(const RemeshOptions& options, double area_world) {
   return std::max<int64_t>(4, std::llround(vertices));
 }
 
-int32_t first_resolution(const RemeshOptions& options, double area_world, WorldPoint lo, WorldPoint hi) {
+}  // namespace
+
+Target target_of(int64_t vertices, double area_world) {
+  return {vertices, std::sqrt(area_world / double(vertices) / kAreaPerEdgeSq)};
+}
+
+Target target_of(const RemeshOptions& options, double area_world) {
+  if (!options.edge_length_world) return target_of(options.vertices.value_or(kUsualVertices), area_world);
+  return {vertices_of_edge(*options.edge_length_world, area_world), *options.edge_length_world};
+}
+
+Plan plan_of(const RemeshOptions& checked_options, const InputTopology& input, const WorldBox& box) {
+  return {checked_options, input, box, target_of(checked_options, input.area_world)};
+}
+
+int32_t Plan::first_resolution() const {
   if (options.resolution) return *options.resolution;
-  const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
+  const double longest = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
   if (options.voxel_size_world) return asked_voxel_resolution(longest, *options.voxel_size_world);
-  const int64_t vertices = vertex_target(options, area_world);
-  const double spacing = std::sqrt(area_world / double(vertices));
-  return spacing > 0 ? resolution_for_cell(longest, spacing, vertices) : kMinDefaultResolution;
+  const double spacing = std::sqrt(input.area_world / double(target.vertices));
+  return spacing > 0 ? resolution_for_cell(longest, spacing, target.vertices) : kMinDefaultResolution;
+}
+
+double Plan::first_voxel_size_world() const {
+  return LatticeFrame::around(box.min, box.max, first_resolution()).voxel_size;
+}
+
+RelaxOptions relax_options(const RemeshOptions& options) {
+  RelaxOptions relax;
+  relax.max_passes = options.max_passes.value_or(options.method == Method::shell ? 200 : 100);
+  if (options.tolerance) relax.tolerance_ppb = int32_t(*options.tolerance * 1e9);
+  if (options.max_step_vox) relax.max_step_q8 = int32_t(*options.max_step_vox * kOneVoxelQ8);
+  return relax;
+}
+
+OptimizeOptions optimize_options(const RemeshOptions& options) {
+  OptimizeOptions optimize;
+  optimize.fit = options.fit;
+  optimize.uniform_area = options.uniform_area;
+  return optimize;
 }
 
 int32_t resolution_for_cell(double longest_world, double cell_world, int64_t vertices) {
   return std::clamp(resolution_for_voxel(longest_world, cell_world / voxels_per_spacing(vertices)),
                     kMinDefaultResolution, kMaxResolution);
-}
-
-int64_t vertex_target(const RemeshOptions& options, const Prepared& prepared) {
-  if (prepared.vertices) return *prepared.vertices;
-  return vertex_target(options, options.edge_length_world ? sheet_area_world(prepared.sheet) : 0);
-}
-
-double usual_edge_length(const RemeshOptions& options, double area_world) {
-  if (options.edge_length_world) return *options.edge_length_world;
-  return std::sqrt(area_world / double(vertex_target(options, area_world)) / kAreaPerEdgeSq);
-}
-
-double usual_edge_length(const RemeshOptions& options, const Prepared& p) {
-  if (!p.vertices) return usual_edge_length(options, p.surface.topology.area_world);
-  return std::sqrt(p.surface.topology.area_world / double(*p.vertices) / kAreaPerEdgeSq);
 }
 
 double sheet_area_world(const Sheet& sheet) {

@@ -1,0 +1,107 @@
+// What is measured on the way of a run, and said of its input and its result.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/advanced/stages.h"
+#include "isoshell/boolean_union.h"
+#include "isoshell/gaps.h"
+#include "isoshell/previous_frame.h"
+#include "isoshell/repair.h"
+#include "isoshell/sizing.h"
+
+namespace isoshell {
+
+/// A curve of the input that the result does not have.
+struct LostCurve {
+  int64_t index = 0;        ///< among the curves that were found; of a line that was given its segment
+  std::string kind;         ///< "crease", "seam", "line" or "border"
+  double length_world = 0;  ///< along it
+  WorldPoint at{0, 0, 0};   ///< where it begins
+  std::string reason;
+};
+
+/// What was kept of the input's creases and borders.
+struct FeatureReport {
+  bool kept = false;             ///< the result has the curves as edges
+  std::string given_up;          ///< why there are none, though curves were found; empty otherwise
+  std::string on_sheet;          ///< why curves were laid onto the sheet instead of cutting the input; empty otherwise
+  int64_t patches = 0;           ///< of the surface between the curves
+  int64_t curves = 0;            ///< creases, seams and lines
+  int64_t seams = 0;             ///< of the curves: where attributes jump and the surface does not turn
+  int64_t lines = 0;             ///< of the curves: where lines were given and the surface does not turn
+  int64_t corners = 0;           ///< where curves end or turn sharply
+  int64_t vertices = 0;          ///< of the result on curves
+  int64_t segments = 0;          ///< edges of the result on curves, borders too
+  int64_t border_loops = 0;      ///< of the result
+  double length_world = 0;       ///< of the curves found
+  double kept_length_world = 0;  ///< of these the length that the result has as edges
+  double passed_over_world = 0;  ///< length of sharp edges that were not taken for creases: of scans, or too short
+  std::vector<LostCurve> lost;   ///< in the order of the curves, after the lines
+};
+
+/// Walls that were nearer to one another than edges can follow, and became one: the last resort against intersections.
+struct MergeReport {
+  int32_t grown_vox = 0;   ///< walls there grew so far to each side; 0: none were merged
+  int64_t places = 0;      ///< corners of triangles that intersected before
+  WorldPoint at{0, 0, 0};  ///< one of them
+};
+
+struct StageTime {
+  std::string stage;
+  double ms;
+};
+
+/// What was given, and what was done to it before there was a grid.
+struct InputReport {
+  InputTopology topology;  ///< as given; of a resumed run, as repaired
+  DirtCounts dirt;
+  RepairReport repair;
+  UnionReport united;
+  JoinReport joined;
+};
+
+/// The voxels.
+struct GridReport {
+  LatticeFrame frame;
+  int32_t band_vox = 0, closing_vox = 0, grown_vox = 0;
+  int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
+  int64_t memory_estimate_bytes = 0;                 ///< of the finest grid that was begun; see memory_estimate.h
+};
+
+/// The closed surface that seeds move on.
+struct SheetReport {
+  int64_t vertices = 0;
+  SheetTopology topology;
+  bool is_compared = false;  ///< the input, as repaired, is closed and oriented
+  bool agrees = false;       ///< components and genus of the sheet equal the input's
+};
+
+/// Everything measured on the way.
+struct RemeshReport {
+  InputReport input;
+  GridReport grid;
+  SheetReport sheet;
+  int64_t seeds = 0;
+  RelaxReport relax;
+  DualReport dual;
+  OptimizeReport optimize;                  ///< of the final mesh, when is_optimized
+  bool is_optimized = false;                ///< false when cells failed: nothing is improved then, nor tested for
+                                            ///< intersections
+  int64_t seeds_against_intersections = 0;  ///< put in where triangles intersected; others were taken out for them
+  MergeReport merged;
+  std::optional<WorldPoint> intersection_at;  ///< a corner of triangles that intersect in the result
+  SizingReport sizing;
+  GapReport gaps;
+  FeatureReport features;
+  CoherenceReport coherence;     ///< of a run with a frame before
+  std::vector<StageTime> times;  ///< in order; a stage that ran more than once has one entry
+  std::map<std::string, std::string> digests;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace isoshell

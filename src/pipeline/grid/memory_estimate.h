@@ -1,0 +1,12 @@
+// What a planned run will take.
+#pragma once
+
+#include "isoshell/memory_estimate.h"
+#include "pipeline/grid/plan.h"
+
+namespace isoshell {
+
+/// As estimate_run.
+RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t resolution);
+
+}  // namespace isoshell

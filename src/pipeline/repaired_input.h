@@ -1,0 +1,28 @@
+// What a run meshes of its input.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "isoshell/remesh_report.h"
+#include "pipeline/grid/plan.h"
+
+namespace isoshell {
+
+/// An input whose holes, fins and turned faces are repaired, and whose parts are one solid.
+struct RepairedInput {
+  std::optional<TriangleSoup> changed;  ///< none where the input needs nothing
+  InputTopology topology;
+  std::vector<std::array<WorldPoint, 2>> interfaces;  ///< edges where parts met, which are curves beside creases
+
+  bool is_changed() const { return changed.has_value(); }
+  const TriangleSoup& soup(const TriangleSoup& given) const { return changed ? *changed : given; }
+};
+
+/// Joins parts that share walls or pass through each other; or repairs what is not closed and oriented. Then unites
+/// the components, if there are several. Says in report.input what was done.
+RepairedInput repair_and_unite(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan,
+                               RemeshReport& report, Context& context);
+
+}  // namespace isoshell

@@ -1,0 +1,44 @@
+// See stage_files.h.
+#include "run/stage_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "isoshell/error.h"
+#include "isoshell/gaps.h"
+
+namespace isoshell {
+
+std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& asked) {
+  if (input.stage) return input.stage->info.left_out;
+  std::string names;
+  for (const Attribute& a : input.soup.attributes)
+    if (!asked || std::count(asked->begin(), asked->end(), a.name) > 0) names += (names.empty() ? "" : ", ") + a.name;
+  return names.empty() ? "" : names + " of " + input.facts.name();
+}
+
+StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
+                                      const std::string& left_out, bool overwrite) {
+  StageWriteOptions options;
+  options.options_json = options_json;
+  options.closing_vox = prepared.closing_vox();
+  options.overwrite = overwrite;
+  options.left_out = left_out;
+  if (prepared.has_bridges())
+    options.bridges = bridging_voxels(prepared.sheet(), find_bridges(prepared.sites(), prepared.sheet()));
+  return options;
+}
+
+Relaxed seeds_of_stage(Input& input, const Prepared& prepared) {
+  Relaxed relaxed{std::move(*input.stage->seeds), prepared.report()};
+  relaxed.report.seeds = relaxed.seeds.size();
+  const int64_t vertices = prepared.sheet().vertex_count();
+  for (const uint32_t home : relaxed.seeds.home)
+    if (int64_t(home) >= vertices)
+      throw Error(ErrorCode::unreadable_input, input.facts.path,
+                  "a seed sits on vertex " + std::to_string(home) + " of a sheet that has " + std::to_string(vertices) +
+                      "; the file's surface and seeds do not belong together: save it anew");
+  return relaxed;
+}
+
+}  // namespace isoshell

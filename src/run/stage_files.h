@@ -1,0 +1,25 @@
+// What a run writes into stage files beside its products, and takes from them again.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/io/input.h"
+#include "isoshell/io/vdb_file.h"
+#include "isoshell/remesh.h"
+
+namespace isoshell {
+
+/// The attributes of an input, among those that are asked for, which stage files of its run do not hold; of a stage
+/// file what that has left out. Empty: none.
+std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& asked);
+
+StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
+                                      const std::string& left_out, bool overwrite);
+
+/// The seeds that a stage file holds, on the sheet that was made of its surface; it has none afterwards. Throws:
+/// unreadable_input where they do not belong there.
+Relaxed seeds_of_stage(Input& input, const Prepared& prepared);
+
+}  // namespace isoshell

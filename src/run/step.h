@@ -1,0 +1,29 @@
+// A step of a run, with its progress.
+#pragma once
+
+#include <type_traits>
+
+#include "isoshell/backend.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+
+/// Runs work between its progress of 0 and of 1. Throws: interrupted, before it begins; what the work throws.
+template <class Work>
+std::invoke_result_t<Work> step(const char* name, const Context& context, Work work) {
+  const auto tell_progress = [&](double fraction) {
+    if (context.progress) context.progress(name, fraction);
+  };
+  if (context.cancel) throw Error(ErrorCode::interrupted, name, "interrupted");
+  tell_progress(0);
+  if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+    work();
+    tell_progress(1);
+  } else {
+    auto product = work();
+    tell_progress(1);
+    return product;
+  }
+}
+
+}  // namespace isoshell

@@ -1,0 +1,383 @@
+// See run/steps.h.
+#include "isoshell/run/steps.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "io/bytes/output_file.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/to_host.h"
+#include "isoshell/error.h"
+#include "isoshell/io/mesh_file.h"
+#include "isoshell/io/polyline_file.h"
+#include "isoshell/io/sizing_vdb.h"
+#include "isoshell/io/vdb_file.h"
+#include "isoshell/transfer_attributes.h"
+#include "run/choose_attributes.h"
+#include "run/color_features.h"
+#include "run/measures.h"
+#include "run/motion_attributes.h"
+#include "run/outputs.h"
+#include "run/process_memory.h"
+#include "run/resume.h"
+#include "run/stage_files.h"
+#include "run/step.h"
+#include "run/warnings.h"
+
+namespace isoshell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void refuse_use(const char* message) { throw Error(ErrorCode::usage, "options", message); }
+
+}  // namespace
+
+class RunSteps::Run {
+ public:
+  explicit Run(RunRequest request) : request_(std::move(request)), options_(request_.options) {
+    check_request(request_);
+    if (!options_.sizing.empty() && !options_.was_given("vertices")) options_.values.vertices.reset();
+    record_.options = options_.values;
+    record_.output = named_output(request_.output.path, request_.output.format, request_.stop_after);
+    options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();
+    options_.values.want_digests |= measures_all();
+  }
+
+  /// Runs steps in a context, and says what was written before an interruption.
+  template <class Work>
+  std::invoke_result_t<Work> in(Context& context, Work work) {
+    context_ = &context;
+    try {
+      if (record_.device.backend.empty()) record_.device = device_info(context);  // no time is lost where there is none
+      return work();
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::interrupted) throw;
+      throw Error(e.code(), e.stage(),
+                  "interrupted; " + (written_.empty() ? "nothing was written" : "written before: " + written_));
+    }
+  }
+
+  void report_to(Tell tell, AroundWrite around_write) {
+    request_.tell = std::move(tell);
+    request_.around_write = std::move(around_write);
+  }
+
+  void read() {
+    if (input_) return;
+    InputRequest request = request_.input;
+    request.creases = volume_creases(options_.values.features);
+    take(timed("read", [&] {
+      return read_input(request, context_->memory_limit_bytes,
+                        [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+    }));
+  }
+
+  void take(Input input) {
+    input_ = std::move(input);
+    record_.input = input_->facts;
+    if (!input_->stage) return;
+    options_ = adopt_options(*input_->stage, input_->facts.path, options_);
+    check_method(options_);
+    possible_features(options_.values, request_);  // refuses those of the stage file
+    if (input_->stage->seeds && request_.stop_after == StopAfter::shell)
+      refuse_use("INPUT is past the shell already; leave out --stop-after shell");
+  }
+
+  void check_files() {
+    if (!std::exchange(has_checked_files_, true)) check_outputs(request_);
+  }
+
+  const Input& input() const { return *input_; }
+
+  RunEstimate estimate() {
+    read();
+    read_sizing_field();
+    if (input_->stage) refuse_use("--dry-run needs a mesh as INPUT, a stage file has its grid already");
+    return estimate_run(input_->soup, measure_topology(input_->soup, *context_).topology, options_.values);
+  }
+
+  const Prepared& prepare() {
+    if (prepared_) return *prepared_;
+    check_files();
+    read();
+    left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
+    if (input_->stage && !left_out_.empty())
+      warn(input_->facts.name() + ": the result is without " + left_out_ +
+           ", and not cut along their seams: a stage file does not hold them; remesh the input itself to keep them");
+    choose_attributes(*input_, options_.values.attributes, stops_early() ? "vdb" : record_.output.format,
+                      record_.attributes, [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+    // A Voronoi stage file does not hold the seeds of patches: then nothing is cut along seams.
+    std::vector<Attribute> attributes;
+    if (!request_.save_voronoi.empty()) attributes.swap(input_->soup.attributes);
+    read_sizing_field();
+    read_lines();
+    prepared_ = timed("prepare", [&] { return prepared_from(*input_); });
+    if (!attributes.empty()) input_->soup.attributes = std::move(attributes);
+    if (input_->soup.attributes.empty()) free_soup();
+    record_.report = prepared_->report();
+    for (const std::string& text : warnings_of_repair(record_.report, record_.input.name())) warn(text);
+    if (measures_all()) timed("risks", [&] { record_.risky_sites = count_risky_sites(*prepared_, *context_); });
+    return *prepared_;
+  }
+
+  const Relaxed& relax() {
+    if (relaxed_) return *relaxed_;
+    prepare();
+    if (!options_.values.want_shell && options_.values.method == Method::sheet)
+      prepared_->free_samples();  // made the sheet, and are not read again
+    const std::optional<StageFile>& stage = input_->stage;
+    relaxed_ = timed("relax", [&] {
+      return stage && stage->seeds ? seeds_of_stage(*input_, *prepared_) : isoshell::relax(*prepared_, *context_);
+    });
+    record_.report = relaxed_->report;
+    return *relaxed_;
+  }
+
+  RunResult finish(bool may_repeat) {
+    save_shell_if_asked();
+    if (request_.stop_after == StopAfter::shell) return result({});
+    save_voronoi_if_asked();
+    if (request_.stop_after == StopAfter::voronoi) return result({});
+    TriangleMesh mesh = timed("triangulate", [&] { return triangulated(may_repeat); });
+    timed("measure", [&] { measure(mesh); });
+    if (measures_all() || request_.gates.needs_distance())
+      timed("distance", [&] { measure_distances(*prepared_, mesh, record_, *context_); });
+    TriangleSoup& soup = input_->soup;
+    if (!soup.attributes.empty())
+      mesh.attributes =
+          timed("attributes", [&] { return transfer_attributes(soup, soup.attributes, mesh, *context_); });
+    mesh.files = may_repeat ? soup.files : std::move(soup.files);
+    if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
+    if (options_.values.color_features) show_features(mesh);
+    const OutputRequest& output = record_.output;
+    if (!output.path.empty())
+      write_step("write", output.path, [&] {
+        write_mesh(output.path, mesh, {output.format, request_.overwrite, options_.values.color_features});
+      });
+    return result(std::move(mesh));
+  }
+
+  void save_shell(const std::string& path, bool overwrite) {
+    const Prepared& p = prepare();
+    write_step("save-shell", path,
+               [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(p, overwrite)); });
+  }
+
+  void save_voronoi(const std::vector<std::string>& paths, bool overwrite) {
+    const SeedSet& seeds = relax().seeds;
+    const Prepared& p = *prepared_;
+    if (p.is_in_patches())
+      refuse_use(
+          "a Voronoi stage file does not hold the seeds of creases, borders and lines; give --features off and "
+          "--boundary close, or save the shell");
+    const VoronoiLabels labels = timed("flood", [&] { return flood_shell(p.shell(), seeds, *context_); });
+    if (options_.values.want_digests)
+      record_.report.digests["labels"] = relaxed_->report.digests["labels"] = digest_text(digest(labels));
+    const StageWriteOptions options = stage_options(p, overwrite);
+    for (const std::string& path : paths)
+      write_step("save-voronoi", path, [&] {
+        isoshell::save_voronoi(path, p.surface(), p.samples(), p.shell(), seeds, labels, options);
+        save_preview(preview_path(path), p.surface().frame, p.shell(), labels, options);
+      });
+  }
+
+ private:
+  bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
+  bool measures_all() const {
+    return request_.measures == Measures::all || !request_.statistics.empty() || !request_.report.empty();
+  }
+
+  template <class Work>
+  std::invoke_result_t<Work> timed(const char* name, Work work) {
+    struct Book {
+      Run& run;
+      const char* name;
+      Clock::time_point start = Clock::now();
+      ~Book() { run.record_.times.push_back({name, ms_since(start)}); }
+    };
+    return step(name, *context_, [&] {
+      Book book{*this, name};
+      return work();
+    });
+  }
+
+  template <class Work>
+  void write_step(const char* name, const std::string& path, Work work) {
+    timed(name, [&] {
+      around_write(path, work);
+      written_ += (written_.empty() ? "" : ", ") + path;
+    });
+  }
+
+  void around_write(const std::string& path, const std::function<void()>& write) const {
+    if (request_.around_write)
+      request_.around_write(path, write);
+    else
+      write();
+  }
+
+  void read_sizing_field() {
+    if (options_.sizing.empty()) return;
+    options_.values.sizing =
+        timed("sizing", [&] { return read_sizing(options_.sizing, context_->memory_limit_bytes); });
+    tell(MessageKind::note, "sizing: " + options_.sizing);
+  }
+
+  void read_lines() {
+    Features& features = options_.values.features;
+    if (features.line_file.empty()) return;
+    features.lines = timed("lines", [&] { return read_polylines(features.line_file); });
+    tell(MessageKind::note, "lines to keep: " + features.line_file);
+  }
+
+  Prepared prepared_from(Input& input) {
+    RemeshOptions options = options_.values;
+    options.features = possible_features(options, request_);
+    options.want_samples = measures_all();  // by find_risks
+    if (!input.stage) return isoshell::prepare(input.soup, options, *context_);
+    if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
+    return isoshell::prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, *context_);
+  }
+
+  /// Nothing but attributes that go over to the result is looked for on it any more.
+  void free_soup() {
+    TriangleSoup without_faces;
+    without_faces.files = std::move(input_->soup.files);
+    input_->soup = std::move(without_faces);
+  }
+
+  TriangleMesh triangulated(bool may_repeat) {
+    Relaxed relaxed = may_repeat ? Relaxed{to_host(relaxed_->seeds), relaxed_->report} : std::move(*relaxed_);
+    RemeshResult made = triangulate(*prepared_, std::move(relaxed), *context_);
+    record_.report = std::move(made.report);
+    return std::move(made.mesh);
+  }
+
+  StageWriteOptions stage_options(const Prepared& prepared, bool overwrite) const {
+    return stage_write_options(prepared, options_json(options_.values), left_out_, overwrite);
+  }
+
+  /// Files that keep this stage: one on the way, and the output of a run that stops there.
+  std::vector<std::string> stage_files(const std::string& saved, StopAfter stage) const {
+    std::vector<std::string> files;
+    if (!saved.empty()) files.push_back(saved);
+    if (request_.stop_after == stage && !request_.output.path.empty()) files.push_back(request_.output.path);
+    return files;
+  }
+
+  void save_shell_if_asked() {
+    prepare();
+    for (const std::string& path : stage_files(request_.save_shell, StopAfter::shell))
+      save_shell(path, request_.overwrite);
+  }
+
+  void save_voronoi_if_asked() {
+    relax();
+    const std::vector<std::string> files = stage_files(request_.save_voronoi, StopAfter::voronoi);
+    if (!files.empty()) save_voronoi(files, request_.overwrite);
+  }
+
+  void measure(const TriangleMesh& mesh) {
+    record_.vertices = int64_t(mesh.vertices.size());
+    record_.triangles = int64_t(mesh.triangles.size());
+    if (request_.measures == Measures::none && !measures_all() && !request_.gates.any()) return;
+    for (const std::string& text : measure_mesh(mesh, record_)) warn(text);
+  }
+
+  void show_features(TriangleMesh& mesh) {
+    if (mesh.features.patch.empty()) warn("the result has no curves that colours could show");
+    color_features(mesh, record_.attributes);
+  }
+
+  void warn(const std::string& text) { tell(MessageKind::warning, text); }
+  void tell(MessageKind kind, const std::string& text) {
+    if (kind == MessageKind::warning) record_.warnings.push_back(text);
+    if (request_.tell) request_.tell(kind, text);
+  }
+
+  RunResult result(TriangleMesh mesh) {
+    RunRecord record = record_;  // another result may follow
+    record.total_ms = ms_since(start_);
+    record.host_peak_bytes = process_peak_bytes();
+    record.device_peak_bytes = device_memory_peak_bytes(context_->device);
+    for (const std::string& text : record.report.warnings) {
+      record.warnings.push_back(text);
+      if (request_.tell) request_.tell(MessageKind::warning, text);
+    }
+    if (!request_.statistics.empty()) around_write(request_.statistics, [&] { write_statistics(record); });
+    std::vector<std::string> missed = missed_gates(request_.gates, record);
+    return {std::move(mesh), std::move(record), request_.gates.asked, std::move(missed)};
+  }
+
+  void write_statistics(const RunRecord& record) const {
+    OutputFile file(request_.statistics, true);  // check_outputs has refused what may not be replaced
+    file.write(statistics_json(record));
+    file.commit();
+  }
+
+  RunRequest request_;
+  AskedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
+  Context* context_ = nullptr;
+  bool has_checked_files_ = false;
+  std::optional<Input> input_;
+  std::optional<Prepared> prepared_;
+  std::optional<Relaxed> relaxed_;
+  RunRecord record_;
+  std::string left_out_;  ///< of the input, by stage files
+  std::string written_;   ///< files that are whole, for who interrupts
+  Clock::time_point start_ = Clock::now();
+};
+
+RunSteps::RunSteps(RunRequest request) : run_(std::make_unique<Run>(std::move(request))) {}
+RunSteps::RunSteps(RunSteps&&) noexcept = default;
+RunSteps& RunSteps::operator=(RunSteps&&) noexcept = default;
+RunSteps::~RunSteps() = default;
+
+void RunSteps::read(Context& context) {
+  run_->in(context, [&] {
+    run_->check_files();
+    run_->read();
+  });
+}
+
+void RunSteps::take(Input input, Context& context) {
+  run_->in(context, [&] { run_->take(std::move(input)); });
+}
+
+const Input& RunSteps::input() const { return run_->input(); }
+
+RunEstimate RunSteps::estimate(Context& context) {
+  return run_->in(context, [&] { return run_->estimate(); });
+}
+
+const Prepared& RunSteps::prepare(Context& context) {
+  return run_->in(context, [&]() -> const Prepared& { return run_->prepare(); });
+}
+
+const Relaxed& RunSteps::relax(Context& context) {
+  return run_->in(context, [&]() -> const Relaxed& { return run_->relax(); });
+}
+
+void RunSteps::save_shell(const std::string& path, bool overwrite, Context& context) {
+  run_->in(context, [&] { run_->save_shell(path, overwrite); });
+}
+
+void RunSteps::save_voronoi(const std::string& path, bool overwrite, Context& context) {
+  run_->in(context, [&] { run_->save_voronoi({path}, overwrite); });
+}
+
+RunResult RunSteps::finish(Context& context, bool may_repeat) {
+  return run_->in(context, [&] { return run_->finish(may_repeat); });
+}
+
+void RunSteps::report_to(Tell tell, AroundWrite around_write) {
+  run_->report_to(std::move(tell), std::move(around_write));
+}
+
+}  // namespace isoshell
