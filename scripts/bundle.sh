@@ -49,11 +49,12 @@ if [ "$with_tests" -eq 1 ]; then
   done < "$from/tests/list.txt"
   [ ! -x "$from/tests/parity_meshes" ] || copy "$from/tests/parity_meshes" "$folder/tests"
   cp scripts/run_tests.sh scripts/sanitize_cuda.sh "$folder"
-  mkdir -p "$folder/tests/golden" "$folder/tests/fuzz" "$folder/scripts" "$folder/examples"
+  mkdir -p "$folder/tests/golden" "$folder/tests/fuzz" "$folder/scripts" "$folder/examples" "$folder/docs/guide"
   cp tests/golden/golden.txt "$folder/tests/golden"
   cp -r tests/data "$folder/tests"
   cp -r tests/fuzz/corpus "$folder/tests/fuzz"
-  cp README.md "$folder"  # three more files that tests of the command read
+  cp README.md "$folder"  # more files that tests of the command read
+  cp docs/guide/command.md "$folder/docs/guide"
   cp examples/01_remesh.cpp "$folder/examples"
   cp scripts/option_table.sh scripts/command_docs.py "$folder/scripts"
 fi

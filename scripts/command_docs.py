@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes what is told of a command from its own --help, which is its option table in a fixed shape.
 
-command_docs.py COMMAND FORM    FORM: man, bash, zsh or fish (completions), or table (README's, in Markdown)
+command_docs.py COMMAND FORM    FORM: man, bash, zsh or fish (completions), or table (of docs/guide/command.md, in Markdown)
 """
 
 import os

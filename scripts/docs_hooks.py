@@ -18,11 +18,9 @@ def on_config(config):
     return config
 
 
-def option_table():
-    """README's table of options. In code a pipe is itself here, where README needs a backslash."""
-    readme = (ROOT / "README.md").read_text()
-    table = readme.split("<!-- options: begin -->")[1].split("<!-- options: end -->")[0]
-    return re.sub(r"`[^`]*`", lambda code: code[0].replace(r"\|", "|"), table)
+def with_plain_pipes(markdown):
+    """In the code of a table a pipe is itself here, where others need a backslash."""
+    return re.sub(r"`[^`\n]*`", lambda code: code[0].replace(r"\|", "|"), markdown)
 
 
 def keyword_lists():
@@ -40,14 +38,12 @@ def keyword_lists():
     return "\n".join(lines)
 
 
-MADE = {"{{ options of the command }}": option_table, "{{ keywords of Python }}": keyword_lists}
-
-
 def on_page_markdown(markdown, page, config, files):
     """Puts in what is made of other files. Links to files of the project that are no pages stay as text."""
-    for name, made in MADE.items():
-        if name in markdown:
-            markdown = markdown.replace(name, made())
+    keywords = "{{ keywords of Python }}"
+    if keywords in markdown:
+        markdown = markdown.replace(keywords, keyword_lists())
+    markdown = with_plain_pipes(markdown)
     folder = posixpath.dirname(page.file.src_uri)
 
     def plain_outside(link):

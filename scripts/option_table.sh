@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints README's option table, made from the command's --help. With --update, puts it into README.md.
+# Prints the table of options of docs/guide/command.md, made from the command's --help. With --update, puts it there.
 #   scripts/option_table.sh [--update] [path of vdb_isomesh]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -13,7 +13,8 @@ if [ "$update" -eq 0 ]; then
   table
 else
   made=$(mktemp)
-  { sed '/<!-- options: begin -->/q' README.md; table; sed -n '/<!-- options: end -->/,$p' README.md; } > "$made"
-  cat "$made" > README.md
+  page=docs/guide/command.md
+  { sed '/<!-- options: begin -->/q' "$page"; table; sed -n '/<!-- options: end -->/,$p' "$page"; } > "$made"
+  cat "$made" > "$page"
   rm -f "$made"
 fi

@@ -15,7 +15,7 @@ const std::string kQuick = " --vertices 300 --resolution 48 ";
 
 }  // namespace
 
-TEST_CASE("command: help goes to standard output and is README's option table", "[cli]") {
+TEST_CASE("command: help goes to standard output and is the guide's table of options", "[cli]") {
   Folder folder;
   const auto help = folder.run("--help");
   CHECK(help.status == 0);
@@ -23,7 +23,7 @@ TEST_CASE("command: help goes to standard output and is README's option table", 
   const auto table = folder.shell("'" + source_folder() + "/scripts/option_table.sh' '" + command_path() + "'");
   REQUIRE(table.status == 0);
   CHECK(contains(table.out, "| `--vertices K` |"));
-  CHECK(contains(content(source_folder() + "/README.md"),
+  CHECK(contains(content(source_folder() + "/docs/guide/command.md"),
                  "<!-- options: begin -->\n" + table.out + "<!-- options: end -->"));
 }
 

@@ -46,7 +46,7 @@ struct GivenOption {
 /// its format and isovalue are set. Throws: usage.
 Arguments parse_given_options(const std::vector<GivenOption>& given, const std::string& output);
 
-/// A row of the table that README, --help and the Python module's keywords are made from.
+/// A row of the table that the guide, --help and the Python module's keywords are made from.
 struct OptionEntry {
   std::string group, name;
   std::string value;  ///< what stands for it, as K; empty: a flag

@@ -1,4 +1,4 @@
-// The text of --help. README's option table is made from it.
+// The text of --help. The table of options in docs/guide/command.md is made from it.
 #pragma once
 
 #include <string>

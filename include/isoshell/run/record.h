@@ -47,7 +47,7 @@ struct RunRecord {
   std::vector<std::string> warnings;                   ///< all of them, in the order in which they came
 };
 
-/// The statistics of a run as JSON, schema 1, which README describes; what was not measured is null.
+/// The statistics of a run as JSON, schema 1; what was not measured is null.
 std::string statistics_json(const RunRecord& record);
 
 }  // namespace isoshell
