@@ -181,3 +181,12 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
         isoshell.remesh(tmp_path / "none.obj")
     assert caught.value.code == ErrorCode.UNREADABLE_INPUT == 3
     assert caught.value.stage == "read"
+
+
+def test_options_are_named_as_keywords_and_files_as_they_are(tmp_path, ball):
+    with pytest.raises(isoshell.Error, match=r"scan--close-gaps\.off"):
+        isoshell.remesh(tmp_path / "scan--close-gaps.off")
+    with pytest.raises(isoshell.Error, match=r"--close\.off"):
+        isoshell.remesh(tmp_path / "--close.off")
+    with pytest.raises(isoshell.Error, match=r"^resolution excludes voxel_size; see help\(isoshell.Options\)$"):
+        isoshell.remesh(ball, voxel_size=1, resolution=32)

@@ -2,8 +2,10 @@
 
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <exception>
 #include <new>
+#include <regex>
 
 #include "isoshell/error.h"
 
@@ -11,8 +13,6 @@ namespace nb = nanobind;
 
 namespace isoshell::python {
 namespace {
-
-bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
 
 void raise(ErrorCode code, const std::string& stage, const std::string& message) {
   const nb::object error = nb::module_::import_("isoshell._errors").attr("Error")(in_keywords(message), code, stage);
@@ -32,23 +32,19 @@ void translate(const std::exception_ptr& thrown, void*) {
 }  // namespace
 
 std::string in_keywords(const std::string& message) {
+  // An option stands by itself: "--iso", not what a file may be called, "a--iso.ply" or "--iso.ply".
+  static const std::regex option("(^|[\\s('\"])--([a-z][a-z-]*[a-z])(?![-\\w]|\\.\\w)");
   std::string text;
-  for (size_t i = 0; i < message.size();) {
-    const bool begins = message.compare(i, 2, "--") == 0 && i + 2 < message.size() && is_letter(message[i + 2]);
-    if (!begins) {
-      text += message[i++];
-      continue;
-    }
-    size_t end = i + 2;
-    for (size_t j = end; j < message.size() && (is_letter(message[j]) || message[j] == '-'); ++j)
-      if (is_letter(message[j])) end = j + 1;
-    std::string name = message.substr(i + 2, end - i - 2);
-    for (char& c : name)
-      if (c == '-') c = '_';
-    text += name == "help" ? "help(isoshell.Options)" : name;
-    i = end;
+  auto rest = message.cbegin();
+  for (std::sregex_iterator it(message.begin(), message.end(), option), end; it != end; ++it) {
+    const std::smatch& found = *it;
+    std::string name = found[2];
+    std::replace(name.begin(), name.end(), '-', '_');
+    text.append(rest, found[0].first);
+    text += found[1].str() + (name == "help" ? "help(isoshell.Options)" : name);
+    rest = found[0].second;
   }
-  return text;
+  return text.append(rest, message.cend());
 }
 
 void bind_errors(nb::module_& m) {

@@ -94,7 +94,9 @@ void check_outputs(const RunRequest& r) {
   if (!r.save_voronoi.empty()) files.push_back(preview_path(r.save_voronoi));
   if (r.stop_after == StopAfter::voronoi && !r.output.path.empty()) files.push_back(preview_path(r.output.path));
   if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty()))
-    refuse("this build writes no .vdb files: leave out --stop-after and --save-..., or build with -DISOSHELL_VDB=ON");
+    refuse(
+        "this build writes no .vdb files: leave out --stop-after, --save-shell and --save-voronoi, or build with "
+        "-DISOSHELL_VDB=ON");
   for (size_t i = 0; i < files.size(); ++i) {
     if (files[i].empty() || files[i] == "-") continue;
     check_output(files[i], r.overwrite);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "isoshell/readable.h"
+
 namespace isoshell {
 namespace {
 
@@ -68,8 +70,8 @@ void warn_of_topology(const PreparedSurface& p, const InputTopology& input, Reme
                               "than four cells were left out, " +
                               std::to_string(report.sheet.topology.components) + " stay; ask for more --vertices");
   else if (report.sheet.is_compared && !report.sheet.agrees)
-    report.warnings.push_back("the solid has " + std::to_string(report.sheet.topology.components) +
-                              " components and genus " + std::to_string(report.sheet.topology.genus) + ", the input " +
+    report.warnings.push_back("the solid has " + counted(report.sheet.topology.components, "component") +
+                              " and genus " + std::to_string(report.sheet.topology.genus) + ", the input " +
                               std::to_string(input.components) + " and " + std::to_string(input.genus) +
                               "; a higher --resolution may tell near parts apart");
 }
