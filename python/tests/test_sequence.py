@@ -11,18 +11,10 @@ import numpy as np
 import pytest
 from conftest import make_ball, write_obj
 from isoshell import ErrorCode
+from moving_shapes import MOTION, spin_between, twisted
 
 SMALL = {"vertices": 200, "features": "off"}
 SMALL_WORDS = ("--vertices", 200, "--features", "off")
-MOTION = {"born", "vx", "vy", "vz"}
-
-
-def twisted(frame, rings=16):
-    """A long ball, more twisted from frame to frame."""
-    vertices, faces = make_ball(rings)
-    x, y, z = (vertices * [1, 0.7, 2]).T
-    angle = 0.08 * frame * z
-    return np.column_stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y, z]), faces
 
 
 @pytest.fixture
@@ -109,14 +101,6 @@ def spinning(angle, with_velocities):
     values = np.sqrt(x ** 2 + (y / 0.8) ** 2 + at[2] ** 2) - 1
     velocities = np.stack([-0.1 * at[1], 0.1 * at[0], np.zeros_like(at[0])], axis=-1) if with_velocities else None
     return isoshell.Volume(values, spacing, -(n - 1) / 2 * spacing, velocities)
-
-
-def spin_between(first, second):
-    """By how much most vertices turn about z."""
-    a, b = first.vertices, second.vertices
-    kept = (second.attributes["born"] == 0) & (np.hypot(a[:, 0], a[:, 1]) > 0.6)
-    turn = np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])
-    return np.median(np.angle(np.exp(1j * turn))[kept])
 
 
 def test_vertices_of_volumes_go_along_their_velocities():

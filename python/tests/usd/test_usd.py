@@ -11,16 +11,19 @@ import pytest
 from isoshell import ErrorCode
 
 pytest.importorskip("pxr", reason="needs usd-core: pip install usd-core")
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, UsdVol, Vt  # noqa: E402
-from usd_stages import SMALL, add_mesh, colored, new_stage, primvar, stage_of, written  # noqa: E402, F401, fixture
-
-
-def complaints(path):
-    """What every validator that usd-core has says of a file."""
-    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
-    assert len(validators) > 20
-    errors = UsdValidation.ValidationContext(validators).Validate(Usd.Stage.Open(str(path)))
-    return [f"{error.GetName()}: {error.GetMessage()}" for error in errors]
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdVol, Vt  # noqa: E402
+from usd_stages import (  # noqa: E402, F401, fixture
+    SMALL,
+    add_materials,
+    add_mesh,
+    colored,
+    complaints,
+    new_stage,
+    primvar,
+    skinned,
+    stage_of,
+    written,
+)
 
 
 def written_mesh(path):
@@ -134,15 +137,6 @@ def test_time_codes_choose_points_and_transforms(stage_of, box):
         assert np.allclose(isoshell.usd.read(path, time=time).vertices, box[0] * (1 + at) + [at, 0, 0])
 
 
-def skinned(stage, mesh):
-    skeleton = UsdSkel.Skeleton.Define(stage, "/World/Skeleton")
-    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
-    binding.CreateSkeletonRel().AddTarget(skeleton.GetPath())
-    count = len(mesh.GetPointsAttr().Get())
-    binding.CreateJointIndicesPrimvar(False, 1).Set([0] * count)
-    binding.CreateJointWeightsPrimvar(False, 1).Set([1.0] * count)
-
-
 def blended(stage, mesh):
     shape = UsdSkel.BlendShape.Define(stage, "/World/Shape/Smile")
     UsdSkel.BindingAPI.Apply(mesh.GetPrim()).CreateBlendShapeTargetsRel().AddTarget(shape.GetPath())
@@ -193,29 +187,6 @@ def test_primvars_that_do_not_fit_are_left_out_with_a_warning(stage_of, box):
         read = isoshell.usd.read(stage_of(box, change))
     assert not read.of_vertices
     assert ["short" in str(told[0].message), "wild" in str(told[1].message)] == [True, True]
-
-
-def add_materials(stage, mesh):
-    """Red for the whole cube, and blue with a picture for two of its sides."""
-    for name in ("Red", "Blue"):
-        material = UsdShade.Material.Define(stage, f"/World/Looks/{name}")
-        shader = UsdShade.Shader.Define(stage, f"/World/Looks/{name}/Surface")
-        shader.CreateIdAttr("UsdPreviewSurface")
-        shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.25)
-        material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
-        if name == "Blue":
-            folder = os.path.dirname(stage.GetRootLayer().realPath)
-            with open(os.path.join(folder, "blue.png"), "wb") as picture:
-                picture.write(b"\x89PNG\r\n\x1a\n")
-            texture = UsdShade.Shader.Define(stage, f"/World/Looks/{name}/Picture")
-            texture.CreateIdAttr("UsdUVTexture")
-            texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set("./blue.png")
-            color = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
-            color.ConnectToSource(texture.ConnectableAPI(), "rgb")
-    api = UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim())
-    api.Bind(UsdShade.Material.Get(stage, "/World/Looks/Red"))
-    subset = api.CreateMaterialBindSubset("sides", [0, 1])
-    UsdShade.MaterialBindingAPI.Apply(subset.GetPrim()).Bind(UsdShade.Material.Get(stage, "/World/Looks/Blue"))
 
 
 def test_bound_materials_are_the_attribute_material(stage_of, box):

@@ -12,8 +12,8 @@ from isoshell import ErrorCode
 
 pytest.importorskip("pxr", reason="needs usd-core: pip install usd-core")
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt  # noqa: E402
-from test_sequence import MOTION, spin_between, twisted  # noqa: E402
-from test_usd import add_materials, add_mesh, complaints, new_stage, primvar, skinned, written  # noqa: E402
+from moving_shapes import MOTION, spin_between, twisted  # noqa: E402
+from usd_stages import add_materials, add_mesh, complaints, new_stage, primvar, skinned, written  # noqa: E402
 
 SMALL = {"vertices": 200, "features": "off"}
 

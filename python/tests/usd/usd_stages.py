@@ -1,8 +1,10 @@
-"""Stages of USD that the tests write, and how they are changed."""
+"""Stages of USD that the tests write, how they are changed, and what validators say of them."""
+
+import os
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, Vt
+from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, Vt
 
 SMALL = {"vertices": 100, "resolution": 32}
 
@@ -38,6 +40,14 @@ def written(stage):
     return stage.GetRootLayer().realPath
 
 
+def complaints(path):
+    """What every validator that usd-core has says of a file."""
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    assert len(validators) > 20
+    errors = UsdValidation.ValidationContext(validators).Validate(Usd.Stage.Open(str(path)))
+    return [f"{error.GetName()}: {error.GetMessage()}" for error in errors]
+
+
 @pytest.fixture
 def stage_of(tmp_path):
     """Saves a stage with one mesh, /World/Shape, that a function may change before."""
@@ -65,3 +75,35 @@ def colored(stage, mesh):
     primvar(mesh, "weight", types.FloatArray, "constant", [4])
     mesh.CreateNormalsAttr([(0, 0, -1)] * 6)
     mesh.SetNormalsInterpolation("uniform")
+
+
+def add_materials(stage, mesh):
+    """Red for the whole cube, and blue with a picture for two of its sides."""
+    for name in ("Red", "Blue"):
+        material = UsdShade.Material.Define(stage, f"/World/Looks/{name}")
+        shader = UsdShade.Shader.Define(stage, f"/World/Looks/{name}/Surface")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.25)
+        material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+        if name == "Blue":
+            folder = os.path.dirname(stage.GetRootLayer().realPath)
+            with open(os.path.join(folder, "blue.png"), "wb") as picture:
+                picture.write(b"\x89PNG\r\n\x1a\n")
+            texture = UsdShade.Shader.Define(stage, f"/World/Looks/{name}/Picture")
+            texture.CreateIdAttr("UsdUVTexture")
+            texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set("./blue.png")
+            color = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+            color.ConnectToSource(texture.ConnectableAPI(), "rgb")
+    api = UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim())
+    api.Bind(UsdShade.Material.Get(stage, "/World/Looks/Red"))
+    subset = api.CreateMaterialBindSubset("sides", [0, 1])
+    UsdShade.MaterialBindingAPI.Apply(subset.GetPrim()).Bind(UsdShade.Material.Get(stage, "/World/Looks/Blue"))
+
+
+def skinned(stage, mesh):
+    skeleton = UsdSkel.Skeleton.Define(stage, "/World/Skeleton")
+    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    binding.CreateSkeletonRel().AddTarget(skeleton.GetPath())
+    count = len(mesh.GetPointsAttr().Get())
+    binding.CreateJointIndicesPrimvar(False, 1).Set([0] * count)
+    binding.CreateJointWeightsPrimvar(False, 1).Set([1.0] * count)
