@@ -86,6 +86,4 @@ class Folder {
   fs::path path_;
 };
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 }  // namespace isoshell::cli

@@ -1,6 +1,7 @@
 // The command line alone: what is refused, with which words, and what it turns into. No stage runs here.
 #include "isoshell/error.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "vdb_isomesh/args.h"
 
 using namespace isoshell;
@@ -22,16 +23,8 @@ RemeshOptions values(std::vector<const char*> options) { return arguments(std::m
 
 /// The message of the usage error that these words give; empty when they are accepted.
 std::string refusal(std::vector<const char*> words) {
-  try {
-    parse(std::move(words));
-  } catch (const Error& e) {
-    CHECK(e.code() == ErrorCode::usage);
-    return e.what();
-  }
-  return "";
+  return message_of(ErrorCode::usage, [&] { parse(std::move(words)); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -191,14 +184,8 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
 }
 
 TEST_CASE("args: an option by a name that does not exist is refused with the nearest", "[cli][args]") {
-  const auto given_refusal = [](const std::string& name, const std::string& value) -> std::string {
-    try {
-      parse_given_options({{name, value}}, "");
-    } catch (const Error& e) {
-      CHECK(e.code() == ErrorCode::usage);
-      return e.what();
-    }
-    return "";
+  const auto given_refusal = [](const std::string& name, const std::string& value) {
+    return message_of(ErrorCode::usage, [&] { parse_given_options({{name, value}}, ""); });
   };
   CHECK(contains(given_refusal("verticse", "7"), "did you mean --vertices?"));
   CHECK(contains(given_refusal("vertices", "x"), "--vertices is 'x'"));

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 using namespace isoshell::cli;

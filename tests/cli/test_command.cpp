@@ -1,19 +1,12 @@
 // The command as a user meets it: exit statuses, messages, files, pipes, signals.
 
 #include "cli/command.h"
+#include "cli/quick_ball.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 using namespace isoshell::cli;
-
-namespace {
-
-/// A small closed surface that is meshed in well under a second.
-void write_ball(const Folder& folder) { folder.write_off("ball.off", shapes::sphere({1, 2, 3}, 5, 48)); }
-
-const std::string kQuick = " --vertices 300 --resolution 48 ";
-
-}  // namespace
 
 TEST_CASE("command: help goes to standard output and is the guide's table of options", "[cli]") {
   Folder folder;

@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "isoshell/io/polyline_file.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 using namespace isoshell::cli;

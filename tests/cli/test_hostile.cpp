@@ -1,6 +1,7 @@
 // What a hostile or unlucky user gives the command: damaged files, surfaces that are hardly surfaces, absurd sizes.
 #include "cli/command.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 using namespace isoshell::cli;

@@ -8,6 +8,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/sizing_fields.h"
 
 using namespace isoshell;
@@ -22,13 +23,8 @@ TestGrid constant(const std::string& name, double value, double background = 0) 
 
 /// What reading says, or nothing when it is fine.
 std::string complaint(const std::string& source, int64_t max_bytes = 0) {
-  try {
-    read_sizing(source, max_bytes);
-    return "";
-  } catch (const Error& e) {
-    CHECK(int(e.code()) == int(max_bytes > 0 ? ErrorCode::out_of_memory : ErrorCode::unreadable_input));
-    return e.what();
-  }
+  return message_of(max_bytes > 0 ? ErrorCode::out_of_memory : ErrorCode::unreadable_input,
+                    [&] { read_sizing(source, max_bytes); });
 }
 
 void write_ball(const Folder& folder) { folder.write_off("ball.off", shapes::sphere({0, 0, 0}, 1, 64)); }

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/sizing_fields.h"
 
 using namespace isoshell;

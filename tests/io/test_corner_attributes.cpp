@@ -4,6 +4,7 @@
 
 #include "core/attribute_values.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 
 using namespace isoshell;
@@ -14,19 +15,6 @@ using Names = std::vector<std::string>;
 using Values = std::vector<double>;
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-
-const Attribute& named(const TriangleSoup& soup, const std::string& name) {
-  for (const Attribute& a : soup.attributes)
-    if (a.name == name) return a;
-  FAIL("there is no attribute " + name);
-  return soup.attributes.front();
-}
-
-Names names(const TriangleSoup& soup) {
-  Names all;
-  for (const Attribute& a : soup.attributes) all.push_back(a.name);
-  return all;
-}
 
 Values of_corner(const Attribute& a, size_t corner) {
   const double* const value = value_of(a, corner);
@@ -84,21 +72,21 @@ TEST_CASE("corners: OBJ gives texture coordinates, normals and names to the face
                               "v 2 0 0\nvt 0 0\nvt 1 0 0\nvt 1 1\nvt .25\nvn 0 0 1\nvn 0 0 -2\n"
                               "f 1/1/1 2/2/1 3/3/1 4/4/1\no thing\ng left  right \nusemtl steel # x\nf 2//2 5/-1 3/3\n"
                               "g\nusemtl wood\nf 2/1 5/2 3/3\n");
-  REQUIRE(names(soup) == Names{"uv", "normal", "object", "group", "material"});
+  REQUIRE(names_of(soup.attributes) == Names{"uv", "normal", "object", "group", "material"});
   CHECK(soup.files.materials == Names{"a b.mtl"});
   REQUIRE(soup.triangles.size() == 4);
-  const Attribute& uv = named(soup, "uv");
+  const Attribute& uv = named(soup.attributes, "uv");
   const Values of_vertex[] = {{0, 0}, {1, 0}, {1, 1}, {.25, 0}};
   for (size_t corner = 0; corner < 6; ++corner)
     CHECK(of_corner(uv, corner) == of_vertex[soup.triangles[corner / 3][corner % 3]]);
   CHECK(std::isnan(of_corner(uv, 6)[0]));
   CHECK(of_corner(uv, 7) == Values{.25, 0});
   CHECK(of_corner(uv, 8) == Values{1, 1});
-  CHECK(of_corner(named(soup, "normal"), 6) == Values{0, 0, -2});
-  CHECK(std::isnan(of_corner(named(soup, "normal"), 7)[0]));
-  CHECK(labels(named(soup, "object")) == Names{"", "", "thing", "thing"});
-  CHECK(labels(named(soup, "group")) == Names{"", "", "left  right", ""});
-  CHECK(labels(named(soup, "material")) == Names{"", "", "steel # x", "wood"});
+  CHECK(of_corner(named(soup.attributes, "normal"), 6) == Values{0, 0, -2});
+  CHECK(std::isnan(of_corner(named(soup.attributes, "normal"), 7)[0]));
+  CHECK(labels(named(soup.attributes, "object")) == Names{"", "", "thing", "thing"});
+  CHECK(labels(named(soup.attributes, "group")) == Names{"", "", "left  right", ""});
+  CHECK(labels(named(soup.attributes, "material")) == Names{"", "", "steel # x", "wood"});
 }
 
 TEST_CASE("corners: those of a polygon of very many keep their values, and the first one where a vertex repeats",
@@ -114,7 +102,7 @@ TEST_CASE("corners: those of a polygon of very many keep their values, and the f
   const TriangleSoup soup = read_text_as("obj", text + values + "vt -1 0\nf" + corners + " 1/-1\n");
   REQUIRE(soup.triangles.size() == kCorners - 2);
   const auto of_vertex = [](size_t, uint32_t v) { return Values{double(v), 0}; };
-  CHECK(wrong_corners(soup, named(soup, "uv"), of_vertex) == 0);
+  CHECK(wrong_corners(soup, named(soup.attributes, "uv"), of_vertex) == 0);
 }
 
 TEST_CASE("corners: OBJ's indices that name nothing are refused with line and value", "[mesh_file][unit]") {
@@ -142,7 +130,7 @@ TEST_CASE("corners: OBJ brings back what a large mesh has, sorted by material", 
   write_mesh(folder / "a.obj", mesh);
   const TriangleSoup soup = read_mesh(folder / "a.obj");
   CHECK(soup.files.materials == mesh.files.materials);
-  REQUIRE(names(soup) == Names{"uv", "normal", "material"});
+  REQUIRE(names_of(soup.attributes) == Names{"uv", "normal", "material"});
   std::vector<size_t> order;
   for (const int material : {-1, 0, 1, 2})
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -150,13 +138,13 @@ TEST_CASE("corners: OBJ brings back what a large mesh has, sorted by material", 
   int64_t wrong = 0;
   for (size_t t = 0; t < order.size(); ++t) wrong += soup.triangles[t] != mesh.triangles[order[t]];
   CHECK(wrong == 0);
-  CHECK(wrong_corners(soup, named(soup, "uv"), [&](size_t t, uint32_t v) {
+  CHECK(wrong_corners(soup, named(soup.attributes, "uv"), [&](size_t t, uint32_t v) {
           return Values{double(float(order[t]) / 4), double(float(v) / 8)};
         }) == 0);
-  CHECK(wrong_corners(soup, named(soup, "normal"), [&](size_t t, uint32_t v) {
+  CHECK(wrong_corners(soup, named(soup.attributes, "normal"), [&](size_t t, uint32_t v) {
           return Values{double(order[t] % 7), double(v % 5), 1};
         }) == 0);
-  const Names found = labels(named(soup, "material"));
+  const Names found = labels(named(soup.attributes, "material"));
   for (size_t t = 0; t < order.size(); ++t) wrong += found[t] != (Names{"", "red steel", "b", "c#"})[order[t] % 4];
   CHECK(wrong == 0);
 }
@@ -175,15 +163,15 @@ TEST_CASE("corners: PLY brings back what a large mesh has", "[mesh_file][unit]")
   CHECK(soup.triangles == mesh.triangles);
   CHECK(soup.files.materials == mesh.files.materials);
   CHECK(soup.files.textures == mesh.files.textures);
-  REQUIRE(names(soup) == Names{"color", "uv", "normal", "material", "texnumber", "color"});
+  REQUIRE(names_of(soup.attributes) == Names{"color", "uv", "normal", "material", "texnumber", "color"});
   CHECK(soup.attributes[0].values == mesh.attributes[5].values);
   CHECK(soup.attributes[5].domain == AttributeDomain::face);
   CHECK(soup.attributes[5].values == mesh.attributes[4].values);
-  CHECK(named(soup, "texnumber").values == mesh.attributes[3].values);
-  CHECK(named(soup, "uv").values == mesh.attributes[0].values);
-  CHECK(named(soup, "normal").values == mesh.attributes[1].values);
-  CHECK(named(soup, "material").values == mesh.attributes[2].values);
-  CHECK(named(soup, "material").labels == mesh.attributes[2].labels);
+  CHECK(named(soup.attributes, "texnumber").values == mesh.attributes[3].values);
+  CHECK(named(soup.attributes, "uv").values == mesh.attributes[0].values);
+  CHECK(named(soup.attributes, "normal").values == mesh.attributes[1].values);
+  CHECK(named(soup.attributes, "material").values == mesh.attributes[2].values);
+  CHECK(named(soup.attributes, "material").labels == mesh.attributes[2].labels);
 }
 
 TEST_CASE("corners: PLY's lists of texture coordinates are read as MeshLab writes them", "[mesh_file][unit]") {
@@ -195,14 +183,14 @@ TEST_CASE("corners: PLY's lists of texture coordinates are read as MeshLab write
       "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
   const TriangleSoup soup =
       read_text_as("ply", head + "4 0 1 2 3 1 2 3 8 0 .5 1 .5 1 1 0 1 2 1 7\n3 3 2 1 4 5 6 0 0 0\n");
-  REQUIRE(names(soup) == Names{"color", "uv", "texnumber"});
+  REQUIRE(names_of(soup.attributes) == Names{"color", "uv", "texnumber"});
   CHECK(soup.files.textures == Names{"my image.png"});
   const Values of_vertex[] = {{0, .5}, {1, .5}, {1, 1}, {0, 1}};
   for (size_t corner = 0; corner < 6; ++corner)
-    CHECK(of_corner(named(soup, "uv"), corner) == of_vertex[soup.triangles[corner / 3][corner % 3]]);
-  CHECK(std::isnan(of_corner(named(soup, "uv"), 7)[1]));
-  CHECK(named(soup, "texnumber").values == Values{2, 2, 0});
-  CHECK(named(soup, "color").values == Values{1, 2, 3, 1, 2, 3, 4, 5, 6});
+    CHECK(of_corner(named(soup.attributes, "uv"), corner) == of_vertex[soup.triangles[corner / 3][corner % 3]]);
+  CHECK(std::isnan(of_corner(named(soup.attributes, "uv"), 7)[1]));
+  CHECK(named(soup.attributes, "texnumber").values == Values{2, 2, 0});
+  CHECK(named(soup.attributes, "color").values == Values{1, 2, 3, 1, 2, 3, 4, 5, 6});
   REQUIRE(soup.dropped_attributes.size() == 1);
   CHECK(soup.dropped_attributes[0].name == "marks");
   const Error wrong =
@@ -228,10 +216,12 @@ TEST_CASE("corners: both byte orders of binary PLY bring values of faces, in row
       put(bytes, count + .5, big_endian);
     }
     const TriangleSoup soup = read_text_as("ply", bytes);
-    REQUIRE(names(soup) == Names{"uv", "rank", "heat"});
-    CHECK(named(soup, "rank").values == Values{-4, -4, -3});
-    CHECK(named(soup, "heat").values == Values{4.5, 4.5, 3.5});
-    CHECK(wrong_corners(soup, named(soup, "uv"), [](size_t, uint32_t v) { return Values{v / 4., v / 8.}; }) == 0);
+    REQUIRE(names_of(soup.attributes) == Names{"uv", "rank", "heat"});
+    CHECK(named(soup.attributes, "rank").values == Values{-4, -4, -3});
+    CHECK(named(soup.attributes, "heat").values == Values{4.5, 4.5, 3.5});
+    CHECK(wrong_corners(soup, named(soup.attributes, "uv"), [](size_t, uint32_t v) {
+            return Values{v / 4., v / 8.};
+          }) == 0);
   }
 }
 
@@ -245,7 +235,7 @@ TEST_CASE("corners: normals that are the same all around stand at PLY's vertices
   write_mesh(folder / "a.ply", {ball.vertices, ball.triangles, {}, {normal}});
   CHECK(get_file(folder / "a.ply").find("property float nx\n") != std::string::npos);
   const TriangleSoup back = read_mesh(folder / "a.ply");
-  REQUIRE(names(back) == Names{"normal"});
+  REQUIRE(names_of(back.attributes) == Names{"normal"});
   CHECK(back.attributes[0].values == normal.values);
   CHECK(back.attributes[0].index == normal.index);
 }
@@ -259,9 +249,9 @@ TEST_CASE("corners: labels that do not fit their numbers are no labels", "[mesh_
                         "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 " +
                             number + "\n");
   };
-  CHECK(labels(named(soup("0"), "part")) == Names{"lid"});
-  CHECK(named(soup("1"), "part").labels.empty());
-  CHECK(named(soup("1"), "part").values == Values{1});
+  CHECK(labels(named(soup("0").attributes, "part")) == Names{"lid"});
+  CHECK(named(soup("1").attributes, "part").labels.empty());
+  CHECK(named(soup("1").attributes, "part").values == Values{1});
 }
 
 TEST_CASE("corners: what does not fit a mesh, or PLY, is refused", "[mesh_file][unit]") {

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 
 using namespace isoshell;

@@ -8,6 +8,7 @@
 #include "io/gltf/gltf_codecs.h"
 #include "support/gltf_file.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
 

@@ -4,6 +4,7 @@
 
 #include "support/gltf_file.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
 

@@ -5,6 +5,7 @@
 
 #include "isoshell/io/point_file.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 
 using namespace isoshell;
@@ -27,19 +28,6 @@ void put(std::string& out, T value, bool big_endian) {
   for (size_t i = 0; i < sizeof(T); ++i) out += bytes[big_endian ? sizeof(T) - 1 - i : i];
 }
 
-const Attribute& named(const std::vector<Attribute>& attributes, const std::string& name) {
-  for (const Attribute& a : attributes)
-    if (a.name == name) return a;
-  FAIL("there is no attribute " + name);
-  return attributes.front();
-}
-
-std::vector<std::string> names(const std::vector<Attribute>& attributes) {
-  std::vector<std::string> all;
-  for (const Attribute& a : attributes) all.push_back(a.name);
-  return all;
-}
-
 using Names = std::vector<std::string>;
 using Values = std::vector<double>;
 
@@ -51,7 +39,7 @@ TEST_CASE("attributes: numbers of a PLY file's vertices come with their names an
       "property int id\nproperty float nx\nproperty float ny\nproperty float nz\nproperty list uchar int near\n"
       "property float s\nproperty float t\nproperty uchar gap\n",
       {"1 2 3 4 0.1 -7 0 0 1 2 5 6 .5 .5 1", "5 6 7 8 1e300 8 0 0 1 0 .5 .5 1", "255 0 9 1 -2 9 0 0 1 1 4 .5 .5 0"});
-  REQUIRE(names(soup.attributes) == Names{"color", "quality", "id", "normal", "uv"});
+  REQUIRE(names_of(soup.attributes) == Names{"color", "quality", "id", "normal", "uv"});
   CHECK(soup.attributes[0].type == NumberType::u8);
   CHECK(soup.attributes[0].components == 4);
   CHECK(soup.attributes[0].values == Values{1, 2, 3, 4, 5, 6, 7, 8, 255, 0, 9, 1});
@@ -86,7 +74,7 @@ TEST_CASE("attributes: both byte orders of binary PLY are read, in rows of fixed
       bytes += '\3';
       for (int32_t v = 0; v < 3; ++v) put(bytes, v, big_endian);
       const TriangleSoup soup = read_text_as("ply", bytes);
-      CHECK(names(soup.attributes) == Names{"heat", "color"});
+      CHECK(names_of(soup.attributes) == Names{"heat", "color"});
       CHECK(soup.attributes[0].values == Values{0, -100, -200});
       CHECK(soup.attributes[1].values == Values{.25, .5, 0, 1.25, 1.5, 1, 2.25, 2.5, 2});
       CHECK(soup.attributes[1].type == NumberType::f32);
@@ -96,16 +84,16 @@ TEST_CASE("attributes: both byte orders of binary PLY are read, in rows of fixed
 
 TEST_CASE("attributes: red, green and blue are the colour only together, of one type, and under a free name",
           "[mesh_file][unit]") {
-  CHECK(names(ascii("property uchar red\nproperty uchar green\n", {"1 2", "1 2", "1 2"}).attributes) ==
+  CHECK(names_of(ascii("property uchar red\nproperty uchar green\n", {"1 2", "1 2", "1 2"}).attributes) ==
         Names{"red", "green"});
-  CHECK(names(ascii("property uchar red\nproperty uchar green\nproperty float blue\n", {"1 2 3", "1 2 3", "1 2 3"})
-                  .attributes) == Names{"red", "green", "blue"});
-  CHECK(names(ascii("property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float alpha\n",
-                    {"1 2 3 .5", "1 2 3 .5", "1 2 3 .5"})
-                  .attributes) == Names{"color", "alpha"});
-  CHECK(names(ascii("property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float color\n",
-                    {"1 2 3 .5", "1 2 3 .5", "1 2 3 .5"})
-                  .attributes) == Names{"red", "green", "blue", "color"});
+  CHECK(names_of(ascii("property uchar red\nproperty uchar green\nproperty float blue\n", {"1 2 3", "1 2 3", "1 2 3"})
+                     .attributes) == Names{"red", "green", "blue"});
+  CHECK(names_of(ascii("property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float alpha\n",
+                       {"1 2 3 .5", "1 2 3 .5", "1 2 3 .5"})
+                     .attributes) == Names{"color", "alpha"});
+  CHECK(names_of(ascii("property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float color\n",
+                       {"1 2 3 .5", "1 2 3 .5", "1 2 3 .5"})
+                     .attributes) == Names{"red", "green", "blue", "color"});
 }
 
 TEST_CASE("attributes: a property may have the name of a keyword or a type", "[mesh_file][unit]") {
@@ -113,11 +101,11 @@ TEST_CASE("attributes: a property may have the name of a keyword or a type", "[m
       "property float element\nproperty float end_header\nproperty float property\nproperty uchar float\n"
       "property float list\nproperty float u\n",
       {"1 2 3 4 5 6", "1 2 3 4 5 6", "1 2 3 4 5 6"});
-  CHECK(names(soup.attributes) == Names{"element", "end_header", "property", "float", "list", "u"});
+  CHECK(names_of(soup.attributes) == Names{"element", "end_header", "property", "float", "list", "u"});
   const TemporaryFolder folder;
   write_mesh(folder / "a.ply", {soup.vertices, soup.triangles, {}, soup.attributes});
   const TriangleSoup back = read_mesh(folder / "a.ply");
-  CHECK(names(back.attributes) == names(soup.attributes));
+  CHECK(names_of(back.attributes) == names_of(soup.attributes));
   CHECK(named(back.attributes, "end_header").values == Values{2, 2, 2});
 }
 
@@ -166,7 +154,7 @@ TEST_CASE("attributes: OBJ holds colours from 0 to 1 behind positions", "[mesh_f
       read_text_as("obj",
                    "v 0 0 0 .5 0.25 1\r\nv 1 0 0\nv 0 1 0 1 0 0 # red\nv 1 1 0 1\nv 2 1 0 1 .1 .2 .3\n"
                    "v 2 2 0 1 0 zero\nf 1 2 3\nf 4 5 6\n");
-  REQUIRE(names(soup.attributes) == Names{"color"});
+  REQUIRE(names_of(soup.attributes) == Names{"color"});
   CHECK(soup.attributes[0].values == Values{.5, .25, 1, 1, 1, 1, 1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1});
   CHECK(read_text_as("obj", "v 0 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").attributes.empty());
   const TemporaryFolder folder;

@@ -1,5 +1,6 @@
 // Damaged files either give a sound soup or an Error: every truncation, and thousands of changed bytes.
 #include "io/file_formats.h"
+#include "isoshell/error.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "voxel/random.h"

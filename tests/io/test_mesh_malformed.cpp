@@ -1,5 +1,6 @@
 // Files that lie are refused with a place and a reason; dirty geometry is dropped and counted.
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/source_folder.h"
 
 using namespace isoshell;

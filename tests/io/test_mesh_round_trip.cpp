@@ -7,6 +7,7 @@
 #include "io/bytes/output_file.h"
 #include "io/mesh/precision.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
 

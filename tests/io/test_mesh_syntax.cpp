@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 

@@ -15,8 +15,8 @@
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
-#include "support/soup_volume.h"
 #include "support/source_folder.h"
 #include "voxel/random.h"
 
@@ -30,12 +30,7 @@ PointCloud parse(const std::string& text, const std::string& format) {
 }
 
 ErrorCode refusal(const std::string& text, const std::string& format) {
-  try {
-    parse(text, format);
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return ErrorCode::internal;
+  return error_of([&] { parse(text, format); }).code();
 }
 
 /// A ball's points along a spiral, each moved by up to `noise`; only those above `lowest`.
@@ -373,12 +368,7 @@ TEST_CASE("points: what spans nothing is nothing to mesh, and memory is asked fo
           "[points][unit]") {
   PointSurfaceInfo info;
   const auto code = [&](const PointCloud& cloud, int64_t limit) {
-    try {
-      surface_of_points(cloud, limit, info);
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return ErrorCode::internal;
+    return error_of([&] { surface_of_points(cloud, limit, info); }).code();
   };
   PointCloud same;
   same.position.assign(100, {1, 2, 3});

@@ -1,6 +1,7 @@
 // Files of lines: what they hold, and how those that lie are refused.
 #include "isoshell/io/polyline_file.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 

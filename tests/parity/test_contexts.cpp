@@ -10,6 +10,7 @@
 #include "isoshell/isoshell.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/source_folder.h"
 #include "support/test_context.h"

@@ -5,6 +5,7 @@
 #include "parity/cuda_streams.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
 

@@ -9,6 +9,7 @@
 #include "isoshell/transfer_attributes.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 
 using namespace isoshell;
@@ -82,10 +83,7 @@ RunResult run_of(TriangleSoup soup, const RunRequest& request, int threads = 0) 
 }
 
 const std::vector<double>& values(const RunResult& result, const std::string& name) {
-  for (const Attribute& a : result.mesh.attributes)
-    if (a.name == name) return a.values;
-  FAIL("the result has no " + name);
-  return result.mesh.attributes.front().values;
+  return named(result.mesh.attributes, name).values;
 }
 
 /// The largest difference from the colour that `foot`, the nearest point of the surface, has.

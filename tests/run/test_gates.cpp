@@ -2,22 +2,15 @@
 #include "isoshell/error.h"
 #include "isoshell/run/gates.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 
 namespace {
 
 std::string refusal(const std::string& list) {
-  try {
-    parse_gates(list);
-  } catch (const Error& e) {
-    CHECK(e.code() == ErrorCode::usage);
-    return e.what();
-  }
-  return "";
+  return message_of(ErrorCode::usage, [&] { parse_gates(list); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// A ball, as measured.
 RunRecord good_record() {

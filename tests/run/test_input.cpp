@@ -5,6 +5,7 @@
 #include "isoshell/io/input.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 
 using namespace isoshell;
@@ -34,15 +35,8 @@ struct Said {
   }
 };
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 ErrorCode refusal_code(const InputRequest& request) {
-  try {
-    read_input(request, 0);
-  } catch (const Error& e) {
-    return e.code();
-  }
-  return ErrorCode::internal;
+  return error_of([&] { read_input(request, 0); }).code();
 }
 
 }  // namespace
@@ -116,14 +110,8 @@ TEST_CASE("input: a surface made in memory has as many faces as triangles", "[in
 
 TEST_CASE("input: a surface in memory with a vertex that is not there or not finite is refused by its place",
           "[input]") {
-  const auto refusal = [](const TriangleSoup& soup) -> std::string {
-    try {
-      input_of(soup, "mine");
-    } catch (const Error& e) {
-      CHECK(e.code() == ErrorCode::unreadable_input);
-      return e.what();
-    }
-    return "";
+  const auto refusal = [](const TriangleSoup& soup) {
+    return message_of(ErrorCode::unreadable_input, [&] { input_of(soup, "mine"); });
   };
   TriangleSoup soup;
   soup.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -7,6 +7,7 @@
 #include "support/catch.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
+#include "support/test_context.h"
 
 using namespace isoshell;
 using shapes::box;
@@ -14,10 +15,6 @@ using shapes::together;
 using Json = nlohmann::json;
 
 namespace {
-
-struct CpuContext : Context {
-  CpuContext() { backend = Backend::cpu; }
-};
 
 TriangleSoup crossing_bars() { return together(box({0, 2, 0}, {6, 4, 2}), box({2, 0, .5}, {4, 6, 1.5})); }
 

@@ -5,6 +5,7 @@
 #include "isoshell/options/option_text.h"
 #include "isoshell/options/options_json.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 
 using namespace isoshell;
 using Json = nlohmann::ordered_json;
@@ -13,16 +14,8 @@ namespace {
 
 /// What parsing refuses, with the code; empty when it does not.
 std::string refusal(const std::string& json, ErrorCode code = ErrorCode::usage) {
-  try {
-    parse_options_json(json);
-  } catch (const Error& e) {
-    CHECK(e.code() == code);
-    return e.what();
-  }
-  return "";
+  return message_of(code, [&] { parse_options_json(json); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 class NamedField final : public SizingField {
  public:

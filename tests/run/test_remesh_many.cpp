@@ -9,6 +9,7 @@
 #include "isoshell/workers.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
 

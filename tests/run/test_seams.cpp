@@ -114,16 +114,9 @@ RunResult run_of(TriangleSoup soup, int64_t vertices, const std::string& feature
   return run(input_of(std::move(soup), "part"), request, context);
 }
 
-const Attribute& named(const TriangleMesh& mesh, const std::string& name) {
-  for (const Attribute& a : mesh.attributes)
-    if (a.name == name) return a;
-  FAIL("the result has no " + name);
-  return mesh.attributes.front();
-}
-
 /// Largest difference of the corners from what the input says of their places.
 double largest_error(const TriangleMesh& mesh, const std::string& name, const OfCorner& value) {
-  const Attribute& a = named(mesh, name);
+  const Attribute& a = named(mesh.attributes, name);
   double largest = 0;
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
     for (size_t i = 0; i < 3; ++i) {
@@ -218,7 +211,7 @@ TEST_CASE("seams: both sides of a slit keep their own up to its end", "[seams]")
   soup.attributes = {of_corners(soup, kUvName, 2, slit)};
   const RunResult result = run_of(soup, 2000);
   REQUIRE(result.record.report.features.kept);
-  const Attribute& uv = named(result.mesh, kUvName);
+  const Attribute& uv = named(result.mesh.attributes, kUvName);
   int64_t wrong = 0, on_slit = 0;
   for (size_t t = 0; t < result.mesh.triangles.size(); ++t)
     for (size_t i = 0; i < 3; ++i) {
@@ -237,7 +230,7 @@ TEST_CASE("seams: faces have the material of the input under them, and it ends a
   soup.attributes = {halves(soup, kMaterialName)};
   const RunResult result = run_of(soup, 1500);
   CHECK(reach_over_middle(result.mesh) < kSnapped);
-  const Attribute& material = named(result.mesh, kMaterialName);
+  const Attribute& material = named(result.mesh.attributes, kMaterialName);
   CHECK(material.labels == std::vector<std::string>{"near", "far"});
   int64_t wrong = 0;
   for (size_t t = 0; t < result.mesh.triangles.size(); ++t)
@@ -252,7 +245,7 @@ TEST_CASE("seams: numbers of faces are those under them, and make no edges", "[s
   soup.attributes = {heat};
   const RunResult result = run_of(soup, 1500);
   CHECK(reach_over_middle(result.mesh) > kSnapped);
-  const Attribute& found = named(result.mesh, "heat");
+  const Attribute& found = named(result.mesh.attributes, "heat");
   int64_t wrong = 0;
   for (size_t t = 0; t < result.mesh.triangles.size(); ++t)
     wrong += found.values[t] != (middle_of(result.mesh, t).x > 1);
@@ -275,7 +268,8 @@ TEST_CASE("seams: no corner of a crease has a normal of the other side", "[seams
     return n;
   };
   CHECK(largest_error(result.mesh, kNormalName, unit) == 0);
-  CHECK(named(result.mesh, kNormalName).values.size() / 3 < 2 * result.mesh.vertices.size());  // shared within a side
+  CHECK(named(result.mesh.attributes, kNormalName).values.size() / 3 <
+        2 * result.mesh.vertices.size());  // shared within a side
 }
 
 TEST_CASE("seams: smooth normals are one a vertex, of length 1", "[seams]") {
@@ -284,7 +278,7 @@ TEST_CASE("seams: smooth normals are one a vertex, of length 1", "[seams]") {
     return Values{p.x, p.y, p.z};
   })};
   const RunResult result = run_of(ball, 500);
-  const Attribute& normal = named(result.mesh, kNormalName);
+  const Attribute& normal = named(result.mesh.attributes, kNormalName);
   REQUIRE(normal.values.size() == 1500);
   double largest = 0;
   for (size_t v = 0; v < 500; ++v) {
@@ -335,7 +329,7 @@ TEST_CASE("seams: of a surface with a hole they are kept beside its cap", "[seam
   soup.attributes[0].values.resize(6 * soup.triangles.size());
   const RunResult result = run_of(soup, 1000);
   CHECK(result.record.report.features.kept);
-  CHECK(named(result.mesh, kUvName).index.size() == 3 * result.mesh.triangles.size());
+  CHECK(named(result.mesh.attributes, kUvName).index.size() == 3 * result.mesh.triangles.size());
   CHECK(std::any_of(result.mesh.gap.begin(), result.mesh.gap.end(), [](uint8_t flag) { return flag != 0; }));
 }
 

@@ -10,6 +10,7 @@
 #include "isoshell/run/sequence.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
 
@@ -60,16 +61,8 @@ std::vector<std::string> files_of(const SequenceRequest& request) {
 
 std::string refusal(const SequenceRequest& request, ErrorCode code) {
   TestContext context;
-  try {
-    run_sequence(request, context);
-  } catch (const Error& e) {
-    CHECK(e.code() == code);
-    return e.what();
-  }
-  return "";
+  return message_of(code, [&] { run_sequence(request, context); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

@@ -7,7 +7,9 @@
 #include "isoshell/run/run.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
+#include "support/test_context.h"
 
 using namespace isoshell;
 using Json = nlohmann::json;
@@ -25,10 +27,6 @@ RunRequest small_run() {
   return request;
 }
 
-struct CpuContext : Context {
-  CpuContext() { backend = Backend::cpu; }
-};
-
 std::set<std::string> keys(const Json& object) {
   std::set<std::string> names;
   for (const auto& item : object.items()) names.insert(item.key());
@@ -37,16 +35,8 @@ std::set<std::string> keys(const Json& object) {
 
 std::string refusal(const RunRequest& request, ErrorCode code) {
   CpuContext context;
-  try {
-    run(request, context);
-  } catch (const Error& e) {
-    CHECK(e.code() == code);
-    return e.what();
-  }
-  return "";
+  return message_of(code, [&] { run(request, context); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -249,13 +239,8 @@ TEST_CASE("whole run: one that is cancelled says what was written", "[run]") {
   context.cancel = true;
   RunRequest request = small_run();
   request.output = named_output(folder / "out.ply", "", StopAfter::mesh);
-  try {
-    run(input_of(ball(), "ball"), request, context);
-    CHECK(false);
-  } catch (const Error& e) {
-    CHECK(e.code() == ErrorCode::interrupted);
-    CHECK(std::string(e.what()) == "interrupted; nothing was written");
-  }
+  CHECK(message_of(ErrorCode::interrupted, [&] { run(input_of(ball(), "ball"), request, context); }) ==
+        "interrupted; nothing was written");
   CHECK(folder.file_count() == 0);
 }
 

@@ -3,6 +3,7 @@
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/paper_setup.h"
+#include "support/refusals.h"
 #include "support/soup_sheet.h"
 #include "support/test_context.h"
 #include "voxel/closest_point.h"
@@ -43,14 +44,10 @@ TEST_CASE("seeds: more than half the sites is a usage error that names the resol
   TestContext context;
   const int64_t most = setup.sites.voxels.voxel_count() / 2;
   for (const int64_t k : {int64_t(3), most + 1, 4 * most}) {
-    try {
-      place_seeds(setup.sites, setup.samples, {k, 0}, context);
-      FAIL("no error");
-    } catch (const Error& e) {
-      CHECK(e.code() == ErrorCode::usage);
-      // The sphere is 41 voxels wide; four times the seeds need twice that.
-      if (k == 4 * most) CHECK(std::string(e.what()).find("at least 82") != std::string::npos);
-    }
+    const Error error = error_of([&] { place_seeds(setup.sites, setup.samples, {k, 0}, context); });
+    CHECK(error.code() == ErrorCode::usage);
+    // The sphere is 41 voxels wide; four times the seeds need twice that.
+    if (k == 4 * most) CHECK(says(error, "at least 82"));
   }
 }
 

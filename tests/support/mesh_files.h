@@ -1,4 +1,4 @@
-// Mesh files for tests: a folder that goes when the test ends, bytes into files, errors into values.
+// Mesh files for tests: a folder that goes when the test ends, bytes into files, attributes by name.
 #pragma once
 
 #include <unistd.h>
@@ -11,7 +11,6 @@
 #include <iterator>
 #include <string>
 
-#include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "support/catch.h"
 
@@ -54,25 +53,23 @@ inline TriangleSoup read_text_as(const std::string& ending, const std::string& b
   return read_mesh(path);
 }
 
-/// What `work` throws; fails the test when it throws nothing.
-template <class Work>
-Error error_of(Work work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error;
-  }
-  FAIL("nothing was thrown");
-  return Error(ErrorCode::internal, "", "");
-}
-
-inline bool says(const Error& error, const std::string& part) {
-  return std::string(error.what()).find(part) != std::string::npos;
-}
-
 inline bool same_bits(const WorldPoint& a, const WorldPoint& b) {
   const auto same = [](double p, double q) { return p == q && std::signbit(p) == std::signbit(q); };
   return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
+}
+
+/// The attribute with this name; fails the test when there is none.
+inline const Attribute& named(const std::vector<Attribute>& attributes, const std::string& name) {
+  for (const Attribute& a : attributes)
+    if (a.name == name) return a;
+  FAIL("there is no attribute " + name);
+  return attributes.front();
+}
+
+inline std::vector<std::string> names_of(const std::vector<Attribute>& attributes) {
+  std::vector<std::string> names;
+  for (const Attribute& a : attributes) names.push_back(a.name);
+  return names;
 }
 
 }  // namespace isoshell

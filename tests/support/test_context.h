@@ -22,6 +22,11 @@ struct TestContext : Context {
   Context& plain() { return *this; }
 };
 
+/// The context of tests that need no device, wherever the others run.
+struct CpuContext : Context {
+  CpuContext() { backend = Backend::cpu; }
+};
+
 inline LatticeSurface snap_surface(const TriangleSoup& soup, const LatticeFrame& frame, TestContext& context) {
   return to_host(snap_surface(soup, frame, context.plain()));
 }

@@ -6,7 +6,6 @@
 #include "repair/solids/winding.h"
 #include "support/catch.h"
 #include "support/shapes.h"
-#include "support/soup_volume.h"
 
 using namespace isoshell;
 using shapes::inside_out;

@@ -7,6 +7,7 @@
 #include "isoshell/borders.h"
 #include "measure/crossings.h"
 #include "support/catch.h"
+#include "support/soup_sheet.h"
 #include "voxel/intersect.h"
 
 using namespace isoshell;
@@ -20,17 +21,6 @@ void add_square(TriangleMesh& mesh, WorldPoint at) {
     mesh.vertices.push_back({at.x + x, at.y + y, at.z});
   mesh.triangles.push_back({first, first + 1, first + 2});
   mesh.triangles.push_back({first, first + 2, first + 3});
-}
-
-Buffer<TriangleIndices> triangles_of(const std::vector<TriangleIndices>& list) {
-  Buffer<TriangleIndices> out(int64_t(list.size()));
-  std::copy(list.begin(), list.end(), out.begin());
-  return out;
-}
-Buffer<PointQ8> points_of(const std::vector<PointQ8>& list) {
-  Buffer<PointQ8> out(int64_t(list.size()));
-  std::copy(list.begin(), list.end(), out.begin());
-  return out;
 }
 
 }  // namespace
@@ -74,17 +64,18 @@ TEST_CASE("border measures: a closed mesh has none", "[borders]") {
 
 TEST_CASE("crossings: triangles that meet outside of shared corners, and where", "[borders]") {
   Context context;
-  const Buffer<PointQ8> points = points_of({{0, 0, 0},
-                                            {1000, 0, 0},
-                                            {0, 1000, 0},
-                                            {1000, 1000, 0},  // neighbour of the first
-                                            {100, 100, -50},
-                                            {200, 100, -50},
-                                            {150, 150, 50},  // through the first
-                                            {5000, 0, 0},
-                                            {5100, 0, 0},
-                                            {5000, 100, 0}});
-  const Buffer<TriangleIndices> triangles = triangles_of({{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {7, 8, 9}});
+  const Buffer<PointQ8> points = to_buffer(std::vector<PointQ8>{{0, 0, 0},
+                                                                {1000, 0, 0},
+                                                                {0, 1000, 0},
+                                                                {1000, 1000, 0},  // neighbour of the first
+                                                                {100, 100, -50},
+                                                                {200, 100, -50},
+                                                                {150, 150, 50},  // through the first
+                                                                {5000, 0, 0},
+                                                                {5100, 0, 0},
+                                                                {5000, 100, 0}});
+  const Buffer<TriangleIndices> triangles =
+      to_buffer(std::vector<TriangleIndices>{{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {7, 8, 9}});
   const auto found = find_crossings(points.view(), triangles.view(), context);
   REQUIRE(found.size() == 1);
   CHECK(found[0].lo.x == 100);
@@ -126,8 +117,8 @@ TEST_CASE("crossings: those of any triangles are those that each pair of them sh
       if (triangles_intersect(corners(t), corners(u))) expected.push_back({t, u});
   REQUIRE(expected.size() > 500);
   const std::atomic<bool> stop{false};
-  const auto position = points_of(points);
-  const auto list = triangles_of(triangles);
+  const auto position = to_buffer(points);
+  const auto list = to_buffer(triangles);
   CHECK(crossing_pairs(position.view(), list.view(), {}, stop) == expected);
   const auto boxes = find_crossings(position.view(), list.view(), context);
   const std::vector<BoxOfPoints> some(boxes.begin(), boxes.begin() + 20);

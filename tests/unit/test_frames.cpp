@@ -8,15 +8,13 @@
 #include "isoshell/previous_frame.h"
 #include "isoshell/run/sequence.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
+#include "support/test_context.h"
 
 using namespace isoshell;
 
 namespace {
-
-struct CpuContext : Context {
-  CpuContext() { backend = Backend::cpu; }
-};
 
 double apart(WorldPoint a, WorldPoint b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
@@ -49,13 +47,7 @@ TriangleSoup facing_sheets(WorldPoint lo, WorldPoint hi, uint32_t cells) {
 TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
 
 std::string refusal(const std::string& pattern) {
-  try {
-    path_of_frame(pattern, 1);
-  } catch (const Error& e) {
-    CHECK(e.code() == ErrorCode::usage);
-    return e.what();
-  }
-  return "";
+  return message_of(ErrorCode::usage, [&] { path_of_frame(pattern, 1); });
 }
 
 }  // namespace
@@ -66,8 +58,8 @@ TEST_CASE("frames: a pattern has one place for the number, in either form", "[fr
   CHECK(path_of_frame("d/a%04d.ply", 12345) == "d/a12345.ply");
   CHECK(path_of_frame("%d/a.ply", 3) == "3/a.ply");
   CHECK(path_of_frame("50%/a.##.ply", 3) == "50%/a.03.ply");
-  CHECK(refusal("a.obj").find("no place") != std::string::npos);
-  CHECK(refusal("##/a.##.obj").find("more than one place") != std::string::npos);
+  CHECK(contains(refusal("a.obj"), "no place"));
+  CHECK(contains(refusal("##/a.##.obj"), "more than one place"));
 }
 
 TEST_CASE("frames: ranges are read whole, and refused with what they may be", "[frames]") {

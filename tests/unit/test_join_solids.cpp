@@ -4,7 +4,6 @@
 #include "repair/solids/join_solids.h"
 #include "support/catch.h"
 #include "support/shapes.h"
-#include "support/soup_volume.h"
 
 using namespace isoshell;
 using shapes::box;

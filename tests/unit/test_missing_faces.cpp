@@ -7,7 +7,6 @@
 #include "isoshell/repair.h"
 #include "support/catch.h"
 #include "support/shapes.h"
-#include "support/soup_volume.h"
 
 using namespace isoshell;
 

@@ -11,7 +11,7 @@
 #include "isoshell/advanced/stages.h"
 #include "support/catch.h"
 #include "support/made_field.h"
-#include "support/soup_volume.h"
+#include "support/shapes.h"
 #include "voxel/random.h"
 
 using namespace isoshell;

@@ -7,7 +7,8 @@
 #include "isoshell/error.h"
 #include "support/catch.h"
 #include "support/made_field.h"
-#include "support/soup_volume.h"
+#include "support/refusals.h"
+#include "support/shapes.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
@@ -21,13 +22,8 @@ int noise(Voxel v, uint64_t seed, int values) {
   return int(random_bits(seed, at) % uint64_t(values));
 }
 
-std::string refusal(const ScalarField& field) {
-  try {
-    extract_iso_surface(field, 0);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+std::string refusal(const ScalarField& field, ErrorCode code) {
+  return message_of(code, [&] { extract_iso_surface(field, 0); });
 }
 
 }  // namespace
@@ -108,12 +104,7 @@ TEST_CASE("iso surface: a solid too large for the memory limit is refused before
   MadeField field(
       0, 8, [](Voxel) { return 1.f; }, 0);
   field.made_tiles = {{{4096, 0, 0}, 4096, 1.f}, {{8192, 0, 0}, 4096, 1.f}};
-  try {
-    extract_iso_surface(field, 0.5, 16 << 20);
-    FAIL("not refused");
-  } catch (const Error& error) {
-    CHECK(error.code() == ErrorCode::out_of_memory);
-  }
+  CHECK(error_of([&] { extract_iso_surface(field, 0.5, 16 << 20); }).code() == ErrorCode::out_of_memory);
 }
 
 TEST_CASE("iso surface: what is no number is refused by its place, and what has no surface by its values",
@@ -124,10 +115,10 @@ TEST_CASE("iso surface: what is no number is refused by its place, and what has 
         return v == Voxel{1, 2, 3} ? NAN : -1.f;
       },
       1);
-  CHECK(refusal(broken).find("voxel (1, 2, 3)") != std::string::npos);
+  CHECK(contains(refusal(broken, ErrorCode::unreadable_input), "voxel (1, 2, 3)"));
   MadeField flat(
       0, 8, [](Voxel) { return 2.f; }, 1);
-  CHECK(refusal(flat).find("its values are 1 to 2") != std::string::npos);
+  CHECK(contains(refusal(flat, ErrorCode::nothing_to_mesh), "its values are 1 to 2"));
   MadeField infinite(
       0, 8, [](Voxel) { return -INFINITY; }, INFINITY);
   const TriangleSoup soup = extract_iso_surface(infinite, 0);

@@ -12,7 +12,6 @@
 #include "support/catch.h"
 #include "support/made_field.h"
 #include "support/shapes.h"
-#include "support/soup_volume.h"
 #include "voxel/random.h"
 
 using namespace isoshell;

@@ -8,6 +8,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/temporary_file.h"
 
 using namespace isoshell;
@@ -39,16 +40,8 @@ TemporaryFile written(const openvdb::GridPtrVec& grids) {
 }
 
 std::string refusal(const std::string& path, const std::string& grid) {
-  try {
-    read_velocity(path, grid);
-  } catch (const Error& e) {
-    CHECK(e.code() == ErrorCode::unreadable_input);
-    return e.what();
-  }
-  return "";
+  return message_of(ErrorCode::unreadable_input, [&] { read_velocity(path, grid); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

@@ -18,6 +18,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/volume_file.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/temporary_file.h"
 
 using namespace isoshell;
@@ -46,19 +47,9 @@ TriangleSoup read(const std::string& path, const VolumeReadOptions& options = {}
   return read_volume(path, options, info);
 }
 
-struct Refusal {
-  ErrorCode code{};
-  std::string text;
-};
-Refusal refusal(const std::string& path, const VolumeReadOptions& options = {}) {
-  try {
-    read(path, options);
-  } catch (const Error& error) {
-    return {error.code(), error.what()};
-  }
-  return {};
+Error refusal(const std::string& path, const VolumeReadOptions& options = {}) {
+  return error_of([&] { read(path, options); });
 }
-bool says(const Refusal& refusal, const std::string& part) { return refusal.text.find(part) != std::string::npos; }
 
 bool is_closed(const TriangleSoup& soup) {
   Context context;
@@ -67,7 +58,7 @@ bool is_closed(const TriangleSoup& soup) {
 }
 
 /// Largest distance of a vertex from the ball.
-double error_of(const TriangleSoup& soup) {
+double distance_of(const TriangleSoup& soup) {
   double worst = 0;
   for (const WorldPoint& p : soup.vertices) {
     const double x = p.x - kCentre.x(), y = p.y - kCentre.y(), z = p.z - kCentre.z();
@@ -88,7 +79,7 @@ TEST_CASE("volume: a level set of any half-width, as floats or halves, packed or
         write(file.path, {grid}, compression);
         const TriangleSoup soup = read(file.path);
         REQUIRE(is_closed(soup));
-        REQUIRE(error_of(soup) < 0.0136);  // h^2 / (2 r)
+        REQUIRE(distance_of(soup) < 0.0136);  // h^2 / (2 r)
       }
 }
 
@@ -114,7 +105,7 @@ TEST_CASE("volume: rotated, sheared and mirrored transforms put the surface wher
     const openvdb::Vec3d back = turn.inverse().transform(openvdb::Vec3d(p.x, p.y, p.z));
     p = {back.x(), back.y(), back.z()};
   }
-  CHECK(error_of(soup) < 0.0136);
+  CHECK(distance_of(soup) < 0.0136);
 }
 
 TEST_CASE("volume: voxels of any size put the surface where they say", "[volume][stage]") {
@@ -127,7 +118,7 @@ TEST_CASE("volume: voxels of any size put the surface where they say", "[volume]
     for (WorldPoint& p : soup.vertices) p = {p.x / size / 2, p.y / size / 2, p.z / size / 2};
     INFO("voxels of " << size);
     CHECK(is_closed(soup));
-    CHECK(error_of(soup) < .05);
+    CHECK(distance_of(soup) < .05);
   }
 }
 
@@ -144,17 +135,17 @@ TEST_CASE("volume: a fog volume needs an iso value and a file of several grids a
   auto nothing = openvdb::FloatGrid::create(1);
   nothing->setName("nothing");
   write(file.path, {fog, flags, speed, nothing});
-  CHECK(refusal(file.path).code == ErrorCode::usage);
+  CHECK(refusal(file.path).code() == ErrorCode::usage);
   CHECK(says(refusal(file.path), "\"fog\" (float, fog volume), \"flags\" (bool"));
   CHECK(says(refusal(file.path, {"fog", {}, 0}), "--iso 0.5"));
   CHECK(is_closed(read(file.path, {"fog", 0.5, 0})));
-  CHECK(refusal(file.path, {"fog", 1.5, 0}).code == ErrorCode::nothing_to_mesh);
-  CHECK(refusal(file.path, {"flags", {}, 0}).code == ErrorCode::nothing_to_mesh);
+  CHECK(refusal(file.path, {"fog", 1.5, 0}).code() == ErrorCode::nothing_to_mesh);
+  CHECK(refusal(file.path, {"flags", {}, 0}).code() == ErrorCode::nothing_to_mesh);
   CHECK(says(refusal(file.path, {"speed", {}, 0}), "vectors"));
   CHECK(says(refusal(file.path, {"nothing", {}, 0}), "all its values are 1"));
   CHECK(says(refusal(file.path, {"wind", {}, 0}), "no grid \"wind\""));
   write(file.path, {fog, ball()});
-  CHECK(error_of(read(file.path)) < 0.0136);  // the only level set
+  CHECK(distance_of(read(file.path)) < 0.0136);  // the only level set
 }
 
 TEST_CASE("volume: grids of the same name, or of none, are told apart by number", "[volume][stage]") {
@@ -165,14 +156,14 @@ TEST_CASE("volume: grids of the same name, or of none, are told apart by number"
     plain->setName(name);
     thick->setName(name);
     write(file.path, {plain, plain->deepCopy(), thick});
-    const Refusal several = refusal(file.path, {name, {}, 0});
-    CHECK(several.code == ErrorCode::usage);
+    const Error several = refusal(file.path, {name, {}, 0});
+    CHECK(several.code() == ErrorCode::usage);
     CHECK(says(several, file.path + ":" + name + "[0]"));
     CHECK(says(several, "\"" + name + "[2]\" (float, fog volume)"));
-    CHECK(error_of(read(file.path, {name + "[1]", {}, 0})) < .01);
+    CHECK(distance_of(read(file.path, {name + "[1]", {}, 0})) < .01);
     CHECK(is_closed(read(file.path, {name + "[2]", .5f, 0})));
-    CHECK(refusal(file.path, {name + "[3]", {}, 0}).code == ErrorCode::usage);
-    CHECK(refusal(file.path, {name + "[2]", {}, 0}).code == ErrorCode::usage);
+    CHECK(refusal(file.path, {name + "[3]", {}, 0}).code() == ErrorCode::usage);
+    CHECK(refusal(file.path, {name + "[2]", {}, 0}).code() == ErrorCode::usage);
   }
 }
 
@@ -194,7 +185,7 @@ TEST_CASE("volume: a grid that is called as another would be numbered keeps its 
   CHECK(radius_of("d[2]") == 6);
   CHECK(radius_of("d[3]") == 7);
   CHECK(radius_of("d[4]") == 8);
-  const Refusal several = refusal(file.path, {"d", {}, 0});
+  const Error several = refusal(file.path, {"d", {}, 0});
   CHECK(says(several, file.path + ":d[0]"));
   for (const char* name : {"\"d[0]\"", "\"d[1]\"", "\"d[2]\"", "\"d[3]\"", "\"d[4]\""}) CHECK(says(several, name));
 }
@@ -202,10 +193,10 @@ TEST_CASE("volume: a grid that is called as another would be numbered keeps its 
 TEST_CASE("volume: a grid over the memory limit is refused before it is read", "[volume][stage]") {
   const TemporaryFile file("large.vdb");
   write(file.path, {ball()});
-  const Refusal large = refusal(file.path, {"", {}, 1 << 20});
-  CHECK(large.code == ErrorCode::out_of_memory);
+  const Error large = refusal(file.path, {"", {}, 1 << 20});
+  CHECK(large.code() == ErrorCode::out_of_memory);
   CHECK(says(large, "--max-memory"));
-  CHECK(refusal(file.path, {"", {}, 64 << 20}).text.empty());
+  CHECK_NOTHROW(read(file.path, {"", {}, 64 << 20}));
 }
 
 TEST_CASE("volume: a file cut anywhere, or with a changed byte, is read or refused", "[volume][stage]") {
@@ -239,7 +230,7 @@ TEST_CASE("volume: a .nvdb file gives the surface of the .vdb file, and no offse
   nanovdb::io::writeGrid(nano.path, handle);
   const TriangleSoup soup = read(nano.path);
   CHECK(soup.triangles == read(vdb.path).triangles);
-  CHECK(error_of(soup) < 0.0136);
+  CHECK(distance_of(soup) < 0.0136);
   std::ifstream in(nano.path, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(in), {}};
   for (size_t at = 0; at < whole.size(); at += 1 + at / 16) {
@@ -253,6 +244,6 @@ TEST_CASE("volume: a .nvdb file gives the surface of the .vdb file, and no offse
     }
   }
   std::ofstream(nano.path, std::ios::binary | std::ios::trunc).write(whole.data(), std::streamsize(whole.size() / 2));
-  CHECK(refusal(nano.path).code == ErrorCode::unreadable_input);
+  CHECK(refusal(nano.path).code() == ErrorCode::unreadable_input);
 }
 #endif
