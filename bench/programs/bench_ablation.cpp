@@ -2,12 +2,9 @@
 // share of irregular vertices after a number of passes (dual only), and the final mesh of every variant. JSON on
 // standard output; ablation.py draws it.
 //   bench_ablation MESH [--vertices K] [--threads T]
-#include <cstdio>
-#include <cstdlib>
-#include <string>
 #include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "isoshell/isoshell.h"
 #include "pipeline/sheet/hierarchy.h"
 
@@ -79,20 +76,13 @@ struct Bench {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: bench_ablation MESH [--vertices K] [--threads T]\n");
-    return 2;
-  }
   int64_t vertices = 10000;
-  RemeshOptions options;
   Context context;
-  for (int i = 2; i + 1 < argc; i += 2) {
-    const std::string key = argv[i];
-    if (key == "--vertices") vertices = std::atol(argv[i + 1]);
-    if (key == "--threads") context.threads = std::atoi(argv[i + 1]);
-  }
+  const std::string path = bench::read_arguments(
+      argc, argv, "bench_ablation MESH", 1, {{"--vertices", "K", &vertices}, {"--threads", "T", &context.threads}})[0];
+  RemeshOptions options;
   options.vertices = vertices;
-  const TriangleSoup soup = read_mesh(argv[1]);
+  const TriangleSoup soup = read_mesh(path);
   const Prepared prepared = prepare(soup, options, context);
   const Bench bench{prepared, {vertices, options.seed}, context};
 
@@ -126,11 +116,9 @@ int main(int argc, char** argv) {
   add("flips only", relaxed, &flips_only);
   add("no post", relaxed, nullptr);
 
-  const json out = {{"machine", bench::machine()},
-                    {"mesh", argv[1]},
-                    {"vertices", vertices},
-                    {"sheet_vertices", prepared.sheet().vertex_count()},
-                    {"curves", curves},
-                    {"final", finals}};
-  std::printf("%s\n", out.dump(1).c_str());
+  bench::print_result({{"mesh", path},
+                       {"vertices", vertices},
+                       {"sheet_vertices", prepared.sheet().vertex_count()},
+                       {"curves", curves},
+                       {"final", finals}});
 }

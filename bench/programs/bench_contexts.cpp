@@ -1,15 +1,12 @@
 // Meshes a second by remesh_many: contexts side by side on one device, or on the CPU with a thread each.
 //   bench_contexts MESH [MESH ...] [--device cpu|cuda] [--threads N[,N...]] [--runs N] [--vertices K]
 // Every mesh is held against that of a run alone on the CPU; exit status 1 when one differs or a run fails.
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "bench/programs/program.h"
 #include "isoshell/isoshell.h"
 
 using namespace isoshell;
@@ -18,7 +15,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
-  Backend backend = Backend::cuda;
+  std::string device = "cuda";
   std::vector<int> threads = {1, 2, 4, 8, 16, 32};
   int runs = 20;  ///< a thread
   int64_t vertices = 4000;
@@ -26,22 +23,11 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      a.meshes.push_back(word);
-      continue;
-    }
-    const char* value = i + 1 < argc ? argv[++i] : "";
-    if (word == "--device") a.backend = std::strcmp(value, "cpu") == 0 ? Backend::cpu : Backend::cuda;
-    if (word == "--runs") a.runs = std::atoi(value);
-    if (word == "--vertices") a.vertices = std::atoll(value);
-    if (word == "--threads") {
-      a.threads.clear();
-      std::istringstream list(value);
-      for (std::string number; std::getline(list, number, ',');) a.threads.push_back(std::atoi(number.c_str()));
-    }
-  }
+  a.meshes = bench::read_arguments(argc, argv, "bench_contexts MESH [MESH ...]", 1,
+                                   {{"--device", "cpu|cuda", &a.device},
+                                    {"--threads", "N[,N...]", &a.threads},
+                                    {"--runs", "N", &a.runs},
+                                    {"--vertices", "K", &a.vertices}});
   return a;
 }
 
@@ -67,25 +53,22 @@ int count_failed(const std::vector<TriangleSoup>& soups, const std::vector<std::
 
 int main(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
-  if (a.meshes.empty()) return 2;
   RemeshOptions options;
   options.vertices = a.vertices;
   std::vector<TriangleSoup> soups;
   std::vector<std::string> expected;
   for (const std::string& mesh : a.meshes) {
     soups.push_back(read_mesh(mesh));
-    Context cpu;
-    cpu.backend = Backend::cpu;
+    Context cpu = bench::context_of(Backend::cpu);
     expected.push_back(digest_text(digest(remesh(soups.back(), options, cpu).mesh)));
   }
   bool all_right = true;
   for (const int threads : a.threads) {
-    Context context;
-    context.backend = a.backend;
+    Context context = bench::context_of(a.device == "cpu" ? Backend::cpu : Backend::cuda);
     const int64_t runs = int64_t(threads) * a.runs;
-    const auto start = std::chrono::steady_clock::now();
+    const bench::Watch watch;
     const int failed = count_failed(soups, expected, options, threads, runs, context);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = watch.ms() / 1000;
     std::printf("%2d contexts, %4lld runs: %6.1f meshes a second, %d failed, %lld MiB of the device free\n", threads,
                 (long long)runs, double(runs) / seconds, failed, (long long)(device_info(context).free_bytes >> 20));
     std::fflush(stdout);

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -17,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "isoshell/isoshell.h"
 
 using namespace isoshell;
@@ -33,58 +32,28 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  if (argc < 2) {
-    std::fprintf(stderr,
-                 "usage: bench_cuda MESH --json F.json --markdown F.md [--big MESH] [--command PATH] "
-                 "[--repeats N] [--resolution R]\n");
-    std::exit(2);
-  }
-  a.mesh = argv[1];
-  for (int i = 2; i + 1 < argc; i += 2) {
-    const std::string key = argv[i], value = argv[i + 1];
-    if (key == "--json") a.json_path = value;
-    if (key == "--markdown") a.markdown_path = value;
-    if (key == "--big") a.big = value;
-    if (key == "--command") a.command = value;
-    if (key == "--repeats") a.repeats = std::max(1, std::atoi(argv[i + 1]));
-    if (key == "--resolution") a.resolution = int32_t(std::atoi(argv[i + 1]));
-  }
+  a.mesh = bench::read_arguments(argc, argv, "bench_cuda MESH", 1,
+                                 {{"--json", "F.json", &a.json_path},
+                                  {"--markdown", "F.md", &a.markdown_path},
+                                  {"--big", "MESH", &a.big},
+                                  {"--command", "PATH", &a.command},
+                                  {"--repeats", "N", &a.repeats},
+                                  {"--resolution", "R", &a.resolution}})[0];
+  a.repeats = std::max(1, a.repeats);
   return a;
-}
-
-std::string file_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
-
-double ms_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-struct Spread {
-  double median = 0, least = 0, most = 0;
-};
-Spread spread_of(std::vector<double> ms) {
-  std::sort(ms.begin(), ms.end());
-  return {ms[ms.size() / 2], ms.front(), ms.back()};
-}
-void add_spread(json& row, const Spread& s) {
-  row["ms_median"] = s.median;
-  row["ms_min"] = s.least;
-  row["ms_max"] = s.most;
 }
 
 /// A whole run, warm. The stages' times are those of the library's report, medians as well.
 json whole_run(const std::string& mesh, const std::string& label, const RemeshOptions& options, int repeats) {
   const TriangleSoup soup = read_mesh(mesh);
-  Context context;
-  context.backend = Backend::cuda;
+  Context context = bench::context_of(Backend::cuda);
   std::vector<double> ms;
   std::map<std::string, std::vector<double>> stage_ms;
   std::vector<std::string> order;
   RemeshResult result;
   reset_device_memory_peak(context.device);
   for (int i = 0; i <= repeats; ++i) {
-    const double took = ms_of([&] { result = remesh(soup, options, context); });
+    const double took = bench::ms_of([&] { result = remesh(soup, options, context); });
     if (i == 0) continue;  // warm-up
     ms.push_back(took);
     for (const StageTime& t : result.report.times) {
@@ -93,7 +62,7 @@ json whole_run(const std::string& mesh, const std::string& label, const RemeshOp
     }
   }
   json row = {{"run", label},
-              {"mesh", file_name(mesh)},
+              {"mesh", bench::file_name(mesh)},
               {"triangles_in", soup.triangles.size()},
               {"method", options.method == Method::shell ? "shell" : "sheet"},
               {"resolution", result.report.grid.frame.resolution},
@@ -102,9 +71,9 @@ json whole_run(const std::string& mesh, const std::string& label, const RemeshOp
               {"passes", result.report.relax.passes},
               {"device_peak_bytes", device_memory_peak_bytes(context.device)},
               {"stages_ms", json::array()}};
-  add_spread(row, spread_of(ms));
+  bench::add_spread(row, "ms", bench::spread_of(ms));
   for (const std::string& stage : order)
-    row["stages_ms"].push_back({{"stage", stage}, {"ms_median", spread_of(stage_ms[stage]).median}});
+    row["stages_ms"].push_back({{"stage", stage}, {"ms_median", bench::spread_of(stage_ms[stage]).median}});
   return row;
 }
 
@@ -131,7 +100,7 @@ json cold_run(const Arguments& a, const std::string& mesh, const std::string& la
   std::vector<double> ms;
   for (int i = 0; i < 3; ++i) {
     int ended = 0;
-    ms.push_back(ms_of([&] { ended = std::system(line.c_str()); }));
+    ms.push_back(bench::ms_of([&] { ended = std::system(line.c_str()); }));
     if (ended != 0) throw std::runtime_error("the command failed: " + line);
   }
   const json times = times_in(folder + "/log");
@@ -140,11 +109,11 @@ json cold_run(const Arguments& a, const std::string& mesh, const std::string& la
   for (const char* step : {"read", "prepare", "relax", "triangulate", "measure", "write"})
     if (times.contains(step)) inside += double(times[step]);
   json row = {{"run", label},
-              {"mesh", file_name(mesh)},
+              {"mesh", bench::file_name(mesh)},
               {"options", options},
               {"timings_ms", times},
               {"outside_steps_ms", ms.back() - inside}};
-  add_spread(row, spread_of(ms));
+  bench::add_spread(row, "ms", bench::spread_of(ms));
   return row;
 }
 
@@ -160,18 +129,18 @@ class StageRows {
     reset_device_memory_peak(0);
     std::vector<double> ms;
     for (int i = 0; i < repeats_; ++i)
-      ms.push_back(ms_of([&] {
+      ms.push_back(bench::ms_of([&] {
         product = stage();
         cudaDeviceSynchronize();
       }));
-    const Spread s = spread_of(ms);
+    const bench::Spread s = bench::spread_of(ms);
     const int64_t items = count();
     json row = {{"stage", name},
                 {"unit", unit},
                 {"items", items},
                 {"million_per_second", double(items) / s.median / 1000},
                 {"device_peak_bytes", device_memory_peak_bytes(0)}};
-    add_spread(row, s);
+    bench::add_spread(row, "ms", s);
     rows_.push_back(row);
     return product;
   }
@@ -185,10 +154,8 @@ class StageRows {
 json stage_rows(const Arguments& a) {
   constexpr int32_t kPasses = 20;
   const TriangleSoup soup = read_mesh(a.mesh);
-  Context context;
-  context.backend = Backend::cuda;
-  const auto [lo, hi] = bounding_box(soup);
-  const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, a.resolution), context);
+  Context context = bench::context_of(Backend::cuda);
+  const LatticeSurface surface = snap_surface(soup, bench::frame_of(soup, a.resolution), context);
   StageRows rows(a.repeats);
   int64_t sites_count = 0;
   const SiteSet sites = rows.run(
@@ -313,8 +280,7 @@ void write_file(const std::string& path, const std::string& text) {
 }
 
 json device_json() {
-  Context context;
-  context.backend = Backend::cuda;
+  Context context = bench::context_of(Backend::cuda);
   const DeviceInfo d = device_info(context);
   int runtime = 0;
   cudaRuntimeGetVersion(&runtime);
@@ -330,9 +296,9 @@ json device_json() {
 
 int main(int argc, char** argv) try {
   const Arguments a = parse(argc, argv);
-  json out = {{"bench", "cuda"},           {"mesh", file_name(a.mesh)},   {"resolution", a.resolution},
-              {"repeats", a.repeats},      {"machine", bench::machine()}, {"device", device_json()},
-              {"commit", ISOSHELL_COMMIT}, {"whole_runs", json::array()}, {"cold_runs", json::array()}};
+  json out = {{"bench", "cuda"},           {"mesh", bench::file_name(a.mesh)}, {"resolution", a.resolution},
+              {"repeats", a.repeats},      {"machine", bench::machine()},      {"device", device_json()},
+              {"commit", ISOSHELL_COMMIT}, {"whole_runs", json::array()},      {"cold_runs", json::array()}};
   RemeshOptions options;
   options.vertices = 4000;
   json& runs = out["whole_runs"];
@@ -355,6 +321,5 @@ int main(int argc, char** argv) try {
   write_file(a.json_path, out.dump(1));
   write_file(a.markdown_path, markdown(out));
 } catch (const std::exception& e) {
-  std::fprintf(stderr, "bench_cuda: %s\n", e.what());
-  return 1;
+  return bench::failed(argv[0], e);
 }

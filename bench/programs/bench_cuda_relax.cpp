@@ -1,13 +1,11 @@
 // Milliseconds per relaxation pass on the device, of both methods, and whether they give what the CPU gives.
-//   bench_cuda_relax MESH [--check] [--no-time] [--no-shell] rRESOLUTION K [K ...] [rRESOLUTION K [K ...]] ...
-#include <algorithm>
-#include <chrono>
+//   bench_cuda_relax MESH rRESOLUTION K [K ...] [rRESOLUTION K [K ...]] ... [--check] [--no-time] [--no-shell]
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
+#include "bench/programs/program.h"
 #include "isoshell/advanced/digest.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/isoshell.h"
@@ -15,11 +13,6 @@
 using namespace isoshell;
 
 namespace {
-
-double now_us() {
-  using Clock = std::chrono::steady_clock;
-  return std::chrono::duration<double, std::micro>(Clock::now().time_since_epoch()).count();
-}
 
 /// What a bench of one grid needs.
 struct Setup {
@@ -32,11 +25,9 @@ struct Setup {
 
 /// On the device, where the products stay.
 Setup prepare(const TriangleSoup& soup, int32_t resolution, bool want_shell) {
-  Context cuda;
-  cuda.backend = Backend::cuda;
-  const auto [lo, hi] = bounding_box(soup);
+  Context cuda = bench::context_of(Backend::cuda);
   Setup s;
-  s.surface = snap_surface(soup, LatticeFrame::around(lo, hi, resolution), cuda);
+  s.surface = snap_surface(soup, bench::frame_of(soup, resolution), cuda);
   s.sites = voxelize(s.surface, cuda);
   s.samples = sample_sites(s.surface, s.sites, cuda);
   s.sheet = build_sheet(s.surface, s.sites, s.samples, {0, 0}, cuda);
@@ -44,26 +35,23 @@ Setup prepare(const TriangleSoup& soup, int32_t resolution, bool want_shell) {
   return s;
 }
 
-SeedSet copy_of(const SeedSet& seeds) { return to_host(seeds); }
-
 /// Relaxes with so many passes on a backend; gives the digest of the seeds and the time.
 struct Outcome {
   uint64_t seeds;
   RelaxReport report;
-  double us;
+  double ms;
 };
 
 template <class Relax>
 Outcome relaxed(const SeedSet& start, int32_t passes, Backend backend, Relax relax) {
-  Context context;
-  context.backend = backend;
-  SeedSet seeds = copy_of(start);
+  Context context = bench::context_of(backend);
+  SeedSet seeds = to_host(start);
   RelaxOptions options;
   options.max_passes = passes;
   options.tolerance_ppb = 0;
-  const double before = now_us();
+  const bench::Watch watch;
   Outcome out{0, relax(seeds, options, context), 0};
-  out.us = now_us() - before;
+  out.ms = watch.ms();
   out.seeds = digest(to_host(seeds));
   return out;
 }
@@ -91,9 +79,8 @@ bool check(const char* method, const SeedSet& start, Relax relax) {
 bool check_dual(const Sheet& sheet, const SeedSet& start) {
   uint64_t digests[2];
   for (const Backend backend : {Backend::cpu, Backend::cuda}) {
-    Context context;
-    context.backend = backend;
-    const Triangulation made = triangulate_dual(sheet, copy_of(start), {}, context);
+    Context context = bench::context_of(backend);
+    const Triangulation made = triangulate_dual(sheet, to_host(start), {}, context);
     digests[backend == Backend::cuda] = digest(to_world(to_host(made.mesh), sheet.frame)) ^ digest(to_host(made.seeds));
   }
   if (digests[0] != digests[1]) std::printf("DIFFERS dual k=%lld\n", (long long)start.size());
@@ -101,55 +88,44 @@ bool check_dual(const Sheet& sheet, const SeedSet& start) {
 }
 
 struct Times {
-  double pass_us, start_us;
+  double pass_ms, start_ms;
 };
 
 template <class Relax>
 Times measure(const SeedSet& start, Relax relax) {
-  std::vector<double> each, start_us;
+  std::vector<double> each, start_ms;
   for (int repeat = 0; repeat < 5; ++repeat) {
-    const double few = relaxed(start, 16, Backend::cuda, relax).us, many = relaxed(start, 80, Backend::cuda, relax).us;
+    const double few = relaxed(start, 16, Backend::cuda, relax).ms, many = relaxed(start, 80, Backend::cuda, relax).ms;
     each.push_back((many - few) / 64);
-    start_us.push_back(few - 16 * each.back());
+    start_ms.push_back(few - 16 * each.back());
   }
-  std::sort(each.begin(), each.end());
-  std::sort(start_us.begin(), start_us.end());
-  return {each[2], start_us[2]};
+  return {bench::spread_of(each).median, bench::spread_of(start_ms).median};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) return 2;
-  bool want_check = false, want_shell = true, want_time = true;
-  const TriangleSoup soup = read_mesh(argv[1]);
+  bool want_check = false, no_time = false, no_shell = false;
+  const std::vector<std::string> words =
+      bench::read_arguments(argc, argv, "bench_cuda_relax MESH rRESOLUTION K [K ...] [rRESOLUTION K [K ...]] ...", 3,
+                            {{"--check", "", &want_check}, {"--no-time", "", &no_time}, {"--no-shell", "", &no_shell}});
+  const bool want_time = !no_time, want_shell = !no_shell;
+  const TriangleSoup soup = read_mesh(words[0]);
+  const std::string name = bench::file_name(words[0]);
   Setup setup;
-  const auto name = std::string(argv[1]).substr(std::string(argv[1]).rfind('/') + 1);
   bool all_same = true;
-  for (int a = 2; a < argc; ++a) {
-    if (!std::strcmp(argv[a], "--check")) {
-      want_check = true;
-      continue;
-    }
-    if (!std::strcmp(argv[a], "--no-time")) {
-      want_time = false;
-      continue;
-    }
-    if (!std::strcmp(argv[a], "--no-shell")) {
-      want_shell = false;
-      continue;
-    }
-    if (argv[a][0] == 'r') {
-      const double before = now_us();
-      setup = prepare(soup, std::atoi(argv[a] + 1), want_shell);
+  for (size_t i = 1; i < words.size(); ++i) {
+    const char* const word = words[i].c_str();
+    if (word[0] == 'r') {
+      const bench::Watch watch;
+      setup = prepare(soup, std::atoi(word + 1), want_shell);
       std::printf("%s %s: %lld sheet vertices, %lld leaves, %lld shell voxels, prepared in %.0f ms\n", name.c_str(),
-                  argv[a], (long long)setup.sheet.vertex_count(), (long long)setup.sheet.blocks.count(),
-                  (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0), (now_us() - before) / 1000);
+                  word, (long long)setup.sheet.vertex_count(), (long long)setup.sheet.blocks.count(),
+                  (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0), watch.ms());
       continue;
     }
-    Context cpu;
-    cpu.backend = Backend::cpu;
-    const int64_t k = std::atoll(argv[a]);
+    Context cpu = bench::context_of(Backend::cpu);
+    const int64_t k = std::atoll(word);
     const auto on_sheet = [&](SeedSet& seeds, const RelaxOptions& o, Context& c) {
       RelaxedSeeds relaxed = relax_on_sheet(setup.sheet, std::move(seeds), o, c);
       seeds = std::move(relaxed.seeds);
@@ -175,9 +151,9 @@ int main(int argc, char** argv) {
     }
     all_same &= same;
     std::printf("%-16s k %8lld  sheet V %9lld %8.4f ms (+ %.2f)  shell voxels %9lld %8.4f ms (+ %.2f)  %s\n",
-                name.c_str(), (long long)k, (long long)setup.sheet.vertex_count(), sheet.pass_us / 1000,
-                sheet.start_us / 1000, (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0),
-                shell.pass_us / 1000, shell.start_us / 1000, want_check ? same ? "same as the CPU" : "DIFFERS" : "");
+                name.c_str(), (long long)k, (long long)setup.sheet.vertex_count(), sheet.pass_ms, sheet.start_ms,
+                (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0), shell.pass_ms, shell.start_ms,
+                want_check ? same ? "same as the CPU" : "DIFFERS" : "");
     std::fflush(stdout);
   }
   return all_same ? 0 : 1;

@@ -1,20 +1,17 @@
 // From triangles on the device to sites, shell with exact closest sites, and NanoVDB index grid, all in its memory.
-//   bench_cuda_shell MESH [--resolutions 512,1024,...] [--bands 1,3,...] [--triangles N] [--repeats N] [--digests 1]
+//   bench_cuda_shell MESH [--resolutions 512,1024,...] [--bands 1,3,...] [--triangles N] [--repeats N] [--digests]
 // The longest side is nine tenths of a resolution; faces are split at the middles of their edges until there are N.
 // JSON on standard output: medians over the repeats, by events in the stream that the stages use. With --digests the
 // host computes sites and shell, too, and the digests of both are compared.
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <sstream>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "cuda/runtime/device_stream.h"
 #include "isoshell/isoshell.h"
 
@@ -26,35 +23,19 @@ namespace {
 struct Arguments {
   std::string mesh;
   std::vector<int> resolutions = {512, 1024, 2048, 4096, 8192}, bands = {3, 9};
-  size_t triangles = 200000;
+  int64_t triangles = 200000;
   int repeats = 20;
   bool digests = false;
 };
 
-std::vector<int> numbers(const std::string& list) {
-  std::vector<int> out;
-  std::istringstream in(list);
-  for (std::string one; std::getline(in, one, ',');) out.push_back(std::atoi(one.c_str()));
-  return out;
-}
-
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  if (argc < 2) {
-    std::fprintf(stderr,
-                 "usage: bench_cuda_shell MESH [--resolutions LIST] [--bands LIST] [--triangles N] [--repeats N] "
-                 "[--digests 1]\n");
-    std::exit(2);
-  }
-  a.mesh = argv[1];
-  for (int i = 2; i + 1 < argc; i += 2) {
-    const std::string key = argv[i];
-    if (key == "--resolutions") a.resolutions = numbers(argv[i + 1]);
-    if (key == "--bands") a.bands = numbers(argv[i + 1]);
-    if (key == "--triangles") a.triangles = size_t(std::atol(argv[i + 1]));
-    if (key == "--repeats") a.repeats = std::atoi(argv[i + 1]);
-    if (key == "--digests") a.digests = std::atoi(argv[i + 1]) != 0;
-  }
+  a.mesh = bench::read_arguments(argc, argv, "bench_cuda_shell MESH", 1,
+                                 {{"--resolutions", "LIST", &a.resolutions},
+                                  {"--bands", "LIST", &a.bands},
+                                  {"--triangles", "N", &a.triangles},
+                                  {"--repeats", "N", &a.repeats},
+                                  {"--digests", "", &a.digests}})[0];
   return a;
 }
 
@@ -112,11 +93,6 @@ class Laps {
   cudaEvent_t events_[4];
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 json measure(const LatticeSurface& surface, int band_vox, int repeats, Context& context) {
   DeviceStream& stream = DeviceStream::of(context);
   Laps laps(stream.stream());
@@ -146,25 +122,24 @@ json measure(const LatticeSurface& surface, int band_vox, int repeats, Context& 
            {"peak_bytes", peak},
            {"peak_bytes_per_active", double(peak) / double(std::max<int64_t>(active, 1))}};
   }
-  row["voxelize_ms"] = median(ms[0]);
-  row["shell_ms"] = median(ms[1]);
-  row["grid_ms"] = median(ms[2]);
-  row["total_ms"] = median(ms[3]);
-  row["total_ms_min"] = *std::min_element(ms[3].begin(), ms[3].end());
+  row["voxelize_ms"] = bench::spread_of(ms[0]).median;
+  row["shell_ms"] = bench::spread_of(ms[1]).median;
+  row["grid_ms"] = bench::spread_of(ms[2]).median;
+  const bench::Spread total = bench::spread_of(ms[3]);
+  row["total_ms"] = total.median;
+  row["total_ms_min"] = total.least;
   return row;
 }
-
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Digests and counts of the products on both sides; the device's go first and are gone before the host's are made.
 json compare(const LatticeSurface& on_host, const LatticeSurface& on_device, int band_vox, Context& host,
              Context& device) {
   json row;
   const auto describe = [&](const char* side, const LatticeSurface& surface, Context& context) {
-    const double start = seconds();
+    const bench::Watch watch;
     const SiteSet sites = to_host(voxelize(surface, context));
     const Shell shell = to_host(build_shell(sites, {band_vox}, context));
-    row[side] = {{"seconds", seconds() - start},
+    row[side] = {{"seconds", watch.ms() / 1000},
                  {"sites", sites.voxels.voxel_count()},
                  {"active_voxels", shell.voxels.voxel_count()},
                  {"site_digest", digest_text(digest(sites))},
@@ -183,15 +158,12 @@ json compare(const LatticeSurface& on_host, const LatticeSurface& on_device, int
 
 int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
-  Context host, device;
-  host.backend = Backend::cpu;
-  device.backend = Backend::cuda;
+  Context host = bench::context_of(Backend::cpu), device = bench::context_of(Backend::cuda);
   TriangleSoup soup = read_mesh(args.mesh);
-  while (soup.triangles.size() < args.triangles) soup = split(soup);
-  const auto [lo, hi] = bounding_box(soup);
+  while (int64_t(soup.triangles.size()) < args.triangles) soup = split(soup);
   json rows = json::array();
   for (const int resolution : args.resolutions) {
-    const LatticeFrame frame = LatticeFrame::around(lo, hi, resolution * 9 / 10);
+    const LatticeFrame frame = bench::frame_of(soup, resolution * 9 / 10);
     const LatticeSurface snapped = snap_surface(soup, frame, host);
     DeviceStream& stream = DeviceStream::of(device);
     LatticeSurface surface;
@@ -211,13 +183,8 @@ int main(int argc, char** argv) try {
       rows.push_back(row);
     }
   }
-  const json out = {{"bench", "cuda_shell"},
-                    {"mesh", args.mesh.substr(args.mesh.find_last_of('/') + 1)},
-                    {"repeats", args.repeats},
-                    {"machine", bench::machine()},
-                    {"rows", rows}};
-  std::printf("%s\n", out.dump(1).c_str());
+  bench::print_result(
+      {{"bench", "cuda_shell"}, {"mesh", bench::file_name(args.mesh)}, {"repeats", args.repeats}, {"rows", rows}});
 } catch (const std::exception& e) {
-  std::fprintf(stderr, "bench_cuda_shell: %s\n", e.what());
-  return 1;
+  return bench::failed(argv[0], e);
 }

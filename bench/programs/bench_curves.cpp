@@ -1,13 +1,10 @@
 // What is found of borders and creases, per mesh: one row each, JSON on standard output.
-//   bench_curves [--vertices K] [--degrees DEG] MESH...
-#include <chrono>
+//   bench_curves MESH... [--vertices K] [--degrees DEG]
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "features/curves/face_normals.h"
 #include "features/curves/find_curves.h"
 #include "features/mesh/weld_for_features.h"
@@ -25,19 +22,8 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--vertices" && i + 1 < argc)
-      a.vertices = std::atof(argv[++i]);
-    else if (word == "--degrees" && i + 1 < argc)
-      a.degrees = std::atof(argv[++i]);
-    else
-      a.meshes.push_back(word);
-  }
-  if (a.meshes.empty()) {
-    std::fprintf(stderr, "usage: bench_curves [--vertices K] [--degrees DEG] MESH...\n");
-    std::exit(2);
-  }
+  a.meshes = bench::read_arguments(argc, argv, "bench_curves MESH...", 1,
+                                   {{"--vertices", "K", &a.vertices}, {"--degrees", "DEG", &a.degrees}});
   return a;
 }
 
@@ -68,7 +54,7 @@ SharpEdges sharp_edges(const FeatureMesh& mesh, double degrees) {
 
 json row_of(const std::string& path, const Arguments& args) {
   const TriangleSoup soup = read_mesh(path);
-  const auto start = std::chrono::steady_clock::now();
+  const bench::Watch watch;
   const FeatureMesh mesh = weld_for_features(soup);
   CurveOptions options;
   if (args.degrees > 0) {
@@ -79,7 +65,7 @@ json row_of(const std::string& path, const Arguments& args) {
   options.edge_length_world = std::sqrt(area_of(mesh) / args.vertices * 2 / std::sqrt(3.));
   CreaseReport report;
   const CurveNetwork found = find_curves(mesh, options, &report);
-  const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const double ms = watch.ms();
 
   int64_t borders = 0, creases = 0, loops = 0;
   for (const FeatureCurve& c : found.curves) {
@@ -88,7 +74,7 @@ json row_of(const std::string& path, const Arguments& args) {
     loops += c.is_loop;
   }
   const double sharp_world = sharp_edges(mesh, 40).length_world;
-  return {{"mesh", path.substr(path.find_last_of('/') + 1)},
+  return {{"mesh", bench::file_name(path)},
           {"triangles", mesh.triangles.size()},
           {"edge_length", options.edge_length_world},
           {"edges_above_30", sharp_edges(mesh, 30).count},
@@ -109,9 +95,7 @@ int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
   json rows = json::array();
   for (const std::string& mesh : args.meshes) rows.push_back(row_of(mesh, args));
-  const json out = {{"bench", "curves"}, {"vertices", args.vertices}, {"machine", bench::machine()}, {"rows", rows}};
-  std::printf("%s\n", out.dump(1).c_str());
+  bench::print_result({{"bench", "curves"}, {"vertices", args.vertices}, {"rows", rows}});
 } catch (const std::exception& e) {
-  std::fprintf(stderr, "bench_curves: %s\n", e.what());
-  return 1;
+  return bench::failed(argv[0], e);
 }

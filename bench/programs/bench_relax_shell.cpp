@@ -1,14 +1,12 @@
 // CPU nanoseconds a voxel (all threads together) of a relaxation pass in the shell, for several numbers of seeds in one
 // shell. JSON on standard output, with digests of the seeds, so that two commits can be compared.
-//   bench_relax_shell MESH [--resolution R] [--band D] [--threads T] [--repeats N] K [K ...]
-#include <algorithm>
-#include <cstdio>
+//   bench_relax_shell MESH K [K ...] [--resolution R] [--band D] [--threads T] [--repeats N]
 #include <cstdlib>
 #include <ctime>
 #include <string>
 #include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "isoshell/advanced/digest.h"
 #include "isoshell/isoshell.h"
 
@@ -28,24 +26,13 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  for (int i = 2; i < argc; ++i) {
-    const std::string key = argv[i];
-    if (key.compare(0, 2, "--") != 0) {
-      a.seeds.push_back(std::atoll(argv[i]));
-      continue;
-    }
-    const int value = i + 1 < argc ? std::atoi(argv[++i]) : 0;
-    if (key == "--resolution") a.resolution = value;
-    if (key == "--band") a.band_vox = value;
-    if (key == "--threads") a.threads = value;
-    if (key == "--repeats") a.repeats = value;
-  }
-  if (a.seeds.empty()) {
-    std::fprintf(stderr,
-                 "usage: bench_relax_shell MESH [--resolution R] [--band D] [--threads T] [--repeats N] K [K ...]\n");
-    std::exit(2);
-  }
-  a.mesh = argv[1];
+  const std::vector<std::string> words = bench::read_arguments(argc, argv, "bench_relax_shell MESH K [K ...]", 2,
+                                                               {{"--resolution", "R", &a.resolution},
+                                                                {"--band", "D", &a.band_vox},
+                                                                {"--threads", "T", &a.threads},
+                                                                {"--repeats", "N", &a.repeats}});
+  a.mesh = words[0];
+  for (size_t i = 1; i < words.size(); ++i) a.seeds.push_back(std::atoll(words[i].c_str()));
   return a;
 }
 
@@ -57,8 +44,7 @@ struct Setup {
 
 Setup prepare(const Arguments& args, Context& context) {
   const TriangleSoup soup = read_mesh(args.mesh);
-  const auto [lo, hi] = bounding_box(soup);
-  const LatticeSurface surface = snap_surface(soup, LatticeFrame::around(lo, hi, args.resolution), context);
+  const LatticeSurface surface = snap_surface(soup, bench::frame_of(soup, args.resolution), context);
   Setup s;
   s.sites = voxelize(surface, context);
   s.samples = sample_sites(surface, s.sites, context);
@@ -88,37 +74,28 @@ json measure(const Setup& setup, int64_t count, int repeats, Context& context) {
     ns_per_voxel.push_back((all.cpu_ns - one) / (kPasses - 1) / voxels);
     seeds = all.seeds;
   }
-  std::sort(ns_per_voxel.begin(), ns_per_voxel.end());
-  return {{"seeds", count},
-          {"ns_per_voxel_median", ns_per_voxel[ns_per_voxel.size() / 2]},
-          {"ns_per_voxel_min", ns_per_voxel.front()},
-          {"ns_per_voxel_max", ns_per_voxel.back()},
-          {"digest", seeds}};
+  json row = {{"seeds", count}, {"digest", seeds}};
+  bench::add_spread(row, "ns_per_voxel", bench::spread_of(ns_per_voxel));
+  return row;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
-  Context context;
-  context.backend = Backend::cpu;
-  context.threads = args.threads;
+  Context context = bench::context_of(Backend::cpu, args.threads);
   const Setup setup = prepare(args, context);
   json rows = json::array();
   for (const int64_t count : args.seeds) rows.push_back(measure(setup, count, args.repeats, context));
-  const json out = {{"bench", "relax_shell"},
-                    {"mesh", args.mesh.substr(args.mesh.find_last_of('/') + 1)},
-                    {"resolution", args.resolution},
-                    {"band_vox", args.band_vox},
-                    {"sites", setup.sites.voxels.voxel_count()},
-                    {"voxels", setup.shell.voxels.voxel_count()},
-                    {"threads", args.threads},
-                    {"repeats", args.repeats},
-                    {"machine", bench::machine()},
-                    {"rows", rows}};
-  std::printf("%s\n", out.dump(2).c_str());
-  return 0;
+  bench::print_result({{"bench", "relax_shell"},
+                       {"mesh", bench::file_name(args.mesh)},
+                       {"resolution", args.resolution},
+                       {"band_vox", args.band_vox},
+                       {"sites", setup.sites.voxels.voxel_count()},
+                       {"voxels", setup.shell.voxels.voxel_count()},
+                       {"threads", args.threads},
+                       {"repeats", args.repeats},
+                       {"rows", rows}});
 } catch (const std::exception& e) {
-  std::fprintf(stderr, "bench_relax_shell: %s\n", e.what());
-  return 1;
+  return bench::failed(argv[0], e);
 }

@@ -7,15 +7,12 @@
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "isoshell/isoshell.h"
 
 using namespace isoshell;
@@ -31,56 +28,30 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  if (argc < 2) {
-    std::fprintf(stderr,
-                 "usage: bench_shell_vs_openvdb MESH [--resolution R] [--band D] [--threads T] [--repeats N]\n");
-    std::exit(2);
-  }
-  a.mesh = argv[1];
-  for (int i = 2; i + 1 < argc; i += 2) {
-    const std::string key = argv[i];
-    if (key == "--only") a.only = argv[i + 1];
-    if (key == "--resolution") a.resolution = std::atoi(argv[i + 1]);
-    if (key == "--band") a.band_vox = std::atoi(argv[i + 1]);
-    if (key == "--threads") a.threads = std::atoi(argv[i + 1]);
-    if (key == "--repeats") a.repeats = std::atoi(argv[i + 1]);
-  }
+  a.mesh = bench::read_arguments(argc, argv, "bench_shell_vs_openvdb MESH", 1,
+                                 {{"--only", "ours|openvdb", &a.only},
+                                  {"--resolution", "R", &a.resolution},
+                                  {"--band", "D", &a.band_vox},
+                                  {"--threads", "T", &a.threads},
+                                  {"--repeats", "N", &a.repeats}})[0];
   return a;
 }
 
-class Watch {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-  /// Of all threads, user and system: says more than ms() on a busy machine.
-  double cpu_ms() const { return cpu_now_ms() - cpu_start_; }
-
- private:
-  static double cpu_now_ms() {
-    rusage use{};
-    getrusage(RUSAGE_SELF, &use);
-    return double(use.ru_utime.tv_sec + use.ru_stime.tv_sec) * 1e3 +
-           double(use.ru_utime.tv_usec + use.ru_stime.tv_usec) / 1e3;
-  }
-
-  double cpu_start_ = cpu_now_ms();
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-LatticeFrame frame_of(const TriangleSoup& soup, int32_t resolution) {
-  const auto [lo, hi] = bounding_box(soup);
-  return LatticeFrame::around(lo, hi, resolution);
+/// Of all threads, user and system: says more than the time on the wall on a busy machine.
+double cpu_now_ms() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return double(use.ru_utime.tv_sec + use.ru_stime.tv_sec) * 1e3 +
+         double(use.ru_utime.tv_usec + use.ru_stime.tv_usec) / 1e3;
 }
 
 json run_ours(const Arguments& args) {
-  Context context;
-  context.backend = Backend::cpu;
-  context.threads = args.threads;
+  Context context = bench::context_of(Backend::cpu, args.threads);
   const TriangleSoup soup = read_mesh(args.mesh);
-  const LatticeFrame frame = frame_of(soup, args.resolution);
+  const LatticeFrame frame = bench::frame_of(soup, args.resolution);
   const bench::PeakMemory memory;
-  const Watch all;
+  const double cpu_before_ms = cpu_now_ms();
+  const bench::Watch all;
   const LatticeSurface surface = snap_surface(soup, frame, context);
   const double snapped = all.ms();
   const SiteSet sites = voxelize(surface, context);
@@ -90,7 +61,7 @@ json run_ours(const Arguments& args) {
   const Shell shell = build_shell(sites, options, context);
   const double done = all.ms();
   return {{"ms", done},
-          {"cpu_ms", all.cpu_ms()},
+          {"cpu_ms", cpu_now_ms() - cpu_before_ms},
           {"snap_ms", snapped},
           {"voxelize_ms", voxelized - snapped},
           {"shell_ms", done - voxelized},
@@ -109,19 +80,20 @@ json run_openvdb(const Arguments& args) {
   openvdb::math::Transform::Ptr transform;
   {
     const TriangleSoup soup = read_mesh(args.mesh);
-    const LatticeFrame frame = frame_of(soup, args.resolution);
+    const LatticeFrame frame = bench::frame_of(soup, args.resolution);
     for (const WorldPoint& p : soup.vertices) points.emplace_back(float(p.x), float(p.y), float(p.z));
     for (const auto& t : soup.triangles) triangles.emplace_back(t[0], t[1], t[2]);
     transform = openvdb::math::Transform::createLinearTransform(frame.voxel_size);
     transform->postTranslate({frame.origin.x, frame.origin.y, frame.origin.z});
   }
   const bench::PeakMemory memory;
-  const Watch all;
+  const double cpu_before_ms = cpu_now_ms();
+  const bench::Watch all;
   const auto grid = openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(*transform, points, triangles,
                                                                                     quads, float(args.band_vox));
   const double done = all.ms();
   return {{"ms", done},
-          {"cpu_ms", all.cpu_ms()},
+          {"cpu_ms", cpu_now_ms() - cpu_before_ms},
           {"peak_mb", memory.mb()},
           {"leaves", grid->tree().leafCount()},
           {"active", grid->activeVoxelCount()}};
@@ -149,11 +121,11 @@ json summary(const std::vector<json>& runs) {
   for (const auto& [key, first] : runs.front().items()) {
     std::vector<double> values;
     for (const json& run : runs) values.push_back(run[key].get<double>());
-    std::sort(values.begin(), values.end());
-    if (values.front() == values.back())
+    const bench::Spread s = bench::spread_of(values);
+    if (s.least == s.most)
       out[key] = first;
     else
-      out[key] = {{"min", values.front()}, {"median", values[values.size() / 2]}, {"max", values.back()}};
+      out[key] = {{"min", s.least}, {"median", s.median}, {"max", s.most}};
   }
   return out;
 }
@@ -171,18 +143,15 @@ int main(int argc, char** argv) try {
     ours.push_back(in_own_process(args, "ours"));
     theirs.push_back(in_own_process(args, "openvdb"));
   }
-  const json result = {{"mesh", args.mesh.substr(args.mesh.rfind('/') + 1)},
+  bench::print_result({{"mesh", bench::file_name(args.mesh)},
                        {"resolution", args.resolution},
                        {"band_vox", args.band_vox},
                        {"threads", args.threads},
                        {"repeats", args.repeats},
                        {"ours", summary(ours)},
                        {"openvdb_version", openvdb::getLibraryVersionString()},
-                       {"openvdb", summary(theirs)},
-                       {"machine", bench::machine()}};
-  std::printf("%s\n", result.dump(2).c_str());
+                       {"openvdb", summary(theirs)}});
   return 0;
 } catch (const std::exception& e) {
-  std::fprintf(stderr, "bench_shell_vs_openvdb: %s\n", e.what());
-  return 1;
+  return bench::failed(argv[0], e);
 }

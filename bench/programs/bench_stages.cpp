@@ -1,12 +1,9 @@
 // One row per stage: size, time, throughput and peak memory, for one mesh. JSON on standard output.
 //   bench_stages MESH [--resolution R] [--band D] [--vertices K] [--threads T] [--repeats N]
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
+#include <vector>
 
-#include "bench/programs/machine.h"
+#include "bench/programs/program.h"
 #include "isoshell/isoshell.h"
 
 using namespace isoshell;
@@ -23,21 +20,12 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  if (argc < 2) {
-    std::fprintf(stderr,
-                 "usage: bench_stages MESH [--resolution R] [--band D] [--vertices K] [--threads T] [--repeats N]\n");
-    std::exit(2);
-  }
-  a.mesh = argv[1];
-  for (int i = 2; i + 1 < argc; i += 2) {
-    const std::string key = argv[i];
-    const long value = std::atol(argv[i + 1]);
-    if (key == "--resolution") a.resolution = int32_t(value);
-    if (key == "--band") a.band_vox = int32_t(value);
-    if (key == "--vertices") a.vertices = value;
-    if (key == "--threads") a.threads = int(value);
-    if (key == "--repeats") a.repeats = int(value);
-  }
+  a.mesh = bench::read_arguments(argc, argv, "bench_stages MESH", 1,
+                                 {{"--resolution", "R", &a.resolution},
+                                  {"--band", "D", &a.band_vox},
+                                  {"--vertices", "K", &a.vertices},
+                                  {"--threads", "T", &a.threads},
+                                  {"--repeats", "N", &a.repeats}})[0];
   return a;
 }
 
@@ -52,16 +40,14 @@ class Rows {
     const bench::PeakMemory memory;
     auto product = timed(stage, ms);
     for (int i = 1; i < repeats_; ++i) product = timed(stage, ms);
-    std::sort(ms.begin(), ms.end());
-    const double median = ms[ms.size() / 2];
+    const bench::Spread spread = bench::spread_of(ms);
     const int64_t items = count(product);
-    rows_.push_back({{"stage", name},
-                     {unit, items},
-                     {"ms_median", median},
-                     {"ms_min", ms.front()},
-                     {"ms_max", ms.back()},
-                     {"million_per_second", double(items) / median / 1000},
-                     {"peak_mb", memory.mb()}});
+    json row = {{"stage", name},
+                {unit, items},
+                {"million_per_second", double(items) / spread.median / 1000},
+                {"peak_mb", memory.mb()}};
+    bench::add_spread(row, "ms", spread);
+    rows_.push_back(row);
     return product;
   }
   const json& rows() const { return rows_; }
@@ -69,9 +55,9 @@ class Rows {
  private:
   template <class Stage>
   static auto timed(Stage& stage, std::vector<double>& ms) {
-    const auto start = std::chrono::steady_clock::now();
+    const bench::Watch watch;
     auto product = stage();
-    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    ms.push_back(watch.ms());
     return product;
   }
 
@@ -83,16 +69,13 @@ class Rows {
 
 int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
-  Context context;
-  context.backend = Backend::cpu;
-  context.threads = args.threads;
+  Context context = bench::context_of(Backend::cpu, args.threads);
   Rows rows(args.repeats);
 
   const TriangleSoup soup = rows.run(
       "read", "triangles", [&] { return read_mesh(args.mesh); },
       [](const TriangleSoup& s) { return int64_t(s.triangles.size()); });
-  const auto [lo, hi] = bounding_box(soup);
-  const LatticeFrame frame = LatticeFrame::around(lo, hi, args.resolution);
+  const LatticeFrame frame = bench::frame_of(soup, args.resolution);
   const LatticeSurface surface = rows.run(
       "snap", "triangles", [&] { return snap_surface(soup, frame, context); },
       [](const LatticeSurface& s) { return s.triangles.size(); });
@@ -134,17 +117,14 @@ int main(int argc, char** argv) try {
   };
   rows.run("dual", "triangles", dual, [](const DualMesh& m) { return m.triangles.size(); });
 
-  const json out = {{"bench", "stages"},
-                    {"mesh", args.mesh.substr(args.mesh.find_last_of('/') + 1)},
-                    {"resolution", args.resolution},
-                    {"band_vox", args.band_vox},
-                    {"vertices", args.vertices},
-                    {"threads", args.threads},
-                    {"repeats", args.repeats},
-                    {"machine", bench::machine()},
-                    {"rows", rows.rows()}};
-  std::printf("%s\n", out.dump(1).c_str());
+  bench::print_result({{"bench", "stages"},
+                       {"mesh", bench::file_name(args.mesh)},
+                       {"resolution", args.resolution},
+                       {"band_vox", args.band_vox},
+                       {"vertices", args.vertices},
+                       {"threads", args.threads},
+                       {"repeats", args.repeats},
+                       {"rows", rows.rows()}});
 } catch (const std::exception& e) {
-  std::fprintf(stderr, "bench_stages: %s\n", e.what());
-  return 1;
+  return bench::failed(argv[0], e);
 }
