@@ -80,14 +80,14 @@ std::vector<Triangle> triangles_of_vertices(GltfTriangles& triangles, WeldedCorn
   return result;
 }
 
-/// What becomes of an attribute of primitives; an empty name: it is not taken.
-struct Taken {
+/// What an attribute of primitives is kept as; an empty name: it is not kept, and why.
+struct KeptAs {
   std::string name, reason;
   AttributeDomain domain = AttributeDomain::vertex;
   int32_t least = 1, most = 1;  ///< components
 };
 
-Taken taken_as(const std::string& semantic) {
+KeptAs kept_as(const std::string& semantic) {
   if (const std::string name = name_of_semantic(semantic); !name.empty()) {
     const AttributeMeaning& meaning = *meaning_of(name);
     return {name, "", meaning.domain, meaning.least_components, meaning.most_components};
@@ -116,42 +116,41 @@ class AttributeReader {
         if (semantic != "POSITION" && std::find(semantics.begin(), semantics.end(), semantic) == semantics.end())
           semantics.push_back(semantic);
     for (const std::string& semantic : semantics) {
-      const Taken meaning = taken_as(semantic);
-      const std::string reason = meaning.name.empty() ? meaning.reason : add(semantic, meaning);
+      const KeptAs kept = kept_as(semantic);
+      const std::string reason = kept.name.empty() ? kept.reason : add(semantic, kept);
       if (!reason.empty()) soup_.dropped_attributes.push_back({semantic, reason});
     }
   }
 
  private:
-  /// Result: why it was not taken; empty if it was.
-  std::string add(const std::string& semantic, const Taken& meaning) {
+  /// Result: why it is not kept; empty if it is.
+  std::string add(const std::string& semantic, const KeptAs& kept) {
     std::vector<std::optional<GltfAccessor>> accessors;
-    Attribute attribute{meaning.name, NumberType::f32, 0, {}, meaning.domain};
+    Attribute attribute{kept.name, NumberType::f32, 0, {}, kept.domain};
     bool is_integer = true, is_everywhere = true;
     for (const GltfVertices& vertices : content_.vertices) {
       accessors.push_back(vertices.find(document_, semantic));
       const auto& a = accessors.back();
       is_everywhere &= a.has_value();
       if (!a) continue;
-      if (a->components < meaning.least || a->components > meaning.most)
-        return "it has " + std::to_string(a->components) + " components, and is kept with " +
-               std::to_string(meaning.most);
+      if (a->components < kept.least || a->components > kept.most)
+        return "it has " + std::to_string(a->components) + " components, and is kept with " + std::to_string(kept.most);
       const bool is_first = attribute.components == 0;
       is_integer &=
-          (meaning.name == kColorName ? a->normalized && (a->type == NumberType::u8 || a->type == NumberType::u16)
-                                      : !a->normalized && a->type != NumberType::f32) &&
+          (kept.name == kColorName ? a->normalized && (a->type == NumberType::u8 || a->type == NumberType::u16)
+                                   : !a->normalized && a->type != NumberType::f32) &&
           (is_first || a->type == attribute.type);
       if (is_first) attribute.type = a->type;
       attribute.components = std::max(attribute.components, a->components);
     }
-    if (!is_everywhere && meaning.domain == AttributeDomain::vertex && meaning.name != kColorName)
+    if (!is_everywhere && kept.domain == AttributeDomain::vertex && kept.name != kColorName)
       return "not all meshes have it";
-    is_integer &= meaning.domain == AttributeDomain::vertex;
+    is_integer &= kept.domain == AttributeDomain::vertex;
     if (!is_integer) attribute.type = NumberType::f32;
     const double white = is_integer ? (attribute.type == NumberType::u8 ? 255 : 65535) : 1;
-    fill(accessors, !is_integer, meaning.domain == AttributeDomain::corner ? kNone : white, attribute);
-    if (meaning.name == kNormalName) turn_normals(attribute.values);
-    if (meaning.domain == AttributeDomain::vertex)
+    fill(accessors, !is_integer, kept.domain == AttributeDomain::corner ? kNone : white, attribute);
+    if (kept.name == kNormalName) turn_normals(attribute.values);
+    if (kept.domain == AttributeDomain::vertex)
       keep_first_of_welded(attribute);
     else
       name_corners(attribute);
