@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "isoshell/attribute.h"
+#include "core/attribute_values.h"
 
 namespace isoshell {
 namespace {
@@ -37,10 +37,15 @@ const AttributeMeaning* meaning_of(const std::string& name) {
   return nullptr;
 }
 
-bool means(const Attribute& a, const char* name) {
+const AttributeMeaning* fitting_meaning(const Attribute& a) {
   const AttributeMeaning* const meaning = meaning_of(a.name);
-  return meaning && std::strcmp(meaning->name, name) == 0 && a.domain == meaning->domain &&
-         a.components >= meaning->least_components && a.components <= meaning->most_components;
+  const bool fits = meaning && a.components >= meaning->least_components && a.components <= meaning->most_components;
+  return fits ? meaning : nullptr;
+}
+
+bool means(const Attribute& a, const char* name) {
+  const AttributeMeaning* const meaning = fitting_meaning(a);
+  return meaning && std::strcmp(meaning->name, name) == 0 && a.domain == meaning->domain;
 }
 
 }  // namespace isoshell

@@ -11,6 +11,9 @@ namespace isoshell {
 /// number of a label is out of range; empty where nothing is.
 std::string misfit_of(const Attribute& attribute, size_t vertices, size_t triangles);
 
+/// The meaning that the attribute has by its name and number of components, whatever has the values; null for none.
+const AttributeMeaning* fitting_meaning(const Attribute& attribute);
+
 /// The first of the components of a vertex, corner or face.
 inline const double* value_of(const Attribute& a, size_t element) {
   return &a.values[(a.index.empty() ? element : a.index[element]) * size_t(a.components)];

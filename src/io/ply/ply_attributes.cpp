@@ -2,19 +2,36 @@
 
 #include <algorithm>
 
+#include "core/attribute_values.h"
 #include "io/bytes/text_scan.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
 
-constexpr const char* kColorParts[] = {"red", "green", "blue", "alpha"};
-constexpr const char* kNormalParts[] = {"nx", "ny", "nz"};
-/// Pairs of names, since one of them alone may be anything.
-constexpr const char* kTexturePairs[][2] = {
-    {"s", "t"}, {"u", "v"}, {"texture_s", "texture_t"}, {"texture_u", "texture_v"}};
-constexpr const char* kTextureList = "texcoord";  ///< of a face, as MeshLab writes it
-constexpr const char* kNormalList = "normals";
+/// PLY's names of an attribute that has a meaning. How many components it has, the table of meanings says.
+struct PlyNames {
+  const char* name;
+  std::vector<std::vector<const char*>> parts;  ///< of the components, where vertices have it; any of these are read
+  bool writes_parts;                            ///< the first of them
+  const char* list;                             ///< of a face, for its corners; null: these cannot have it
+};
+
+const std::vector<PlyNames>& ply_names_of_meanings() {
+  static const std::vector<PlyNames> all = {
+      {kColorName, {{"red", "green", "blue", "alpha"}}, true, nullptr},
+      {kNormalName, {{"nx", "ny", "nz"}}, true, "normals"},
+      // Pairs of names, since one of them alone may be anything; the list is MeshLab's.
+      {kUvName, {{"s", "t"}, {"u", "v"}, {"texture_s", "texture_t"}, {"texture_u", "texture_v"}}, false, "texcoord"},
+  };
+  return all;
+}
+
+const PlyNames* names_of(const Attribute& a) {
+  for (const PlyNames& names : ply_names_of_meanings())
+    if (a.name == names.name && fitting_meaning(a)) return &names;
+  return nullptr;
+}
 
 /// Numbers that are one attribute.
 struct Family {
@@ -22,35 +39,28 @@ struct Family {
   std::vector<std::string> parts;
 };
 
-/// The first of the parts that are there, as numbers of one type; none where there are fewer than `least`, or another
-/// property has the attribute's name.
-Family family_of(const PlyElement& element, const char* attribute, const char* const* parts, size_t most,
-                 size_t least) {
+/// The first of the parts that are there, as numbers of one type; none where there are too few for the attribute, or
+/// another property has its name.
+Family family_of(const PlyElement& element, const char* attribute, const std::vector<const char*>& parts) {
   Family family{attribute, {}};
   if (element.find(attribute) >= 0) return {};
   const PlyProperty* first = nullptr;
-  for (size_t i = 0; i < most; ++i) {
-    const int at = element.find(parts[i]);
+  for (const char* const part : parts) {
+    const int at = element.find(part);
     if (at < 0) break;
     const PlyProperty& property = element.properties[size_t(at)];
     if (property.is_list || (first && property.type != first->type)) break;
     if (!first) first = &property;
-    family.parts.push_back(parts[i]);
+    family.parts.push_back(part);
   }
-  return family.parts.size() < least ? Family{} : family;
+  return int32_t(family.parts.size()) < meaning_of(attribute)->least_components ? Family{} : family;
 }
 
 class Finder {
  public:
   Finder(const PlyElement& element, AttributeDomain domain) : element_(element), domain_(domain) {
-    add_family(family_of(element, kColorName, kColorParts, 4, 3));
-    if (domain != AttributeDomain::vertex) return;
-    add_family(family_of(element, kNormalName, kNormalParts, 3, 3));
-    for (const auto& pair : kTexturePairs)
-      if (Family uv = family_of(element, kUvName, pair, 2, 2); !uv.parts.empty()) {
-        add_family(std::move(uv));
-        break;
-      }
+    for (const PlyNames& names : ply_names_of_meanings())
+      if (domain == AttributeDomain::vertex || !names.list) add_family(names);
   }
 
   void take_number(int property) {
@@ -65,18 +75,30 @@ class Finder {
       }
     found_.columns.push_back({property, add({p.name, p.type, 1, {}, domain_}), 0});
   }
-  void take_list(int property, const char* attribute, int32_t components) {
+  /// Whether it is one of the lists that are kept.
+  bool take_list(int property) {
     const PlyProperty& p = element_.properties[size_t(property)];
-    found_.lists.push_back({property, add({attribute, p.type, components, {}, AttributeDomain::corner}), components});
+    for (const PlyNames& names : ply_names_of_meanings()) {
+      if (!names.list || p.name != names.list || !is_real(p.type)) continue;
+      const int32_t components = meaning_of(names.name)->most_components;
+      found_.lists.push_back(
+          {property, add({names.name, p.type, components, {}, AttributeDomain::corner}), components});
+      return true;
+    }
+    return false;
   }
   void drop(const std::string& name, const std::string& reason) { found_.dropped.push_back({name, reason}); }
 
   PlyAttributes take() { return std::move(found_); }
 
  private:
-  void add_family(Family family) {
-    families_.push_back(std::move(family));
-    attribute_of_.push_back(SIZE_MAX);
+  void add_family(const PlyNames& names) {
+    for (const std::vector<const char*>& parts : names.parts)
+      if (Family family = family_of(element_, names.name, parts); !family.parts.empty()) {
+        families_.push_back(std::move(family));
+        attribute_of_.push_back(SIZE_MAX);
+        return;
+      }
   }
   size_t add(Attribute attribute) {
     found_.attributes.push_back(std::move(attribute));
@@ -116,11 +138,7 @@ PlyAttributes find_face_attributes(const PlyHeader& header, const PlyElement& fa
     const PlyProperty& property = faces.properties[size_t(i)];
     if (!property.is_list)
       finder.take_number(i);
-    else if (property.name == kTextureList && is_real(property.type))
-      finder.take_list(i, kUvName, 2);
-    else if (property.name == kNormalList && is_real(property.type))
-      finder.take_list(i, kNormalName, 3);
-    else if (!is_corners(property.name))
+    else if (!finder.take_list(i) && !is_corners(property.name))
       finder.drop(property.name, "lists are not kept");
   }
   PlyAttributes found = finder.take();
@@ -144,16 +162,14 @@ AttributeFiles find_files(const PlyHeader& header) {
 }
 
 std::string ply_list_name(const Attribute& a) {
-  if (a.name == kUvName) return kTextureList;
-  if (a.name == kNormalName && a.components == 3) return kNormalList;
+  if (const PlyNames* const names = names_of(a); names && names->list) return names->list;
   throw Error(ErrorCode::usage, "write_mesh",
               "PLY cannot hold the attribute '" + a.name + "' of corners; it holds texture coordinates and normals");
 }
 
 std::vector<std::string> ply_names(const Attribute& a) {
-  if (a.name == kColorName && (a.components == 3 || a.components == 4))
-    return {kColorParts, kColorParts + a.components};
-  if (a.name == kNormalName && a.components == 3) return {kNormalParts, kNormalParts + 3};
+  if (const PlyNames* const names = names_of(a); names && names->writes_parts)
+    return {names->parts[0].begin(), names->parts[0].begin() + a.components};
   const bool is_word =
       !a.name.empty() && std::all_of(a.name.begin(), a.name.end(), [](char c) { return c != '\n' && !is_blank(c); });
   if (a.components != 1 || !is_word)

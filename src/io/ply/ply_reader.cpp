@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/attribute_values.h"
 #include "io/bytes/text_scan.h"
 #include "io/ply/ply_body.h"
 
@@ -62,9 +63,6 @@ void read_ply_body(const MeshSource& source, const PlyHeader& header, const PlyM
 
 namespace {
 
-bool is_uv(const Attribute& a) { return a.name == kUvName && a.components == 2; }
-bool is_normal(const Attribute& a) { return a.name == kNormalName && a.components == 3; }
-
 /// What the layout keeps of faces.
 PlyAttributes keep_faces(const PlyHeader& header, PlyMeshLayout& layout, PlyAttributes& of_vertices) {
   if (!layout.faces || layout.faces->count == 0) return {};
@@ -115,7 +113,8 @@ void add_face_attributes(const PlyMeshLayout& layout, const PlyBody& body, std::
 void add_vertex_attributes(std::vector<Attribute> attributes, const std::vector<Attribute>& of_faces,
                            TriangleSoup& soup) {
   for (Attribute& a : attributes) {
-    const bool is_of_corners = (is_uv(a) || is_normal(a)) && !soup.triangles.empty();
+    const AttributeMeaning* const meaning = fitting_meaning(a);
+    const bool is_of_corners = meaning && meaning->domain == AttributeDomain::corner && !soup.triangles.empty();
     const auto is_same = [&](const Attribute& b) { return b.domain == AttributeDomain::corner && b.name == a.name; };
     if (is_of_corners && std::any_of(of_faces.begin(), of_faces.end(), is_same)) {
       soup.dropped_attributes.push_back({a.name + " of vertices", "the faces have their own"});
