@@ -36,12 +36,6 @@ __global__ void fill_values(View<T> out, T value) {
   if (i < out.size) out[i] = value;
 }
 
-template <class T>
-struct ValueAt {
-  View<const T> values;
-  __device__ T operator()(int64_t i) const { return values[i]; }
-};
-
 }  // namespace cuda_steps
 
 /// One per stage call.
@@ -110,7 +104,7 @@ class CudaExecutor {
 
   template <class T>
   T exclusive_scan(View<T> counts) {
-    return exclusive_scan_of(counts.size, cuda_steps::ValueAt<T>{counts}, counts);
+    return exclusive_scan_of(counts.size, scan_kernels::ValueAt<T>{counts}, counts);
   }
 
   template <class T, class Term>
@@ -130,7 +124,7 @@ class CudaExecutor {
   void inclusive_scan(View<T> counts) {
     stop_if_cancelled();
     if (counts.empty()) return;
-    launch_scan<true>(counts.size, cuda_steps::ValueAt<T>{counts}, counts, static_cast<T*>(nullptr), HostBell{});
+    launch_scan<true>(counts.size, scan_kernels::ValueAt<T>{counts}, counts, static_cast<T*>(nullptr), HostBell{});
   }
 
   template <class T, class Less = std::less<T>>
@@ -213,11 +207,7 @@ class CudaExecutor {
 
   template <bool kInclusive, class T, class Term>
   void launch_scan(int64_t count, Term term, View<T> out, T* total, HostBell bell) {
-    const auto kernel = scan_kernels::are_few(count)
-                            ? scan_kernels::scan<scan_kernels::per_thread(true), kInclusive, T, Term>
-                            : scan_kernels::scan<scan_kernels::per_thread(false), kInclusive, T, Term>;
-    kernel<<<scan_kernels::tiles_for(count), scan_kernels::kThreads, 0, stream()>>>(count, term, out, tiles_for(count),
-                                                                                    total, bell);
+    scan_kernels::launch_scan<kInclusive>(stream_, count, term, out, total, bell);
     check("scan");
   }
 

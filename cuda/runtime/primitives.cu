@@ -1,6 +1,4 @@
 // See primitives.h.
-#include <algorithm>
-
 #include "cuda/runtime/cub.cuh"
 #include "cuda/runtime/primitives.h"
 #include "cuda/runtime/scan_kernels.cuh"
@@ -34,11 +32,6 @@ void run_cub(DeviceStream& stream, const char* name, Algorithm algorithm) {
   require_success(algorithm(scratch.data(), bytes), name);
 }
 
-struct ValueAt {
-  View<const int64_t> values;
-  __device__ int64_t operator()(int64_t i) const { return values[i]; }
-};
-
 __global__ void list_kept(View<const uint32_t> words, View<const uint32_t> rank, View<uint32_t> out) {
   const int64_t i = int64_t(blockIdx.x) * blockDim.x + threadIdx.x, w = i >> 5;
   if (w >= words.size) return;
@@ -52,13 +45,8 @@ constexpr int kThreads = 256;
 
 void exclusive_scan_async(DeviceStream& stream, View<int64_t> values) {
   if (values.empty()) return;
-  const int64_t count = values.size - 1;
-  const bool few = scan_kernels::are_few(count);
-  const auto kernel = few ? scan_kernels::scan<scan_kernels::per_thread(true), false, int64_t, ValueAt>
-                          : scan_kernels::scan<scan_kernels::per_thread(false), false, int64_t, ValueAt>;
-  const unsigned tiles = scan_kernels::tiles_for(std::max<int64_t>(count, 1));
-  kernel<<<tiles, scan_kernels::kThreads, 0, stream.stream()>>>(count, ValueAt{values}, values, stream.next_scan(tiles),
-                                                                nullptr, HostBell{});
+  scan_kernels::launch_scan<false>(stream, values.size - 1, scan_kernels::ValueAt<int64_t>{values}, values,
+                                   static_cast<int64_t*>(nullptr), HostBell{});
   require_success(cudaGetLastError(), "scan");
 }
 

@@ -6,8 +6,10 @@
 // so that nothing has to clear them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
+#include "cuda/runtime/device_stream.h"
 #include "cuda/runtime/host_bell.cuh"
 #include "cuda/runtime/warp.cuh"
 #include "isoshell/advanced/buffer.h"
@@ -112,6 +114,21 @@ __global__ void __launch_bounds__(kThreads)
   if (!ends_scan()) return;
   if (out.size > count) out[count] = T(all);
   give(total, T(all), bell);
+}
+
+template <class T>
+struct ValueAt {
+  View<const T> values;
+  __device__ T operator()(int64_t i) const { return values[i]; }
+};
+
+/// Enqueues a scan; what went wrong with the launch, the caller asks for.
+template <bool kInclusive, class T, class Term>
+void launch_scan(DeviceStream& stream, int64_t count, Term term, View<T> out, T* total, HostBell bell) {
+  const auto kernel =
+      are_few(count) ? scan<per_thread(true), kInclusive, T, Term> : scan<per_thread(false), kInclusive, T, Term>;
+  const unsigned tiles = tiles_for(std::max<int64_t>(count, 1));
+  kernel<<<tiles, kThreads, 0, stream.stream()>>>(count, term, out, stream.next_scan(tiles), total, bell);
 }
 
 /// Bits that say which of the warp's elements are kept: a word a row, in the first lanes.
