@@ -52,15 +52,17 @@ struct WindowAndOffsets {
   uint16_t offset[512];
 };
 
-/// CornerLookup with the ranks of all words at hand.
-struct WarpCornerLookup {
-  WarpWindow window;
-  uint32_t first[8][8];  ///< index of the first vertex of every word of the eight leaves
-  uint64_t word[8][8];
+/// The words of some leaves, and the index of the first vertex of every word.
+template <int kLeaves>
+struct RankedLeaves {
+  uint32_t first[kLeaves][8];
+  uint64_t word[kLeaves][8];
 
-  __device__ void load(const VoxelSetView& set, Voxel l, int lane) {
-    if (lane < 8) {
-      const uint32_t leaf = find_leaf(set, {l.x + (lane >> 2), l.y + (lane >> 1 & 1), l.z + (lane & 1)});
+  /// Of the leaves leaf_at(0), leaf_at(1), ..., which may be missing. By a whole warp.
+  template <class LeafAt>
+  __device__ void load(const VoxelSetView& set, int lane, LeafAt leaf_at) {
+    if (lane < kLeaves) {
+      const uint32_t leaf = find_leaf(set, leaf_at(lane));
       uint32_t at = leaf == kNone ? 0 : uint32_t(set.first[leaf]);
       for (int w = 0; w < 8; ++w) {
         const uint64_t bits = leaf == kNone ? 0 : set.mask[leaf].word[w];
@@ -71,38 +73,38 @@ struct WarpCornerLookup {
     }
     __syncwarp();
   }
-  __device__ uint32_t operator()(int x, int y, int z) const {
-    const int n = (x >> 3) << 2 | (y >> 3) << 1 | z >> 3;
+  /// Of the vertex at (x, y, z) modulo 8 in leaf n.
+  __device__ uint32_t index(int n, int x, int y, int z) const {
     const uint64_t below = (uint64_t(1) << ((y & 7) << 3 | (z & 7))) - 1;
     return first[n][x & 7] + uint32_t(popcount64(word[n][x & 7] & below));
+  }
+};
+
+/// CornerLookup with the ranks of all words at hand.
+struct WarpCornerLookup {
+  WarpWindow window;
+  RankedLeaves<8> leaves;
+
+  __device__ void load(const VoxelSetView& set, Voxel l, int lane) {
+    leaves.load(set, lane, [&](int n) { return Voxel{l.x + (n >> 2), l.y + (n >> 1 & 1), l.z + (n & 1)}; });
+  }
+  __device__ uint32_t operator()(int x, int y, int z) const {
+    return leaves.index((x >> 3) << 2 | (y >> 3) << 1 | z >> 3, x, y, z);
   }
 };
 
 /// Vertex indices on the other side of a leaf's faces, with the ranks of all words at hand.
 struct FaceNeighbours {
   uint16_t offset[512];
-  uint32_t first[7][8];  ///< of the leaf itself, then through each face
-  uint64_t word[7][8];
+  RankedLeaves<7> leaves;  ///< the leaf itself, then through each face
 
   __device__ void load(const VoxelSetView& set, Voxel l, int lane) {
-    if (lane < 7) {
-      const uint32_t leaf = find_leaf(set, lane == 0 ? l : step_through(l, lane - 1));
-      uint32_t at = leaf == kNone ? 0 : uint32_t(set.first[leaf]);
-      for (int w = 0; w < 8; ++w) {
-        const uint64_t bits = leaf == kNone ? 0 : set.mask[leaf].word[w];
-        word[lane][w] = bits;
-        first[lane][w] = at;
-        at += uint32_t(popcount64(bits));
-      }
-    }
-    __syncwarp();
+    leaves.load(set, lane, [&](int n) { return n == 0 ? l : step_through(l, n - 1); });
   }
   __device__ uint32_t vertex_through(int face, int from) const {
     const Voxel to = step_through({from >> 6, from >> 3 & 7, from & 7}, face);
     const bool inside = ((to.x | to.y | to.z) & ~7) == 0;
-    const int n = inside ? 0 : 1 + face, x = to.x & 7;
-    const uint64_t below = (uint64_t(1) << ((to.y & 7) << 3 | (to.z & 7))) - 1;
-    return first[n][x] + uint32_t(popcount64(word[n][x] & below));
+    return leaves.index(inside ? 0 : 1 + face, to.x, to.y, to.z);
   }
 };
 
