@@ -48,6 +48,16 @@ std::string quoted_token(const char* p, const char* end) {
   return "'" + text + (stop - p > kLongest ? "...'" : "'");
 }
 
+std::vector<std::string> words_of(const char* p, const char* end) {
+  std::vector<std::string> words;
+  for (p = skip_blanks(p, end); p < end; p = skip_blanks(p, end)) {
+    const char* const word_end = skip_token(p, end);
+    words.emplace_back(p, word_end);
+    p = word_end;
+  }
+  return words;
+}
+
 Text::Text(const MeshSource& source, Continuation continuation)
     : source_(source), base_(source.begin()), begin_(source.begin()), end_(source.end()) {
   if (base_ == end_) return;

@@ -8,6 +8,7 @@
 
 #include "core/parallel_ranges.h"
 #include "io/bytes/mesh_source.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 
@@ -87,6 +88,9 @@ inline bool parse_integer(const char*& p, const char* end, int64_t& value) {
 /// The token at p for a message: quoted, cut short, unprintable bytes as '?'.
 std::string quoted_token(const char* p, const char* end);
 
+/// The words of a line, which ends at `end`.
+std::vector<std::string> words_of(const char* p, const char* end);
+
 /// A text file whose lines all end in '\n'. Old Macintosh line ends become '\n' and, where asked for, line
 /// continuations become blanks; both keep every byte's place, so offsets are offsets into the file.
 class Text {
@@ -110,6 +114,15 @@ class Text {
   std::vector<char> owned_;
   const char *base_, *begin_, *end_;
 };
+
+/// The three numbers of a vertex at p, which moves behind them. Throws: unreadable_input.
+inline void read_point(const Text& text, const char*& p, const char* end, WorldPoint& point) {
+  for (double* value : {&point.x, &point.y, &point.z}) {
+    p = skip_blanks(p, end);
+    if (!parse_real(p, end, *value))
+      text.refuse(p, "a vertex needs three numbers; found " + quoted_token(p, end) + " instead of one");
+  }
+}
 
 struct TextChunk {
   const char *begin, *end;

@@ -84,11 +84,7 @@ void read_vertices(const Text& text, ObjChunk& chunk, std::vector<WorldPoint>& p
   const WorldPoint* const last = point + chunk.here.vertices;
   for (const char* p = chunk.text.begin; p < end && point < last; p = line_end(p, end) + 1) {
     if (classify(p, end) != ObjLine::vertex) continue;
-    for (double* value : {&point->x, &point->y, &point->z}) {
-      p = skip_blanks(p, end);
-      if (!parse_real(p, end, *value))
-        text.refuse(p, "a vertex needs three numbers; found " + quoted_token(p, end) + " instead of one");
-    }
+    read_point(text, p, end, *point);
     double color[3];
     if (p = skip_blanks(p, end); p < end && *p != '\n' && parse_color(p, end, color)) {
       chunk.colors.resize(3 * size_t(chunk.here.vertices), 1);

@@ -81,15 +81,6 @@ OffHeader read_header(const Text& text) {
   return header;
 }
 
-const char* read_vertex(const Text& text, const char* p, const char* end, WorldPoint& point) {
-  for (double* value : {&point.x, &point.y, &point.z}) {
-    p = skip_blanks(p, end);
-    if (!parse_real(p, end, *value))
-      text.refuse(p, "a vertex needs three numbers; found " + quoted_token(p, end) + " instead of one");
-  }
-  return p;
-}
-
 // "n i1 ... in", then perhaps a colour.
 const char* read_face(const Text& text, const char* p, const char* end, int64_t vertex_count,
                       std::vector<uint32_t>& corners) {
@@ -126,7 +117,8 @@ TriangleSoup read_off(const MeshSource& source) {
 
   VertexTable vertices(source, header.vertices);
   rows.for_each(0, header.vertices, [&](int64_t row, const char* p, const char* end, int64_t) {
-    return read_vertex(text, p, end, vertices.points[size_t(row)]);
+    read_point(text, p, end, vertices.points[size_t(row)]);
+    return p;
   });
   vertices.count_nonfinite();
   std::vector<FaceCollector> faces(size_t(rows.chunk_count()), FaceCollector(vertices));

@@ -121,11 +121,7 @@ class FacetReader {
 
   void read_vertex(const char*& p) {
     WorldPoint point;
-    for (double* value : {&point.x, &point.y, &point.z}) {
-      p = skip_blanks(p, end_);
-      if (!parse_real(p, end_, *value))
-        text_.refuse(p, "a vertex needs three numbers; found " + quoted_token(p, end_) + " instead of one");
-    }
+    read_point(text_, p, end_, point);
     out_.corners.push_back(point);
     ++out_.corner_counts.back();
   }

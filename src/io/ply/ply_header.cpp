@@ -64,12 +64,7 @@ class HeaderReader {
     const char* const end = p_ + std::min<int64_t>(source_.end() - p_, kMaxLineBytes);
     const char* const stop = std::find_if(p_, end, [](char c) { return c == '\n' || c == '\r'; });
     if (stop == end) return false;
-    words_.clear();
-    for (const char* p = skip_blanks(p_, stop); p < stop; p = skip_blanks(p, stop)) {
-      const char* const word_end = skip_token(p, stop);
-      words_.emplace_back(p, word_end);
-      p = word_end;
-    }
+    words_ = words_of(p_, stop);
     p_ = stop + 1;
     if (*stop == '\r' && p_ < source_.end() && *p_ == '\n') ++p_;
     return true;

@@ -63,12 +63,7 @@ class PcdReader {
     while (h_.data.empty()) {
       if (p == source_.end()) source_.refuse("the header of a .pcd file ends with DATA; it is missing");
       const char* const stop = line_end(p, source_.end());
-      std::vector<std::string> words;
-      for (const char* q = skip_blanks(p, stop); q < stop; q = skip_blanks(q, stop)) {
-        const char* const end = skip_token(q, stop);
-        words.emplace_back(q, end);
-        q = end;
-      }
+      const std::vector<std::string> words = words_of(p, stop);
       line_ = p - source_.begin();
       p = stop == source_.end() ? stop : stop + 1;
       if (!words.empty() && words[0][0] != '#') read_line(words);
