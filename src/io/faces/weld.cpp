@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <type_traits>
 
 #include "core/parallel_ranges.h"
 
@@ -18,16 +19,11 @@ constexpr int64_t kCornersPerPart = 1 << 15;
 constexpr int kMostRecentBits = 12;  // whose table fits the nearest cache
 constexpr uint32_t kNone = 0xffffffff;
 
-uint64_t bits_of(float value) {
-  value += 0.0f;  // -0 becomes 0
-  uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
-uint64_t bits_of(double value) {
-  value += 0.0;
-  uint64_t bits;
+template <class Real>
+uint64_t bits_of(Real value) {
+  value += Real(0);  // -0 becomes 0
+  std::conditional_t<sizeof(Real) == 4, uint32_t, uint64_t> bits;
+  static_assert(sizeof bits == sizeof value);
   std::memcpy(&bits, &value, sizeof bits);
   return bits;
 }
