@@ -4,6 +4,10 @@
 #include <openvdb/openvdb.h>
 
 #include <string>
+#include <vector>
+
+#include "core/parallel_ranges.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 
@@ -37,6 +41,17 @@ void for_each_voxel_around(const Grid& grid, Reader& reader, const openvdb::Vec3
     const bool is_active = reader.probeValue(c, value);
     use(weight, is_active, value);
   }
+}
+
+/// at(reader, point) for every point, in parallel, each thread with a reader of its own.
+template <class Value, class Grid, class At>
+std::vector<Value> sample_field(const Grid& grid, const std::vector<WorldPoint>& points, At at) {
+  std::vector<Value> out(points.size());
+  for_ranges(int64_t(points.size()), 1024, [&](int64_t begin, int64_t end) {
+    auto reader = grid.getConstAccessor();
+    for (size_t i = size_t(begin); i < size_t(end); ++i) out[i] = at(reader, points[i]);
+  });
+  return out;
 }
 
 }  // namespace isoshell

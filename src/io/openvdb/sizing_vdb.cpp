@@ -6,7 +6,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/parallel_ranges.h"
 #include "io/openvdb/dense_lattice.h"
 #include "io/openvdb/field_grid.h"
 #include "io/openvdb/vdb_grids.h"
@@ -34,17 +33,10 @@ Source parse_source(const std::string& text) {
 bool is_length(double value) { return value > 0 && std::isfinite(value); }
 
 VdbFloatGrid::Ptr grid_of(const DenseVolume& lengths, const std::string& name) {
-  initialize_openvdb();
-  auto grid = new_vdb_grid<VdbFloatGrid>(name.c_str(), 0);
-  grid->setTransform(transform_of(lengths, name));
-  auto voxels = grid->getAccessor();
-  for (int64_t i = 0; i < lengths.size[0]; ++i)
-    for (int64_t j = 0; j < lengths.size[1]; ++j)
-      for (int64_t k = 0; k < lengths.size[2]; ++k) {
-        const float length = lengths.values[i * lengths.stride[0] + j * lengths.stride[1] + k * lengths.stride[2]];
-        if (!std::isnan(length)) voxels.setValueOn(openvdb::Coord(int(i), int(j), int(k)), length);
-      }
-  return grid;
+  return dense_grid<VdbFloatGrid>(lengths, name, [&](int64_t i, int64_t j, int64_t k, float& length) {
+    length = value_of(lengths, i, j, k);
+    return !std::isnan(length);
+  });
 }
 
 void check_values(const std::string& path, const VdbFloatGrid& grid) {
@@ -69,12 +61,7 @@ class VdbSizing final : public SizingField {
   }
 
   std::vector<double> lengths_at(const std::vector<WorldPoint>& points) const override {
-    std::vector<double> out(points.size());
-    for_ranges(int64_t(points.size()), 1024, [&](int64_t begin, int64_t end) {
-      auto reader = grid_->getConstAccessor();
-      for (size_t i = size_t(begin); i < size_t(end); ++i) out[i] = length_at(reader, points[i]);
-    });
-    return out;
+    return sample_field<double>(*grid_, points, [&](auto& reader, WorldPoint p) { return length_at(reader, p); });
   }
   std::string source() const override { return source_; }
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <sstream>
 
-#include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
 #include "io/openvdb/dense_lattice.h"
 #include "io/openvdb/field_grid.h"
@@ -24,23 +23,10 @@ constexpr FieldKind kVelocities{"Tree_vec3s_5_4_3", "vectors",
                                 "the velocities"};
 
 VdbVec3fGrid::Ptr grid_of(const std::array<DenseVolume, 3>& components, const std::string& name) {
-  const DenseVolume& lattice = components[0];
-  initialize_openvdb();
-  auto grid = new_vdb_grid<VdbVec3fGrid>(name.c_str(), openvdb::Vec3f(0));
-  grid->setTransform(transform_of(lattice, name));
-  auto voxels = grid->getAccessor();
-  for (int64_t i = 0; i < lattice.size[0]; ++i)
-    for (int64_t j = 0; j < lattice.size[1]; ++j)
-      for (int64_t k = 0; k < lattice.size[2]; ++k) {
-        openvdb::Vec3f value;
-        for (int axis = 0; axis < 3; ++axis) {
-          const DenseVolume& part = components[size_t(axis)];
-          value[axis] = part.values[i * part.stride[0] + j * part.stride[1] + k * part.stride[2]];
-        }
-        const bool says_nothing = std::isnan(value.x()) || std::isnan(value.y()) || std::isnan(value.z());
-        if (!says_nothing) voxels.setValueOn(openvdb::Coord(int(i), int(j), int(k)), value);
-      }
-  return grid;
+  return dense_grid<VdbVec3fGrid>(components[0], name, [&](int64_t i, int64_t j, int64_t k, openvdb::Vec3f& value) {
+    for (int axis = 0; axis < 3; ++axis) value[axis] = value_of(components[size_t(axis)], i, j, k);
+    return !(std::isnan(value.x()) || std::isnan(value.y()) || std::isnan(value.z()));
+  });
 }
 
 void check_values(const std::string& path, const VdbVec3fGrid& grid) {
@@ -58,12 +44,7 @@ class VdbVelocity final : public VelocityField {
   explicit VdbVelocity(VdbVec3fGrid::ConstPtr grid) : grid_(std::move(grid)) {}
 
   std::vector<WorldPoint> velocities_at(const std::vector<WorldPoint>& points) const override {
-    std::vector<WorldPoint> out(points.size());
-    for_ranges(int64_t(points.size()), 1024, [&](int64_t begin, int64_t end) {
-      auto reader = grid_->getConstAccessor();
-      for (size_t i = size_t(begin); i < size_t(end); ++i) out[i] = velocity_at(reader, points[i]);
-    });
-    return out;
+    return sample_field<WorldPoint>(*grid_, points, [&](auto& reader, WorldPoint p) { return velocity_at(reader, p); });
   }
 
  private:
