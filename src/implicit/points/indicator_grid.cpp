@@ -161,10 +161,7 @@ double level_at_points(const OrientedPoints& points, const GridShape& shape, con
 IndicatorField::IndicatorField(const GridShape& shape, std::vector<float> value, double level)
     : shape_(shape), value_(std::move(value)), level_(level) {
   background = 0;
-  for (int axis = 0; axis < 3; ++axis) to_world.at[axis][axis] = shape.voxel_size;
-  to_world.at[0][3] = shape.origin.x;
-  to_world.at[1][3] = shape.origin.y;
-  to_world.at[2][3] = shape.origin.z;
+  to_world = shape.to_world();
 }
 
 std::vector<Voxel> IndicatorField::blocks() const {

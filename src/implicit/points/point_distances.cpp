@@ -93,10 +93,7 @@ std::vector<float> values_of(const PointBlocks& blocks, int64_t block, const Ind
 PointDistances::PointDistances(const OrientedPoints& points, const Indicator& indicator) {
   const GridShape& shape = indicator.shape;
   background = kBand;
-  for (int axis = 0; axis < 3; ++axis) to_world.at[axis][axis] = shape.voxel_size;
-  to_world.at[0][3] = shape.origin.x;
-  to_world.at[1][3] = shape.origin.y;
-  to_world.at[2][3] = shape.origin.z;
+  to_world = shape.to_world();
   const PointBlocks blocks(points, shape);
   std::vector<std::vector<float>> value(size_t(blocks.count()));
   for_each_index(int64_t(0), blocks.count(), [&](int64_t b) {

@@ -28,8 +28,7 @@ DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name
   name = "values";
   grid_class = "unknown";
   check(volume_name);
-  const WorldPoint &s = volume.spacing_world, &o = volume.origin_world;
-  to_world = {{{s.x, 0, 0, o.x}, {0, s.y, 0, o.y}, {0, 0, s.z, o.z}}};
+  to_world = lattice_map(volume.spacing_world, volume.origin_world);
   double low = INFINITY, high = -INFINITY;
   split_into_blocks(low, high);
   background = !iso || is_mostly_above(*iso) ? high : low;

@@ -26,6 +26,10 @@ struct AffineMap {
   double at[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
 
+inline AffineMap lattice_map(const WorldPoint& spacing, const WorldPoint& origin) {
+  return {{{spacing.x, 0, 0, origin.x}, {0, spacing.y, 0, origin.y}, {0, 0, spacing.z, origin.z}}};
+}
+
 /// Length of a voxel's edges, 0 where they differ or are not square to each other.
 inline double cube_edge(const AffineMap& map) {
   constexpr double kSlack = 0.01;
