@@ -51,6 +51,13 @@ def warn(text: str) -> None:
     warnings.warn(text, RunWarning, stacklevel=level)
 
 
+def note(text: str) -> None:
+    """What is good to know: to the logger "isoshell"."""
+    import logging
+
+    logging.getLogger("isoshell").info("%s", text)
+
+
 def _is_ours(package: str | None) -> bool:
     """Whether that is this package or one in it; programs have none."""
     return package is not None and package.partition(".")[0] == __package__

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 from . import _isoshell, _report
 from ._context import Context
-from ._errors import Error, warn
+from ._errors import Error, note, warn
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._result import Result, checked
 from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of
@@ -140,8 +140,6 @@ def listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
         if is_warning and not quiet:
             warn(text)
         else:
-            import logging
-
-            logging.getLogger("isoshell").info("%s", text)
+            note(text)
 
     return tell

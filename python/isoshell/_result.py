@@ -62,7 +62,8 @@ class Result:
 
         (K, ...) of vertices, (M, ...) of faces, (M, 3, ...) of the corners of faces: see domains. "gap" is 1 where the
         source has no surface. A frame that follows another has "born", 1 where a vertex is not the one that had its
-        number, and "vx", "vy" and "vz", its motion since then in world units. A name that attributes of two domains have is, for the second, "name:domain".
+        number, and "vx", "vy" and "vz", its motion since then in world units. A name that attributes of two domains
+        have is, for the second, "name:domain".
         """
         return {name: values for name, _, values, _ in self._named_attributes()}
 

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "isoshell/error.h"
+#include "values/errors.h"
 
 namespace nb = nanobind;
 
@@ -49,13 +50,9 @@ void Job::start(std::function<void()> work) {
   thread_ = std::thread([this, work = std::move(work)]() mutable {
     std::exception_ptr thrown;
     try {
-      work();
-    } catch (const Error&) {
+      with_errors([&] { work(); });
+    } catch (...) {
       thrown = std::current_exception();
-    } catch (const std::bad_alloc&) {
-      thrown = std::current_exception();
-    } catch (const std::exception& e) {
-      thrown = std::make_exception_ptr(Error(ErrorCode::internal, "run", e.what()));
     }
     work = nullptr;  // what it holds is not needed while someone may still hold the job
     const std::lock_guard lock(mutex_);

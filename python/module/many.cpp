@@ -8,12 +8,11 @@
 #include <chrono>
 #include <future>
 #include <memory>
-#include <new>
 #include <utility>
 
-#include "isoshell/error.h"
 #include "isoshell/workers.h"
 #include "module/watched.h"
+#include "values/errors.h"
 
 namespace nb = nanobind;
 
@@ -43,7 +42,7 @@ class BegunRun {
     result_ = workers.begin([request = std::move(request), read = std::move(read), limit_bytes](Context& context) {
       context.memory_limit_bytes = limit_bytes;  // 0: by what is free when the run begins
       tool::limit_memory(context, device_info(context));
-      return read ? run(read(request, context), request, context) : run(request, context);
+      return run_from(read, request, context);
     });
   }
 
@@ -61,15 +60,7 @@ class BegunRun {
     tool::Console console(asked_.arguments.progress, asked_.arguments.verbosity);
     const Listener listener = listener_of(asked_, console);
     for (const Mail::Message& message : *messages_) listener.tell(message.kind, message.text);
-    try {
-      return result_.get();
-    } catch (const Error&) {
-      throw;
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw Error(ErrorCode::internal, "run", error.what());
-    }
+    return with_errors([&] { return result_.get(); });
   }
 
  private:

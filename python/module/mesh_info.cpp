@@ -16,12 +16,6 @@ namespace nb = nanobind;
 namespace isoshell::python {
 namespace {
 
-using Read = decltype(Source::read);
-
-Input read_with(const Read& read, const RunRequest& request, const Context& context) {
-  return read ? read(request, context) : read_input(request.input, context.memory_limit_bytes, request.tell);
-}
-
 /// What both borrow.
 nb::object kept_of(const Source& a, const Source& b) {
   nb::list kept;
@@ -42,15 +36,15 @@ nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywo
   }
   const MeshInfo info =
       watched(place, both, asked,
-              [read = source.read, of_reference, read_reference = reference ? reference->read : Read()](
+              [read = source.read, of_reference, read_reference = reference ? reference->read : ReadMemory()](
                   const RunRequest& request, Context& context) {
                 if (context.progress) context.progress("read", 0);
-                Input mesh = read_with(read, request, context);
+                Input mesh = input_of_run(read, request, context);
                 std::optional<Input> other;
                 if (of_reference) {
                   RunRequest again = *of_reference;
                   again.tell = request.tell;
-                  other = read_with(read_reference, again, context);
+                  other = input_of_run(read_reference, again, context);
                 }
                 if (context.progress) context.progress("read", 1);
                 return mesh_info(std::move(mesh), std::move(other), request.gates, context);

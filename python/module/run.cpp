@@ -20,7 +20,7 @@ RunResult remesh(Place& place, const Source& source, const Keywords& keywords, c
   Asked asked = asked_of(source, keywords, output, std::move(progress), std::move(tell));
   if (measure_all) asked.arguments.run.measures = Measures::all;
   return watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
-    return read ? run(read(request, context), request, context) : run(request, context);
+    return run_from(read, request, context);
   });
 }
 

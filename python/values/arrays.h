@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "isoshell/advanced/lattice.h"
@@ -26,6 +27,14 @@ std::vector<uint32_t> indices_of(const char* argument, const AnyArray& array, si
 
 /// Throws: usage for what is no array of `dimensions` of single precision in the host's memory.
 const float* floats_of(const char* argument, const AnyArray& array, size_t dimensions);
+
+/// Owns a value for the arrays that show its memory.
+template <class T>
+nanobind::capsule owner_of(std::unique_ptr<T> value) {
+  const nanobind::capsule owner(value.get(), [](void* p) noexcept { delete static_cast<T*>(p); });
+  static_cast<void>(value.release());
+  return owner;
+}
 
 /// Rows of three over the memory of `owner`, read-only.
 template <class T>

@@ -22,8 +22,7 @@ template <class T>
 nb::object array_of(std::vector<T> values, const std::vector<size_t>& shape) {
   auto owned = std::make_unique<std::vector<T>>(std::move(values));
   T* data = owned->data();
-  const nb::capsule owner(owned.get(), [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  static_cast<void>(owned.release());
+  const nb::capsule owner = owner_of(std::move(owned));
   return nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner));
 }
 

@@ -13,6 +13,7 @@
 #include "isoshell/advanced/device_memory.h"
 #include "isoshell/device_info.h"
 #include "isoshell/error.h"
+#include "values/arrays.h"
 
 namespace nb = nanobind;
 
@@ -75,8 +76,7 @@ nb::object copied(const DeviceArray& a) {
     strides.push_back(a.stride(i));
   }
   std::byte* const data = kept->data() - span.begin * item;
-  const nb::capsule owner(kept.get(), [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
-  static_cast<void>(kept.release());
+  const nb::capsule owner = owner_of(std::move(kept));
   return nb::cast(nb::ndarray<nb::numpy>(data, shape.size(), shape.data(), owner, strides.data(), a.dtype()));
 }
 

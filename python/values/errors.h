@@ -3,7 +3,11 @@
 
 #include <nanobind/nanobind.h>
 
+#include <exception>
+#include <new>
 #include <string>
+
+#include "isoshell/error.h"
 
 namespace isoshell::python {
 
@@ -12,5 +16,19 @@ std::string in_keywords(const std::string& message);
 
 /// ErrorCode, and the translation of Error to isoshell.Error.
 void bind_errors(nanobind::module_& m);
+
+/// Calls work(); what it throws is an Error or std::bad_alloc.
+template <class Work>
+auto with_errors(Work work) {
+  try {
+    return work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(ErrorCode::internal, "run", e.what());
+  }
+}
 
 }  // namespace isoshell::python

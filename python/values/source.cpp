@@ -153,6 +153,10 @@ Input input_of_run(const ReadMemory& read, const RunRequest& request, const Cont
   return read_input(file, context.memory_limit_bytes, request.tell);
 }
 
+RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context) {
+  return read ? run(read(request, context), request, context) : run(request, context);
+}
+
 void bind_source(nb::module_& m) {
   nb::class_<Source>(m, "Source", "What one run starts from.")
       .def_prop_ro("is_file", &Source::is_file)

@@ -29,6 +29,9 @@ struct Source {
 /// By `read`, or the file of the request where it is empty.
 Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context);
 
+/// The run of that input.
+RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context);
+
 /// Source, with a way to make one of each kind.
 void bind_source(nanobind::module_& m);
 

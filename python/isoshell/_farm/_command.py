@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Optional, Sequence
 from .. import _isoshell
 from .._errors import Error
 from .._isoshell import ErrorCode
+from .._keywords import PLACE
 from .._remesh import estimate
 from . import _places as places
 from ._admission import bytes_of
@@ -16,7 +17,6 @@ from ._assets import OF_SEQUENCES, OF_THE_FARM, assets_of
 from ._progress import tell
 
 SUFFIXES = (*_isoshell.mesh_formats(), "usda", "usdc", "usdz")
-PLACE = ("device", "threads", "max_memory")
 TETRAHEDRON = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
+from .._errors import note
 from . import unreadable
 from ._faces import Column, Triangles, values_of
-from ._scene import note
 
 if TYPE_CHECKING:
     import numpy as np

@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Optional
 
-from .._errors import warn
+from .._errors import note, warn
 from . import Origin
 from ._faces import Column, Triangles, turned_normals
-from ._scene import note
 
 if TYPE_CHECKING:
     import numpy as np

@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from typing import Any, Optional, Sequence, Union
 
-from .._errors import Error, warn
+from .._errors import Error, note, warn
 from .._isoshell import ErrorCode
 from .._sources import Mesh
 from . import Origin, library, split_name
 from ._faces import Triangles, rows_of, triangles_of
 from ._materials import Materials
 from ._primvars import add_columns, joined_columns
-from ._scene import is_skinned, meshes_of, note, open_stage, reading, root_of, sampled_times, time_of
+from ._scene import is_skinned, meshes_of, open_stage, reading, root_of, sampled_times, time_of
 
 PURPOSES = ("default", "render")
 

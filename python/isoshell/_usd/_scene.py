@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 import contextlib
-import logging
 import os
 from collections import Counter
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from .._errors import Error, warn
+from .._errors import Error, note, warn
 from .._isoshell import ErrorCode
 from . import reason_of, unreadable
 
 Placed = tuple[Any, Any]  # a prim, and its matrix to the world
 MAX_DEPTH = 32  # of instancers in instancers, which may go round
-
-
-def note(text: str) -> None:
-    """What is good to know: to the logger "isoshell"."""
-    logging.getLogger("isoshell").info("%s", text)
 
 
 @contextlib.contextmanager
