@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "core/parallel_ranges.h"
+#include "io/bytes/little_endian.h"
 #include "io/bytes/output_file.h"
 #include "isoshell/advanced/lattice.h"
 
@@ -28,14 +27,9 @@ class RowBuffer {
   void put_number(double value) { at_ = std::to_chars(at_, bytes_.data() + bytes_.size(), value).ptr; }
   void put_number(float value) { at_ = std::to_chars(at_, bytes_.data() + bytes_.size(), value).ptr; }
   void put_number(uint32_t value) { at_ = std::to_chars(at_, bytes_.data() + bytes_.size(), value).ptr; }
-  // Little-endian, on any machine.
   template <class T>
   void put_binary(T value) {
-    using Small = std::conditional_t<sizeof(T) == 1, uint8_t, uint16_t>;
-    using Bits = std::conditional_t<sizeof(T) == 8, uint64_t, std::conditional_t<sizeof(T) == 4, uint32_t, Small>>;
-    Bits bits;
-    std::memcpy(&bits, &value, sizeof value);
-    for (size_t i = 0; i < sizeof(T); ++i) *at_++ = char(bits >> 8 * i & 0xff);
+    store_little_endian(value, [this](char byte) { *at_++ = byte; });
   }
   const char* data() const { return bytes_.data(); }
   int64_t size() const { return at_ - bytes_.data(); }

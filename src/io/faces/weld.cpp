@@ -4,11 +4,10 @@
 #include "io/faces/weld.h"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
-#include <type_traits>
 
 #include "core/parallel_ranges.h"
+#include "io/bytes/little_endian.h"
 
 namespace isoshell {
 namespace {
@@ -19,24 +18,22 @@ constexpr int64_t kCornersPerPart = 1 << 15;
 constexpr int kMostRecentBits = 12;  // whose table fits the nearest cache
 constexpr uint32_t kNone = 0xffffffff;
 
+/// Of one value, whichever sign its zero has.
 template <class Real>
-uint64_t bits_of(Real value) {
-  value += Real(0);  // -0 becomes 0
-  std::conditional_t<sizeof(Real) == 4, uint32_t, uint64_t> bits;
-  static_assert(sizeof bits == sizeof value);
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
+uint64_t value_bits(Real value) {
+  return bits_of(value + Real(0));
 }
 
 template <class Real>
 bool same(const RawPosition<Real>& a, const RawPosition<Real>& b) {
-  return bits_of(a.x) == bits_of(b.x) && bits_of(a.y) == bits_of(b.y) && bits_of(a.z) == bits_of(b.z);
+  return value_bits(a.x) == value_bits(b.x) && value_bits(a.y) == value_bits(b.y) && value_bits(a.z) == value_bits(b.z);
 }
 
 // Of a position; its highest bits are the best.
 template <class Real>
 uint64_t weak_hash(const RawPosition<Real>& p) {
-  return bits_of(p.x) * 0x9e3779b97f4a7c15u + bits_of(p.y) * 0xbf58476d1ce4e5b9u + bits_of(p.z) * 0x94d049bb133111ebu;
+  return value_bits(p.x) * 0x9e3779b97f4a7c15u + value_bits(p.y) * 0xbf58476d1ce4e5b9u +
+         value_bits(p.z) * 0x94d049bb133111ebu;
 }
 
 uint64_t strong_hash(uint64_t weak) {
@@ -188,14 +185,7 @@ EarlierCorners earlier_corners(int64_t count, Corners corners) {
 }
 
 RawPosition<float> load_position(const char* p) {
-  const auto load = [](const char* at) {  // little-endian, on any machine
-    const auto byte = [&](int i) { return uint32_t(static_cast<unsigned char>(at[i])) << 8 * i; };
-    const uint32_t bits = byte(0) | byte(1) | byte(2) | byte(3);
-    float value;
-    std::memcpy(&value, &bits, sizeof value);
-    return value;
-  };
-  return {load(p), load(p + 4), load(p + 8)};
+  return {load_little_endian<float>(p), load_little_endian<float>(p + 4), load_little_endian<float>(p + 8)};
 }
 
 }  // namespace

@@ -1,29 +1,17 @@
 // The elements of accessors as numbers.
 
 #include <algorithm>
-#include <cstring>
 #include <type_traits>
 
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
+#include "io/bytes/little_endian.h"
 #include "io/gltf/gltf_document.h"
 
 namespace isoshell {
 namespace {
 
 constexpr int64_t kGrain = 1 << 14;
-
-// Little-endian, on any machine.
-template <class T>
-T load(const char* p) {
-  using Small = std::conditional_t<sizeof(T) == 1, uint8_t, uint16_t>;
-  using Bits = std::conditional_t<sizeof(T) == 4, uint32_t, Small>;
-  Bits bits = 0;
-  for (size_t i = 0; i < sizeof(T); ++i) bits = Bits(bits | Bits(static_cast<unsigned char>(p[i])) << 8 * i);
-  T value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
 
 /// Calls visit with the number of components, of 1 to 4, as a constant: loops over them are unrolled.
 template <class Visit>
@@ -47,11 +35,12 @@ void convert_all(const GltfElements& e, Convert convert, Out* out) {
         const bool is_packed = e.stride == kCount * kBytes;
         for_ranges(e.count, kGrain, [&](int64_t begin, int64_t end) {
           if (is_packed)
-            for (int64_t v = begin * kCount; v < end * kCount; ++v) out[v] = convert(load<T>(e.data + v * kBytes));
+            for (int64_t v = begin * kCount; v < end * kCount; ++v)
+              out[v] = convert(load_little_endian<T>(e.data + v * kBytes));
           else
             for (int64_t i = begin; i < end; ++i)
               for (int64_t c = 0; c < kCount; ++c)
-                out[i * kCount + c] = convert(load<T>(e.data + i * e.stride + c * kBytes));
+                out[i * kCount + c] = convert(load_little_endian<T>(e.data + i * e.stride + c * kBytes));
         });
       });
   });

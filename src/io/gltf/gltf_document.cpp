@@ -1,10 +1,10 @@
 #include "io/gltf/gltf_document.h"
 
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 
 #include "core/number_type.h"
+#include "io/bytes/little_endian.h"
 #include "io/gltf/gltf_uri.h"
 
 namespace isoshell {
@@ -19,12 +19,6 @@ constexpr int64_t kLargestStride = 252;
 constexpr int kMostNesting = 256;                      // deeper values could exhaust the stack where they are copied
 constexpr size_t kMostMessage = 200;                   // of a message that may cite the file
 constexpr int64_t kLargestInteger = int64_t(1) << 53;  // that JSON readers agree on; sums of a few do not overflow
-
-// Little-endian, on any machine.
-uint32_t load_u32(const char* p) {
-  const auto byte = [&](int i) { return uint32_t(static_cast<unsigned char>(p[i])) << 8 * i; };
-  return byte(0) | byte(1) | byte(2) | byte(3);
-}
 
 const char* find_char(const char* p, const char* end, char c) {
   const void* const at = std::memchr(p, c, size_t(end - p));
@@ -125,9 +119,9 @@ void GltfDocument::read_container() {
                        std::to_string(kLeastBytes) + ", restore it");
     };
     least(text.size, "has ");
-    const uint32_t version = load_u32(text.data + 4);
+    const uint32_t version = load_little_endian<uint32_t>(text.data + 4);
     if (version != 2) source_.refuse_byte(4, "glTF version " + std::to_string(version) + "; only 2 can be read");
-    const int64_t end = load_u32(text.data + 8);
+    const int64_t end = load_little_endian<uint32_t>(text.data + 8);
     least(end, "promises ");
     if (end > text.size)
       source_.refuse_byte(8, "the header promises " + std::to_string(end) + " bytes; the file has " +
@@ -136,11 +130,11 @@ void GltfDocument::read_container() {
     const char* const start = source_.begin();
     for (int64_t at = kHeaderBytes; at < end;) {
       const bool is_first = at == kHeaderBytes;
-      const int64_t bytes = end - at < kChunkHeaderBytes ? -1 : int64_t(load_u32(start + at));
+      const int64_t bytes = end - at < kChunkHeaderBytes ? -1 : int64_t(load_little_endian<uint32_t>(start + at));
       if (bytes < 0 || bytes > end - at - kChunkHeaderBytes)
         source_.refuse_byte(at, "a chunk of " + std::to_string(bytes) + " bytes begins here; " +
                                     std::to_string(end - at) + " bytes are left; restore the file");
-      const uint32_t kind = load_u32(start + at + 4);
+      const uint32_t kind = load_little_endian<uint32_t>(start + at + 4);
       const View<const char> body{start + at + kChunkHeaderBytes, bytes};
       if (is_first != (kind == kJsonChunk))
         source_.refuse_byte(at, "the first chunk, and no other, must be JSON; restore the file");

@@ -1,12 +1,12 @@
 // glTF out: one mesh with a primitive for each material, in one file.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
+#include "io/bytes/little_endian.h"
 #include "io/bytes/output_file.h"
 #include "io/gltf/gltf_materials.h"
 #include "io/gltf/gltf_semantics.h"
@@ -24,14 +24,9 @@ using Json = nlohmann::ordered_json;
 enum ComponentType { kU8 = 5121, kU16 = 5123, kU32 = 5125, kF32 = 5126 };
 enum ViewTarget { kVertexData = 34962, kIndexData = 34963 };
 
-/// Little-endian, on any machine.
 template <class T>
 void put(std::vector<char>& out, T value) {
-  using Small = std::conditional_t<sizeof(T) == 1, uint8_t, uint16_t>;
-  using Bits = std::conditional_t<sizeof(T) == 4, uint32_t, Small>;
-  Bits bits;
-  std::memcpy(&bits, &value, sizeof value);
-  for (size_t i = 0; i < sizeof(T); ++i) out.push_back(char(bits >> 8 * i & 0xff));
+  store_little_endian(value, [&](char byte) { out.push_back(byte); });
 }
 
 double largest_of(NumberType type) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "geometry/world_vector.h"
+#include "io/bytes/little_endian.h"
 #include "io/bytes/mesh_source.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/row_buffer.h"
@@ -25,12 +26,6 @@ WorldPoint normal_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint&
 
 constexpr int64_t kHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50;
 
-// Little-endian, on any machine.
-uint32_t load_u32(const char* p) {
-  const auto byte = [&](int i) { return uint32_t(static_cast<unsigned char>(p[i])) << 8 * i; };
-  return byte(0) | byte(1) | byte(2) | byte(3);
-}
-
 // The word at p in lower-case letters equals `word`; then p moves behind it.
 bool take_word(const char*& p, const char* end, const char* word) {
   p = skip_blanks(p, end);
@@ -46,7 +41,7 @@ bool is_binary(const MeshSource& source) {
   const char* p = source.begin();
   const int64_t size = source.size();
   if (size >= kHeaderBytes + kCountBytes &&
-      size == kHeaderBytes + kCountBytes + kFacetBytes * int64_t(load_u32(p + kHeaderBytes)))
+      size == kHeaderBytes + kCountBytes + kFacetBytes * int64_t(load_little_endian<uint32_t>(p + kHeaderBytes)))
     return true;
   while (p < source.end() && (is_blank(*p) || *p == '\n')) ++p;
   return !take_word(p, source.end(), "solid") || std::memchr(p, '\0', size_t(std::min<int64_t>(512, source.end() - p)));
@@ -57,7 +52,7 @@ TriangleSoup read_binary(const MeshSource& source) {
     source.refuse("is " + std::to_string(source.size()) +
                   " bytes long; a binary STL has at least 84 and a text STL "
                   "begins with solid; restore the file");
-  const int64_t count = load_u32(source.begin() + kHeaderBytes);
+  const int64_t count = load_little_endian<uint32_t>(source.begin() + kHeaderBytes);
   const int64_t body = source.size() - kHeaderBytes - kCountBytes;
   if (body < kFacetBytes * count || body >= kFacetBytes * (count + 1))
     source.refuse_byte(kHeaderBytes, "the header promises " + std::to_string(count) + " facets of 50 bytes; " +
