@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "core/file_format.h"
+#include "geometry/triangle_list.h"
 #include "io/mesh/obj_lines.h"
 #include "io/ply/ply_body.h"
 #include "io/polyline_readers.h"
@@ -50,11 +51,7 @@ std::vector<uint32_t> read_line(const Text& text, const char* p, const char* end
     int64_t index = 0;
     if (!parse_integer(p, end, index) || !(ends_token(p, end) || *p == '/'))
       text.refuse(token, "a line names the vertex " + quoted_token(token, end) + "; give its number");
-    const int64_t found = index < 0 ? so_far + index : index - 1;
-    if (index == 0 || found < 0 || found >= count)
-      text.refuse(token, "a line names vertex " + std::to_string(index) + "; the file holds vertices 1 to " +
-                             std::to_string(count) + "; correct the index or restore the missing vertices");
-    vertices.push_back(uint32_t(found));
+    vertices.push_back(resolve(text, token, {"a line", "vertex", "vertices"}, index, so_far, count));
     p = skip_token(p, end);
   }
   if (vertices.size() < 2) text.refuse(p, "a line has fewer than two vertices; give two or more");
@@ -122,12 +119,10 @@ Polylines parse_ply(const MeshSource& source) {
     for (size_t i = 0; i < 2; ++i) {
       const bool is_there = index[i] >= 0 && index[i] < double(lines.points.size()) && index[i] == std::floor(index[i]);
       if (!is_there)
-        source.refuse("edge " + std::to_string(e) + " names vertex " + number_text(index[i]) +
-                      "; the file holds vertices 0 to " + std::to_string(int64_t(lines.points.size()) - 1) +
-                      "; correct the index or restore the missing vertices");
+        source.refuse(no_such_vertex("edge " + std::to_string(e), number_text(index[i]), int64_t(lines.points.size())));
       vertex[i] = uint32_t(index[i]);
       const WorldPoint& p = lines.points[vertex[i]];
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      if (!is_finite(p))
         source.refuse("vertex " + std::to_string(vertex[i]) + " of edge " + std::to_string(e) +
                       " is not finite; correct it or leave the edge out");
     }

@@ -83,4 +83,9 @@ void MeshSource::nothing_to_mesh(const std::string& what) const {
   throw Error(ErrorCode::nothing_to_mesh, kStage, name_ + ": " + what);
 }
 
+std::string no_such_vertex(const std::string& who, const std::string& index, int64_t count) {
+  return who + " names vertex " + index + "; the file holds vertices 0 to " + std::to_string(count - 1) +
+         "; correct the index or restore the missing vertices";
+}
+
 }  // namespace isoshell

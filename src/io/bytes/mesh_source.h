@@ -40,4 +40,7 @@ class MeshSource {
   std::vector<char> owned_;
 };
 
+/// What is wrong where "a face", say, names a vertex that is none of the file's.
+std::string no_such_vertex(const std::string& who, const std::string& index, int64_t count);
+
 }  // namespace isoshell

@@ -1,6 +1,7 @@
 // What a line of an OBJ file holds.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "io/bytes/text_scan.h"
@@ -38,6 +39,25 @@ inline ObjLine classify(const char*& p, const char* end) {
     return keyword[1] == 't' ? ObjLine::texture : keyword[1] == 'n' ? ObjLine::normal : ObjLine::other;
   if (p - keyword != 6) return ObjLine::other;
   return is("usemtl") ? ObjLine::material : is("mtllib") ? ObjLine::library : ObjLine::other;
+}
+
+/// How messages speak of an index: who names it, and what it is the index of.
+struct ObjReference {
+  const char *who, *what, *plural;
+};
+
+/// Of what is named, from 1 on or, when negative, from the last one on; 0-based. Throws: unreadable_input.
+inline uint32_t resolve(const Text& text, const char* token, const ObjReference& names, int64_t index, int64_t so_far,
+                        int64_t count) {
+  const int64_t found = index < 0 ? so_far + index : index - 1;
+  if (index == 0 || found < 0 || found >= count)
+    text.refuse(token,
+                std::string(names.who) + " names " + names.what + " " + std::to_string(index) + "; " +
+                    (index < 0 ? std::to_string(so_far) + " " + names.plural + " come before it, so -1 to -" +
+                                     std::to_string(so_far)
+                               : std::string("the file holds ") + names.plural + " 1 to " + std::to_string(count)) +
+                    "; correct the index or restore the missing " + names.plural);
+  return uint32_t(found);
 }
 
 /// What stands in the line behind p, without the blanks around it.

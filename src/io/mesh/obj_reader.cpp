@@ -132,18 +132,8 @@ struct ObjWanted {
   bool corners() const { return textures || normals; }
 };
 
-/// Of what a corner names, from 1 on or, when negative, from the last one on; 0-based.
-uint32_t resolve(const Text& text, const char* token, const char* what, const char* plural, int64_t index,
-                 int64_t so_far, int64_t count) {
-  const int64_t found = index < 0 ? so_far + index : index - 1;
-  if (index == 0 || found < 0 || found >= count)
-    text.refuse(token, std::string("a face names ") + what + " " + std::to_string(index) + "; " +
-                           (index < 0 ? std::to_string(so_far) + " " + plural + " come before it, so -1 to -" +
-                                            std::to_string(so_far)
-                                      : std::string("the file holds ") + plural + " 1 to " + std::to_string(count)) +
-                           "; correct the index or restore the missing " + plural);
-  return uint32_t(found);
-}
+constexpr ObjReference kVertex{"a face", "vertex", "vertices"}, kNormal{"a face", "normal", "normals"},
+    kTexture{"a face", "texture coordinate", "texture coordinates"};
 
 /// A number behind a slash, or none. False: something else stands there.
 bool read_reference(const char*& p, const char* end, int64_t& index) {
@@ -163,7 +153,7 @@ class CornerReader {
     int64_t index = 0;
     if (!parse_integer(p, end, index) || !(ends_token(p, end) || *p == '/'))
       text_.refuse(token, "a face corner is " + quoted_token(token, end) + "; it must begin with a vertex number");
-    const uint32_t vertex = resolve(text_, token, "vertex", "vertices", index, so_far.vertices, all_.vertices);
+    const uint32_t vertex = resolve(text_, token, kVertex, index, so_far.vertices, all_.vertices);
     if (wanted_.corners()) read_values(token, p, end, so_far, to);
     p = skip_token(p, end);
     return vertex;
@@ -177,13 +167,11 @@ class CornerReader {
       text_.refuse(token, "a face corner is " + quoted_token(token, end) +
                               "; numbers of a vertex, a texture coordinate and a normal may stand in it, as 1/2/3");
     if (wanted_.textures)
-      to.texture.push_back(texture == kAbsent ? kNoValue
-                                              : resolve(text_, token, "texture coordinate", "texture coordinates",
-                                                        texture, so_far.textures, all_.textures));
+      to.texture.push_back(
+          texture == kAbsent ? kNoValue : resolve(text_, token, kTexture, texture, so_far.textures, all_.textures));
     if (wanted_.normals)
-      to.normal.push_back(normal == kAbsent
-                              ? kNoValue
-                              : resolve(text_, token, "normal", "normals", normal, so_far.normals, all_.normals));
+      to.normal.push_back(normal == kAbsent ? kNoValue
+                                            : resolve(text_, token, kNormal, normal, so_far.normals, all_.normals));
   }
 
   const Text& text_;

@@ -96,8 +96,7 @@ const char* read_face(const Text& text, const char* p, const char* end, int64_t 
       text.refuse(token, "the face promises " + std::to_string(count) + " corners; corner " + std::to_string(i + 1) +
                              " is " + quoted_token(token, end));
     if (index < 0 || index >= vertex_count)
-      text.refuse(token, "a face names vertex " + std::to_string(index) + "; the file holds vertices 0 to " +
-                             std::to_string(vertex_count - 1) + "; correct the index or restore the missing vertices");
+      text.refuse(token, no_such_vertex("a face", std::to_string(index), vertex_count));
     corners.push_back(uint32_t(index));
   }
   return p;

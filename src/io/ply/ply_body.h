@@ -1,7 +1,6 @@
 // The two ways to the rows of a PLY file. Both fill the same sink.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "io/faces/face_corners.h"
@@ -73,9 +72,7 @@ void add_ply_row(const std::vector<int64_t>& corners, bool is_strip, int64_t ver
       scratch.clear();
       continue;
     }
-    if (index < 0 || index >= vertex_count)
-      refuse("a face names vertex " + std::to_string(index) + "; the file holds vertices 0 to " +
-             std::to_string(vertex_count - 1) + "; correct the index or restore the missing vertices");
+    if (index < 0 || index >= vertex_count) refuse(no_such_vertex("a face", std::to_string(index), vertex_count));
     scratch.push_back(uint32_t(index));
   }
   if (!is_strip) {
