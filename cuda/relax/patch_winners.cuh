@@ -70,9 +70,6 @@ __device__ inline NearestWinner nearest_winner(const Winners& winners, int count
   }
   return best;
 }
-__device__ inline int winner_at(const Winners& winners, int count, Local v, Normal8 normal, int64_t penalty_q16) {
-  return nearest_winner(winners, count, v, normal, penalty_q16).number;
-}
 
 /// The label itself, from all seeds in reach: for patches with too many candidates. One thread, any vertex.
 __device__ inline uint32_t label_directly(const SeedSearch& search, const PatchBox& box, int32_t reach, PointQ8 v,

@@ -32,7 +32,6 @@ inline Voxel block_beside(Voxel block, int corner, int32_t step) {
 inline int window_index(int offset) {
   return (offset >> 6) * kWindowStride[0] + (offset >> 3 & 7) * kWindowStride[1] + (offset & 7);
 }
-inline int corner_step(int c) { return (c >> 2) * kWindowStride[0] + (c >> 1 & 1) * kWindowStride[1] + (c & 1); }
 
 inline void read_cell_window(const ScalarField& field, Voxel block, float* window) {
   for (int n = 0; n < 8; ++n) {

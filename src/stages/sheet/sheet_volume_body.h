@@ -14,13 +14,12 @@ struct SixVolume {
   View<const TriangleIndices> triangles;
   bool want_rest;
   ISOSHELL_HD int64_t operator()(int64_t i) const {
-    __extension__ typedef __int128 Wide;
     const TriangleIndices t = triangles[i];
     const PointQ8 a = position[t.a];
     const Vec64 n = cross(difference(position[t.b], a), difference(position[t.c], a));
-    const Wide six = Wide(a.x) * n.x + Wide(a.y) * n.y + Wide(a.z) * n.z;
+    const Int128 six = Int128(a.x) * n.x + Int128(a.y) * n.y + Int128(a.z) * n.z;
     const int64_t whole = int64_t(six >> (3 * kFractionBits));
-    return want_rest ? int64_t(six - Wide(whole) * (Wide(1) << (3 * kFractionBits))) : whole;
+    return want_rest ? int64_t(six - Int128(whole) * (Int128(1) << (3 * kFractionBits))) : whole;
   }
 };
 
