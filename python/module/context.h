@@ -4,8 +4,6 @@
 #include <nanobind/nanobind.h>
 
 #include <atomic>
-#include <cstdint>
-#include <functional>
 #include <memory>
 
 #include "isoshell/backend.h"

@@ -1,5 +1,4 @@
 // The table of attributes that have a meaning. Formats have names of their own for them, in their own files.
-#include <algorithm>
 #include <cstring>
 
 #include "core/attribute_values.h"

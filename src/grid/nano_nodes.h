@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "isoshell/advanced/shell.h"
+#include "isoshell/advanced/buffer.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 

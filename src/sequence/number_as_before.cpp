@@ -1,6 +1,5 @@
 // Numbers for the vertices of a mesh that has not kept those of the frame before (see previous_frame.h).
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/point_cells.h"
 #include "geometry/world_vector.h"

@@ -1,7 +1,6 @@
 #include "cpu/optimize/optimize_simd.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "cpu/optimize/pull_simd.h"
 #include "cpu/optimize/vertex_simd.h"

@@ -1,7 +1,5 @@
 #include "cpu/relax/three_cell_simd.h"
 
-#include <utility>
-
 namespace isoshell {
 namespace {
 

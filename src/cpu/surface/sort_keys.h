@@ -1,8 +1,6 @@
 // Keys of two vertices by buckets of the first one.
 #pragma once
 
-#include <algorithm>
-
 #include "core/buckets.h"
 #include "cpu/executor_tbb.h"
 #include "stages/surface/soup_keys.h"

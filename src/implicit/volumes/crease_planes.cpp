@@ -1,6 +1,5 @@
 #include "implicit/volumes/crease_planes.h"
 
-#include <array>
 #include <cmath>
 
 #include "geometry/world_vector.h"

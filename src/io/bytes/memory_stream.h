@@ -1,7 +1,6 @@
 // Memory as C++ streams: OpenVDB writes into one and reads from the other.
 #pragma once
 
-#include <algorithm>
 #include <cstring>
 #include <istream>
 #include <ostream>

@@ -1,5 +1,4 @@
 // The body of a PLY file as text: a row a line, in parallel.
-#include <algorithm>
 #include <numeric>
 
 #include "core/number_type.h"

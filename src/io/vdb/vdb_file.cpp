@@ -7,7 +7,6 @@
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_format.h"
 #include "io/vdb/vdb_layout.h"
-#include "isoshell/error.h"
 
 namespace isoshell {
 

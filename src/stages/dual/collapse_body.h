@@ -5,7 +5,6 @@
 #include "stages/halfedge/collapse_cost.h"
 #include "stages/halfedge/half_edges.h"
 #include "stages/halfedge/intersections.h"
-#include "stages/halfedge/triangle_shape.h"
 #include "stages/labels/label_body.h"
 #include "stages/sheet/sheet_walk.h"
 

@@ -3,8 +3,6 @@
 // side: they are turned around.
 #pragma once
 
-#include <utility>
-
 #include "isoshell/advanced/stages.h"
 #include "voxel/atomic.h"
 #include "voxel/exact_int.h"

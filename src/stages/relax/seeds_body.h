@@ -4,7 +4,6 @@
 #pragma once
 
 #include "isoshell/advanced/stages.h"
-#include "isoshell/error.h"
 #include "stages/labels/label_body.h"
 #include "voxel/leaf.h"
 #include "voxel/random.h"

@@ -1,7 +1,6 @@
 // The part of build_sheet that turns the solid's boundary into a quad mesh: lattice corners, edges between them, faces.
 #pragma once
 
-#include "isoshell/advanced/lattice_surface.h"
 #include "stages/sheet/sheet_solid_body.h"
 
 namespace isoshell {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include "isoshell/advanced/stages.h"
-#include "isoshell/error.h"
 #include "voxel/atomic.h"
 #include "voxel/dilate.h"
 #include "voxel/exact_int.h"
