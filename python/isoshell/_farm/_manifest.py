@@ -13,6 +13,7 @@ import time
 import uuid
 from typing import Any, Dict, List, NamedTuple, Optional
 
+from .._isoshell import VERSION
 from . import _places as places
 
 Row = Dict[str, Any]
@@ -25,6 +26,13 @@ class Manifest(NamedTuple):
 
     rows: Dict[str, Row]  # the last of each asset, by its output
     runs: List[Row]       # what `farm run` said when it began, in order of time
+
+
+def row_of_job(job: Dict[str, Any], worker: str) -> Row:
+    """What is known of an asset before anything is done with it."""
+    return {"output": job["output"], "asset": job["path"], "options": job["options"], "version": VERSION,
+            "run": job["run"], "input_size": job["input_size"], "input_changed": job["input_changed"], "gates": {},
+            "worker": worker}
 
 
 class Writer:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import html
 import os
-import re
 import time
 import urllib.parse
-from importlib import resources
 from pathlib import Path
 from typing import List, Optional
 
@@ -18,6 +16,7 @@ import isoshell
 from .. import _report
 from .._errors import Error
 from .._isoshell import ErrorCode
+from .._report import _template
 from .._report._charts import histogram
 from . import _manifest as manifest
 from . import _places as places
@@ -76,10 +75,9 @@ def page(found: manifest.Manifest, out: str, folder: str) -> str:
         "done": _all_done(done, base),
         "command": html.escape(str(found.runs[-1]["command"])),
         "version": html.escape(isoshell.__version__),
-        "css": (resources.files(_report.__name__) / "page.css").read_text(encoding="utf-8"),
+        "css": _template.text_of(_report.__name__, "page.css"),
     }
-    text = (resources.files(__package__) / "page.html").read_text(encoding="utf-8")
-    return re.sub(r"\{\{(\w+)\}\}", lambda blank: blanks[blank[1]], text)
+    return _template.filled(str(__package__), blanks)
 
 
 def _reason(code: str, rows: List[manifest.Row], base: str) -> str:

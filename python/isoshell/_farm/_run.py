@@ -192,11 +192,9 @@ def row_of(cluster: Cluster, future: Any, job: Dict[str, Any], deaths: int,
         return None
     if type(error).__name__ == "KilledWorker" and deaths < DEATHS:
         return None
-    row = {"output": job["output"], "asset": job["path"], "options": job["options"], "version": isoshell.__version__,
-           "run": job["run"], "input_size": job["input_size"], "input_changed": job["input_changed"], "gates": {},
-           "state": "failed", "code": "WORKER_LOST" if type(error).__name__ == "KilledWorker" else "INTERNAL",
-           "message": f"{type(error).__name__}: {error}", "attempts": deaths + 1, "transient": True, "seconds": 0.0,
-           "worker": ""}
+    row = {**manifest.row_of_job(job, ""), "state": "failed",
+           "code": "WORKER_LOST" if type(error).__name__ == "KilledWorker" else "INTERNAL",
+           "message": f"{type(error).__name__}: {error}", "attempts": deaths + 1, "transient": True, "seconds": 0.0}
     try:
         writer.append(row)
     except OSError as full:

@@ -13,13 +13,12 @@ import uuid
 from contextlib import contextmanager
 from typing import Any, Dict, Iterator, List, Optional
 
-import isoshell
 from isoshell import ErrorCode
 
 from . import _places as places
 from ._admission import Admission, memory_of_node
 from ._assets import files_of
-from ._manifest import Row, Writer
+from ._manifest import Row, Writer, row_of_job
 from ._process import Child, Lost, run_command
 
 SCRATCH = ".farm"  # below OUT, so that a finished file needs only another name
@@ -100,10 +99,7 @@ class Crew:
 
     def mesh(self, job: Job) -> Row:
         start = time.perf_counter()
-        row: Row = {"output": job["output"], "asset": job["path"], "options": job["options"],
-                    "version": isoshell.__version__, "run": self.run, "input_size": job["input_size"],
-                    "input_changed": job["input_changed"], "gates": {},
-                    "worker": f"{socket.gethostname()}:{os.getpid()}"}
+        row = row_of_job(job, f"{socket.gethostname()}:{os.getpid()}")
         folder = ""
         try:
             folder = tempfile.mkdtemp(dir=self._scratch)

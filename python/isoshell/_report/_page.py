@@ -7,7 +7,6 @@ import html
 import json
 import re
 import zlib
-from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Dict, List, Optional
@@ -21,6 +20,7 @@ from . import _tables as tables
 from ._places import Kind, Place, kinds_of, number
 from ._sight import clear_sight
 from ._surface import Array, Edges, Surface, angles_deg, edge_lengths, face_quality, joined, thinned
+from ._template import filled, text_of
 
 MOST_FACES = 120_000  # of a mesh that is drawn: the page stays below 8 MB
 PATCH_COLORS = 8  # of page.js
@@ -64,10 +64,10 @@ def page(result: Result, source: Optional[tuple[Array, Array]], k3d: Path) -> st
         "k3d": html.escape(version("k3d")),
         "data": _data(shown, kinds, drawn) + _script("k3d", _packed(_without_fonts_of_files(k3d / "standalone.js"))),
         "fflate": (k3d / "fflate.js").read_text(),
-        "css": _own("page.css"),
-        "js": _own("page.js"),
+        "css": text_of(str(__package__), "page.css"),
+        "js": text_of(str(__package__), "page.js"),
     }
-    return re.sub(r"\{\{(\w+)\}\}", lambda blank: blanks[blank[1]], _own("page.html"))
+    return filled(str(__package__), blanks)
 
 
 def _without_fonts_of_files(script: Path) -> bytes:
@@ -224,7 +224,3 @@ def _packed(values: Any) -> str:
 
 def _script(name: str, content: str, kind: str = "text/plain") -> str:
     return f'<script type="{kind}" id="{name}">{content.replace("</", "<" + chr(92) + "/")}</script>\n'
-
-
-def _own(name: str) -> str:
-    return (resources.files(__package__) / name).read_text(encoding="utf-8")
