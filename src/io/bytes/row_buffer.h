@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parallel_ranges.h"
-#include "io/bytes/little_endian.h"
+#include "io/bytes/byte_order.h"
 #include "io/bytes/output_file.h"
 #include "isoshell/advanced/lattice.h"
 
@@ -29,7 +29,8 @@ class RowBuffer {
   void put_number(uint32_t value) { at_ = std::to_chars(at_, bytes_.data() + bytes_.size(), value).ptr; }
   template <class T>
   void put_binary(T value) {
-    store_little_endian(value, [this](char byte) { *at_++ = byte; });
+    const auto bytes = little_endian_bytes(value);
+    at_ = std::copy(bytes.begin(), bytes.end(), at_);
   }
   const char* data() const { return bytes_.data(); }
   int64_t size() const { return at_ - bytes_.data(); }

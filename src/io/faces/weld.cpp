@@ -4,10 +4,12 @@
 #include "io/faces/weld.h"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
+#include <type_traits>
 
 #include "core/parallel_ranges.h"
-#include "io/bytes/little_endian.h"
+#include "io/bytes/byte_order.h"
 
 namespace isoshell {
 namespace {
@@ -21,7 +23,10 @@ constexpr uint32_t kNone = 0xffffffff;
 /// Of one value, whichever sign its zero has.
 template <class Real>
 uint64_t value_bits(Real value) {
-  return bits_of(value + Real(0));
+  value += Real(0);
+  std::conditional_t<sizeof(Real) == 4, uint32_t, uint64_t> bits;
+  std::memcpy(&bits, &value, sizeof value);
+  return bits;
 }
 
 template <class Real>

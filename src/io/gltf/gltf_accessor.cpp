@@ -5,7 +5,7 @@
 
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
-#include "io/bytes/little_endian.h"
+#include "io/bytes/byte_order.h"
 #include "io/gltf/gltf_document.h"
 
 namespace isoshell {

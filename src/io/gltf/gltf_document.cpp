@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "core/number_type.h"
-#include "io/bytes/little_endian.h"
+#include "io/bytes/byte_order.h"
 #include "io/gltf/gltf_uri.h"
 
 namespace isoshell {

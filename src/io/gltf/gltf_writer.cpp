@@ -6,7 +6,7 @@
 
 #include "core/attribute_values.h"
 #include "core/number_type.h"
-#include "io/bytes/little_endian.h"
+#include "io/bytes/byte_order.h"
 #include "io/bytes/output_file.h"
 #include "io/gltf/gltf_materials.h"
 #include "io/gltf/gltf_semantics.h"
@@ -26,7 +26,8 @@ enum ViewTarget { kVertexData = 34962, kIndexData = 34963 };
 
 template <class T>
 void put(std::vector<char>& out, T value) {
-  store_little_endian(value, [&](char byte) { out.push_back(byte); });
+  const auto bytes = little_endian_bytes(value);
+  out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
 double largest_of(NumberType type) {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "geometry/world_vector.h"
-#include "io/bytes/little_endian.h"
+#include "io/bytes/byte_order.h"
 #include "io/bytes/mesh_source.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/row_buffer.h"

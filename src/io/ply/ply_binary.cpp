@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
+#include "io/bytes/byte_order.h"
 #include "io/bytes/text_scan.h"
 #include "io/ply/ply_body.h"
 
@@ -17,19 +17,6 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kRowsPerBlock = 1 << 12;
-
-template <class T>
-T load(const char* p, bool big_endian) {
-  T value;
-  std::memcpy(&value, p, sizeof value);
-  const uint16_t one = 1;
-  const bool host_is_big_endian = *reinterpret_cast<const unsigned char*>(&one) == 0;
-  if (big_endian == host_is_big_endian) return value;
-  unsigned char bytes[sizeof value];
-  std::reverse_copy(p, p + sizeof value, bytes);
-  std::memcpy(&value, bytes, sizeof value);
-  return value;
-}
 
 // One element's rows in the file.
 class BinaryRows {
@@ -81,7 +68,7 @@ class BinaryRows {
   int64_t list_length(const PlyProperty& list, int64_t offset) const {
     const char* const p = source_.begin() + offset;
     if (list.count_type == PlyType::u8) return static_cast<unsigned char>(*p);
-    return with_type(list.count_type, [&](auto type) { return int64_t(load<decltype(type)>(p, big_endian_)); });
+    return with_type(list.count_type, [&](auto type) { return int64_t(load_number<decltype(type)>(p, big_endian_)); });
   }
   int64_t property_bytes(const PlyProperty& property, int64_t offset) const {
     if (!property.is_list) return size_of(property.type);
@@ -180,7 +167,7 @@ void read_vertices(const MeshSource& source, const BinaryRows& rows, const PlyMe
         int64_t in_row = -1;
         rows.each_row(block, [&](int64_t row, int64_t offset) {
           if (in_row < 0 || rows.stride() == 0) in_row = rows.find(offset, property).offset - offset;
-          value_of_row(row) = double(load<decltype(type)>(source.begin() + offset + in_row, rows.big_endian()));
+          value_of_row(row) = double(load_number<decltype(type)>(source.begin() + offset + in_row, rows.big_endian()));
         });
       });
     };
@@ -217,7 +204,7 @@ bool take_triangles(const MeshSource& source, const BinaryRows& rows, const PlyE
       for (int64_t row = first_row; row < end_row; ++row) {
         const char* p = source.begin() + first.offset + row * rows.stride();
         for (uint32_t& corner : triangles[size_t(row)]) {
-          const uint64_t index = uint64_t(as_index(load<T>(p, rows.big_endian())));
+          const uint64_t index = uint64_t(as_index(load_number<T>(p, rows.big_endian())));
           fits &= index < vertex_count;
           corner = uint32_t(index);
           p += sizeof(T);
@@ -254,7 +241,7 @@ class FaceRowReader {
     with_type(layout_.faces->properties[size_t(property)].type, [&](auto type) {
       const char* p = source_.begin() + place.offset;
       for (int64_t i = 0; i < place.length; ++i, p += sizeof(type))
-        values.push_back(double(load<decltype(type)>(p, rows_.big_endian())));
+        values.push_back(double(load_number<decltype(type)>(p, rows_.big_endian())));
     });
   }
 
@@ -285,7 +272,9 @@ void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyEleme
       rows.each_row(block, [&](int64_t, int64_t offset) {
         const BinaryRows::Place place = rows.find(offset, list);
         const char* const p = source.begin() + place.offset;
-        const auto corner = [&](int64_t i) { return as_index(load<T>(p + i * int64_t(sizeof(T)), rows.big_endian())); };
+        const auto corner = [&](int64_t i) {
+          return as_index(load_number<T>(p + i * int64_t(sizeof(T)), rows.big_endian()));
+        };
         const auto refuse = [&](const std::string& what) { source.refuse_byte(offset, what); };
         corners.resize(size_t(place.length));
         for (int64_t i = 0; i < place.length; ++i) corners[size_t(i)] = corner(i);
