@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
+#include "core/index_sets.h"
 #include "geometry/half_edge_list.h"
 #include "geometry/world_vector.h"
-#include "measure/index_sets.h"
 
 namespace isoshell {
 namespace {

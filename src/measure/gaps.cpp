@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "core/copy_product.h"
+#include "core/index_sets.h"
 #include "core/parallel_ranges.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -69,8 +69,7 @@ void measure_bridges(const Sheet& on, const std::vector<uint8_t>& bridges, GapRe
   std::vector<std::pair<int64_t, uint32_t>> rim_of(bridges.size(), {INT64_MAX, kNone});  // squared distance, vertex
   using Step = std::tuple<int64_t, uint32_t, uint32_t>;  // squared distance, rim, vertex
   std::priority_queue<Step, std::vector<Step>, std::greater<>> next;
-  Buffer<uint32_t> parent(int64_t(bridges.size()));
-  for (int64_t v = 0; v < parent.size(); ++v) parent[v] = uint32_t(v);
+  IndexSets sets(int64_t(bridges.size()));
   const auto offer = [&](uint32_t rim, uint32_t v) {
     const Voxel p = corner[rim], q = corner[v];
     const int64_t x = p.x - q.x, y = p.y - q.y, z = p.z - q.z, distance_sq = x * x + y * y + z * z;
@@ -89,7 +88,7 @@ void measure_bridges(const Sheet& on, const std::vector<uint8_t>& bridges, GapRe
     if (!bridges[v]) continue;
     for_each_neighbour(v, [&](uint32_t w) {
       if (bridges[w])
-        join(parent.view(), v, w);
+        sets.unite(v, w);
       else
         offer(w, v);
     });
@@ -104,7 +103,7 @@ void measure_bridges(const Sheet& on, const std::vector<uint8_t>& bridges, GapRe
       if (bridges[w]) offer(rim, w);
     });
   }
-  for (uint32_t v = 0; v < bridges.size(); ++v) report.bridges += bridges[v] && find_root(parent.view(), v) == v;
+  for (uint32_t v = 0; v < bridges.size(); ++v) report.bridges += bridges[v] && sets.root(v) == v;
   if (report.bridges > 0)
     report.widest_bridge_world = (2 * std::sqrt(double(farthest_sq)) + kRimVoxels) * sheet->frame.voxel_size;
 }

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "core/index_sets.h"
 #include "geometry/half_edge_list.h"
 #include "geometry/triangle_list.h"
 #include "isoshell/error.h"
-#include "measure/index_sets.h"
 
 namespace isoshell {
 namespace {

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
+#include "core/index_sets.h"
 #include "geometry/world_vector.h"
-#include "isoshell/advanced/buffer.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -49,27 +48,24 @@ std::vector<CurveEdge> drop_short(const FeatureMesh& mesh, const MeshEdges& edge
 class Patches {
  public:
   Patches(const FeatureMesh& mesh, const MeshEdges& edges, const std::vector<CurveEdge>& all)
-      : parent_(mesh.triangles.size()), border_world_(mesh.triangles.size(), 0) {
-    const View<uint32_t> sets{parent_.data(), int64_t(parent_.size())};
-    for (uint32_t t = 0; t < parent_.size(); ++t) parent_[t] = t;
+      : sets_(int64_t(mesh.triangles.size())), border_world_(mesh.triangles.size(), 0) {
     auto curve = all.begin();
     for (uint32_t e = 0; e < edges.count(); ++e)
       if (curve != all.end() && curve->edge == e)
         ++curve;
       else
-        join(sets, edges.edges[e].face[0], edges.edges[e].face[1]);
-    for (uint32_t t = 0; t < parent_.size(); ++t) parent_[t] = find_root(sets, t);
+        sets_.unite(edges.edges[e].face[0], edges.edges[e].face[1]);
     for (const CurveEdge& c : all) {
       const FeatureEdge& e = edges.edges[c.edge];
       for (const uint32_t f : e.face) border_world_[of(f)] += length(mesh.vertices[e.end[1]] - mesh.vertices[e.end[0]]);
     }
   }
 
-  uint32_t of(uint32_t face) const { return parent_[face]; }
+  uint32_t of(uint32_t face) { return sets_.root(face); }
   double border_world(uint32_t patch) const { return border_world_[patch]; }
 
  private:
-  std::vector<uint32_t> parent_;  // per triangle, the smallest of its patch
+  IndexSets sets_;  // per triangle, the smallest of its patch
   std::vector<double> border_world_;
 };
 
@@ -84,7 +80,7 @@ std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edg
     before = all.size();
     const std::vector<EdgeChain> chains = find_chains(edges, all);
     if (std::none_of(chains.begin(), chains.end(), may_go)) break;  // patches cost a look at every edge
-    const Patches patches(mesh, edges, all);
+    Patches patches(mesh, edges, all);
     std::vector<size_t> weakest(mesh.triangles.size(), kNoChain);
     for (size_t c = 0; c < chains.size(); ++c) {
       if (!may_go(chains[c])) continue;

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 
+#include "core/index_sets.h"
 #include "features/mesh/mesh_edges.h"
 #include "geometry/world_vector.h"
-#include "isoshell/advanced/buffer.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -33,11 +32,10 @@ bool is_before(const FaceAtEdge& a, const FaceAtEdge& b) {
 class Regions {
  public:
   Regions(const FeatureMesh& mesh, const MeshEdges& edges)
-      : mesh_(mesh), edges_(edges), parent_(2 * mesh.triangles.size()) {
-    for (uint32_t s = 0; s < parent_.size(); ++s) parent_[s] = s;
+      : mesh_(mesh), edges_(edges), sets_(2 * int64_t(mesh.triangles.size())) {
     join_sides();
-    volume_.assign(parent_.size(), 0);
-    is_seen_from_back_.assign(parent_.size(), 0);
+    volume_.assign(2 * mesh.triangles.size(), 0);
+    is_seen_from_back_.assign(volume_.size(), 0);
     const WorldPoint& o = mesh.vertices[0];
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& [a, b, c] = mesh.triangles[t];
@@ -56,10 +54,7 @@ class Regions {
   }
 
  private:
-  uint32_t of(uint32_t triangle, bool is_front) {
-    return find_root({parent_.data(), int64_t(parent_.size())}, side(triangle, is_front));
-  }
-  void join_both(uint32_t a, uint32_t b) { join({parent_.data(), int64_t(parent_.size())}, a, b); }
+  uint32_t of(uint32_t triangle, bool is_front) { return sets_.root(side(triangle, is_front)); }
 
   void join_sides() {
     std::vector<std::pair<uint32_t, uint32_t>> branching;  // edge, triangle
@@ -68,7 +63,7 @@ class Regions {
         if (!edges_.is_inner(e)) branching.push_back({e, t});
     for (const FeatureEdge& e : edges_.edges)
       if (e.use == EdgeUse::inner)
-        for (const bool is_front : {false, true}) join_both(side(e.face[0], is_front), side(e.face[1], is_front));
+        for (const bool is_front : {false, true}) sets_.unite(side(e.face[0], is_front), side(e.face[1], is_front));
     std::sort(branching.begin(), branching.end());
     for (size_t begin = 0, end = 0; begin < branching.size(); begin = end) {
       std::vector<uint32_t> faces;
@@ -85,7 +80,7 @@ class Regions {
     std::sort(faces.begin(), faces.end(), is_before);
     for (size_t i = 0; i < faces.size(); ++i) {
       const FaceAtEdge &here = faces[i], &next = faces[(i + 1) % faces.size()];
-      join_both(side(here.triangle, here.rises), side(next.triangle, !next.rises));
+      sets_.unite(side(here.triangle, here.rises), side(next.triangle, !next.rises));
     }
   }
 
@@ -149,7 +144,7 @@ class Regions {
 
   const FeatureMesh& mesh_;
   const MeshEdges& edges_;
-  std::vector<uint32_t> parent_;
+  IndexSets sets_;
   std::vector<double> volume_;
   std::vector<uint8_t> is_seen_from_back_;
 };

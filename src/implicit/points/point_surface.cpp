@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/index_sets.h"
 #include "core/parallel_ranges.h"
 #include "implicit/points/flat_normals.h"
 #include "implicit/points/indicator_grid.h"
@@ -12,7 +13,6 @@
 #include "implicit/volumes/iso_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -68,8 +68,7 @@ int64_t drop_outliers(std::vector<WorldPoint>& position, std::vector<WorldPoint>
   std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(count / 2), sorted.end());
   const double usual = sorted[count / 2];
   std::vector<uint8_t> is_outlier(count);
-  Buffer<uint32_t> parent{int64_t(count)};
-  std::iota(parent.view().data, parent.view().data + count, 0u);
+  IndexSets sets{int64_t(count)};
   std::vector<uint32_t> sparse;
   for (uint32_t i = 0; i < count; ++i)
     if (distance[i] > kOutlierToNeighbours * usual) sparse.push_back(i);
@@ -81,7 +80,7 @@ int64_t drop_outliers(std::vector<WorldPoint>& position, std::vector<WorldPoint>
     for (const auto& [distance_sq, n] : near) {
       if (n == i) continue;
       around.push_back(distance[n]);
-      if (distance_sq <= kGroupLink * kGroupLink * usual * usual) join(parent.view(), i, n);
+      if (distance_sq <= kGroupLink * kGroupLink * usual * usual) sets.unite(i, n);
     }
     std::nth_element(around.begin(), around.begin() + std::ptrdiff_t(around.size() / 2), around.end());
     is_outlier[i] = distance[i] > kOutlierToNeighbours * around[around.size() / 2];
@@ -89,9 +88,9 @@ int64_t drop_outliers(std::vector<WorldPoint>& position, std::vector<WorldPoint>
   // A group with a point that is not sparse is no small one: that point has as many others around it.
   std::vector<uint32_t> members(count);
   for (uint32_t i = 0; i < count; ++i)
-    members[find_root(parent.view(), i)] += distance[i] > kOutlierToNeighbours * usual ? 1 : kSmallGroup;
+    members[sets.root(i)] += distance[i] > kOutlierToNeighbours * usual ? 1 : kSmallGroup;
   for (const uint32_t i : sparse)
-    if (members[find_root(parent.view(), i)] < kSmallGroup) is_outlier[i] = 1;
+    if (members[sets.root(i)] < kSmallGroup) is_outlier[i] = 1;
   const int64_t dropped = std::count(is_outlier.begin(), is_outlier.end(), uint8_t(1));
   if (dropped == 0 || double(dropped) > kMostOutliers * double(count)) return 0;
   size_t kept = 0;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "core/index_sets.h"
 #include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
 #include "implicit/volumes/least_squares_point.h"
 #include "implicit/volumes/tile_borders.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -357,19 +357,17 @@ std::vector<Voxel> Creases::take_back(const std::vector<CreaseVertexId>& which) 
 void Creases::drop_short() {
   std::vector<uint32_t> first(vertices_.size() + 1, 0);
   for (size_t b = 0; b < vertices_.size(); ++b) first[b + 1] = first[b] + uint32_t(vertices_[b].size());
-  Buffer<uint32_t> parent{int64_t(first.back())};
-  const View<uint32_t> sets = parent.view();
-  for (uint32_t i = 0; i < first.back(); ++i) sets[i] = i;
+  IndexSets sets(int64_t(first.back()));
   each_vertex([&](CreaseVertexId id) {
     for (int i = 0; i < loop_of((*this)[id]).size; ++i)
       if (const CreaseVertexId other = beyond(id, i))
-        join(sets, first[id.block] + id.number, first[other.block] + other.number);
+        sets.unite(first[id.block] + id.number, first[other.block] + other.number);
   });
   std::vector<uint32_t> members(first.back(), 0);
-  for (uint32_t i = 0; i < first.back(); ++i) ++members[find_root(sets, i)];
+  for (uint32_t i = 0; i < first.back(); ++i) ++members[sets.root(i)];
   for (size_t b = 0; b < vertices_.size(); ++b)
     for (size_t i = 0; i < vertices_[b].size(); ++i)
-      if (members[find_root(sets, first[b] + uint32_t(i))] < kShortest) vertices_[b][i].place = CreaseVertex::none;
+      if (members[sets.root(first[b] + uint32_t(i))] < kShortest) vertices_[b][i].place = CreaseVertex::none;
 }
 
 }  // namespace isoshell

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "core/index_sets.h"
 #include "geometry/world_vector.h"
 #include "repair/holes/missing_faces.h"
 #include "repair/holes/open_soup.h"
 #include "repair/holes/repair_holes.h"
 #include "repair/holes/repair_patches.h"
 #include "repair/holes/repair_tubes.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -19,10 +19,9 @@ using namespace repair;
 class Bodies {
  public:
   Bodies(const RepairMesh& mesh, const Patches& patches, const std::vector<Cap>& caps)
-      : mesh_(mesh), patches_(patches), parent_(patches.count), body_(patches.count) {
-    for (uint32_t p = 0; p < patches.count; ++p) parent_[p] = p;
+      : mesh_(mesh), patches_(patches), sets_(patches.count), body_(patches.count) {
     for (const Cap& cap : caps)
-      for (uint32_t h : cap.loop) join(parent_.view(), patches.of[cap.loop[0] / 3], patches.of[h / 3]);
+      for (uint32_t h : cap.loop) sets_.unite(patches.of[cap.loop[0] / 3], patches.of[h / 3]);
     for (uint32_t f = 0; f < mesh.face_count(); ++f)
       if (mesh.is_live(f)) {
         Body& b = of_face(f);
@@ -45,7 +44,7 @@ class Bodies {
     WorldPoint origin = {0, 0, 0};
     double six_volume = 0;
   };
-  Body& of_face(uint32_t f) { return body_[find_root(parent_.view(), patches_.of[f])]; }
+  Body& of_face(uint32_t f) { return body_[sets_.root(patches_.of[f])]; }
 
   void add(Body& b, const Corners& c) {
     if (!b.has_origin) b.origin = mesh_.position[c[0]];
@@ -57,7 +56,7 @@ class Bodies {
 
   const RepairMesh& mesh_;
   const Patches& patches_;
-  Buffer<uint32_t> parent_;
+  IndexSets sets_;
   std::vector<Body> body_;
 };
 

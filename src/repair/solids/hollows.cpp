@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <optional>
 
+#include "core/index_sets.h"
 #include "repair/solids/winding.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -65,12 +65,11 @@ class HollowFinder {
   HollowFinder(const LatticeSurface& surface, const SiteSet& sites)
       : surface_(surface),
         sites_(sites.voxels.view()),
-        parent_(surface.points.size()),
-        hollow_(size_t(parent_.size())) {
-    for (int64_t v = 0; v < parent_.size(); ++v) parent_[v] = uint32_t(v);
+        sets_(surface.points.size()),
+        hollow_(size_t(surface.points.size())) {
     for (const TriangleIndices t : surface.triangles) {
-      join(parent_.view(), t.a, t.b);
-      join(parent_.view(), t.a, t.c);
+      sets_.unite(t.a, t.b);
+      sets_.unite(t.a, t.c);
     }
     for (const TriangleIndices t : surface.triangles) {
       const PointQ8 a = surface.points[t.a], start = surface.points[0];
@@ -81,7 +80,7 @@ class HollowFinder {
       h.six_volume += double(from.x) * double(n.x) + double(from.y) * double(n.y) + double(from.z) * double(n.z);
     }
   }
-  Hollow& hollow_of(TriangleIndices t) { return hollow_[find_root(parent_.view(), t.a)]; }
+  Hollow& hollow_of(TriangleIndices t) { return hollow_[sets_.root(t.a)]; }
 
   /// A hollow too small for voxels is left through its other side: what lies beyond is no hollow.
   void follow(Voxel site, Normal8 normal, Hollow& hollow) {
@@ -115,7 +114,7 @@ class HollowFinder {
 
   const LatticeSurface& surface_;
   const VoxelSetView sites_;
-  Buffer<uint32_t> parent_;
+  IndexSets sets_;
   std::optional<Outside> outside_;
   std::vector<Hollow> hollow_;  ///< per point, at the roots
 };
