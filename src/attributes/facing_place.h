@@ -20,9 +20,4 @@ inline MeshPoint facing_place(const TriangleGrid& grid, WorldPoint p, WorldPoint
   return facing_place(grid, p, grid.nearest(p), normal, edge_length);
 }
 
-/// The value at a place from those at its triangle's corners. Where all are the same, exactly that.
-inline double interpolate(const MeshPoint& place, double a, double b, double c) {
-  return a + place.b_part * (b - a) + place.c_part * (c - a);
-}
-
 }  // namespace isoshell

@@ -3,11 +3,10 @@
 #include "core/attribute_values.h"
 #include "core/parallel_ranges.h"
 #include "features/mesh/weld_for_features.h"
+#include "geometry/world_vector.h"
 
 namespace isoshell {
 namespace {
-
-bool is_at(const WorldPoint& a, const WorldPoint& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 /// The value that a triangle has at one of its vertices.
 const double* value_at(const WeldedSource& source, const Attribute& a, uint32_t triangle, uint32_t vertex) {
@@ -25,7 +24,7 @@ WeldedSource weld_source(const TriangleSoup& soup) {
   for_each_index(size_t(0), source.first_corner.size(), [&](size_t t) {
     const auto& face = soup.triangles[source.mesh.source_face[t]];
     const WorldPoint& first = source.mesh.vertices[source.mesh.triangles[t][0]];
-    while (!is_at(soup.vertices[face[source.first_corner[t]]], first)) ++source.first_corner[t];
+    while (!(soup.vertices[face[source.first_corner[t]]] == first)) ++source.first_corner[t];
   });
   return source;
 }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "isoshell/advanced/lattice.h"
+#include "geometry/box.h"
 
 namespace isoshell {
 
@@ -22,8 +22,8 @@ class PointCells {
 
   /// visit(index) of all points in the box, and of some beside it.
   template <class Visit>
-  void for_each_in(const WorldPoint& low, const WorldPoint& high, Visit visit) const {
-    const Cell from = cell_of(low), to = cell_of(high);
+  void for_each_in(const WorldBox& box, Visit visit) const {
+    const Cell from = cell_of(box.min), to = cell_of(box.max);
     for (int64_t x = from[0]; x <= to[0]; ++x)
       for (int64_t y = from[1]; y <= to[1]; ++y)
         for (int64_t z = from[2]; z <= to[2]; ++z) {

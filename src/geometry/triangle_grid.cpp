@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "core/vector_view.h"
+#include "geometry/box.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr int64_t kCellsPerTriangle = 8;
 constexpr int64_t kEntriesPerTriangle = 32;  // more, and cells are too small for the largest triangles
 constexpr int64_t kMostEntries = std::numeric_limits<uint32_t>::max();
@@ -19,14 +19,7 @@ constexpr int64_t kMostEntries = std::numeric_limits<uint32_t>::max();
 TriangleGrid::TriangleGrid(const std::vector<WorldPoint>& vertices, const Triangles& triangles) {
   view_.vertices = view_of(vertices);
   view_.triangles = view_of(triangles);
-  WorldPoint lo{kLargest, kLargest, kLargest}, hi{-kLargest, -kLargest, -kLargest};
-  for (const auto& t : triangles)
-    for (const uint32_t v : t) {
-      const WorldPoint p = vertices[v];
-      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    }
-  choose_cells(lo, hi);
+  choose_cells(box_of(vertices, triangles));
   const auto dims = view_.dims, blocks = view_.block_dims();
   block_used_.assign(size_t(blocks.count()), 0);
   for (size_t t = 0; t < triangles.size(); ++t)
@@ -45,11 +38,11 @@ TriangleGrid::TriangleGrid(const std::vector<WorldPoint>& vertices, const Triang
 }
 
 /// About as wide as triangles are, wider where that would take too many cells or entries.
-void TriangleGrid::choose_cells(WorldPoint lo, WorldPoint hi) {
-  const WorldPoint extent = hi - lo;
+void TriangleGrid::choose_cells(const WorldBox& box) {
+  const WorldPoint extent = box.max - box.min;
   const int64_t triangles = view_.triangles.size;
-  const double longest = std::max({extent.x, extent.y, extent.z});
-  view_.origin = lo;
+  const double longest = longest_side(box);
+  view_.origin = box.min;
   view_.edge = longest > 0 ? longest / std::sqrt(double(triangles)) : 1;
   for (;; view_.edge *= 1.5) {
     const auto along = [&](double length) { return 1 + int64_t(length / view_.edge); };
@@ -57,18 +50,20 @@ void TriangleGrid::choose_cells(WorldPoint lo, WorldPoint hi) {
     const int64_t cells = view_.dims.count();
     if (cells > kCellsPerTriangle * triangles) continue;
     int64_t entries = 0;
-    for (int64_t t = 0; t < triangles; ++t) entries += cells_of(size_t(t)).count();
+    for (int64_t t = 0; t < triangles; ++t) {
+      const auto [from, to] = cells_of(size_t(t));
+      entries += (to.x - from.x + 1) * (to.y - from.y + 1) * (to.z - from.z + 1);
+    }
     if (cells > 1 && entries > std::min(kEntriesPerTriangle * triangles, kMostEntries)) continue;
     first_.assign(size_t(cells) + 1, 0);
     return;
   }
 }
 
-TriangleGrid::CellBox TriangleGrid::cells_of(size_t triangle) const {
+BoxOf<TriangleGridView::Cell> TriangleGrid::cells_of(size_t triangle) const {
   const auto& t = view_.triangles[int64_t(triangle)];
-  const WorldPoint a = view_.vertices[t[0]], b = view_.vertices[t[1]], c = view_.vertices[t[2]];
-  return {view_.cell_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})}),
-          view_.cell_of({std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})})};
+  const WorldBox box = box_of(view_.vertices[t[0]], view_.vertices[t[1]], view_.vertices[t[2]]);
+  return {view_.cell_of(box.min), view_.cell_of(box.max)};
 }
 
 template <class Visit>
@@ -95,6 +90,11 @@ MeshPoint TriangleGrid::nearest_aligned(WorldPoint p, WorldPoint normal, double 
 
 MeshPoint TriangleGrid::most_aligned(WorldPoint p, WorldPoint normal, double farthest) const {
   return view_.most_aligned(p, normal, farthest);
+}
+
+WorldPoint TriangleGrid::at(const MeshPoint& place) const {
+  const auto& t = view_.triangles[place.triangle];
+  return interpolate(place, view_.vertices[t[0]], view_.vertices[t[1]], view_.vertices[t[2]]);
 }
 
 double TriangleGrid::distance_to(size_t triangle, WorldPoint p) const {

@@ -33,6 +33,7 @@ class TriangleGrid {
   /// Of the triangles at most so far from p that whose normal is most nearly along the line of `normal`, of length 1.
   MeshPoint most_aligned(WorldPoint p, WorldPoint normal, double farthest) const;
   double distance_to(size_t triangle, WorldPoint p) const;
+  WorldPoint at(const MeshPoint& place) const;
   bool is_facing(size_t triangle, WorldPoint direction) const;
   double distance_sq(WorldPoint p) const { return nearest(p).distance_sq; }
 
@@ -42,13 +43,8 @@ class TriangleGrid {
  private:
   using Cell = TriangleGridView::Cell;
 
-  struct CellBox {
-    Cell lo, hi;
-    int64_t count() const { return (hi.x - lo.x + 1) * (hi.y - lo.y + 1) * (hi.z - lo.z + 1); }
-  };
-
-  void choose_cells(WorldPoint lo, WorldPoint hi);
-  CellBox cells_of(size_t triangle) const;
+  void choose_cells(const WorldBox& box);
+  BoxOf<Cell> cells_of(size_t triangle) const;
   template <class Visit>
   void for_each_cell_of(size_t triangle, Visit visit) const;
 

@@ -17,6 +17,11 @@ struct MeshPoint {
   double b_part = 0, c_part = 0;
   uint32_t triangle = kNoTriangle;
 };
+/// What is there of what is known at its triangle's corners. Where all are the same, exactly that.
+template <class Value>
+Value interpolate(const MeshPoint& place, const Value& a, const Value& b, const Value& c) {
+  return a + place.b_part * (b - a) + place.c_part * (c - a);
+}
 
 namespace triangle_search {
 

@@ -22,6 +22,18 @@ ISOSHELL_HD inline double distance_sq(const WorldPoint& a, const WorldPoint& b) 
 ISOSHELL_HD inline WorldPoint cross(const WorldPoint& a, const WorldPoint& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+ISOSHELL_HD inline bool operator==(const WorldPoint& a, const WorldPoint& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+/// In an order that no numbering of points shows in.
+ISOSHELL_HD inline bool is_before(const WorldPoint& a, const WorldPoint& b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+/// Of length 1; 0 where a has no length, or one that is not finite.
+inline WorldPoint normalised(const WorldPoint& a) {
+  const double size = length(a);
+  return size > 0 && std::isfinite(size) ? (1 / size) * a : WorldPoint{0, 0, 0};
+}
 /// Along the normal, as long as twice the triangle's area.
 ISOSHELL_HD inline WorldPoint doubled_area(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
   return cross(b - a, c - a);

@@ -10,26 +10,21 @@ namespace {
 
 constexpr size_t kParallel = 4096;  ///< boxes from which on two threads pay
 
-BoxOfPoints joined(const BoxOfPoints& a, const BoxOfPoints& b) {
-  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
-          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
-}
-
-int longest_axis(const BoxOfPoints& b) {
-  const int64_t x = int64_t(b.hi.x) - b.lo.x, y = int64_t(b.hi.y) - b.lo.y, z = int64_t(b.hi.z) - b.lo.z;
+int longest_axis(const BoxQ8& b) {
+  const int64_t x = int64_t(b.max.x) - b.min.x, y = int64_t(b.max.y) - b.min.y, z = int64_t(b.max.z) - b.min.z;
   return x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
 }
 
-int64_t twice_middle(const BoxOfPoints& b, int axis) {
-  return axis == 0 ? int64_t(b.lo.x) + b.hi.x : axis == 1 ? int64_t(b.lo.y) + b.hi.y : int64_t(b.lo.z) + b.hi.z;
+int64_t twice_middle(const BoxQ8& b, int axis) {
+  return axis == 0 ? int64_t(b.min.x) + b.max.x : axis == 1 ? int64_t(b.min.y) + b.max.y : int64_t(b.min.z) + b.max.z;
 }
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<BoxOfPoints>& boxes) {
+BoxTree::BoxTree(const std::vector<BoxQ8>& boxes) {
   if (boxes.empty()) return;
   list_.reserve(boxes.size());
-  for (const BoxOfPoints& box : boxes) list_.push_back({box, uint32_t(list_.size())});
+  for (const BoxQ8& box : boxes) list_.push_back({box, uint32_t(list_.size())});
   Node last{0, 0, list_.size()};  // the larger half is above, so no node has a larger number
   while (!last.is_leaf()) last = last.upper();
   around_.resize(last.number + 1);
@@ -37,7 +32,7 @@ BoxTree::BoxTree(const std::vector<BoxOfPoints>& boxes) {
 }
 
 void BoxTree::arrange(const Node& node) {
-  BoxOfPoints& around = around_[node.number];
+  BoxQ8& around = around_[node.number];
   around = list_[node.begin].box;
   for (size_t i = node.begin + 1; i < node.end; ++i) around = joined(around, list_[i].box);
   if (node.is_leaf()) return;

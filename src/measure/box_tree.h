@@ -1,37 +1,29 @@
-// Boxes on the lattice, and which of them meet a box.
+// Which boxes on the lattice meet a box.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "isoshell/advanced/lattice.h"
+#include "geometry/box.h"
 
 namespace isoshell {
-
-struct BoxOfPoints {
-  PointQ8 lo, hi;
-};
-inline bool boxes_meet(const BoxOfPoints& a, const BoxOfPoints& b) {
-  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
-         b.lo.z <= a.hi.z;
-}
 
 /// A balanced tree of boxes: each node halves its boxes by their middles, along the axis on which it is longest. Node n
 /// has the nodes 2 n + 1 and 2 n + 2 below it.
 class BoxTree {
  public:
   /// Cost: n log n for n boxes, in parallel.
-  explicit BoxTree(const std::vector<BoxOfPoints>& boxes);
+  explicit BoxTree(const std::vector<BoxQ8>& boxes);
 
   /// Calls visit(i) for each box i that meets this one, in any order, while that returns true. Result: whether all did.
   template <class Visit>
-  bool for_all_meeting(const BoxOfPoints& box, Visit visit) const {
+  bool for_all_meeting(const BoxQ8& box, Visit visit) const {
     return list_.empty() || for_all_below({0, 0, list_.size()}, box, visit);
   }
 
  private:
   struct Numbered {
-    BoxOfPoints box;
+    BoxQ8 box;
     uint32_t number;
   };
   struct Node {
@@ -43,7 +35,7 @@ class BoxTree {
   };
 
   template <class Visit>
-  bool for_all_below(const Node& node, const BoxOfPoints& box, Visit& visit) const {
+  bool for_all_below(const Node& node, const BoxQ8& box, Visit& visit) const {
     if (!boxes_meet(around_[node.number], box)) return true;
     if (!node.is_leaf()) return for_all_below(node.lower(), box, visit) && for_all_below(node.upper(), box, visit);
     for (size_t i = node.begin; i < node.end; ++i)
@@ -53,7 +45,7 @@ class BoxTree {
   void arrange(const Node& node);
 
   std::vector<Numbered> list_;
-  std::vector<BoxOfPoints> around_;  ///< by node, the smallest box with all of its boxes
+  std::vector<BoxQ8> around_;  ///< by node, the smallest box with all of its boxes
 };
 
 }  // namespace isoshell

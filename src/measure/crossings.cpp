@@ -11,26 +11,16 @@ namespace {
 
 constexpr size_t kChunk = 1024;
 
-BoxOfPoints box_of(const CornersOfTriangle& t) {
-  BoxOfPoints box{t.at[0], t.at[0]};
-  for (const PointQ8& p : t.at) {
-    box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y), std::min(box.lo.z, p.z)};
-    box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y), std::max(box.hi.z, p.z)};
-  }
-  return box;
-}
-
 }  // namespace
 
-BoxOfPoints common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
-                       const std::array<uint32_t, 2>& pair) {
+BoxQ8 common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                 const std::array<uint32_t, 2>& pair) {
   const auto box = [&](uint32_t t) {
     const TriangleIndices i = triangles[t];
-    return box_of({{i.a, i.b, i.c}, {position[i.a], position[i.b], position[i.c]}});
+    return box_of(position[i.a], position[i.b], position[i.c]);
   };
-  const BoxOfPoints a = box(pair[0]), b = box(pair[1]);
-  return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
-          {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
+  const BoxQ8 a = box(pair[0]), b = box(pair[1]);
+  return {largest_of(a.min, b.min), smallest_of(a.max, b.max)};
 }
 
 std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
@@ -41,8 +31,11 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
     const TriangleIndices i = triangles[t];
     return CornersOfTriangle{{id(i.a), id(i.b), id(i.c)}, {position[i.a], position[i.b], position[i.c]}};
   };
-  std::vector<BoxOfPoints> boxes(size_t(triangles.size));
-  for (uint32_t t = 0; t < boxes.size(); ++t) boxes[t] = box_of(corners(t));
+  std::vector<BoxQ8> boxes(size_t(triangles.size));
+  for (uint32_t t = 0; t < boxes.size(); ++t) {
+    const TriangleIndices i = triangles[t];
+    boxes[t] = box_of(position[i.a], position[i.b], position[i.c]);
+  }
   const BoxTree tree(boxes);
   std::vector<std::vector<std::array<uint32_t, 2>>> parts((boxes.size() + kChunk - 1) / kChunk);
   for_each_index(size_t(0), parts.size(), [&](size_t c) {
@@ -61,10 +54,10 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
   return found;
 }
 
-std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
-                                        Context& context) {
+std::vector<BoxQ8> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                                  Context& context) {
   return run_with_threads(context, [&] {
-    std::vector<BoxOfPoints> found;
+    std::vector<BoxQ8> found;
     for (const auto& pair : crossing_pairs(position, triangles, {}, context.cancel))
       found.push_back(common_box(position, triangles, pair));
     check_cancel(context, "crossings");
@@ -72,15 +65,11 @@ std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const
   });
 }
 
-std::vector<size_t> which_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others,
-                                int32_t reach_q8) {
+std::vector<size_t> which_apart(const std::vector<BoxQ8>& boxes, const std::vector<BoxQ8>& others, int32_t reach_q8) {
   const BoxTree tree(others);
   std::vector<size_t> apart;
   for (size_t i = 0; i < boxes.size(); ++i) {
-    const BoxOfPoints& b = boxes[i];
-    const BoxOfPoints wide{{b.lo.x - reach_q8, b.lo.y - reach_q8, b.lo.z - reach_q8},
-                           {b.hi.x + reach_q8, b.hi.y + reach_q8, b.hi.z + reach_q8}};
-    if (tree.for_all_meeting(wide, [](uint32_t) { return false; })) apart.push_back(i);
+    if (tree.for_all_meeting(widened(boxes[i], reach_q8), [](uint32_t) { return false; })) apart.push_back(i);
   }
   return apart;
 }

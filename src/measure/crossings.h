@@ -18,15 +18,14 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
                                                     View<const uint32_t> joined, const std::atomic<bool>& stop);
 
 /// What the boxes of two triangles have in common.
-BoxOfPoints common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
-                       const std::array<uint32_t, 2>& pair);
+BoxQ8 common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                 const std::array<uint32_t, 2>& pair);
 
 /// Of each of these pairs the box that those of both triangles have in common. Throws: interrupted.
-std::vector<BoxOfPoints> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
-                                        Context& context);
+std::vector<BoxQ8> find_crossings(View<const PointQ8> position, View<const TriangleIndices> triangles,
+                                  Context& context);
 
 /// Which of the boxes are farther than this, along some axis, from each of the others; ascending.
-std::vector<size_t> which_apart(const std::vector<BoxOfPoints>& boxes, const std::vector<BoxOfPoints>& others,
-                                int32_t reach_q8);
+std::vector<size_t> which_apart(const std::vector<BoxQ8>& boxes, const std::vector<BoxQ8>& others, int32_t reach_q8);
 
 }  // namespace isoshell

@@ -8,6 +8,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "geometry/box.h"
 #include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
 #include "measure/complex_counts.h"
@@ -32,20 +33,6 @@ void check(const TriangleMesh& mesh) {
     for (const uint32_t v : t)
       if (!is_finite(mesh.vertices[v]))
         refuse("vertex " + std::to_string(v) + " is not finite; leave its triangles out");
-}
-
-struct Box {
-  WorldPoint lo, hi;
-};
-Box box_of(const TriangleMesh& mesh) {
-  Box box{mesh.vertices[mesh.triangles[0][0]], mesh.vertices[mesh.triangles[0][0]]};
-  for (const auto& t : mesh.triangles)
-    for (const uint32_t v : t) {
-      const WorldPoint& p = mesh.vertices[v];
-      box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y), std::min(box.lo.z, p.z)};
-      box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y), std::max(box.hi.z, p.z)};
-    }
-  return box;
 }
 
 template <size_t kBins>
@@ -147,13 +134,13 @@ TriangleShapes measure_shapes(const TriangleMesh& mesh, int64_t dropped) {
 MeshCensus take_census(const TriangleMesh& mesh, Context& context, int64_t dropped) {
   check(mesh);
   return run_with_threads(context, [&] {
-    const Box box = box_of(mesh);
-    const EdgeCensus edges = count_complex(mesh, .5 * (box.lo + box.hi), dropped);
+    const WorldBox box = box_of(mesh.vertices, mesh.triangles);
+    const EdgeCensus edges = count_complex(mesh, .5 * (box.min + box.max), dropped);
     check_cancel(context, "census");
     const std::vector<uint32_t> first_at = first_at_position(mesh.vertices);
     const SelfIntersections crossing = find_self_intersections(mesh, first_at, context);
     MeshCensus census{
-        edges.counts,   edges.valence,     edges.edges, measure_shapes(mesh, dropped), length(box.hi - box.lo),
+        edges.counts,   edges.valence,     edges.edges, measure_shapes(mesh, dropped), length(box.max - box.min),
         crossing.pairs, crossing.triangles};
     for (uint32_t v = 0; v < first_at.size(); ++v) census.counts.duplicate_vertices += first_at[v] != v;
     return census;

@@ -7,7 +7,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -131,29 +130,22 @@ bool triangles_meet(const Corners& a, const Corners& b) {
 }
 
 /// Boxes on a lattice that keeps their order along each axis: those that meet still do.
-std::vector<BoxOfPoints> boxes_of(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  WorldPoint lo{kFar, kFar, kFar}, hi{-kFar, -kFar, -kFar};
+std::vector<BoxQ8> boxes_of(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles) {
+  WorldBox all = box_of_none();
   for (const uint32_t t : triangles)
-    for (const uint32_t v : mesh.triangles[t]) {
-      const WorldPoint& p = mesh.vertices[v];
-      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    }
+    for (const uint32_t v : mesh.triangles[t]) stretch(all, mesh.vertices[v]);
+  const WorldPoint &lo = all.min, &hi = all.max;
   const auto reach = [](double from, double to) { return to / 2 - from / 2; };  // whose difference may be no double
   const double side = std::max({reach(lo.x, hi.x), reach(lo.y, hi.y), reach(lo.z, hi.z)});
   const auto step = [&](double from, double x) { return int32_t(std::floor(reach(from, x) / side * kBoxSteps)); };
-  std::vector<BoxOfPoints> boxes(triangles.size());
+  const auto at = [&](uint32_t v) {
+    const WorldPoint& p = mesh.vertices[v];
+    return PointQ8{step(lo.x, p.x), step(lo.y, p.y), step(lo.z, p.z)};
+  };
+  std::vector<BoxQ8> boxes(triangles.size());
   for_each_index(size_t(0), triangles.size(), [&](size_t i) {
-    const auto& t = mesh.triangles[triangles[i]];
-    BoxOfPoints& box = boxes[i];
-    for (size_t c = 0; c < 3; ++c) {
-      const WorldPoint& p = mesh.vertices[t[c]];
-      const PointQ8 at{step(lo.x, p.x), step(lo.y, p.y), step(lo.z, p.z)};
-      if (c == 0) box = {at, at};
-      box.lo = {std::min(box.lo.x, at.x), std::min(box.lo.y, at.y), std::min(box.lo.z, at.z)};
-      box.hi = {std::max(box.hi.x, at.x), std::max(box.hi.y, at.y), std::max(box.hi.z, at.z)};
-    }
+    const auto& [a, b, c] = mesh.triangles[triangles[i]];
+    boxes[i] = box_of(at(a), at(b), at(c));
   });
   return boxes;
 }
@@ -171,7 +163,7 @@ std::vector<uint32_t> first_at_position(const std::vector<WorldPoint>& vertices)
   });
   for (size_t i = 1; i < order.size(); ++i) {
     const WorldPoint &p = vertices[order[i - 1]], &q = vertices[order[i]];
-    if (p.x == q.x && p.y == q.y && p.z == q.z) first[order[i]] = first[order[i - 1]];
+    if (p == q) first[order[i]] = first[order[i - 1]];
   }
   return first;
 }
@@ -190,7 +182,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, const std::v
     for (uint32_t t = 0; t < flat.size(); ++t)
       if (!flat[t]) tested.push_back(t);
     if (tested.empty()) return SelfIntersections{};
-    const std::vector<BoxOfPoints> boxes = boxes_of(mesh, tested);
+    const std::vector<BoxQ8> boxes = boxes_of(mesh, tested);
     const BoxTree tree(boxes);
     std::unique_ptr<std::atomic<uint8_t>[]> meets(new std::atomic<uint8_t>[tested.size()]());
     std::vector<int64_t> pairs((tested.size() + kChunk - 1) / kChunk);

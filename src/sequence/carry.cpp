@@ -25,14 +25,11 @@ void require_triangles(const TriangleSoup& soup) {
 }
 
 WorldPoint unit_normal(const std::vector<WorldPoint>& at, const Triangle& t) {
-  const WorldPoint area = doubled_area(at[t[0]], at[t[1]], at[t[2]]);
-  const double size = length(area);
-  return size > 0 ? (1 / size) * area : WorldPoint{0, 0, 0};
+  return normalised(doubled_area(at[t[0]], at[t[1]], at[t[2]]));
 }
 
 WorldPoint place_in(const std::vector<WorldPoint>& at, const Triangle& t, const MeshPoint& place) {
-  const WorldPoint &a = at[t[0]], &b = at[t[1]], &c = at[t[2]];
-  return a + place.b_part * (b - a) + place.c_part * (c - a);
+  return interpolate(place, at[t[0]], at[t[1]], at[t[2]]);
 }
 
 /// of(i) of each, at once for all.

@@ -30,9 +30,8 @@ std::vector<uint32_t> nearest_numbers(const PreviousFrame& previous, const Trian
   if (!(reach > 0)) return number;
   const PointCells cells(previous.carried, reach);
   std::vector<Pair> pairs;
-  const WorldPoint aside{reach, reach, reach};
   for (size_t v = 0; v < mesh.vertices.size(); ++v)
-    cells.for_each_in(mesh.vertices[v] - aside, mesh.vertices[v] + aside, [&](size_t before) {
+    cells.for_each_in(widened(WorldBox{mesh.vertices[v], mesh.vertices[v]}, reach), [&](size_t before) {
       const double d = distance_sq(previous.carried[before], mesh.vertices[v]);
       if (d < reach * reach && before < mesh.vertices.size()) pairs.push_back({d, uint32_t(before), uint32_t(v)});
     });

@@ -25,8 +25,7 @@ class SurfaceVelocity final : public VelocityField {
     for_each_index(size_t(0), points.size(), [&](size_t i) {
       const MeshPoint place = grid_.nearest(points[i]);
       const std::array<uint32_t, 3>& t = surface_.triangles[place.triangle];
-      const WorldPoint &a = velocities_[t[0]], &b = velocities_[t[1]], &c = velocities_[t[2]];
-      const WorldPoint v = a + place.b_part * (b - a) + place.c_part * (c - a);
+      const WorldPoint v = interpolate(place, velocities_[t[0]], velocities_[t[1]], velocities_[t[2]]);
       out[i] = std::isnan(v.x + v.y + v.z) ? WorldPoint{kNothing, kNothing, kNothing} : v;
     });
     return out;

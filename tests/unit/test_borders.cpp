@@ -78,10 +78,10 @@ TEST_CASE("crossings: triangles that meet outside of shared corners, and where",
       to_buffer(std::vector<TriangleIndices>{{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {7, 8, 9}});
   const auto found = find_crossings(points.view(), triangles.view(), context);
   REQUIRE(found.size() == 1);
-  CHECK(found[0].lo.x == 100);
-  CHECK(found[0].hi.x == 200);
+  CHECK(found[0].min.x == 100);
+  CHECK(found[0].max.x == 200);
   CHECK(which_apart(found, found, 0).size() == size_t(0));
-  const std::vector<BoxOfPoints> elsewhere = {{{300, 100, 0}, {400, 200, 0}}};
+  const std::vector<BoxQ8> elsewhere = {{{300, 100, 0}, {400, 200, 0}}};
   CHECK(which_apart(found, elsewhere, 99).size() == size_t(1));
   CHECK(which_apart(found, elsewhere, 100).size() == size_t(0));
   CHECK(which_apart(found, {}, 1000).size() == size_t(1));
@@ -121,14 +121,14 @@ TEST_CASE("crossings: those of any triangles are those that each pair of them sh
   const auto list = to_buffer(triangles);
   CHECK(crossing_pairs(position.view(), list.view(), {}, stop) == expected);
   const auto boxes = find_crossings(position.view(), list.view(), context);
-  const std::vector<BoxOfPoints> some(boxes.begin(), boxes.begin() + 20);
-  const auto are_apart = [](const BoxOfPoints& a, const BoxOfPoints& b) {
+  const std::vector<BoxQ8> some(boxes.begin(), boxes.begin() + 20);
+  const auto are_apart = [](const BoxQ8& a, const BoxQ8& b) {
     const auto gap = [](int32_t lo, int32_t hi) { return lo - hi > 100; };
-    return gap(a.lo.x, b.hi.x) || gap(b.lo.x, a.hi.x) || gap(a.lo.y, b.hi.y) || gap(b.lo.y, a.hi.y) ||
-           gap(a.lo.z, b.hi.z) || gap(b.lo.z, a.hi.z);
+    return gap(a.min.x, b.max.x) || gap(b.min.x, a.max.x) || gap(a.min.y, b.max.y) || gap(b.min.y, a.max.y) ||
+           gap(a.min.z, b.max.z) || gap(b.min.z, a.max.z);
   };
-  const auto apart = std::count_if(boxes.begin(), boxes.end(), [&](const BoxOfPoints& b) {
-    return std::all_of(some.begin(), some.end(), [&](const BoxOfPoints& o) { return are_apart(b, o); });
+  const auto apart = std::count_if(boxes.begin(), boxes.end(), [&](const BoxQ8& b) {
+    return std::all_of(some.begin(), some.end(), [&](const BoxQ8& o) { return are_apart(b, o); });
   });
   CHECK(apart > 0);
   CHECK(which_apart(boxes, some, 100).size() == size_t(apart));

@@ -38,6 +38,13 @@ struct WorldPoint {
   double x, y, z;
 };
 
+/// What lies between two corners, along the axes.
+template <class Point>
+struct BoxOf {
+  Point min, max;  ///< the smallest coordinates, and the largest
+};
+using WorldBox = BoxOf<WorldPoint>;
+
 /// Where the lattice lies in the world. `origin` is the corner of voxel (0,0,0); the surface starts kMarginVox + 1/2
 /// voxels in.
 struct LatticeFrame {

@@ -30,9 +30,6 @@ struct SoupTopology {
 /// vertices, faces and edges.
 SoupTopology measure_topology(const TriangleSoup& soup, Context& context);
 
-struct WorldBox {
-  WorldPoint min, max;
-};
 /// Smallest and largest coordinates of the vertices that triangles use. Throws: nothing_to_mesh without triangles.
 WorldBox bounding_box(const TriangleSoup& soup);
 

@@ -6,18 +6,13 @@
 #include <cmath>
 
 #include "core/parallel_ranges.h"
+#include "geometry/segment.h"
 
 namespace isoshell {
 namespace {
 
 constexpr double kLeastBend = 1. / 512;  ///< edges that a bend is off the chord between those around it
 constexpr double kRounding = 2;          ///< steps that a straight curve may seem to bend
-
-double distance_to_chord_sq(const WorldPoint& p, const WorldPoint& a, const WorldPoint& chord) {
-  const double whole_sq = length_sq(chord);
-  const double part = whole_sq > 0 ? std::clamp(dot(p - a, chord) / whole_sq, 0.0, 1.0) : 0;
-  return distance_sq(p, a + part * chord);
-}
 
 }  // namespace
 
@@ -66,10 +61,10 @@ double CutLookup::cosine(uint32_t home, uint32_t patch, const WorldPoint& unit) 
 
 double CutLookup::off_chord(uint32_t curve, size_t begin, size_t end) const {
   const std::vector<size_t>& bends = bends_[curve];
-  const WorldPoint a = position(home_on(curve, begin)), chord = position(home_on(curve, end)) - a;
+  const WorldPoint a = position(home_on(curve, begin)), b = position(home_on(curve, end));
   double farthest_sq = 0;
   for (auto i = std::upper_bound(bends.begin(), bends.end(), begin); i != bends.end() && *i < end; ++i)
-    farthest_sq = std::max(farthest_sq, distance_to_chord_sq(position(home_on(curve, *i)), a, chord));
+    farthest_sq = std::max(farthest_sq, segment_distance_sq(position(home_on(curve, *i)), a, b));
   return std::sqrt(farthest_sq);
 }
 
@@ -86,11 +81,11 @@ std::vector<size_t> CutLookup::bends_of(uint32_t curve) const {
   while (!parts.empty()) {
     const auto [begin, end] = parts.back();
     parts.pop_back();
-    const WorldPoint a = position(home_on(curve, begin)), chord = position(home_on(curve, end)) - a;
+    const WorldPoint a = position(home_on(curve, begin)), b = position(home_on(curve, end));
     size_t farthest = begin;
     double farthest_sq = least * least;
     for (size_t i = begin + 1; i < end; ++i)
-      if (const double d = distance_to_chord_sq(position(home_on(curve, i)), a, chord); d > farthest_sq)
+      if (const double d = segment_distance_sq(position(home_on(curve, i)), a, b); d > farthest_sq)
         farthest = i, farthest_sq = d;
     if (farthest == begin) continue;
     bends.push_back(farthest);

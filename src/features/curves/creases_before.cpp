@@ -37,9 +37,8 @@ CreasesBefore::CreasesBefore(const PreviousFrame& previous, double edge_length_w
       cells_(places_, reach_world_) {}
 
 bool CreasesBefore::are_near(const WorldPoint& place) const {
-  const WorldPoint aside{reach_world_, reach_world_, reach_world_};
   bool found = false;
-  cells_.for_each_in(place - aside, place + aside,
+  cells_.for_each_in(widened(WorldBox{place, place}, reach_world_),
                      [&](size_t i) { found = found || distance_sq(places_[i], place) < reach_world_ * reach_world_; });
   return found;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel_ranges.h"
+#include "geometry/box.h"
 
 namespace isoshell {
 namespace {
@@ -12,16 +13,6 @@ constexpr double kThinRoundings = 16;  // a triangle as high turns by 5 degrees 
 constexpr int kThinRounds = 8;         // thin triangles in a row that get a normal
 
 constexpr WorldPoint kNoNormal{0, 0, 0};
-
-double largest_extent(const FeatureMesh& mesh) {
-  if (mesh.vertices.empty()) return 0;
-  WorldPoint low = mesh.vertices[0], high = low;
-  for (const WorldPoint& p : mesh.vertices) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-}
 
 WorldPoint doubled_area_of(const FeatureMesh& mesh, size_t t) {
   const auto& c = mesh.triangles[t];
@@ -65,7 +56,8 @@ void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector
 }  // namespace
 
 Buffer<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
-  const double least_height = std::max(kThinHeight * largest_extent(mesh), kThinRoundings * mesh.rounding_world);
+  const double extent = mesh.vertices.empty() ? 0 : longest_side(box_of(mesh.vertices));
+  const double least_height = std::max(kThinHeight * extent, kThinRoundings * mesh.rounding_world);
   Buffer<WorldPoint> normals(int64_t(mesh.triangles.size()));
   for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const auto& c = mesh.triangles[t];

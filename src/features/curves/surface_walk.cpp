@@ -15,16 +15,11 @@ struct Walker {
   WorldPoint at, direction;
 };
 
-WorldPoint unit(const WorldPoint& v) {
-  const double size = length(v);
-  return size > 0 ? (1 / size) * v : WorldPoint{0, 0, 0};
-}
-
 /// The part of v at a right angle to the unit vector u.
 WorldPoint part_across(const WorldPoint& v, const WorldPoint& u) { return v - dot(v, u) * u; }
 
 WorldPoint direction_of(const FeatureMesh& mesh, const FeatureEdge& e) {
-  return unit(mesh.vertices[e.end[1]] - mesh.vertices[e.end[0]]);
+  return normalised(mesh.vertices[e.end[1]] - mesh.vertices[e.end[0]]);
 }
 
 uint32_t corner_off(const FeatureMesh& mesh, const FeatureEdge& e, uint32_t face) {
@@ -35,7 +30,7 @@ uint32_t corner_off(const FeatureMesh& mesh, const FeatureEdge& e, uint32_t face
 /// In the plane of the face, from its edge inwards at a right angle.
 WorldPoint inwards(const FeatureMesh& mesh, const FeatureEdge& e, uint32_t face) {
   const WorldPoint& off = mesh.vertices[corner_off(mesh, e, face)];
-  return unit(part_across(off - mesh.vertices[e.end[0]], direction_of(mesh, e)));
+  return normalised(part_across(off - mesh.vertices[e.end[0]], direction_of(mesh, e)));
 }
 
 /// How far ahead the walker leaves its triangle, and by which edge: of the two others, the one whose outer side it
@@ -66,7 +61,7 @@ void cross_edge(const WalkGround& ground, const Exit& exit, Walker& w) {
   w.at = w.at + exit.ahead * w.direction;
   w.face = ground.edges.across(exit.edge, w.face);
   w.edge = exit.edge;
-  w.direction = unit(dot(w.direction, along) * along + dot(w.direction, out) * inwards(ground.mesh, e, w.face));
+  w.direction = normalised(dot(w.direction, along) * along + dot(w.direction, out) * inwards(ground.mesh, e, w.face));
 }
 
 }  // namespace

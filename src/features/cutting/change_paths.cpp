@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/near_points.h"
+#include "geometry/point_cells.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {
@@ -62,41 +63,42 @@ bool halve(const std::vector<Segment>& segments, CurvePath& path) {
 class CreasesAround {
  public:
   explicit CreasesAround(const FineMesh& mesh)
-      : mesh_(mesh), width_(std::max(1., *std::max_element(mesh.edge_length.begin(), mesh.edge_length.end()))) {
-    for (uint32_t p = 0; p < mesh.paths.size(); ++p) {
-      if (mesh.paths[p].kind != CurveKind::crease) continue;
-      for (size_t i = 0; i < mesh.paths[p].vertex.size(); ++i) {
-        const WorldPoint& at = mesh.position[mesh.paths[p].vertex[i]];
-        places_.push_back({key(cell(at.x), cell(at.y), cell(at.z)), p, i});
-      }
-    }
-    std::sort(places_.begin(), places_.end());
-  }
+      : mesh_(mesh),
+        farthest_(std::max(1., *std::max_element(mesh.edge_length.begin(), mesh.edge_length.end()))),
+        places_(places_on_creases(mesh)),
+        cells_(points_at(places_), farthest_) {}
 
   /// Calls use(path, index along it).
   template <class Use>
   void for_each(PointQ8 point, Use use) const {
     const WorldPoint at{double(point.x), double(point.y), double(point.z)};
-    for (int64_t x = cell(at.x) - 1; x <= cell(at.x) + 1; ++x)
-      for (int64_t y = cell(at.y) - 1; y <= cell(at.y) + 1; ++y)
-        for (int64_t z = cell(at.z) - 1; z <= cell(at.z) + 1; ++z)
-          for (auto p = std::lower_bound(places_.begin(), places_.end(), Place{key(x, y, z), 0, 0});
-               p != places_.end() && std::get<0>(*p) == key(x, y, z); ++p) {
-            const uint32_t v = mesh_.paths[std::get<1>(*p)].vertex[std::get<2>(*p)];
-            if (length(mesh_.position[v] - at) <= mesh_.edge_length[v]) use(std::get<1>(*p), std::get<2>(*p));
-          }
+    cells_.for_each_in(widened(WorldBox{at, at}, farthest_), [&](size_t i) {
+      const auto& [path, index] = places_[i];
+      const uint32_t v = mesh_.paths[path].vertex[index];
+      if (length(mesh_.position[v] - at) <= mesh_.edge_length[v]) use(path, index);
+    });
   }
 
  private:
-  using Place = std::tuple<uint64_t, uint32_t, size_t>;  ///< cell, path, index along it
-  int64_t cell(double at) const { return int64_t(std::floor(at / width_)); }
-  static uint64_t key(int64_t x, int64_t y, int64_t z) {
-    return uint64_t(x + 1) << 42 | uint64_t(y + 1) << 21 | uint64_t(z + 1);
+  using Place = std::pair<uint32_t, size_t>;  ///< path, index along it
+
+  static std::vector<Place> places_on_creases(const FineMesh& mesh) {
+    std::vector<Place> places;
+    for (uint32_t p = 0; p < mesh.paths.size(); ++p)
+      for (size_t i = 0; mesh.paths[p].kind == CurveKind::crease && i < mesh.paths[p].vertex.size(); ++i)
+        places.push_back({p, i});
+    return places;
+  }
+  std::vector<WorldPoint> points_at(const std::vector<Place>& places) const {
+    std::vector<WorldPoint> points;
+    for (const auto& [path, index] : places) points.push_back(mesh_.position[mesh_.paths[path].vertex[index]]);
+    return points;
   }
 
   const FineMesh& mesh_;
-  double width_;
+  double farthest_;
   std::vector<Place> places_;
+  PointCells cells_;
 };
 
 /// Flags all edges between the seeds around a vertex of a path.

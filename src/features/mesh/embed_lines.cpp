@@ -6,18 +6,13 @@
 #include <unordered_map>
 
 #include "features/mesh/mesh_fans.h"
-#include "geometry/world_vector.h"
+#include "geometry/segment.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
 constexpr double kLongestWay = 3;  // of a segment
-
-WorldPoint unit(const WorldPoint& v) {
-  const double size = length(v);
-  return size > 0 ? 1 / size * v : v;
-}
 
 /// A mesh whose edges and triangles are split one at a time.
 class SplitMesh {
@@ -146,9 +141,7 @@ class LineEmbedder {
     for (const uint32_t t : parts)
       for (size_t i = 0; i < 3; ++i) {
         const uint32_t u = mesh_.triangle(t)[i], v = mesh_.triangle(t)[(i + 1) % 3];
-        const WorldPoint along = mesh_.at(v) - mesh_.at(u);
-        const double part = std::clamp(dot(point.at - mesh_.at(u), along) / length_sq(along), 0., 1.);
-        const WorldPoint here = mesh_.at(u) + part * along;
+        const WorldPoint here = nearest_on_segment(point.at, mesh_.at(u), mesh_.at(v));
         if (const double far = length(point.at - here); far < least) least = far, edge = {u, v}, foot = here;
       }
     if (least < tolerance_) return mesh_.split_edge(edge[0], edge[1], foot);
@@ -159,7 +152,7 @@ class LineEmbedder {
   EdgeList way(uint32_t from, uint32_t to) {
     const WorldPoint along = mesh_.at(to) - mesh_.at(from);
     const WorldPoint up = normal_at(from) + normal_at(to);
-    const Plane plane{mesh_.at(from), unit(cross(along, up)), along};
+    const Plane plane{mesh_.at(from), normalised(cross(along, up)), along};
     EdgeList edges;
     std::vector<uint32_t> visited{from};
     double walked = 0;
@@ -194,7 +187,7 @@ class LineEmbedder {
       const auto& [a, b, c] = mesh_.triangle(t);
       sum = sum + doubled_area(mesh_.at(a), mesh_.at(b), mesh_.at(c));
     });
-    return unit(sum);
+    return normalised(sum);
   }
 
   /// The one that a point in their common plane is farthest inside of.
@@ -203,11 +196,11 @@ class LineEmbedder {
     double deepest = -std::numeric_limits<double>::infinity();
     for (const uint32_t t : parts) {
       const auto& corner = mesh_.triangle(t);
-      const WorldPoint normal = unit(doubled_area(mesh_.at(corner[0]), mesh_.at(corner[1]), mesh_.at(corner[2])));
+      const WorldPoint normal = normalised(doubled_area(mesh_.at(corner[0]), mesh_.at(corner[1]), mesh_.at(corner[2])));
       double depth = std::numeric_limits<double>::infinity();
       for (size_t i = 0; i < 3; ++i) {
         const WorldPoint &a = mesh_.at(corner[i]), &b = mesh_.at(corner[(i + 1) % 3]);
-        depth = std::min(depth, dot(cross(unit(b - a), p - a), normal));
+        depth = std::min(depth, dot(cross(normalised(b - a), p - a), normal));
       }
       if (depth > deepest) deepest = depth, best = t;
     }
@@ -221,7 +214,7 @@ class LineEmbedder {
     Candidate best;
     const auto consider = [&](uint32_t u, uint32_t v, const WorldPoint& at) {
       if (u == v && std::find(visited.rbegin(), visited.rend(), u) != visited.rend()) return;
-      const double ahead = dot(unit(at - mesh_.at(here)), plane.along);
+      const double ahead = dot(normalised(at - mesh_.at(here)), plane.along);
       if (ahead > best.ahead) best = {u, v, at, ahead};
     };
     mesh_.for_each_around(here, [&](uint32_t t, uint32_t i) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 #include <string>
-#include <tuple>
 
 #include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
@@ -68,8 +67,6 @@ Buckets<uint32_t> larger_ones(const Buckets<uint32_t>& neighbours) {
 }
 
 }  // namespace
-
-bool is_before(const WorldPoint& a, const WorldPoint& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
 int64_t parts_of(const WorldPoint& a, const WorldPoint& b, double longest) {
   return std::max<int64_t>(1, int64_t(std::ceil(std::sqrt(distance_sq(a, b)) / longest)));

@@ -6,8 +6,6 @@
 
 namespace isoshell {
 
-/// Comes before in position: what does not depend on how vertices are numbered.
-bool is_before(const WorldPoint& a, const WorldPoint& b);
 /// The longest that a fine edge may be where the result has edges of such a length: well within the reach of blocks.
 double longest_fine_edge(double edge_length);
 /// How many equal parts of at most `longest` a line takes, and where part i of so many begins. The same from both ends.

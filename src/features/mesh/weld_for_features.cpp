@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/buckets.h"
-#include "features/mesh/split_edges.h"
+#include "geometry/world_vector.h"
 #include "isoshell/distance.h"
 
 namespace isoshell {

@@ -2,22 +2,16 @@
 #include "features/seeds/carried_places.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "geometry/point_cells.h"
-#include "geometry/world_vector.h"
+#include "geometry/segment.h"
 
 namespace isoshell {
 namespace {
 
 constexpr double kReach = 0.1;       ///< edge lengths from a path
 constexpr double kCellWidth = 0.75;  ///< of the mean edge length: about as much as an edge of a path and its reach
-
-double part_of_nearest(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
-  const double whole = distance_sq(a, b);
-  return whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
-}
 
 double mean_length_on_paths(const FineMesh& mesh) {
   double sum = 0, count = 0;
@@ -39,10 +33,8 @@ std::vector<PlaceOnPath> places_on_paths(const FineMesh& mesh, const std::vector
       const uint32_t u = path.vertex[edge], v = path.edge_end(edge);
       const WorldPoint &a = mesh.position[u], &b = mesh.position[v];
       const double reach = kReach * std::max(mesh.edge_length[u], mesh.edge_length[v]);
-      const WorldPoint low{std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach, std::min(a.z, b.z) - reach};
-      const WorldPoint high{std::max(a.x, b.x) + reach, std::max(a.y, b.y) + reach, std::max(a.z, b.z) + reach};
-      cells.for_each_in(low, high, [&](size_t i) {
-        const double part = part_of_nearest(points[i], a, b);
+      cells.for_each_in(widened(box_of(a, b), reach), [&](size_t i) {
+        const double part = nearest_part(points[i], a, b);
         const double d = distance_sq(points[i], a + part * (b - a));
         const double near = kReach * ((1 - part) * mesh.edge_length[u] + part * mesh.edge_length[v]);
         if (d >= near * near || d >= least_sq[i]) return;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/parallel_ranges.h"
-#include "geometry/world_vector.h"
+#include "geometry/segment.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
@@ -121,12 +121,6 @@ std::vector<FacingVertices> find_facing_vertices(const FineMesh& mesh, const Ver
   std::vector<FacingVertices> all;
   for (const auto& of_task : found) all.insert(all.end(), of_task.begin(), of_task.end());
   return all;
-}
-
-double distance_to_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
-  const double whole = distance_sq(a, b);
-  const double part = whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
-  return std::sqrt(distance_sq(p, a + part * (b - a)));
 }
 
 }  // namespace isoshell

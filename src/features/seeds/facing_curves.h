@@ -19,6 +19,4 @@ struct FacingVertices {
 /// in 1/256 voxel. Cost: a search of what is within reach of paths.
 std::vector<FacingVertices> find_facing_vertices(const FineMesh& mesh, const VertexGraph& graph, double reach);
 
-double distance_to_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b);
-
 }  // namespace isoshell

@@ -9,7 +9,7 @@
 #include "core/parallel_ranges.h"
 #include "features/seeds/carried_places.h"
 #include "features/seeds/seeds_across.h"
-#include "geometry/world_vector.h"
+#include "geometry/segment.h"
 
 namespace isoshell {
 namespace {
@@ -91,12 +91,6 @@ std::vector<Candidate> list_candidates(const FineMesh& mesh, const CurvePath& pa
   return out;
 }
 
-double distance_to_chord_sq(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
-  const double whole = distance_sq(a, b);
-  const double part = whole > 0 ? std::clamp(dot(p - a, b - a) / whole, 0.0, 1.0) : 0;
-  return distance_sq(p, a + part * (b - a));
-}
-
 /// Of a segment, by its length, and by how far from it some places of the path between its ends are.
 double cost_of_length(const std::vector<Candidate>& c, size_t from, size_t to) {
   const double uneven = c[to].segments - c[from].segments - 1;
@@ -105,7 +99,7 @@ double cost_of_length(const std::vector<Candidate>& c, size_t from, size_t to) {
 double cost_of_distance(const std::vector<Candidate>& c, size_t from, size_t to, size_t first, size_t last) {
   double farthest_sq = 0;
   for (size_t i = first; i < last; ++i)
-    farthest_sq = std::max(farthest_sq, distance_to_chord_sq(c[i].position, c[from].position, c[to].position));
+    farthest_sq = std::max(farthest_sq, segment_distance_sq(c[i].position, c[from].position, c[to].position));
   const double edge = (c[from].edge_length + c[to].edge_length) / 2;
   return kCostOfDistance * farthest_sq / (edge * edge);
 }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <tuple>
 
-#include "geometry/world_vector.h"
+#include "geometry/segment.h"
 
 namespace isoshell {
 namespace {
@@ -32,10 +32,8 @@ Projection project(const FineMesh& mesh, const CurvePath& path, uint32_t index, 
     if (!path.is_loop && (k < 0 || k >= edges)) continue;
     const auto edge = size_t(((k % edges) + edges) % edges);
     const WorldPoint &a = mesh.position[path.vertex[edge]], &b = mesh.position[path.edge_end(edge)];
-    const double whole = distance_sq(a, b);
-    const double part = whole > 0 ? std::clamp(dot(from - a, b - a) / whole, 0.0, 1.0) : 0;
-    const double far = std::sqrt(distance_sq(from, a + part * (b - a)));
-    if (far < best.distance) best = {path.at[edge] + part * std::sqrt(whole), far};
+    const double far = distance_to_segment(from, a, b);
+    if (far < best.distance) best = {path.at[edge] + nearest_part(from, a, b) * length(b - a), far};
   }
   return best;
 }

@@ -26,7 +26,6 @@ WorldPoint with_length(const WorldPoint& n, double l) {
   const double scale = length(n) > 0 ? l / length(n) : 0;
   return {double(whole(n.x * scale)), double(whole(n.y * scale)), double(whole(n.z * scale))};
 }
-bool is_same(const WorldPoint& m, const WorldPoint& n) { return m.x == n.x && m.y == n.y && m.z == n.z; }
 /// As integers divide.
 WorldPoint quotient(const WorldPoint& n, double by) {
   return {std::trunc(n.x / by), std::trunc(n.y / by), std::trunc(n.z / by)};
@@ -88,7 +87,7 @@ std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph
       WorldPoint sum = double(count[v]) * normal[v];
       graph.for_each(int64_t(v), [&](uint32_t u, double) { sum = sum + normal[u]; });
       next[v] = quotient(sum, 2 * double(count[v]));
-      if (is_same(next[v], normal[v])) return;
+      if (next[v] == normal[v]) return;
       const auto wake = [&](uint32_t u) { __atomic_store_n(&last_round[u], uint8_t(round + 1), __ATOMIC_RELAXED); };
       wake(uint32_t(v));
       graph.for_each(int64_t(v), [&](uint32_t u, double) { wake(u); });

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel_ranges.h"
+#include "geometry/box.h"
 
 namespace isoshell {
 namespace {
@@ -114,24 +115,17 @@ std::vector<float> refined(const GridShape& from, const std::vector<float>& valu
 }  // namespace
 
 GridShape shape_around(const std::vector<WorldPoint>& points, double voxel_size, int64_t max_count) {
-  double lo[3], hi[3], longest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    lo[axis] = hi[axis] = coordinate(points[0], axis);
-    for (const WorldPoint& p : points) {
-      lo[axis] = std::min(lo[axis], coordinate(p, axis));
-      hi[axis] = std::max(hi[axis], coordinate(p, axis));
-    }
-    longest = std::max(longest, hi[axis] - lo[axis]);
-  }
+  const WorldBox box = box_of(points);
+  const WorldPoint extent = box.max - box.min;
   GridShape shape;
   for (shape.voxel_size = voxel_size;; shape.voxel_size *= 1.1) {
-    const double rim = kRimPart * longest + kRimVoxels * shape.voxel_size;
+    const double rim = kRimPart * longest_side(box) + kRimVoxels * shape.voxel_size;
     double count = 1;
-    for (int axis = 0; axis < 3; ++axis) count *= (hi[axis] - lo[axis] + 2 * rim) / shape.voxel_size + 2;
+    for (int axis = 0; axis < 3; ++axis) count *= (coordinate(extent, axis) + 2 * rim) / shape.voxel_size + 2;
     if (count > double(max_count)) continue;
-    shape.origin = {lo[0] - rim, lo[1] - rim, lo[2] - rim};
+    shape.origin = widened(box, rim).min;
     for (int axis = 0; axis < 3; ++axis)
-      shape.size[axis] = int32_t((hi[axis] - lo[axis] + 2 * rim) / shape.voxel_size) + 2;
+      shape.size[axis] = int32_t((coordinate(extent, axis) + 2 * rim) / shape.voxel_size) + 2;
     return shape;
   }
 }

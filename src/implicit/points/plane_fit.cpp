@@ -6,11 +6,6 @@
 
 namespace isoshell {
 
-WorldPoint normalised(const WorldPoint& a) {
-  const double size = length(a);
-  return size > 0 && std::isfinite(size) ? (1 / size) * a : WorldPoint{0, 0, 0};
-}
-
 WorldPoint smallest_direction(const double m[6]) {
   double a[3][3] = {{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

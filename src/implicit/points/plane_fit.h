@@ -7,9 +7,6 @@
 
 namespace isoshell {
 
-/// 0 where a vector has no direction.
-WorldPoint normalised(const WorldPoint& a);
-
 /// Direction in which the symmetric matrix (xx, xy, xz, yy, yz, zz) is smallest, by Jacobi rotations.
 WorldPoint smallest_direction(const double m[6]);
 

@@ -106,9 +106,7 @@ class Orientation {
   /// Of the cells that the points fill as seen along a direction, the part with points far behind one another.
   double layered_part(const WorldPoint& along) const {
     const WorldPoint other = std::abs(along.x) < 0.7 ? WorldPoint{1, 0, 0} : WorldPoint{0, 1, 0};
-    const WorldPoint u = normalised({along.y * other.z - along.z * other.y, along.z * other.x - along.x * other.z,
-                                     along.x * other.y - along.y * other.x});
-    const WorldPoint v = {along.y * u.z - along.z * u.y, along.z * u.x - along.x * u.z, along.x * u.y - along.y * u.x};
+    const WorldPoint u = normalised(cross(along, other)), v = cross(along, u);
     struct Seen {
       double u, v, height;
     };
@@ -158,16 +156,12 @@ class Orientation {
     std::vector<WorldPoint> middle(parts, {0, 0, 0});
     std::vector<double> area(parts, 0), volume(parts, 0);
     for (size_t i = 0; i < part_.size(); ++i) {
-      WorldPoint& m = middle[part_[i]];
-      const WorldPoint p = p_.area[i] * p_.position[i];
-      m = {m.x + p.x, m.y + p.y, m.z + p.z};
+      middle[part_[i]] = middle[part_[i]] + p_.area[i] * p_.position[i];
       area[part_[i]] += p_.area[i];
     }
     for (uint32_t k = 0; k < parts; ++k) middle[k] = (area[k] > 0 ? 1 / area[k] : 0) * middle[k];
-    for (size_t i = 0; i < part_.size(); ++i) {
-      const WorldPoint &m = middle[part_[i]], &p = p_.position[i];
-      volume[part_[i]] += p_.area[i] * dot(p_.normal[i], {p.x - m.x, p.y - m.y, p.z - m.z});
-    }
+    for (size_t i = 0; i < part_.size(); ++i)
+      volume[part_[i]] += p_.area[i] * dot(p_.normal[i], p_.position[i] - middle[part_[i]]);
     for (size_t i = 0; i < part_.size(); ++i)
       if (volume[part_[i]] < 0) p_.normal[i] = -1 * p_.normal[i];
   }

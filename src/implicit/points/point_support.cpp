@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "core/index_sets.h"
 #include "core/parallel_ranges.h"
+#include "geometry/outward_normals.h"
 #include "isoshell/advanced/voxel_set.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -25,13 +25,8 @@ constexpr double kSmallestPart = 0.002;   // of the area of all points; a compon
 constexpr int64_t kFewestPoints = 12;     // the same
 
 std::vector<WorldPoint> vertex_normals(const TriangleSoup& soup) {
-  std::vector<WorldPoint> normal(soup.vertices.size(), {0, 0, 0});
-  for (const auto& t : soup.triangles) {
-    const WorldPoint n = doubled_area(soup.vertices[t[0]], soup.vertices[t[1]], soup.vertices[t[2]]);
-    for (const uint32_t v : t) normal[v] = normal[v] + n;
-  }
-  for (WorldPoint& n : normal)
-    if (const double size = length(n); size > 0) n = (1 / size) * n;
+  std::vector<WorldPoint> normal = outward_normals(soup.vertices, soup.triangles);
+  for (WorldPoint& n : normal) n = normalised(n);
   return normal;
 }
 
@@ -155,10 +150,9 @@ struct Component {
 class Components {
  public:
   Components(const PointsOfSurface& of, const TriangleSoup& soup)
-      : hollows_are_known_(of.points.as_given), parent_(int64_t(soup.vertices.size())) {
-    std::iota(parent_.view().data, parent_.view().data + parent_.size(), 0u);
+      : hollows_are_known_(of.points.as_given), sets_(int64_t(soup.vertices.size())) {
     for (const auto& t : soup.triangles)
-      for (const uint32_t v : {t[1], t[2]}) join(parent_.view(), t[0], v);
+      for (const uint32_t v : {t[1], t[2]}) sets_.unite(t[0], v);
     component_.resize(soup.vertices.size());
     for (const auto& t : soup.triangles) {
       const WorldPoint &p = soup.vertices[t[0]], &q = soup.vertices[t[1]], &r = soup.vertices[t[2]];
@@ -187,10 +181,10 @@ class Components {
 
  private:
   bool may_stay(const Component& c) const { return hollows_are_known_ || c.six_volume >= 0; }
-  Component& at(uint32_t vertex) { return component_[find_root(parent_.view(), vertex)]; }
+  Component& at(uint32_t vertex) { return component_[sets_.root(vertex)]; }
 
   const bool hollows_are_known_;
-  Buffer<uint32_t> parent_;
+  IndexSets sets_;
   std::vector<Component> component_;  ///< per vertex, at the roots
   double supported_area_ = 0, most_ = 0;
 };

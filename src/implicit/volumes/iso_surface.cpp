@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/parallel_ranges.h"
+#include "geometry/world_vector.h"
 #include "implicit/volumes/crease_intersections.h"
 #include "implicit/volumes/crease_vertices.h"
 #include "implicit/volumes/field_sharpness.h"
@@ -289,10 +290,7 @@ class IsoSurface {
 
   static WorldPoint middle_of(const TriangleSoup& soup, const uint32_t* vertex, int size) {
     WorldPoint sum{0, 0, 0};
-    for (int i = 0; i < size; ++i) {
-      const WorldPoint& p = soup.vertices[vertex[i]];
-      sum = {sum.x + p.x, sum.y + p.y, sum.z + p.z};
-    }
+    for (int i = 0; i < size; ++i) sum = sum + soup.vertices[vertex[i]];
     return {sum.x / size, sum.y / size, sum.z / size};
   }
 

@@ -26,10 +26,8 @@ void PolygonSplitter::split(const WorldPoint* vertices, const uint32_t* corners,
 bool PolygonSplitter::project(const WorldPoint* vertices) {
   const WorldPoint origin = vertices[ids_[0]];
   WorldPoint normal{0, 0, 0};
-  for (size_t i = 1; i + 1 < ids_.size(); ++i) {
-    const WorldPoint part = cross(vertices[ids_[i]] - origin, vertices[ids_[i + 1]] - origin);
-    normal = {normal.x + part.x, normal.y + part.y, normal.z + part.z};
-  }
+  for (size_t i = 1; i + 1 < ids_.size(); ++i)
+    normal = normal + cross(vertices[ids_[i]] - origin, vertices[ids_[i + 1]] - origin);
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0) || !std::isfinite(length)) return false;
   normal = {normal.x / length, normal.y / length, normal.z / length};

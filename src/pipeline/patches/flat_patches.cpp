@@ -7,8 +7,7 @@
 #include <optional>
 
 #include "features/cutting/cut_piece.h"
-#include "features/seeds/facing_curves.h"
-#include "geometry/world_vector.h"
+#include "geometry/segment.h"
 #include "repair/holes/plane_triangulation.h"
 
 namespace isoshell {

@@ -40,10 +40,7 @@ SnappedPoints snapped(const FeatureMesh& mesh, const Polylines& lines) {
   SnappedPoints out;
   for (const WorldPoint& p : lines.points) {
     const MeshPoint found = grid.nearest(p);
-    const auto& [a, b, c] = mesh.triangles[found.triangle];
-    const WorldPoint& o = mesh.vertices[a];
-    out.points.push_back(
-        {found.triangle, o + found.b_part * (mesh.vertices[b] - o) + found.c_part * (mesh.vertices[c] - o)});
+    out.points.push_back({found.triangle, grid.at(found)});
     out.distance_world.push_back(std::sqrt(found.distance_sq));
   }
   return out;

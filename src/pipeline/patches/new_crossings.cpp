@@ -27,7 +27,7 @@ TrianglePairs NewCrossings::wrong_of(const DualMesh& mesh, const TrianglePairs& 
     const OnHost<LatticeSurface> input(p_.surface);
     of_input_ = find_crossings(input->points.view(), input->triangles.view(), context_);
   }
-  std::vector<BoxOfPoints> boxes;
+  std::vector<BoxQ8> boxes;
   for (const auto& pair : pairs) boxes.push_back(common_box(mesh.position.view(), mesh.triangles.view(), pair));
   TrianglePairs wrong;
   for (const size_t i : which_apart(boxes, *of_input_, edge_q8_)) wrong.push_back(pairs[i]);

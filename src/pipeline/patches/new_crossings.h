@@ -29,7 +29,7 @@ class NewCrossings {
   Context& context_;
   bool may_be_old_;  ///< the result is open as the input is
   int32_t edge_q8_;
-  std::optional<std::vector<BoxOfPoints>> of_input_;
+  std::optional<std::vector<BoxQ8>> of_input_;
 };
 
 }  // namespace isoshell

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/world_vector.h"
+
 namespace isoshell::repair {
 namespace {
 
@@ -27,11 +29,10 @@ std::vector<End> boundary_ends(const RepairMesh& mesh) {
 
 /// How far along from a to b a point beside that edge lies, 0 to 1; -1 for other points.
 double place_beside(const WorldPoint& a, const WorldPoint& b, const WorldPoint& p) {
-  const double ex = b.x - a.x, ey = b.y - a.y, ez = b.z - a.z, x = p.x - a.x, y = p.y - a.y, z = p.z - a.z;
-  const double nx = ey * z - ez * y, ny = ez * x - ex * z, nz = ex * y - ey * x;
-  const double length_sq = ex * ex + ey * ey + ez * ez, along = ex * x + ey * y + ez * z;
-  const bool is_beside = nx * nx + ny * ny + nz * nz <= kBeside * kBeside * length_sq * length_sq;
-  return is_beside && along >= 0 && along <= length_sq ? along / length_sq : -1;
+  const WorldPoint edge = b - a, to = p - a;
+  const double whole_sq = length_sq(edge), along = dot(edge, to);
+  const bool is_beside = length_sq(cross(edge, to)) <= kBeside * kBeside * whole_sq * whole_sq;
+  return is_beside && along >= 0 && along <= whole_sq ? along / whole_sq : -1;
 }
 
 /// The edges of another boundary that runs beside a half-edge; none where no boundary does.

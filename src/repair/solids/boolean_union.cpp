@@ -5,12 +5,13 @@
 #include <cmath>
 #include <map>
 
+#include "core/index_sets.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "geometry/box.h"
 #include "geometry/world_vector.h"
 #include "repair/holes/repair_mesh.h"
 #include "repair/solids/winding.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -22,7 +23,7 @@ constexpr int kMostSplits = 12;            // halvings of an edge
 constexpr int64_t kFacesAtOnce = 1 << 16;  // whose pieces are kept until they are told
 
 struct Component {
-  WorldPoint lo, hi;
+  WorldBox box = box_of_none();
   uint32_t largest_face = 0;  ///< the first of the largest
   double largest_area = -1, six_volume = 0;
   bool turned = false, inner = false;  ///< inner: lies in another component
@@ -30,7 +31,8 @@ struct Component {
 
   bool looks_inward() const { return (six_volume < 0) != turned; }
   bool is_within_box_of(const Component& o) const {
-    return lo.x > o.lo.x && lo.y > o.lo.y && lo.z > o.lo.z && hi.x < o.hi.x && hi.y < o.hi.y && hi.z < o.hi.z;
+    const WorldPoint &lo = box.min, &hi = box.max, &low = o.box.min, &high = o.box.max;
+    return lo.x > low.x && lo.y > low.y && lo.z > low.z && hi.x < high.x && hi.y < high.y && hi.z < high.z;
   }
 };
 
@@ -45,17 +47,8 @@ struct Piece {
     constexpr double kNear = .95, kFar = (1 - kNear) / 2;
     return {at(1. / 3, 1. / 3, 1. / 3), at(kNear, kFar, kFar), at(kFar, kNear, kFar), at(kFar, kFar, kNear)};
   }
+  WorldBox box() const { return box_of(a, b, c); }
   double longest_edge() const { return std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)})); }
-};
-
-struct Box {
-  WorldPoint lo, hi;
-  explicit Box(const Piece& p)
-      : lo{std::min({p.a.x, p.b.x, p.c.x}), std::min({p.a.y, p.b.y, p.c.y}), std::min({p.a.z, p.b.z, p.c.z})},
-        hi{std::max({p.a.x, p.b.x, p.c.x}), std::max({p.a.y, p.b.y, p.c.y}), std::max({p.a.z, p.b.z, p.c.z})} {}
-  bool meets(const Box& o) const {
-    return lo.x <= o.hi.x && o.lo.x <= hi.x && lo.y <= o.hi.y && o.lo.y <= hi.y && lo.z <= o.hi.z && o.lo.z <= hi.z;
-  }
 };
 
 /// Whether a piece has points on both sides of another one's plane.
@@ -68,7 +61,7 @@ bool passes_through_plane(const Piece& p, const Piece& of) {
 
 /// False only when they surely have no point in common, or touch.
 bool may_cut(const Piece& p, const Piece& q) {
-  return Box(p).meets(Box(q)) && passes_through_plane(p, q) && passes_through_plane(q, p);
+  return boxes_meet(p.box(), q.box()) && passes_through_plane(p, q) && passes_through_plane(q, p);
 }
 
 class Union {
@@ -86,8 +79,7 @@ class Union {
   /// Every face of the boundary, or piece of one that is cut.
   template <class Keep, class KeepPiece>
   void for_each_kept(Keep keep, KeepPiece keep_piece) {
-    joined_ = Buffer<uint32_t>(int64_t(components_.size()));
-    for (uint32_t c = 0; c < components_.size(); ++c) joined_[c] = c;
+    joined_ = IndexSets(int64_t(components_.size()));
     std::vector<Parts> parts;
     for (uint32_t begin = 0, end; begin < mesh_.face_count(); begin = end) {
       end = uint32_t(std::min(mesh_.face_count(), int64_t(begin) + kFacesAtOnce));
@@ -110,7 +102,7 @@ class Union {
   template <class Keep, class KeepPiece>
   void take(uint32_t f, const Parts& parts, Keep& keep, KeepPiece& keep_piece) {
     Component& own = components_[component_[f]];
-    for (const uint32_t other : parts.joins) join(joined_.view(), component_[f], other);
+    for (const uint32_t other : parts.joins) joined_.unite(component_[f], other);
     if (parts.kept.empty()) return;
     ++own.kept;
     if (parts.dropped == 0) return keep(f, own.turned);
@@ -119,20 +111,16 @@ class Union {
   }
 
   void find_components() {
-    Buffer<uint32_t> parent(int64_t(mesh_.position.size()));
-    for (int64_t v = 0; v < parent.size(); ++v) parent[v] = uint32_t(v);
-    for (const Corners& t : mesh_.face) {
-      join(parent.view(), t[0], t[1]);
-      join(parent.view(), t[0], t[2]);
-    }
+    IndexSets sets(int64_t(mesh_.position.size()));
+    for (const Corners& t : mesh_.face)
+      for (const uint32_t v : t) sets.unite(t[0], v);
     std::vector<uint32_t> number(mesh_.position.size(), repair::kNoFace);
     component_.resize(mesh_.face.size());
     for (uint32_t f = 0; f < mesh_.face.size(); ++f) {
-      uint32_t& at = number[find_root(parent.view(), mesh_.face[f][0])];
+      uint32_t& at = number[sets.root(mesh_.face[f][0])];
       if (at == repair::kNoFace) {
         at = uint32_t(components_.size());
         components_.emplace_back();
-        components_.back().lo = components_.back().hi = mesh_.position[mesh_.face[f][0]];
       }
       component_[f] = at;
       add(components_[at], f);
@@ -140,18 +128,12 @@ class Union {
   }
 
   void add(Component& c, uint32_t f) {
-    const WorldPoint &p = mesh_.position[mesh_.face[f][0]], &q = mesh_.position[mesh_.face[f][1]],
-                     &r = mesh_.position[mesh_.face[f][2]], &start = mesh_.position[0];
-    for (const WorldPoint* v : {&p, &q, &r}) {
-      c.lo = {std::min(c.lo.x, v->x), std::min(c.lo.y, v->y), std::min(c.lo.z, v->z)};
-      c.hi = {std::max(c.hi.x, v->x), std::max(c.hi.y, v->y), std::max(c.hi.z, v->z)};
-    }
+    c.box = joined(c.box, piece_of(f).box());
     if (const double area = mesh_.area(f); area > c.largest_area) {
       c.largest_area = area;
       c.largest_face = f;
     }
-    const WorldPoint n = mesh_.doubled_area(f), from = p - start;
-    c.six_volume += from.x * n.x + from.y * n.y + from.z * n.z;
+    c.six_volume += dot(mesh_.position[mesh_.face[f][0]] - mesh_.position[0], mesh_.doubled_area(f));
   }
 
   void turn_outward() {
@@ -180,9 +162,8 @@ class Union {
   /// Faces of other components that may pass through a face, ascending.
   std::vector<uint32_t> cutters_of(uint32_t f) const {
     const Piece piece = piece_of(f);
-    const Box box(piece);
     std::vector<uint32_t> found;
-    rays_.for_each_near(box.lo, box.hi, [&](uint32_t g) {
+    rays_.for_each_near(piece.box(), [&](uint32_t g) {
       const Component& other = components_[component_[g]];
       if (component_[g] != component_[f] && !is_dropped(other) && may_cut(piece, piece_of(g))) found.push_back(g);
     });
@@ -232,7 +213,7 @@ class Union {
     std::vector<uint8_t> counted(components_.size());  // by root, which may itself have been swallowed
     for (uint32_t c = 0; c < components_.size(); ++c) {
       const Component& here = components_[c];
-      uint8_t& set_counted = counted[find_root(joined_.view(), c)];
+      uint8_t& set_counted = counted[joined_.root(c)];
       report_.joined_components += here.kept > 0 && !set_counted;
       set_counted |= here.kept > 0;
       report_.swallowed_components += here.kept == 0 && !is_dropped(here);
@@ -247,7 +228,7 @@ class Union {
   const RayColumns rays_;
   std::vector<Component> components_;
   std::vector<uint32_t> component_;  ///< per face
-  Buffer<uint32_t> joined_;          ///< components that cut one another
+  IndexSets joined_{0};              ///< components that cut one another
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "geometry/box.h"
 #include "geometry/world_vector.h"
 #include "repair/holes/plane_triangulation.h"
 #include "repair/holes/repair_mesh.h"
@@ -76,14 +77,10 @@ class Cutter {
     std::vector<Meetings> found(shift);
     for_each_index(uint32_t(0), shift, [&](uint32_t f) {
       check_cancel(context, "unite");
-      WorldPoint lo, hi;
-      box(f, lo, hi);
+      const WorldBox box = box_around(f);
       std::vector<uint32_t> near;
-      columns.for_each_near(lo, hi, [&](uint32_t g) {
-        WorldPoint low, high;
-        box(g + shift, low, high);
-        if (low.x <= hi.x && lo.x <= high.x && low.y <= hi.y && lo.y <= high.y && low.z <= hi.z && lo.z <= high.z)
-          near.push_back(g + shift);
+      columns.for_each_near(box, [&](uint32_t g) {
+        if (boxes_meet(box_around(g + shift), box)) near.push_back(g + shift);
       });
       std::sort(near.begin(), near.end());
       near.erase(std::unique(near.begin(), near.end()), near.end());
@@ -102,11 +99,9 @@ class Cutter {
     return false;
   }
 
-  void box(uint32_t f, WorldPoint& lo, WorldPoint& hi) const {
+  WorldBox box_around(uint32_t f) const {
     const auto& [a, b, c] = cut_.both.face[f];
-    const WorldPoint &p = at(a), &q = at(b), &r = at(c);
-    lo = {std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}), std::min({p.z, q.z, r.z})};
-    hi = {std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y}), std::max({p.z, q.z, r.z})};
+    return box_of(at(a), at(b), at(c));
   }
 
   void meet(uint32_t f, uint32_t g, Meetings& to) const {

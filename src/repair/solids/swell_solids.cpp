@@ -1,9 +1,9 @@
 // See swell_solids.h.
 #include "repair/solids/swell_solids.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "geometry/box.h"
 #include "geometry/world_vector.h"
 #include "repair/holes/plane_triangulation.h"
 #include "voxel/random.h"
@@ -30,16 +30,9 @@ WorldPoint outward(const std::array<double, 6>& nn, const WorldPoint& n) {
 }  // namespace
 
 Steps::Steps(const RepairMesh& mesh) {
-  least = mesh.position[mesh.face[0][0]];
-  WorldPoint most = least;
-  for (const Corners& f : mesh.face)
-    for (const uint32_t v : f) {
-      const WorldPoint& p = mesh.position[v];
-      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
-      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
-    }
-  const WorldPoint size = most - least;
-  a_step = std::max({size.x, size.y, size.z}) / (double(kLargestInPlane) - 2 * kMarginSteps);
+  const WorldBox box = box_of(mesh.position, mesh.face);
+  least = box.min;
+  a_step = longest_side(box) / (double(kLargestInPlane) - 2 * kMarginSteps);
 }
 
 WorldPoint Steps::from(const WorldPoint& p) const {

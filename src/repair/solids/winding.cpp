@@ -45,13 +45,9 @@ RayColumns::RayColumns(const std::vector<WorldPoint>& points, const std::vector<
     for (const auto& f : faces) listed += columns_of(f).count();
     if (cells == 1 || listed <= kListedPerFace * int64_t(faces.size())) break;
   }
-  first_.assign(size_t(cells_[0] * cells_[1]) + 1, 0);
-  for (const auto& f : faces) for_each_column(f, [&](int64_t column) { ++first_[size_t(column) + 1]; });
-  for (size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
-  listed_.resize(size_t(first_.back()));
-  std::vector<int64_t> next(first_.begin(), first_.end() - 1);
-  for (uint32_t f = 0; f < faces.size(); ++f)
-    for_each_column(faces[f], [&](int64_t column) { listed_[size_t(next[size_t(column)]++)] = f; });
+  in_column_ = sort_into_buckets<uint32_t>(cells_[0] * cells_[1], int64_t(faces.size()), [&](int64_t f, auto put) {
+    for_each_column(faces[size_t(f)], [&](int64_t column) { put(column, uint32_t(f)); });
+  });
 }
 
 int64_t RayColumns::column_of(double at, int axis) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/buckets.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {
@@ -24,21 +25,19 @@ class RayColumns {
   /// The same for faces that count only.
   template <class Counts, class Visit>
   void for_each_crossing(const WorldPoint& p, uint32_t own, Counts counts, Visit visit) const {
-    const int64_t column = column_of(p.y, 0) * cells_[1] + column_of(p.z, 1);
-    for (int64_t i = first_[size_t(column)]; i < first_[size_t(column) + 1]; ++i) {
-      const uint32_t face = listed_[size_t(i)];
+    for (const uint32_t face : in_column_.in(column_of(p.y, 0) * cells_[1] + column_of(p.z, 1))) {
       if (face == own || !counts(face)) continue;
       if (const int sign = crossing(p, own, face)) visit(face, sign);
     }
   }
 
-  /// Calls visit(face) for the faces, some of them more than once, whose boxes may meet the one from lo to hi.
+  /// Calls visit(face) for the faces, some of them more than once, whose boxes may meet this one.
   template <class Visit>
-  void for_each_near(const WorldPoint& lo, const WorldPoint& hi, Visit visit) const {
+  void for_each_near(const WorldBox& box, Visit visit) const {
+    const auto& [lo, hi] = box;
     for (int64_t y = column_of(lo.y, 0); y <= column_of(hi.y, 0); ++y)
       for (int64_t z = column_of(lo.z, 1); z <= column_of(hi.z, 1); ++z)
-        for (int64_t i = first_[size_t(y * cells_[1] + z)]; i < first_[size_t(y * cells_[1] + z) + 1]; ++i)
-          visit(listed_[size_t(i)]);
+        for (const uint32_t face : in_column_.in(y * cells_[1] + z)) visit(face);
   }
 
  private:
@@ -56,8 +55,7 @@ class RayColumns {
   const std::vector<std::array<uint32_t, 3>>& faces_;
   double least_[2], cell_[2];
   int64_t cells_[2];
-  std::vector<int64_t> first_;
-  std::vector<uint32_t> listed_;
+  Buckets<uint32_t> in_column_;
 };
 
 }  // namespace isoshell
