@@ -4,6 +4,7 @@
 
 #include "attributes/facing_place.h"
 #include "core/attribute_values.h"
+#include "core/buckets.h"
 #include "core/number_type.h"
 #include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
@@ -123,20 +124,18 @@ class Surroundings {
 void share_values(const TriangleMesh& mesh, Attribute& a) {
   const size_t corners = 3 * mesh.triangles.size(), size = size_t(a.components);
   const auto vertex_of = [&](size_t corner) { return mesh.triangles[corner / 3][corner % 3]; };
-  std::vector<uint32_t> first(mesh.vertices.size() + 1, 0), around(corners);
-  for (size_t c = 0; c < corners; ++c) ++first[vertex_of(c)];
-  for (size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  for (size_t c = corners; c-- > 0;) around[--first[vertex_of(c)]] = uint32_t(c);
+  const auto around = sort_into_buckets<uint32_t>(int64_t(mesh.vertices.size()), int64_t(corners),
+                                                  [&](int64_t c, auto put) { put(vertex_of(size_t(c)), uint32_t(c)); });
   std::vector<double> shared;
   a.index.resize(corners);
-  for (size_t v = 0; v + 1 < first.size(); ++v) {
+  for (int64_t v = 0; v < around.count(); ++v) {
     const size_t begin = shared.size() / size;
-    for (uint32_t i = first[v]; i < first[v + 1]; ++i) {
-      const double* const value = &a.values[size * around[i]];
+    for (const uint32_t corner : around.in(v)) {
+      const double* const value = &a.values[size * corner];
       size_t at = begin;
       while (at < shared.size() / size && !is_same(&shared[size * at], value, a.components)) ++at;
       if (at == shared.size() / size) shared.insert(shared.end(), value, value + size);
-      a.index[around[i]] = uint32_t(at);
+      a.index[corner] = uint32_t(at);
     }
   }
   a.values = std::move(shared);

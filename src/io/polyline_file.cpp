@@ -1,11 +1,11 @@
 // read_polylines (see polyline_file.h): the lines of OBJ, the edges of PLY.
 #include "isoshell/io/polyline_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <unordered_set>
 
 #include "core/file_format.h"
+#include "geometry/half_edges.h"
 #include "geometry/triangle_list.h"
 #include "io/mesh/obj_lines.h"
 #include "io/ply/ply_body.h"
@@ -21,8 +21,7 @@ class SegmentCollector {
   explicit SegmentCollector(Polylines& lines) : lines_(lines) {}
 
   void add(uint32_t from, uint32_t to, int64_t line) {
-    const uint64_t key = uint64_t(std::min(from, to)) << 32 | std::max(from, to);
-    if (from == to || !known_.insert(key).second) return;
+    if (from == to || !known_.insert(edge_key(from, to)).second) return;
     lines_.segments.push_back({from, to});
     lines_.lines.push_back(line);
   }

@@ -5,14 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "core/index_sets.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
 #include "geometry/triangle_grid.h"
 #include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
-#include "isoshell/advanced/buffer.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -28,26 +27,24 @@ struct Borders {
 Borders borders_of(const TriangleMesh& mesh) {
   Borders borders;
   require_indices(mesh.triangles, mesh.vertices.size(), "borders");
-  const std::vector<ListedHalfEdge> halves = sorted_half_edges(mesh.triangles);
-  Buffer<uint32_t> parent(int64_t(halves.size()));
-  for (int64_t c = 0; c < parent.size(); ++c) parent[c] = uint32_t(c);
+  IndexSets loops(int64_t(3 * mesh.triangles.size()));
   const auto corner_at = [&](uint32_t h, uint32_t v) {
     return mesh.triangles[h / 3][h % 3] == v ? h : next_in_triangle(h);
   };
   std::vector<uint32_t> border_corners;
-  for (size_t i = 0, end; i < halves.size(); i = end) {
-    const uint32_t u = halves[i].smaller_end(), v = halves[i].larger_end();
-    for (end = i + 1; end < halves.size() && halves[end].edge == halves[i].edge; ++end)
-      for (const uint32_t at : {u, v})
-        join(parent.view(), corner_at(halves[i].number, at), corner_at(halves[end].number, at));
-    if (end - i > 1) continue;
-    join(parent.view(), halves[i].number, next_in_triangle(halves[i].number));
-    border_corners.push_back(halves[i].number);
+  const EdgeSides sides = find_edge_sides(mesh.triangles, mesh.vertices.size());
+  for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+    const uint32_t first = on_edge[0].half_edge;
+    for (const EdgeSide& side : on_edge)
+      for (const uint32_t at : {u, v}) loops.unite(corner_at(first, at), corner_at(side.half_edge, at));
+    if (on_edge.size > 1) return;
+    loops.unite(first, next_in_triangle(first));
+    border_corners.push_back(first);
     borders.segments.push_back({u, v, v});
     borders.vertices.insert(borders.vertices.end(), {u, v});
     borders.length_world += length(mesh.vertices[v] - mesh.vertices[u]);
-  }
-  for (uint32_t& c : border_corners) c = find_root(parent.view(), c);
+  });
+  for (uint32_t& c : border_corners) c = loops.root(c);
   for (std::vector<uint32_t>* list : {&border_corners, &borders.vertices}) {
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());

@@ -1,4 +1,4 @@
-// Counts of a complex: half-edges sorted by edge, corners joined into fans, fans and edges summed by component.
+// Counts of a complex: half-edges by edge, corners joined into fans, fans and edges summed by component.
 #include "measure/complex_counts.h"
 
 #include <tbb/parallel_sort.h>
@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/index_sets.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
+#include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {
@@ -71,7 +71,7 @@ class Counter {
   Counter(const TriangleMesh& mesh, const Triangles& triangles)
       : mesh_(mesh),
         triangles_(triangles),
-        half_edges_(sorted_half_edges(triangles)),
+        sides_(find_edge_sides(triangles, mesh.vertices.size())),
         joined_(int64_t(mesh.vertices.size())),
         fans_(int64_t(3 * triangles.size())),
         smooth_fans_(int64_t(3 * triangles.size())),
@@ -79,11 +79,11 @@ class Counter {
 
   EdgeCensus run(const WorldPoint& middle) {
     number_components();
-    for_each_edge(half_edges_, [&](size_t begin, size_t end) { count_edge(begin, end); });
+    for_each_edge(sides_, [&](uint32_t a, uint32_t b, View<const EdgeSide> on_edge) { count_edge(a, b, on_edge); });
     if (found_.counts.inconsistent_edges > 0) find_orientable();
     sum_triangles(middle);
     count_vertices();
-    count_loops();
+    found_.counts.boundary_loops = count_loops(smooth_fans_, boundary_, int64_t(3 * triangles_.size()));
     sum_components();
     finish_lengths();
     return found_;
@@ -101,8 +101,9 @@ class Counter {
     return corner(half_edge) == vertex ? half_edge : next_in_triangle(half_edge);
   }
   Component& component_of(uint32_t vertex) { return components_[component_[joined_.root(vertex)]]; }
-  bool is_inconsistent(size_t begin) const {
-    return corner(half_edges_[begin].number) == corner(half_edges_[begin + 1].number);
+  /// Of two triangles.
+  bool is_inconsistent(View<const EdgeSide> on_edge) const {
+    return corner(on_edge[0].half_edge) == corner(on_edge[1].half_edge);
   }
 
   void number_components() {
@@ -124,28 +125,27 @@ class Counter {
     }
   }
 
-  void count_edge(size_t begin, size_t end) {
-    const uint32_t a = half_edges_[begin].smaller_end(), b = half_edges_[begin].larger_end();
-    const size_t faces = end - begin;
+  void count_edge(uint32_t a, uint32_t b, View<const EdgeSide> on_edge) {
+    const int64_t faces = on_edge.size;
     Component& component = component_of(a);
     ++component.edges;
     ++at_[a].edges;
     ++at_[b].edges;
     add_length(length(mesh_.vertices[b] - mesh_.vertices[a]));
-    for (size_t i = begin + 1; i < end; ++i)
+    for (int64_t i = 1; i < faces; ++i)
       for (const uint32_t v : {a, b}) {
-        const uint32_t first = corner_at(half_edges_[begin].number, v), other = corner_at(half_edges_[i].number, v);
+        const uint32_t first = corner_at(on_edge[0].half_edge, v), other = corner_at(on_edge[i].half_edge, v);
         fans_.unite(first, other);
         if (faces == 2) smooth_fans_.unite(first, other);
       }
     if (faces == 1) {
       ++component.boundary_edges;
-      boundary_.push_back(half_edges_[begin].number);
+      boundary_.push_back(on_edge[0].half_edge);
       at_[a].on_boundary = at_[b].on_boundary = true;
     } else if (faces > 2) {
       ++component.nonmanifold_edges;
       at_[a].on_nonmanifold = at_[b].on_nonmanifold = true;
-    } else if (is_inconsistent(begin)) {
+    } else if (is_inconsistent(on_edge)) {
       ++component.inconsistent_edges;
       ++found_.counts.inconsistent_edges;
     }
@@ -153,11 +153,10 @@ class Counter {
 
   void find_orientable() {
     Turns turns(triangles_.size());
-    for_each_edge(half_edges_, [&](size_t begin, size_t end) {
-      if (end - begin != 2) return;
-      const uint32_t face = half_edges_[begin].number / 3, other = half_edges_[begin + 1].number / 3;
-      if (!turns.relate(face, other, is_inconsistent(begin)))
-        component_of(half_edges_[begin].smaller_end()).orientable = false;
+    for_each_edge(sides_, [&](uint32_t a, uint32_t, View<const EdgeSide> on_edge) {
+      if (on_edge.size != 2) return;
+      const uint32_t face = on_edge[0].half_edge / 3, other = on_edge[1].half_edge / 3;
+      if (!turns.relate(face, other, is_inconsistent(on_edge))) component_of(a).orientable = false;
     });
   }
 
@@ -203,22 +202,6 @@ class Counter {
     if (valence.boundary > 0) valence.boundary_irregular_ratio = double(boundary_irregular) / double(valence.boundary);
   }
 
-  /// Boundary edges that end in one fan of faces belong to one loop; a non-manifold edge ends a fan.
-  void count_loops() {
-    IndexSets loops(fans_count());
-    std::vector<uint32_t> ends;
-    for (const uint32_t h : boundary_) {
-      const uint32_t from = smooth_fans_.root(h), to = smooth_fans_.root(next_in_triangle(h));
-      loops.unite(from, to);
-      ends.push_back(from);
-      ends.push_back(to);
-    }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    for (const uint32_t e : ends) found_.counts.boundary_loops += loops.root(e) == e;
-  }
-  int64_t fans_count() const { return boundary_.empty() ? 0 : int64_t(3 * triangles_.size()); }
-
   void sum_components() {
     ComplexCounts& all = found_.counts;
     all.components = int64_t(components_.size());
@@ -260,7 +243,7 @@ class Counter {
 
   const TriangleMesh& mesh_;
   const Triangles& triangles_;
-  std::vector<ListedHalfEdge> half_edges_;
+  const EdgeSides sides_;
   IndexSets joined_;              ///< vertices, through edges
   IndexSets fans_, smooth_fans_;  ///< corners, around their vertex: through all edges, through those with two faces
   std::vector<AtVertex> at_;
@@ -272,8 +255,6 @@ class Counter {
   EdgeCensus found_;
 };
 
-bool repeats_corner(const std::array<uint32_t, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
-
 int64_t count_duplicates(Triangles triangles) {
   for (auto& t : triangles) std::sort(t.begin(), t.end());
   tbb::parallel_sort(triangles.begin(), triangles.end());
@@ -283,6 +264,20 @@ int64_t count_duplicates(Triangles triangles) {
 }
 
 }  // namespace
+
+int64_t count_loops(IndexSets& fans, const std::vector<uint32_t>& boundary, int64_t half_edges) {
+  if (boundary.empty()) return 0;
+  IndexSets loops(half_edges);
+  std::vector<uint32_t> ends;
+  for (const uint32_t h : boundary) {
+    const uint32_t from = fans.root(h), to = fans.root(next_in_triangle(h));
+    loops.unite(from, to);
+    ends.insert(ends.end(), {from, to});
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return std::count_if(ends.begin(), ends.end(), [&](uint32_t e) { return loops.root(e) == e; });
+}
 
 EdgeCensus count_complex(const TriangleMesh& mesh, const WorldPoint& middle, int64_t dropped) {
   Triangles sound;

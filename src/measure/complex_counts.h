@@ -1,6 +1,9 @@
 // What kind of complex any mesh is, edge by edge.
 #pragma once
 
+#include <vector>
+
+#include "core/index_sets.h"
 #include "isoshell/mesh_census.h"
 
 namespace isoshell {
@@ -13,5 +16,9 @@ struct EdgeCensus {
 };
 /// `middle`: of the bounding box, about which volumes are summed. `dropped` as for take_census.
 EdgeCensus count_complex(const TriangleMesh& mesh, const WorldPoint& middle, int64_t dropped);
+
+/// `boundary`: half-edges of edges with one face; those that end in one fan of faces belong to one loop. `fans`: of
+/// corners, as many as half-edges; a non-manifold edge ends a fan.
+int64_t count_loops(IndexSets& fans, const std::vector<uint32_t>& boundary, int64_t half_edges);
 
 }  // namespace isoshell

@@ -7,6 +7,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "geometry/box.h"
 #include "geometry/distance_sums.h"
 #include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
@@ -46,18 +47,6 @@ OneSide one_sided(const TriangleMesh& from, const TriangleMesh& to, double diago
   return side;
 }
 
-double diagonal(const TriangleMesh& mesh) {
-  WorldPoint lo = mesh.vertices[mesh.triangles[0][0]], hi = lo;
-  for (const auto& t : mesh.triangles)
-    for (const uint32_t v : t) {
-      const WorldPoint p = mesh.vertices[v];
-      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    }
-  const WorldPoint d = hi - lo;
-  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-}
-
 }  // namespace
 
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context,
@@ -65,7 +54,8 @@ MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& refe
   check(mesh);
   check(reference);
   if (options.samples < 1) throw Error(ErrorCode::usage, "distance", "there must be a sample of each mesh");
-  const double size = diagonal(reference);
+  const WorldBox box = box_of(reference.vertices, reference.triangles);
+  const double size = length(box.max - box.min);
   const OneSide to = one_sided(mesh, reference, size, options, context),
                 from = one_sided(reference, mesh, size, options, context);
   return {to.distance, from.distance, size, to.normals, from.normals};
@@ -89,8 +79,7 @@ TriangleMesh to_world(const LatticeSurface& surface) {
   TriangleMesh mesh;
   mesh.vertices.reserve(size_t(surface.points.size()));
   for (const PointQ8& p : surface.points) mesh.vertices.push_back(surface.frame.to_world(p));
-  mesh.triangles.reserve(size_t(surface.triangles.size()));
-  for (const TriangleIndices& t : surface.triangles) mesh.triangles.push_back({t.a, t.b, t.c});
+  mesh.triangles = list_of(surface.triangles.view());
   return mesh;
 }
 

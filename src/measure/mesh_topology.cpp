@@ -7,23 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "core/index_sets.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
 #include "geometry/triangle_list.h"
 #include "isoshell/error.h"
+#include "measure/complex_counts.h"
 
 namespace isoshell {
 namespace {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-bool repeats_corner(const std::array<uint32_t, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
-
 class Checker {
  public:
   /// Of triangles that repeat no corner.
   Checker(const Triangles& triangles, int64_t vertex_count)
-      : vertex_count_(vertex_count), triangles_(triangles), half_edges_(sorted_half_edges(triangles)) {}
+      : vertex_count_(vertex_count), triangles_(triangles), sides_(find_edge_sides(triangles, size_t(vertex_count))) {}
 
   MeshTopology run(int64_t degenerate) {
     found_.degenerate_triangles = degenerate;
@@ -40,19 +38,19 @@ class Checker {
 
  private:
   uint32_t corner(uint32_t half_edge) const { return triangles_[half_edge / 3][half_edge % 3]; }
-  uint32_t half_edges() const { return uint32_t(half_edges_.size()); }
+  uint32_t half_edges() const { return uint32_t(sides_.items.size()); }
 
   /// Joins corners around their vertex through edges with two faces, vertices through all edges.
   void match_half_edges() {
     IndexSets fans(half_edges()), vertices(vertex_count_);
     std::vector<uint32_t> boundary;
-    for_each_edge(half_edges_, [&](size_t begin, size_t end) {
-      const uint32_t one = half_edges_[begin].number, other = half_edges_[end - 1].number;
+    for_each_edge(sides_, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+      const uint32_t one = on_edge[0].half_edge, other = on_edge[on_edge.size - 1].half_edge;
       ++edges_;
-      vertices.unite(half_edges_[begin].smaller_end(), half_edges_[begin].larger_end());
-      if (end - begin == 1)
+      vertices.unite(u, v);
+      if (on_edge.size == 1)
         boundary.push_back(one);
-      else if (end - begin > 2 || corner(one) == corner(other))
+      else if (on_edge.size > 2 || corner(one) == corner(other))
         ++found_.nonmanifold_edges;
       else {
         fans.unite(one, next_in_triangle(other));
@@ -61,7 +59,7 @@ class Checker {
     });
     found_.boundary_edges = int64_t(boundary.size());
     count_fans(fans, vertices);
-    count_loops(fans, boundary);
+    found_.boundary_loops = count_loops(fans, boundary, half_edges());
   }
 
   void count_fans(IndexSets& fans, IndexSets& vertices) {
@@ -70,22 +68,6 @@ class Checker {
       if (fans.root(h) == h) ++fans_[corner(h)];
     for (uint32_t v = 0; v < vertex_count_; ++v)
       if (fans_[v] > 0 && vertices.root(v) == v) ++found_.components;
-  }
-
-  /// Boundary edges that end in one fan belong to one loop.
-  void count_loops(IndexSets& fans, const std::vector<uint32_t>& boundary) {
-    if (boundary.empty()) return;
-    IndexSets loops(half_edges());
-    std::vector<uint32_t> ends;
-    for (uint32_t h : boundary) {
-      const uint32_t from = fans.root(h), to = fans.root(next_in_triangle(h));
-      loops.unite(from, to);
-      ends.insert(ends.end(), {from, to});
-    }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    for (uint32_t e : ends)
-      if (loops.root(e) == e) ++found_.boundary_loops;
   }
 
   void count_vertices() {
@@ -101,15 +83,13 @@ class Checker {
   /// Triangles with the same corners share their smallest vertex: they are compared among its half-edges' triangles.
   void count_repeats() {
     std::vector<std::array<uint32_t, 2>> others;
-    for (size_t begin = 0, end; begin < half_edges_.size(); begin = end) {
-      const uint32_t v = half_edges_[begin].smaller_end();
+    for (uint32_t v = 0; v < sides_.count(); ++v) {
       others.clear();
-      for (end = begin; end < half_edges_.size() && half_edges_[end].smaller_end() == v; ++end) {
+      for (const auto& [larger_end, half_edge] : sides_.in(v)) {
         // The one half-edge of the triangle that leaves its smallest corner.
-        const ListedHalfEdge& e = half_edges_[end];
-        if (corner(e.number) != v) continue;
-        const uint32_t last = corner(next_in_triangle(next_in_triangle(e.number)));
-        if (last > v) others.push_back({std::min(e.larger_end(), last), std::max(e.larger_end(), last)});
+        if (corner(half_edge) != v) continue;
+        const uint32_t last = corner(next_in_triangle(next_in_triangle(half_edge)));
+        if (last > v) others.push_back({std::min(larger_end, last), std::max(larger_end, last)});
       }
       std::sort(others.begin(), others.end());
       for (size_t i = 1; i < others.size(); ++i) found_.repeated_triangles += others[i] == others[i - 1];
@@ -118,7 +98,7 @@ class Checker {
 
   int64_t vertex_count_, edges_ = 0, referenced_ = 0;
   const Triangles& triangles_;
-  std::vector<ListedHalfEdge> half_edges_;
+  const EdgeSides sides_;
   std::vector<uint32_t> fans_;
   MeshTopology found_;
 };
@@ -141,10 +121,7 @@ MeshTopology check(const Triangles& triangles, int64_t vertex_count) {
 }  // namespace
 
 MeshTopology check_mesh(View<const TriangleIndices> triangles, int64_t vertex_count) {
-  Triangles list;
-  list.reserve(size_t(triangles.size));
-  for (const TriangleIndices& t : triangles) list.push_back({t.a, t.b, t.c});
-  return check(list, vertex_count);
+  return check(list_of(triangles), vertex_count);
 }
 
 MeshTopology check_mesh(const TriangleMesh& mesh) { return check(mesh.triangles, int64_t(mesh.vertices.size())); }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/previous_frame.h"
 #include "sequence/mean_edge_length.h"
@@ -17,10 +18,7 @@ std::vector<uint64_t> edges_of(const std::vector<std::array<uint32_t, 3>>& trian
   std::vector<uint64_t> edges;
   edges.reserve(3 * triangles.size());
   for (const std::array<uint32_t, 3>& t : triangles)
-    for (int c = 0; c < 3; ++c) {
-      const uint64_t a = t[size_t(c)], b = t[size_t((c + 1) % 3)];
-      edges.push_back(std::min(a, b) << 32 | std::max(a, b));
-    }
+    for (size_t c = 0; c < 3; ++c) edges.push_back(edge_key(t[c], t[(c + 1) % 3]));
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;

@@ -6,7 +6,7 @@
 
 #include "features/curves/face_normals.h"
 #include "features/known_curves.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
 #include "isoshell/io/mesh_file.h"
 #include "support/catch.h"
 #include "support/source_folder.h"

@@ -86,15 +86,13 @@ void PatchMesh::list_triangles(const DualMesh& open, const SeedSet& seeds, const
     triangles_.push_back(made);
     corners.push_back({i.a, i.b, i.c});
   }
-  const std::vector<ListedHalfEdge> sides = sorted_half_edges(corners);
-  for (size_t i = 0; i < sides.size(); ++i) {
-    const bool has_twin =
-        (i > 0 && sides[i - 1].edge == sides[i].edge) || (i + 1 < sides.size() && sides[i + 1].edge == sides[i].edge);
-    if (has_twin) continue;
-    RegionTriangle& t = triangles_[sides[i].number / 3];
-    const size_t k = sides[i].number % 3;
-    t.curve[k] = curve_between(t.corner[k], t.corner[(k + 1) % 3]);
-  }
+  for_each_edge(find_edge_sides(corners, size_t(open.position.size())),
+                [&](uint32_t, uint32_t, View<const EdgeSide> on_edge) {
+                  if (on_edge.size > 1) return;
+                  RegionTriangle& t = triangles_[on_edge[0].half_edge / 3];
+                  const size_t k = on_edge[0].half_edge % 3;
+                  t.curve[k] = curve_between(t.corner[k], t.corner[(k + 1) % 3]);
+                });
 }
 
 /// That two vertices follow each other on.

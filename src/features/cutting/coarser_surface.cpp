@@ -8,7 +8,7 @@
 #include "core/watched.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_fine_mesh.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {

@@ -7,7 +7,9 @@
 
 #include "core/parallel_ranges.h"
 #include "features/curves/face_normals.h"
+#include "geometry/segment.h"
 #include "geometry/triangle_grid.h"
+#include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {
@@ -64,10 +66,8 @@ void sample(const FeatureMesh& mesh, const FeatureCurve& curve, uint32_t number,
 FeatureMesh mesh_of(const Sheet& sheet) {
   FeatureMesh mesh;
   for (const PointQ8& p : sheet.position) mesh.vertices.push_back(sheet.frame.to_world(p));
-  for (const TriangleIndices& t : sheet.triangles) {
-    mesh.triangles.push_back({t.a, t.b, t.c});
-    mesh.source_face.push_back(0);  // a sheet has no attributes
-  }
+  mesh.triangles = list_of(sheet.triangles.view());
+  mesh.source_face.assign(mesh.triangles.size(), 0);  // a sheet has no attributes
   return mesh;
 }
 
@@ -96,21 +96,12 @@ NearSegments near_segments(const FeatureMesh& mesh, const SampledCurves& curves,
       if (number[p] != UINT32_MAX) continue;
       number[p] = uint32_t(near.point.size());
       near.point.push_back(p);
-      const MeshPoint& on = nearest[p];
-      const auto& [a, b, c] = mesh.triangles[on.triangle];
-      const WorldPoint& o = mesh.vertices[a];
-      near.lines.points.push_back(
-          {uint32_t(on.triangle), o + on.b_part * (mesh.vertices[b] - o) + on.c_part * (mesh.vertices[c] - o)});
+      near.lines.points.push_back({nearest[p].triangle, grid.at(nearest[p])});
     }
     near.lines.segments.push_back({number[curves.segments[s][0]], number[curves.segments[s][1]]});
     near.segment.push_back(s);
   }
   return near;
-}
-
-WorldPoint nearest_on(const WorldPoint& a, const WorldPoint& b, const WorldPoint& p) {
-  const double whole = distance_sq(a, b);
-  return whole > 0 ? a + std::clamp(dot(p - a, b - a) / whole, 0., 1.) * (b - a) : a;
 }
 
 /// Vertices on a segment's way go to the segment, those of its ends to the ends.
@@ -119,7 +110,8 @@ void move_to_curves(const SampledCurves& curves, const NearSegments& near, MeshW
   for (size_t s = 0; s < laid.ways.size(); ++s) {
     const auto [from, to] = curves.segments[near.segment[s]];
     for (const auto& edge : laid.ways[s])
-      for (const uint32_t v : edge) vertices[v] = nearest_on(curves.points[from], curves.points[to], vertices[v]);
+      for (const uint32_t v : edge)
+        vertices[v] = nearest_on_segment(vertices[v], curves.points[from], curves.points[to]);
   }
   std::vector<uint8_t> is_used(vertices.size(), 0);
   for (const auto& edge : laid.edges)
@@ -166,9 +158,8 @@ class Turns {
 }  // namespace
 
 bool LaidCurves::take_back(uint32_t vertex) {
-  const WorldPoint &is = mesh.vertices[vertex], &was = on_sheet[vertex];
-  if (is.x == was.x && is.y == was.y && is.z == was.z) return false;
-  mesh.vertices[vertex] = was;
+  if (mesh.vertices[vertex] == on_sheet[vertex]) return false;
+  mesh.vertices[vertex] = on_sheet[vertex];
   is_back[vertex] = 1;
   return true;
 }

@@ -12,8 +12,6 @@ namespace isoshell {
 namespace {
 
 /// How many edges a curve has.
-size_t edges_of(const FeatureCurve& curve) { return curve.is_loop ? curve.vertex.size() : curve.vertex.size() - 1; }
-
 std::vector<uint64_t> edges_of(const CurveNetwork& network, size_t vertices) {
   std::vector<uint64_t> edges;
   for (const FeatureCurve& curve : network.curves) {
@@ -25,8 +23,7 @@ std::vector<uint64_t> edges_of(const CurveNetwork& network, size_t vertices) {
         throw Error(ErrorCode::usage, "features",
                     "a curve has vertex " + std::to_string(v) + ", the mesh has " + std::to_string(vertices) +
                         "; find the curves on this very mesh");
-    for (size_t i = 0; i < edges_of(curve); ++i)
-      edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % curve.vertex.size()]));
+    append_edges(curve, edges);
   }
   std::sort(edges.begin(), edges.end());
   const auto twice = std::adjacent_find(edges.begin(), edges.end());
@@ -84,6 +81,12 @@ void find_least_segments(const std::vector<char>& turns, std::vector<CurvePath>&
 }
 
 }  // namespace
+
+void append_edges(const FeatureCurve& curve, std::vector<uint64_t>& edges) {
+  const size_t count = curve.vertex.size();
+  for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < count; ++i)
+    edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % count]));
+}
 
 std::vector<uint64_t> path_edges(const std::vector<CurvePath>& paths) {
   std::vector<uint64_t> edges;

@@ -38,6 +38,9 @@ struct CurvePath {
 std::vector<CurvePath> curve_paths(const std::vector<WorldPoint>& position, const MeshTriangles& triangles,
                                    const CurveNetwork& network);
 
+/// The keys of its edges, along it.
+void append_edges(const FeatureCurve& curve, std::vector<uint64_t>& edges);
+
 /// The keys of their edges, ascending.
 std::vector<uint64_t> path_edges(const std::vector<CurvePath>& paths);
 

@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "core/parallel_ranges.h"
-#include "features/mesh/edge_sides.h"
 #include "features/mesh/split_edges.h"
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"
 
@@ -84,7 +84,7 @@ class FlatEdges {
     return made;
   }
 
-  static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static uint32_t next(uint32_t h) { return next_in_triangle(h); }
   uint32_t from(uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
   uint32_t to(uint32_t h) const { return from(next(h)); }
   uint32_t opposite(uint32_t h) const { return from(next(next(h))); }
@@ -105,7 +105,7 @@ class FlatEdges {
     const double area_c = length(at_c), area_d = length(at_d);
     const double left = dot(a - c, b - c) * area_d, right = dot(a - d, b - d) * area_c;
     if (left + right >= -kRoundedAway * (std::abs(left) + std::abs(right))) return false;
-    const WorldPoint both = {at_c.x + at_d.x, at_c.y + at_d.y, at_c.z + at_d.z};
+    const WorldPoint both = at_c + at_d;
     if (std::abs(dot(at_c, d - a)) > kMostOffPlaneQ8 * length(both)) return false;
     const double ab = length(b - a);
     const auto faces_so = [&](const WorldPoint& n, double area) {
@@ -160,10 +160,9 @@ class FlatEdges {
 /// Edges of more than two triangles, ascending.
 std::vector<uint64_t> crowded_edges(const EdgeSides& sides) {
   std::vector<uint64_t> edges;
-  for (uint32_t u = 0; u < sides.count(); ++u)
-    for_each_edge_from(sides, u, [&](uint32_t v, View<const EdgeSide> on_edge) {
-      if (on_edge.size > 2) edges.push_back(edge_key(u, v));
-    });
+  for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+    if (on_edge.size > 2) edges.push_back(edge_key(u, v));
+  });
   return edges;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/parallel_ranges.h"
-#include "features/mesh/edge_sides.h"
+#include "geometry/half_edges.h"
 #include "isoshell/error.h"
 #include "voxel/union_find.h"
 

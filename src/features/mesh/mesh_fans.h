@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
 
 namespace isoshell {
 
@@ -26,6 +26,9 @@ struct MeshTwins {
                              ///< which pass it in opposite directions; kNone elsewhere
   std::vector<uint32_t> part;  ///< per triangle the first one of its component
 };
+
+/// Between the edges `cut_edges`: their keys, ascending.
+MeshTwins find_twins(const MeshTriangles& triangles, const EdgeSides& sides, const std::vector<uint64_t>& cut_edges);
 
 /// Fans are numbered by their first corner, patches by their first triangle. `cut_edges`: keys, ascending. Cost: a sort
 /// of the half-edges. Throws: usage where an edge that is not cut has not two triangles that pass it in opposite

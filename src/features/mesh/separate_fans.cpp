@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "features/mesh/edge_sides.h"
+#include "features/mesh/curve_paths.h"
 
 namespace isoshell {
 namespace {
@@ -13,10 +13,9 @@ namespace {
 std::vector<uint64_t> border_edges_of(const MeshTriangles& triangles, size_t vertices) {
   const EdgeSides sides = find_edge_sides(triangles, vertices);
   std::vector<uint64_t> borders;
-  for (uint32_t v = 0; v < vertices; ++v)
-    for_each_edge_from(sides, v, [&](uint32_t end, View<const EdgeSide> on_edge) {
-      if (on_edge.size == 1) borders.push_back(edge_key(v, end));
-    });
+  for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+    if (on_edge.size == 1) borders.push_back(edge_key(u, v));
+  });
   return borders;
 }
 
@@ -41,9 +40,7 @@ std::vector<uint32_t> separate_fans(std::vector<WorldPoint>& position, MeshTrian
 
 int64_t count_separated_places(const FeatureMesh& mesh, const CurveNetwork& network, const MeshTriangles& separated) {
   std::vector<uint64_t> curve_edges;
-  for (const FeatureCurve& curve : network.curves)
-    for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < curve.vertex.size(); ++i)
-      curve_edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % curve.vertex.size()]));
+  for (const FeatureCurve& curve : network.curves) append_edges(curve, curve_edges);
   std::sort(curve_edges.begin(), curve_edges.end());
   std::vector<std::pair<uint32_t, uint32_t>> vertices;  // as they were and as they are
   for (size_t t = 0; t < separated.size(); ++t)

@@ -8,56 +8,15 @@
 #include <utility>
 
 #include "core/buckets.h"
+#include "geometry/triangle_list.h"
+#include "geometry/weld.h"
 #include "geometry/world_vector.h"
 #include "isoshell/distance.h"
 
 namespace isoshell {
 namespace {
 
-/// Positions that are used, ascending and once each, and per vertex its place among them.
-struct WeldedVertices {
-  std::vector<WorldPoint> position;
-  std::vector<uint32_t> place;
-};
-
 WorldPoint without_negative_zero(const WorldPoint& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
-
-/// A vertex of the soup; its position lies beside its number for the sort.
-struct UsedVertex {
-  WorldPoint at;
-  uint32_t number;
-
-  bool operator<(const UsedVertex& o) const {
-    return std::tie(at.x, at.y, at.z, number) < std::tie(o.at.x, o.at.y, o.at.z, o.number);
-  }
-};
-
-/// Those that triangles use, by position, then by number.
-std::vector<UsedVertex> used_by_position(const TriangleSoup& soup) {
-  std::vector<uint8_t> is_used(soup.vertices.size(), 0);
-  for (const auto& t : soup.triangles)
-    for (const uint32_t v : t) is_used[v] = 1;
-  std::vector<UsedVertex> used;
-  used.reserve(is_used.size());
-  for (uint32_t v = 0; v < is_used.size(); ++v)
-    if (is_used[v]) used.push_back({soup.vertices[v], v});
-  tbb::parallel_sort(used.begin(), used.end());
-  return used;
-}
-
-WeldedVertices weld_vertices(const TriangleSoup& soup) {
-  const std::vector<UsedVertex> used = used_by_position(soup);
-  std::vector<WorldPoint> position;
-  position.reserve(used.size());
-  std::vector<uint32_t> place(soup.vertices.size(), 0);
-  for (const auto& [p, v] : used) {
-    const bool is_known =
-        !position.empty() && position.back().x == p.x && position.back().y == p.y && position.back().z == p.z;
-    if (!is_known) position.push_back(without_negative_zero(p));
-    place[v] = uint32_t(position.size() - 1);
-  }
-  return {std::move(position), std::move(place)};
-}
 
 /// A point of a lattice, as a number to sort by.
 struct NumberedPoint {
@@ -122,9 +81,9 @@ WeldedTriangles by_smallest_corner(View<const Triangle> triangles, const WeldedV
   const auto vertices = int64_t(welded.position.size());
   return sort_into_buckets<WeldedTriangle>(vertices, triangles.size, [&](int64_t t, auto put) {
     const std::array<uint32_t, 3> corner = corners_of(triangles[t]);
-    const uint32_t c[3] = {welded.place[corner[0]], welded.place[corner[1]], welded.place[corner[2]]};
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return;
-    const size_t first = size_t(std::min_element(c, c + 3) - c);
+    const std::array<uint32_t, 3> c = {welded.place[corner[0]], welded.place[corner[1]], welded.place[corner[2]]};
+    if (repeats_corner(c)) return;
+    const size_t first = size_t(std::min_element(c.begin(), c.end()) - c.begin());
     const uint32_t a = c[(first + 1) % 3], b = c[(first + 2) % 3];
     put(c[first], WeldedTriangle{{std::min(a, b), std::max(a, b)}, uint32_t(t), b < a});
   });
@@ -167,7 +126,9 @@ FeatureMesh weld_triangles(View<const Triangle> triangles, WeldedVertices welded
 
 FeatureMesh weld_for_features(const TriangleSoup& soup) {
   const View<const std::array<uint32_t, 3>> triangles{soup.triangles.data(), int64_t(soup.triangles.size())};
-  return weld_triangles(triangles, weld_vertices(soup));
+  WeldedVertices vertices = weld_vertices(soup.vertices, soup.triangles);
+  for (WorldPoint& p : vertices.position) p = without_negative_zero(p);
+  return weld_triangles(triangles, std::move(vertices));
 }
 
 FeatureMesh weld_for_features(const LatticeSurface& surface) {

@@ -8,7 +8,7 @@
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/free_seeds.h"
 #include "features/mesh/separate_fans.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/grid/attempt.h"
@@ -83,18 +83,13 @@ int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context&
 
 std::vector<uint64_t> edges_of(const FeatureCurve& curve) {
   std::vector<uint64_t> edges;
-  const size_t count = curve.vertex.size();
-  for (size_t i = 0; i + (curve.is_loop ? 0 : 1) < count; ++i)
-    edges.push_back(edge_key(curve.vertex[i], curve.vertex[(i + 1) % count]));
+  append_edges(curve, edges);
   return edges;
 }
 
 std::vector<uint64_t> edges_of(const CurveNetwork& network) {
   std::vector<uint64_t> all;
-  for (const FeatureCurve& curve : network.curves) {
-    const std::vector<uint64_t> edges = edges_of(curve);
-    all.insert(all.end(), edges.begin(), edges.end());
-  }
+  for (const FeatureCurve& curve : network.curves) append_edges(curve, all);
   std::sort(all.begin(), all.end());
   return all;
 }

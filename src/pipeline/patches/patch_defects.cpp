@@ -4,17 +4,11 @@
 #include <algorithm>
 
 #include "core/copy_product.h"
-#include "features/mesh/edge_sides.h"
+#include "features/mesh/mesh_fans.h"
+#include "geometry/triangle_list.h"
 
 namespace isoshell {
 namespace {
-
-MeshTriangles triangles_of(const DualMesh& mesh) {
-  MeshTriangles triangles;
-  for (int64_t t = 0; t < mesh.triangles.size(); ++t)
-    triangles.push_back({mesh.triangles[t].a, mesh.triangles[t].b, mesh.triangles[t].c});
-  return triangles;
-}
 
 /// An edge of a patch between vertices of the joined mesh.
 struct JoinedEdge {
@@ -30,7 +24,7 @@ class Defects {
   explicit Defects(const SeededMesh& made)
       : mesh_(made.mesh),
         seeds_(made.seeds),
-        triangles_(triangles_of(*mesh_)),
+        triangles_(list_of(mesh_->triangles.view())),
         vertices_(size_t(mesh_->position.size())),
         is_wrong_(vertices_, 0) {}
 
@@ -47,13 +41,12 @@ class Defects {
  private:
   void look_at_edges() {
     const EdgeSides sides = find_edge_sides(triangles_, vertices_);
-    for (uint32_t u = 0; u < vertices_; ++u)
-      for_each_edge_from(sides, u, [&](uint32_t v, View<const EdgeSide> on_edge) {
-        const bool is_inside = on_edge.size == 2 && start_of(on_edge[0]) != start_of(on_edge[1]);
-        if (on_edge.size > 1 && !is_inside) is_wrong_[u] = is_wrong_[v] = 1;
-        if (!is_inside) not_inside_.push_back(edge_key(u, v));
-        joined_.push_back({edge_key(joined(u), joined(v)), is_inside, {u, v}});
-      });
+    for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+      const bool is_inside = on_edge.size == 2 && start_of(on_edge[0]) != start_of(on_edge[1]);
+      if (on_edge.size > 1 && !is_inside) is_wrong_[u] = is_wrong_[v] = 1;
+      if (!is_inside) not_inside_.push_back(edge_key(u, v));
+      joined_.push_back({edge_key(joined(u), joined(v)), is_inside, {u, v}});
+    });
   }
 
   void look_at_fans() {

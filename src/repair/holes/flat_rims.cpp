@@ -25,15 +25,15 @@ class FacesInPlane {
 
   /// The half-edge at the other end of a face's pieces around the start of a boundary one, and which arrives there.
   uint32_t last_before(uint32_t out) const {
-    uint32_t in = next_half_edge(next_half_edge(out));
-    for (uint32_t other; (other = across(in)) != kNoFace; in = next_half_edge(next_half_edge(other))) {
+    uint32_t in = next_in_triangle(next_in_triangle(out));
+    for (uint32_t other; (other = across(in)) != kNoFace; in = next_in_triangle(next_in_triangle(other))) {
     }
     return in;
   }
   /// The same around the end of a boundary half-edge; it leaves there.
   uint32_t first_after(uint32_t in) const {
-    uint32_t out = next_half_edge(in);
-    for (uint32_t other; (other = across(out)) != kNoFace; out = next_half_edge(other)) {
+    uint32_t out = next_in_triangle(in);
+    for (uint32_t other; (other = across(out)) != kNoFace; out = next_in_triangle(other)) {
     }
     return out;
   }

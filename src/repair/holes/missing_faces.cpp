@@ -22,7 +22,7 @@ enum class Side { behind, before, both };
 Side side_of_surface(const RepairMesh& mesh, const Loop& loop, const FlatRim& rim) {
   bool behind = false, before = false;
   for (const uint32_t h : loop) {
-    const double height = rim.height(mesh.position[mesh.to(next_half_edge(h))]);
+    const double height = rim.height(mesh.position[mesh.to(next_in_triangle(h))]);
     behind |= height < rim.tolerance;  // what lies in the plane is on both sides
     before |= height > -rim.tolerance;
   }

@@ -1,52 +1,41 @@
 #include "repair/holes/repair_holes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/index_sets.h"
+#include "geometry/box.h"
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "repair/holes/cap_loop.h"
 #include "repair/holes/fill_plane.h"
-#include "voxel/union_find.h"
 
 namespace isoshell::repair {
 namespace {
 
-struct Box {
-  WorldPoint lo, hi;
-  explicit Box(const WorldPoint& p) : lo(p), hi(p) {}
-  void add(const WorldPoint& p) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  double diagonal_sq() const { return dot(hi - lo, hi - lo); }
-};
+double diagonal_sq(const WorldBox& box) { return distance_sq(box.min, box.max); }
 
 /// Boxes and areas of what faces connect by their corners.
 class Components {
  public:
-  explicit Components(const RepairMesh& mesh) : parent_(int64_t(mesh.position.size())) {
-    for (int64_t v = 0; v < parent_.size(); ++v) parent_[v] = uint32_t(v);
+  explicit Components(const RepairMesh& mesh) : sets_(int64_t(mesh.position.size())) {
     for (uint32_t f = 0; f < mesh.face_count(); ++f) {
       if (!mesh.is_live(f)) continue;
-      join(parent_.view(), mesh.face[f][0], mesh.face[f][1]);
-      join(parent_.view(), mesh.face[f][0], mesh.face[f][2]);
+      for (const uint32_t v : mesh.face[f]) sets_.unite(mesh.face[f][0], v);
     }
-    for (uint32_t v = 0; v < mesh.position.size(); ++v)
-      size_.try_emplace(find_root(parent_.view(), v), Size{Box(mesh.position[v])})
-          .first->second.box.add(mesh.position[v]);
+    for (uint32_t v = 0; v < mesh.position.size(); ++v) stretch(size_[sets_.root(v)].box, mesh.position[v]);
     for (uint32_t f = 0; f < mesh.face_count(); ++f)
-      if (mesh.is_live(f)) size_.at(find_root(parent_.view(), mesh.face[f][0])).area += mesh.area(f);
+      if (mesh.is_live(f)) size_.at(sets_.root(mesh.face[f][0])).area += mesh.area(f);
   }
   struct Size {
-    Box box;
+    WorldBox box = box_of_none();
     double area = 0;
   };
-  const Size& of(uint32_t vertex) { return size_.at(find_root(parent_.view(), vertex)); }
+  const Size& of(uint32_t vertex) { return size_.at(sets_.root(vertex)); }
 
  private:
-  Buffer<uint32_t> parent_;
+  IndexSets sets_;
   std::unordered_map<uint32_t, Size> size_;
 };
 
@@ -71,9 +60,9 @@ class Capper {
   /// The area of caps that make the loop a hole.
   double largest_cap(const Loop& loop, const Components::Size& component) const {
     if (!closing_.holes) return closing_.widest_gap_world > 0 ? component.area : 0;
-    Box box(mesh_.position[mesh_.from(loop[0])]);
-    for (uint32_t h : loop) box.add(mesh_.position[mesh_.from(h)]);
-    const bool is_short = box.diagonal_sq() <= kLargestHole * kLargestHole * component.box.diagonal_sq();
+    WorldBox box = box_of_none();
+    for (uint32_t h : loop) stretch(box, mesh_.position[mesh_.from(h)]);
+    const bool is_short = diagonal_sq(box) <= kLargestHole * kLargestHole * diagonal_sq(component.box);
     return is_short ? component.area : kLargestCrack * component.area;
   }
 
@@ -89,8 +78,8 @@ class Capper {
   }
   bool brings_new_chords(const Cap& cap) const {
     return std::all_of(cap.face.begin(), cap.face.end(), [&](const Corners& c) {
-      return chords_.count(key_of(c[0], c[1])) + chords_.count(key_of(c[1], c[2])) +
-                 chords_.count(key_of(c[2], c[0])) ==
+      return chords_.count(edge_key(c[0], c[1])) + chords_.count(edge_key(c[1], c[2])) +
+                 chords_.count(edge_key(c[2], c[0])) ==
              0;
     });
   }
@@ -149,7 +138,7 @@ class Capper {
   static bool joins_each_pair_once(const std::vector<uint32_t>& vertex, const std::vector<LoopTriangle>& triangles) {
     std::vector<uint64_t> keys;
     for (const LoopTriangle& t : triangles)
-      for (size_t i = 0; i < 3; ++i) keys.push_back(key_of(vertex[t[i]], vertex[t[(i + 1) % 3]]));
+      for (size_t i = 0; i < 3; ++i) keys.push_back(edge_key(vertex[t[i]], vertex[t[(i + 1) % 3]]));
     std::sort(keys.begin(), keys.end());
     for (size_t i = 2; i < keys.size(); ++i)
       if (keys[i] == keys[i - 2]) return false;
@@ -157,9 +146,8 @@ class Capper {
   }
 
   bool may_join(uint32_t u, uint32_t v) const {
-    return u != v && !mesh_.has_edge(u, v) && chords_.count(key_of(u, v)) == 0;
+    return u != v && !mesh_.has_edge(u, v) && chords_.count(edge_key(u, v)) == 0;
   }
-  static uint64_t key_of(uint32_t u, uint32_t v) { return uint64_t(std::min(u, v)) << 32 | std::max(u, v); }
 
   void add_tube(Cap tube) {
     report_.cap_area_world += area_of(tube);
@@ -184,7 +172,7 @@ class Capper {
 
   void add(Cap cap) {
     for (const Corners& c : cap.face)
-      for (size_t i = 0; i < 3; ++i) chords_.insert(key_of(c[i], c[(i + 1) % 3]));
+      for (size_t i = 0; i < 3; ++i) chords_.insert(edge_key(c[i], c[(i + 1) % 3]));
     report_.capped_loops += cap.loops;
     report_.cap_faces += int64_t(cap.face.size());
     caps_.push_back(std::move(cap));

@@ -72,8 +72,8 @@ class LoopFinder {
     Fan fan = {in, kNoFace, {0, 0, 0}};
     for (uint32_t h = in;;) {
       const WorldPoint n = mesh_.doubled_area(h / 3);
-      fan.normal = {fan.normal.x + n.x, fan.normal.y + n.y, fan.normal.z + n.z};
-      const uint32_t g = next_half_edge(h);
+      fan.normal = fan.normal + n;
+      const uint32_t g = next_in_triangle(h);
       const uint32_t faces = mesh_.faces_at(mesh_.edge_of(g));
       if (faces == 1) fan.out = g;
       if (faces != 2 || !mesh_.agrees(g)) return fan;
@@ -84,7 +84,7 @@ class LoopFinder {
   /// False when the fans do not lie around the vertex one after the other.
   bool link_across_gaps(uint32_t vertex, const std::vector<Fan>& fans) {
     WorldPoint n = {0, 0, 0};
-    for (const Fan& fan : fans) n = {n.x + fan.normal.x, n.y + fan.normal.y, n.z + fan.normal.z};
+    for (const Fan& fan : fans) n = n + fan.normal;
     const WorldPoint& at = mesh_.position[vertex];
     const WorldPoint u = cross(n, mesh_.position[mesh_.to(fans[0].out)] - at), v = cross(n, u);
     if (dot(u, u) == 0) return false;

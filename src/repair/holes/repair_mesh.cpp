@@ -6,22 +6,16 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <utility>
 
+#include "core/index_sets.h"
+#include "geometry/box.h"
+#include "geometry/triangle_list.h"
+#include "geometry/weld.h"
 #include "geometry/world_vector.h"
 #include "isoshell/repair.h"
-#include "voxel/union_find.h"
 
 namespace isoshell::repair {
 namespace {
-
-bool before(const WorldPoint& p, const WorldPoint& q) {
-  if (p.x != q.x) return p.x < q.x;
-  if (p.y != q.y) return p.y < q.y;
-  return p.z < q.z;
-}
-
-uint64_t key_of(uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
 
 Corners smallest_first(Corners t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -31,30 +25,14 @@ Corners smallest_first(Corners t) {
 }  // namespace
 
 RepairMesh::RepairMesh(const TriangleSoup& soup) {
-  weld(soup);
+  WeldedVertices vertices = weld_vertices(soup.vertices, soup.triangles);
+  position = std::move(vertices.position);
+  welded_ = std::move(vertices.place);
   list_faces(soup);
   list_edges();
   if (!join_cracks()) return;
   list_faces(soup);
   list_edges();
-}
-
-void RepairMesh::weld(const TriangleSoup& soup) {
-  std::vector<uint8_t> used(soup.vertices.size(), 0);
-  for (const Corners& t : soup.triangles)
-    for (uint32_t v : t) used[v] = 1;
-  std::vector<uint32_t> order;
-  for (uint32_t v = 0; v < used.size(); ++v)
-    if (used[v]) order.push_back(v);
-  tbb::parallel_sort(order.begin(), order.end(), [&](uint32_t u, uint32_t v) {
-    const WorldPoint &p = soup.vertices[u], &q = soup.vertices[v];
-    return before(p, q) || (!before(q, p) && u < v);
-  });
-  welded_.resize(used.size());
-  for (uint32_t v : order) {
-    if (position.empty() || before(position.back(), soup.vertices[v])) position.push_back(soup.vertices[v]);
-    welded_[v] = uint32_t(position.size() - 1);
-  }
 }
 
 void RepairMesh::list_faces(const TriangleSoup& soup) {
@@ -74,7 +52,7 @@ void RepairMesh::list_faces(const TriangleSoup& soup) {
   for (uint32_t i = 0; i < soup.triangles.size(); ++i) {
     const Corners& t = soup.triangles[i];
     const Corners c = {welded_[t[0]], welded_[t[1]], welded_[t[2]]};
-    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) all.push_back({smallest_first(c), i});
+    if (!repeats_corner(c)) all.push_back({smallest_first(c), i});
   }
   tbb::parallel_sort(all.begin(), all.end());
   face.clear();
@@ -93,36 +71,23 @@ void RepairMesh::list_faces(const TriangleSoup& soup) {
 }
 
 void RepairMesh::list_edges() {
-  std::vector<std::pair<uint64_t, uint32_t>> keyed(3 * face.size());
-  for (uint32_t h = 0; h < keyed.size(); ++h) keyed[h] = {key_of(from(h), to(h)), h};
-  tbb::parallel_sort(keyed.begin(), keyed.end());
-  edge_key_.clear();
-  edge_first_.clear();
-  edge_of_.resize(keyed.size());
-  half_.resize(keyed.size());
-  for (uint32_t i = 0; i < keyed.size(); ++i) {
-    if (i == 0 || keyed[i].first != keyed[i - 1].first) {
-      edge_key_.push_back(keyed[i].first);
-      edge_first_.push_back(i);
-    }
-    half_[i] = keyed[i].second;
-    edge_of_[keyed[i].second] = uint32_t(edge_key_.size() - 1);
-  }
-  edge_first_.push_back(uint32_t(keyed.size()));
-  live_at_.resize(edge_key_.size());
-  for (size_t e = 0; e < live_at_.size(); ++e) live_at_[e] = edge_first_[e + 1] - edge_first_[e];
+  sides_ = find_edge_sides(face, position.size());
+  edge_first_.assign(1, 0);
+  edge_of_.resize(3 * face.size());
+  live_at_.clear();
+  for_each_edge(sides_, [&](uint32_t, uint32_t, View<const EdgeSide> on_edge) {
+    for (const EdgeSide& side : on_edge) edge_of_[side.half_edge] = uint32_t(live_at_.size());
+    live_at_.push_back(uint32_t(on_edge.size));
+    edge_first_.push_back(edge_first_.back() + live_at_.back());
+  });
 }
 
 /// Per vertex how far another one may be to be the same: 0 away from boundaries.
 std::vector<double> RepairMesh::crack_widths() const {
   std::vector<double> width(position.size(), 0);
   if (position.empty()) return width;
-  WorldPoint lo = position[0], hi = lo;
-  for (const WorldPoint& p : position) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  const double widest = kWidestCrack * length(hi - lo);
+  const WorldBox box = box_of(position);
+  const double widest = kWidestCrack * length(box.max - box.min);
   for (uint32_t h = 0; h < edge_of_.size(); ++h) {
     if (live_at_[edge_of_[h]] != 1) continue;
     const WorldPoint &p = position[from(h)], &q = position[to(h)];
@@ -168,18 +133,16 @@ std::vector<uint32_t> RepairMesh::first_within_cracks() const {
 bool RepairMesh::join_cracks() {
   const std::vector<uint32_t> first = first_within_cracks();
   std::map<uint64_t, std::vector<uint32_t>> at;
-  Buffer<uint32_t> parent(int64_t(position.size()));
-  for (uint32_t v = 0; v < position.size(); ++v) parent[v] = v;
+  IndexSets sets(int64_t(position.size()));
   for (uint32_t h = 0; h < edge_of_.size(); ++h) {
     if (live_at_[edge_of_[h]] != 1) continue;
-    at[key_of(first[from(h)], first[to(h)])].push_back(h);
-    for (const uint32_t v : {to(h), first[from(h)], first[to(h)]}) join(parent.view(), from(h), v);
+    at[edge_key(first[from(h)], first[to(h)])].push_back(h);
+    for (const uint32_t v : {to(h), first[from(h)], first[to(h)]}) sets.unite(from(h), v);
   }
   std::vector<uint8_t> stays(position.size(), 0);  // per root
   for (const auto& [key, halves] : at)
-    if (halves.size() != 2 || first[from(halves[0])] != first[to(halves[1])])
-      stays[find_root(parent.view(), from(halves[0]))] = 1;
-  const auto becomes = [&](uint32_t v) { return stays[find_root(parent.view(), v)] ? v : first[v]; };
+    if (halves.size() != 2 || first[from(halves[0])] != first[to(halves[1])]) stays[sets.root(from(halves[0]))] = 1;
+  const auto becomes = [&](uint32_t v) { return stays[sets.root(v)] ? v : first[v]; };
   for (uint32_t v = 0; v < position.size(); ++v) joined_ += becomes(v) != v;
   for (uint32_t& v : welded_) v = becomes(v);
   return joined_ > 0;
@@ -196,27 +159,24 @@ void RepairMesh::turn(uint32_t f) {
   std::swap(face[f][1], face[f][2]);
   const uint32_t h = 3 * f, g = 3 * f + 2, e = edge_of_[h], d = edge_of_[g];
   for (uint32_t i = edge_first_[e]; i < edge_first_[e + 1]; ++i)
-    if (half_[i] == h) half_[i] = g;
+    if (sides_.items[i].half_edge == h) sides_.items[i].half_edge = g;
   for (uint32_t i = edge_first_[d]; i < edge_first_[d + 1]; ++i)
-    if (half_[i] == g) half_[i] = h;
+    if (sides_.items[i].half_edge == g) sides_.items[i].half_edge = h;
   std::swap(edge_of_[h], edge_of_[g]);
 }
 
 uint32_t RepairMesh::twin(uint32_t half_edge) const {
   const uint32_t e = edge_of_[half_edge];
   for (uint32_t i = edge_first_[e]; i < edge_first_[e + 1]; ++i)
-    if (half_[i] != half_edge && live_[half_[i] / 3]) return half_[i];
+    if (const uint32_t h = sides_.items[i].half_edge; h != half_edge && live_[h / 3]) return h;
   return half_edge;
 }
 
-int64_t RepairMesh::find_edge(uint32_t a, uint32_t b) const {
-  const auto at = std::lower_bound(edge_key_.begin(), edge_key_.end(), key_of(a, b));
-  return at != edge_key_.end() && *at == key_of(a, b) ? at - edge_key_.begin() : -1;
-}
-
 bool RepairMesh::has_edge(uint32_t a, uint32_t b) const {
-  const int64_t e = find_edge(a, b);
-  return e >= 0 && live_at_[size_t(e)] > 0;
+  const View<const EdgeSide> sides = sides_.in(std::min(a, b));
+  const auto at = std::lower_bound(sides.begin(), sides.end(), std::max(a, b),
+                                   [](const EdgeSide& side, uint32_t end) { return side.larger_end < end; });
+  return at != sides.end() && at->larger_end == std::max(a, b) && live_at_[edge_of_[at->half_edge]] > 0;
 }
 
 WorldPoint RepairMesh::doubled_area(uint32_t f) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/half_edges.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell::repair {
@@ -13,8 +14,6 @@ namespace isoshell::repair {
 constexpr uint32_t kNoFace = 0xffffffffu;
 
 using Corners = std::array<uint32_t, 3>;
-
-inline uint32_t next_half_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
 
 /// Faces never move: dropped ones are dead. Half-edge 3 f + i runs from corner i of face f to the next one.
 class RepairMesh {
@@ -32,7 +31,7 @@ class RepairMesh {
   int64_t joined_vertices() const { return joined_; }
 
   uint32_t from(uint32_t half_edge) const { return face[half_edge / 3][half_edge % 3]; }
-  uint32_t to(uint32_t half_edge) const { return from(next_half_edge(half_edge)); }
+  uint32_t to(uint32_t half_edge) const { return from(next_in_triangle(half_edge)); }
   uint32_t edge_of(uint32_t half_edge) const { return edge_of_[half_edge]; }
   /// Number of live faces at an edge.
   uint32_t faces_at(uint32_t edge) const { return live_at_[edge]; }
@@ -53,19 +52,16 @@ class RepairMesh {
   std::vector<uint32_t> source;      ///< the soup's triangle, the smallest of its repeats
 
  private:
-  void weld(const TriangleSoup& soup);
   void list_faces(const TriangleSoup& soup);
   void list_edges();
   bool join_cracks();
   std::vector<double> crack_widths() const;
   std::vector<uint32_t> first_within_cracks() const;
-  int64_t find_edge(uint32_t a, uint32_t b) const;
 
   std::vector<uint32_t> welded_;  ///< per vertex of the soup
   std::vector<uint8_t> live_, turned_;
-  std::vector<uint64_t> edge_key_;    ///< smaller end, larger end; sorted
-  std::vector<uint32_t> edge_first_;  ///< where the edge's half-edges start in half_
-  std::vector<uint32_t> half_;        ///< half-edges in the order of their edges; turning a face keeps its edges' lists
+  EdgeSides sides_;                   ///< turning a face keeps its edges' lists
+  std::vector<uint32_t> edge_first_;  ///< where those of an edge start
   std::vector<uint32_t> edge_of_, live_at_;
   int64_t repeats_ = 0, joined_ = 0;
 };

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "core/buckets.h"
+#include "core/index_sets.h"
 #include "repair/holes/repair_junctions.h"
-#include "voxel/union_find.h"
 
 namespace isoshell::repair {
 namespace {
@@ -23,35 +24,30 @@ void for_each_neighbour(const RepairMesh& mesh, uint32_t f, Visit visit) {
 /// Per patch the area of all that joins lead to from it.
 std::vector<double> areas_of_joined(const Patches& patches, const std::vector<std::array<uint32_t, 2>>& joins,
                                     std::vector<double> area) {
-  Buffer<uint32_t> parent(patches.count);
-  for (uint32_t p = 0; p < patches.count; ++p) parent[p] = p;
-  for (const auto& [f, g] : joins) join(parent.view(), patches.of[f], patches.of[g]);
+  IndexSets sets(patches.count);
+  for (const auto& [f, g] : joins) sets.unite(patches.of[f], patches.of[g]);
   std::vector<double> together(patches.count, 0);
-  for (uint32_t p = 0; p < patches.count; ++p) together[find_root(parent.view(), p)] += area[p];
-  for (uint32_t p = 0; p < patches.count; ++p) area[p] = together[find_root(parent.view(), p)];
+  for (uint32_t p = 0; p < patches.count; ++p) together[sets.root(p)] += area[p];
+  for (uint32_t p = 0; p < patches.count; ++p) area[p] = together[sets.root(p)];
   return area;
 }
 
 /// The faces of the patches in a list, patch by patch.
 class PatchFaces {
  public:
-  PatchFaces(const Patches& patches, const std::vector<uint32_t>& listed) : first_(listed.size() + 1, 0) {
+  PatchFaces(const Patches& patches, const std::vector<uint32_t>& listed) {
     std::vector<uint32_t> place(patches.count, kNoFace);
     for (uint32_t i = 0; i < listed.size(); ++i) place[listed[i]] = i;
-    const auto place_of = [&](uint32_t f) { return patches.of[f] == kNoFace ? kNoFace : place[patches.of[f]]; };
-    for (uint32_t f = 0; f < patches.of.size(); ++f)
-      if (place_of(f) != kNoFace) ++first_[place_of(f) + 1];
-    for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    faces_.resize(first_.back());
-    std::vector<uint32_t> at(first_.begin(), first_.end() - 1);
-    for (uint32_t f = 0; f < patches.of.size(); ++f)
-      if (place_of(f) != kNoFace) faces_[at[place_of(f)]++] = f;
+    faces_ = sort_into_buckets<uint32_t>(int64_t(listed.size()), int64_t(patches.of.size()), [&](int64_t f, auto put) {
+      const uint32_t patch = patches.of[size_t(f)];
+      if (patch != kNoFace && place[patch] != kNoFace) put(place[patch], uint32_t(f));
+    });
   }
-  const uint32_t* begin(size_t i) const { return faces_.data() + first_[i]; }
-  const uint32_t* end(size_t i) const { return faces_.data() + first_[i + 1]; }
+  const uint32_t* begin(size_t i) const { return faces_.in(int64_t(i)).begin(); }
+  const uint32_t* end(size_t i) const { return faces_.in(int64_t(i)).end(); }
 
  private:
-  std::vector<uint32_t> first_, faces_;
+  Buckets<uint32_t> faces_;
 };
 
 /// Whether a patch ends in the open and on edges of more than two faces, and none of those opens without it.

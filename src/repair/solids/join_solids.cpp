@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <map>
 
+#include "core/index_sets.h"
 #include "core/watched.h"
-#include "geometry/half_edge_list.h"
+#include "geometry/box.h"
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
-#include "isoshell/advanced/buffer.h"
 #include "repair/holes/repair_mesh.h"
 #include "repair/solids/cut_solids.h"
 #include "repair/solids/drop_slivers.h"
 #include "repair/solids/swell_solids.h"
 #include "repair/solids/winding.h"
 #include "voxel/random.h"
-#include "voxel/union_find.h"
 
 namespace isoshell::repair {
 namespace {
@@ -23,34 +23,16 @@ constexpr uint32_t kMostTries = 8;
 constexpr double kRoundedSteps = 6;  // triangles lower than that come from rounding where edges were cut
 constexpr double kSliverSteps = 2048;
 
-struct Box {
-  WorldPoint lo, hi;
-  bool meets(const Box& o) const {
-    return lo.x <= o.hi.x && o.lo.x <= hi.x && lo.y <= o.hi.y && o.lo.y <= hi.y && lo.z <= o.hi.z && o.lo.z <= hi.z;
-  }
-};
-Box box_of(const Solid& s) {
-  Box box{s.point[s.face[0][0]], s.point[s.face[0][0]]};
-  for (const auto& f : s.face)
-    for (const uint32_t v : f) {
-      const WorldPoint& p = s.point[v];
-      box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y), std::min(box.lo.z, p.z)};
-      box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y), std::max(box.hi.z, p.z)};
-    }
-  return box;
-}
-
 /// Components of faces that share edges with one other face, each on points of its own.
 std::vector<Solid> components_of(const RepairMesh& mesh) {
-  Buffer<uint32_t> parent(mesh.face_count());
-  for (int64_t f = 0; f < parent.size(); ++f) parent[f] = uint32_t(f);
+  IndexSets sets(mesh.face_count());
   for (uint32_t h = 0; h < 3 * mesh.face_count(); ++h)
-    if (mesh.faces_at(mesh.edge_of(h)) == 2) join(parent.view(), h / 3, mesh.twin(h) / 3);
+    if (mesh.faces_at(mesh.edge_of(h)) == 2) sets.unite(h / 3, mesh.twin(h) / 3);
   std::vector<uint32_t> number(mesh.face.size(), kNoFace);
   std::vector<Solid> solids;
   std::vector<std::map<uint32_t, uint32_t>> copy;
   for (uint32_t f = 0; f < mesh.face.size(); ++f) {
-    uint32_t& at = number[find_root(parent.view(), f)];
+    uint32_t& at = number[sets.root(f)];
     if (at == kNoFace) {
       at = uint32_t(solids.size());
       solids.emplace_back();
@@ -129,16 +111,16 @@ class Joiner {
  private:
   /// To solids that lie apart.
   void add(std::vector<Solid>& apart, Solid solid) {
-    Box box = box_of(solid);
+    WorldBox box = box_of(solid.point, solid.face);
     for (size_t i = 0; i < apart.size() && !is_failed;) {
       std::optional<Solid> both;
-      if (box_of(apart[i]).meets(box)) both = join_two(apart[i], solid);
+      if (boxes_meet(box_of(apart[i].point, apart[i].face), box)) both = join_two(apart[i], solid);
       if (!both) {
         ++i;
         continue;
       }
       solid = std::move(*both);
-      box = box_of(solid);
+      box = box_of(solid.point, solid.face);
       apart.erase(apart.begin() + int64_t(i));
     }
     apart.push_back(std::move(solid));
@@ -199,16 +181,14 @@ class Joiner {
   }
 
   static std::vector<uint32_t> parts_of(const CutSolids& cut) {
-    const std::vector<ListedHalfEdge> sides = sorted_half_edges(cut.both.face);
-    Buffer<uint32_t> parent(int64_t(cut.both.face.size()));
-    for (int64_t f = 0; f < parent.size(); ++f) parent[f] = uint32_t(f);
-    for (size_t i = 1; i < sides.size(); ++i) {
-      const std::array<uint32_t, 2> edge{sides[i].smaller_end(), sides[i].larger_end()};
-      if (sides[i].edge == sides[i - 1].edge && !std::binary_search(cut.crossing.begin(), cut.crossing.end(), edge))
-        join(parent.view(), sides[i - 1].number / 3, sides[i].number / 3);
-    }
+    const EdgeSides sides = find_edge_sides(cut.both.face, cut.both.point.size());
+    IndexSets sets(int64_t(cut.both.face.size()));
+    for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+      if (std::binary_search(cut.crossing.begin(), cut.crossing.end(), std::array<uint32_t, 2>{u, v})) return;
+      for (const EdgeSide& side : on_edge) sets.unite(on_edge[0].half_edge / 3, side.half_edge / 3);
+    });
     std::vector<uint32_t> part(cut.both.face.size());
-    for (uint32_t f = 0; f < part.size(); ++f) part[f] = find_root(parent.view(), f);
+    for (uint32_t f = 0; f < part.size(); ++f) part[f] = sets.root(f);
     return part;
   }
 

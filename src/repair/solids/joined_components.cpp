@@ -1,11 +1,12 @@
 #include "repair/solids/joined_components.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
+#include "core/index_sets.h"
+#include "geometry/half_edges.h"
+#include "geometry/triangle_list.h"
 #include "voxel/intersect.h"
-#include "voxel/union_find.h"
 
 namespace isoshell {
 namespace {
@@ -16,35 +17,23 @@ CornersOfTriangle corners_of(const LatticeSurface& surface, uint32_t triangle) {
 }
 
 struct Sets {
-  Buffer<uint32_t> parent;  ///< per point
+  IndexSets of;
   int64_t count;
 
-  explicit Sets(int64_t points) : parent(points), count(points) {
-    for (int64_t v = 0; v < points; ++v) parent[v] = uint32_t(v);
-  }
-  uint32_t of(uint32_t v) { return find_root(parent.view(), v); }
+  explicit Sets(int64_t points) : of(points), count(points) {}
   void join_points(uint32_t v, uint32_t w) {
-    count -= of(v) != of(w);
-    join(parent.view(), v, w);
+    count -= of.root(v) != of.root(w);
+    of.unite(v, w);
   }
 };
 
 /// Sets of triangles that edges join, of any number of triangles.
 int64_t count_sets_by_edges(const LatticeSurface& surface) {
-  struct Side {
-    uint64_t edge;
-    uint32_t triangle;
-  };
-  std::vector<Side> sides;
-  for (int64_t t = 0; t < surface.triangles.size(); ++t) {
-    const TriangleIndices c = surface.triangles[t];
-    for (const auto& [v, w] : {std::pair(c.a, c.b), std::pair(c.b, c.c), std::pair(c.c, c.a)})
-      sides.push_back({uint64_t(std::min(v, w)) << 32 | std::max(v, w), uint32_t(t)});
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) { return s.edge < t.edge; });
   Sets sets(surface.triangles.size());
-  for (size_t i = 1; i < sides.size(); ++i)
-    if (sides[i].edge == sides[i - 1].edge) sets.join_points(sides[i].triangle, sides[i - 1].triangle);
+  const EdgeSides sides = find_edge_sides(list_of(surface.triangles.view()), size_t(surface.points.size()));
+  for_each_edge(sides, [&](uint32_t, uint32_t, View<const EdgeSide> on_edge) {
+    for (const EdgeSide& side : on_edge) sets.join_points(on_edge[0].half_edge / 3, side.half_edge / 3);
+  });
   return sets.count;
 }
 
@@ -56,7 +45,7 @@ int64_t count_joins(const LatticeSurface& surface, const SiteSamples& samples) {
     sets.join_points(t.a, t.b);
     sets.join_points(t.a, t.c);
   }
-  const auto set_of = [&](uint32_t triangle) { return sets.of(surface.triangles[triangle].a); };
+  const auto set_of = [&](uint32_t triangle) { return sets.of.root(surface.triangles[triangle].a); };
   for (int64_t site = 0; site + 1 < samples.first.size(); ++site) {
     const uint32_t* const begin = samples.triangles.begin() + samples.first[site];
     const uint32_t* const end = samples.triangles.begin() + samples.first[site + 1];
