@@ -25,7 +25,7 @@ struct SplitCellsByBlocks;
 }
 namespace optimize {
 struct FlipEdgesInBatches;
-struct SearchPlacesInOneLaunch;
+struct SearchPositionsInOneLaunch;
 class StepsByLanes;
 struct UndoHarmInOneLaunch;
 }  // namespace optimize
@@ -99,7 +99,7 @@ struct CudaKernels {
   /// optimize_kernels.cuh: all rounds in one cooperative launch, none of which the host waits for.
   using UndoHarm = optimize::UndoHarmInOneLaunch;
   /// optimize_kernels.cuh: the same, and a warp a vertex: a lane tries each place.
-  using SearchPlaces = optimize::SearchPlacesInOneLaunch;
+  using SearchPositions = optimize::SearchPositionsInOneLaunch;
   /// steps_by_lanes.cuh: smoothing and fit of small meshes by eight lanes a vertex, one a triangle around it; samples
   /// of one triangle are added up within a warp.
   using StepWork = optimize::StepsByLanes;

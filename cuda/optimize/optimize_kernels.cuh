@@ -94,7 +94,7 @@ __device__ inline void search_together(const SearchVertex& search, uint32_t v) {
   if (lane == 0) search.move_onto_sheet(v, landing.vertex, landing.point, here);
 }
 
-/// The whole of PlainSearchPlaces. Chosen vertices are listed in any order, so that each has a warp: they are
+/// The whole of PlainSearchPositions. Chosen vertices are listed in any order, so that each has a warp: they are
 /// independent. Three words of `count`, one a round: how many were chosen?
 __global__ void __launch_bounds__(kThreads, kBlocks)
     search_in_rounds(SearchVertex search, View<uint32_t> poor, View<uint32_t> chosen, uint32_t* count,
@@ -170,7 +170,7 @@ struct UndoHarmInOneLaunch {
   }
 };
 
-struct SearchPlacesInOneLaunch {
+struct SearchPositionsInOneLaunch {
   static void run(CudaExecutor& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {
     const SearchVertex search{mesh, walk, {}, options.edge, options.hold, 0, options.onto_sheet, position, home};

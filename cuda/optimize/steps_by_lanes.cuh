@@ -157,7 +157,7 @@ __global__ void __launch_bounds__(kPullThreads) pull_by_runs(PullCorners step) {
   if (i < step.sample.size) {
     FitSample s = step.sample[i];
     Foot foot;
-    if (step.settle(i, s, foot)) asked = step.asked_of_triangle(i, s, foot);
+    if (step.slide_to_foot(i, s, foot)) asked = step.asked_of_triangle(i, s, foot);
     triangle = s.triangle;
   }
   const uint32_t before = __shfl_up_sync(kWholeWarp, triangle, 1);

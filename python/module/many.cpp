@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 /// A run that was begun. It keeps what the run reads until that has ended.
 class BegunRun {
  public:
-  BegunRun(Asked asked, nb::object kept) : asked_(std::move(asked)), kept_(std::move(kept)) {}
+  BegunRun(RequestFromPython requested, nb::object kept) : requested_(std::move(requested)), kept_(std::move(kept)) {}
   BegunRun(BegunRun&&) = default;
   ~BegunRun() {
     if (has_ended()) return;
@@ -33,12 +33,12 @@ class BegunRun {
   }
 
   void begin(Workers& workers, ReadMemory read, bool measure_all) {
-    RunRequest request = asked_.arguments.run;
+    RunRequest request = requested_.arguments.run;
     if (measure_all) request.measures = Measures::all;
     request.tell = [messages = messages_](MessageKind kind, const std::string& text) {
       messages->push_back({kind, text});
     };
-    const int64_t limit_bytes = asked_.arguments.max_memory_bytes;
+    const int64_t limit_bytes = requested_.arguments.max_memory_bytes;
     result_ = workers.begin([request = std::move(request), read = std::move(read), limit_bytes](Context& context) {
       context.memory_limit_bytes = limit_bytes;  // 0: by what is free when the run begins
       tool::limit_memory(context, device_info(context));
@@ -57,14 +57,14 @@ class BegunRun {
       }
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
     }
-    tool::Console console(asked_.arguments.progress, asked_.arguments.verbosity);
-    const Listener listener = listener_of(asked_, console);
+    tool::Console console(requested_.arguments.progress, requested_.arguments.verbosity);
+    const Listener listener = listener_of(requested_, console);
     for (const Mail::Message& message : *messages_) listener.tell(message.kind, message.text);
     return with_errors([&] { return result_.get(); });
   }
 
  private:
-  Asked asked_;
+  RequestFromPython requested_;
   nb::object kept_;
   std::shared_ptr<std::vector<Mail::Message>> messages_ = std::make_shared<std::vector<Mail::Message>>();
   std::future<RunResult> result_;
@@ -84,7 +84,7 @@ class RunWorkers {
   ~RunWorkers() { close(); }
 
   BegunRun begin(const Source& source, const Keywords& keywords, bool measure_all, nb::object tell) {
-    BegunRun run(asked_of(source, keywords, "", nb::none(), std::move(tell)), source.kept);
+    BegunRun run(request_from_python(source, keywords, "", nb::none(), std::move(tell)), source.kept);
     run.begin(*workers_, source.read, measure_all);
     return run;
   }

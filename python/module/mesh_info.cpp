@@ -27,15 +27,15 @@ nb::object kept_of(const Source& a, const Source& b) {
 /// The certificate as JSON, and the gates that it misses.
 nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywords, const Source* reference,
                        const Keywords& reference_keywords, nb::object progress, nb::object tell) {
-  const Asked asked = asked_of(source, keywords, "", std::move(progress), std::move(tell));
+  const RequestFromPython requested = request_from_python(source, keywords, "", std::move(progress), std::move(tell));
   Source both = source;
   std::optional<RunRequest> of_reference;
   if (reference) {
-    of_reference = asked_of(*reference, reference_keywords, "", nb::none(), nb::none()).arguments.run;
+    of_reference = request_from_python(*reference, reference_keywords, "", nb::none(), nb::none()).arguments.run;
     both.kept = kept_of(source, *reference);
   }
   const MeshInfo info =
-      watched(place, both, asked,
+      watched(place, both, requested,
               [read = source.read, of_reference, read_reference = reference ? reference->read : ReadMemory()](
                   const RunRequest& request, Context& context) {
                 if (context.progress) context.progress("read", 0);

@@ -46,11 +46,12 @@ TriangleMesh surface_of(Input input) {
 
 /// The surface that a run starts from, as it is read, with what is known of it.
 nb::tuple read_surface(Place& place, const Source& source, const Keywords& keywords, nb::object tell) {
-  const Asked asked = asked_of(source, keywords, "", nb::none(), std::move(tell));
-  TriangleMesh mesh = watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
-    if (read) return surface_of(read(request, context));
-    return surface_of(read_file(request.input, request.options.values.features, request.tell, context));
-  });
+  const RequestFromPython requested = request_from_python(source, keywords, "", nb::none(), std::move(tell));
+  TriangleMesh mesh =
+      watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
+        if (read) return surface_of(read(request, context));
+        return surface_of(read_file(request.input, request.options.values.features, request.tell, context));
+      });
   const nb::object owner = nb::cast(std::move(mesh));
   const auto& kept = nb::cast<const TriangleMesh&>(owner);
   return nb::make_tuple(rows_of(kept.vertices, owner), rows_of(kept.triangles, owner));

@@ -17,17 +17,17 @@ namespace {
 
 RunResult remesh(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
                  bool measure_all, nb::object progress, nb::object tell) {
-  Asked asked = asked_of(source, keywords, output, std::move(progress), std::move(tell));
-  if (measure_all) asked.arguments.run.measures = Measures::all;
-  return watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
+  RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
+  if (measure_all) requested.arguments.run.measures = Measures::all;
+  return watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
     return run_from(read, request, context);
   });
 }
 
 nb::dict estimate(Place& place, const Source& source, const Keywords& keywords, nb::object tell) {
-  const Asked asked = asked_of(source, keywords, "", nb::none(), std::move(tell));
+  const RequestFromPython requested = request_from_python(source, keywords, "", nb::none(), std::move(tell));
   const RunEstimate e =
-      watched(place, source, asked, [read = source.read](const RunRequest& request, Context& context) {
+      watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
         return read ? dry_run(read(request, context), request, context) : dry_run(request, context);
       });
   nb::dict dict;

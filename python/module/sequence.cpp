@@ -40,9 +40,9 @@ class Frames {
 
   RunResult run(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
                 bool measure_all, const std::string& velocity, nb::object progress, nb::object tell) {
-    Asked asked = asked_of(source, keywords, output, std::move(progress), std::move(tell));
-    if (measure_all) asked.arguments.run.measures = Measures::all;
-    return work(place, source, asked,
+    RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
+    if (measure_all) requested.arguments.run.measures = Measures::all;
+    return work(place, source, requested,
                 [chain = chain(), read = source.read, velocity_of = velocity_reader(source, velocity)](
                     const RunRequest& request, Context& context) {
                   RunResult made = chain->run(input_of_run(read, request, context), request, context);
@@ -53,8 +53,8 @@ class Frames {
 
   void go_on_from(Place& place, const Source& source, const Keywords& keywords, const std::string& mesh,
                   const std::string& velocity, nb::object tell) {
-    const Asked asked = asked_of(source, keywords, "", nb::none(), std::move(tell));
-    work(place, source, asked,
+    const RequestFromPython requested = request_from_python(source, keywords, "", nb::none(), std::move(tell));
+    work(place, source, requested,
          [chain = chain(), mesh, read = source.read, velocity_of = velocity_reader(source, velocity)](
              const RunRequest& request, Context& context) {
            chain->go_on_from(input_of_run(read, request, context).soup, read_mesh(mesh));
@@ -71,10 +71,10 @@ class Frames {
 
   /// What was interrupted may still be at work on its chain.
   template <class Work>
-  std::invoke_result_t<Work, const RunRequest&, Context&> work(Place& place, const Source& source, const Asked& asked,
-                                                               Work frame) {
+  std::invoke_result_t<Work, const RunRequest&, Context&> work(Place& place, const Source& source,
+                                                               const RequestFromPython& requested, Work frame) {
     try {
-      return watched(place, source, asked, std::move(frame));
+      return watched(place, source, requested, std::move(frame));
     } catch (const nb::python_error&) {
       chain_.reset();
       throw;

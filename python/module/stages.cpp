@@ -41,8 +41,8 @@ class StageRun {
   StageRun(Place& place, const Source& source, const Keywords& keywords, nb::object progress, nb::object tell)
       : place_(&place),
         source_(source),
-        asked_(asked_of(source_, keywords, "", std::move(progress), std::move(tell))),
-        steps_(std::make_shared<RunSteps>(request_of_stages(asked_.arguments.run))) {}
+        requested_(request_from_python(source_, keywords, "", std::move(progress), std::move(tell))),
+        steps_(std::make_shared<RunSteps>(request_of_stages(requested_.arguments.run))) {}
 
   const Prepared& prepare() {
     if (!prepared_)
@@ -120,7 +120,7 @@ class StageRun {
   template <class Work>
   Made<Work> work(Work stage) {
     if (!steps_) refuse("these stages were interrupted or failed; begin anew");
-    return watched(*place_, source_, asked_, [steps = steps_, stage](const RunRequest& request, Context& context) {
+    return watched(*place_, source_, requested_, [steps = steps_, stage](const RunRequest& request, Context& context) {
       steps->report_to(request.tell, request.around_write);
       return stage(*steps, request, context);
     });
@@ -141,7 +141,7 @@ class StageRun {
 
   Place* place_;  // kept alive by the Python object around it
   Source source_;
-  Asked asked_;
+  RequestFromPython requested_;
   std::shared_ptr<RunSteps> steps_;     ///< shared with the thread that works on it
   const Prepared* prepared_ = nullptr;  ///< of the steps, once it is there
   const Relaxed* relaxed_ = nullptr;

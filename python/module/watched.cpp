@@ -12,7 +12,7 @@ namespace isoshell::python {
 namespace {
 
 /// As the name of a file with a sizing field does it, which is read later.
-void set_sizing(const std::shared_ptr<const SizingField>& sizing, AskedOptions& options) {
+void set_sizing(const std::shared_ptr<const SizingField>& sizing, RequestedOptions& options) {
   options.values.sizing = sizing;
   if (!options.was_given("vertices")) options.values.vertices.reset();
   options.given.push_back("sizing");
@@ -20,31 +20,31 @@ void set_sizing(const std::shared_ptr<const SizingField>& sizing, AskedOptions& 
 
 }  // namespace
 
-Asked asked_of(const Source& source, const Keywords& keywords, const std::string& output, nb::object progress,
-               nb::object tell) {
-  Asked asked{arguments_of(keywords, output), std::move(progress), std::move(tell)};
-  RunRequest& request = asked.arguments.run;
+RequestFromPython request_from_python(const Source& source, const Keywords& keywords, const std::string& output,
+                                      nb::object progress, nb::object tell) {
+  RequestFromPython requested{arguments_of(keywords, output), std::move(progress), std::move(tell)};
+  RunRequest& request = requested.arguments.run;
   if (source.sizing) set_sizing(source.sizing, request.options);
   if (!source.is_file()) {
     if (!request.input.format.empty())
       throw Error(ErrorCode::usage, "arguments", "--input-format is for files; leave it out");
-    return asked;
+    return requested;
   }
   const std::optional<double> iso = request.input.iso;
   request.input = named_input(source.path, request.input.format);
   request.input.iso = iso;
-  return asked;
+  return requested;
 }
 
-Listener listener_of(const Asked& asked, tool::Console& console) {
+Listener listener_of(const RequestFromPython& requested, tool::Console& console) {
   Listener listener;
-  if (!asked.progress.is_none())
-    listener.progress = [&](const std::string& stage, double fraction) { asked.progress(stage, fraction); };
-  else if (asked.arguments.run.options.was_given("progress"))
+  if (!requested.progress.is_none())
+    listener.progress = [&](const std::string& stage, double fraction) { requested.progress(stage, fraction); };
+  else if (requested.arguments.run.options.was_given("progress"))
     listener.progress = [&](const std::string& stage, double fraction) { console.progress(stage, fraction); };
   listener.tell = [&](MessageKind kind, const std::string& text) {
     if (kind == MessageKind::note) console.detail(text);
-    asked.tell(kind == MessageKind::warning, in_keywords(text));
+    requested.tell(kind == MessageKind::warning, in_keywords(text));
   };
   return listener;
 }

@@ -19,30 +19,30 @@
 namespace isoshell::python {
 
 /// What one call of Python asks for.
-struct Asked {
+struct RequestFromPython {
   tool::Arguments arguments;
   nanobind::object progress;  ///< callable(stage, fraction), or none
   nanobind::object tell;      ///< callable(is_warning, text)
 };
 
 /// Throws: usage.
-Asked asked_of(const Source& source, const Keywords& keywords, const std::string& output, nanobind::object progress,
-               nanobind::object tell);
+RequestFromPython request_from_python(const Source& source, const Keywords& keywords, const std::string& output,
+                                      nanobind::object progress, nanobind::object tell);
 
-Listener listener_of(const Asked& asked, tool::Console& console);
+Listener listener_of(const RequestFromPython& requested, tool::Console& console);
 
 /// Does the work on a thread of its own and in the place's context; `work` makes the product of the request, and holds
 /// nothing of Python. Throws: as wait_for does.
 template <class Work>
-auto watched(Place& place, const Source& source, const Asked& asked, Work work) {
+auto watched(Place& place, const Source& source, const RequestFromPython& requested, Work work) {
   using Product = std::invoke_result_t<Work, const RunRequest&, Context&>;
   const auto product = std::make_shared<std::optional<Product>>();
   Place::Lease lease(place);
   const std::shared_ptr<Context> context = lease.context();
   const auto job = std::make_shared<Job>(context);
-  RunRequest request = asked.arguments.run;
-  tool::Console console(asked.arguments.progress, asked.arguments.verbosity);
-  const Listener listener = listener_of(asked, console);
+  RunRequest request = requested.arguments.run;
+  tool::Console console(requested.arguments.progress, requested.arguments.verbosity);
+  const Listener listener = listener_of(requested, console);
   Job* posts = job.get();  // the work ends before the job
   request.tell = [posts](MessageKind kind, const std::string& text) { posts->post(kind, text); };
   request.around_write = [posts](const std::string&, const std::function<void()>& write) {

@@ -108,7 +108,7 @@ def test_slits(run, tmp_path, claim):
     usual = ("--vertices", 500, "--voxel-size", voxel)
     done = run(source, *usual, "--features", "off")
     assert done.stats["topology"]["components"] == 1 and not done.stats["topology"]["agrees_with_input"]
-    assert "warning: the solid has 1 components" in done.said
+    assert "warning: the solid has 1 component " in done.said
     assert run(wide, *usual, "--features", "off").stats["topology"]["components"] == 2
     crisp = run(source, *usual)
     assert crisp.stats["features"]["kept"] and crisp.stats["topology"]["agrees_with_input"]

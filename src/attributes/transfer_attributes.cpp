@@ -6,7 +6,7 @@
 #include <deque>
 #include <optional>
 
-#include "attributes/facing_place.h"
+#include "attributes/facing_point.h"
 #include "attributes/transfer_faces.h"
 #include "core/attribute_values.h"
 #include "core/number_type.h"
@@ -88,7 +88,7 @@ void transfer_to_vertices(const TriangleSoup& source, const std::vector<const At
     if (context.cancel.load(std::memory_order_relaxed)) return;
     for (size_t v = size_t(begin); v < size_t(end); ++v) {
       const MeshPoint place =
-          facing_place(grid, mesh.vertices[v], surroundings[v].normal, surroundings[v].edge_length());
+          facing_point(grid, mesh.vertices[v], surroundings[v].normal, surroundings[v].edge_length());
       for (size_t a = 0; a < from.size(); ++a)
         interpolate(*from[a], source, place, &to[a]->values[v * size_t(from[a]->components)]);
     }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "attributes/facing_place.h"
+#include "attributes/facing_point.h"
 #include "core/attribute_values.h"
 #include "core/buckets.h"
 #include "core/number_type.h"
@@ -150,7 +150,7 @@ FaceTransfer::FaceTransfer(const WeldedSource& source, const TriangleMesh& mesh,
     if (context_.cancel.load(std::memory_order_relaxed)) return;
     for (size_t f = size_t(begin); f < size_t(end); ++f) {
       const FaceShape face = shape_of(mesh_, f);
-      under_[f] = facing_place(grid, face.middle, face.normal, face.edge_length()).triangle;
+      under_[f] = facing_point(grid, face.middle, face.normal, face.edge_length()).triangle;
     }
   });
 }

@@ -47,7 +47,7 @@ struct CpuKernels {
   using SplitCells = PlainKernels::SplitCells;
   using FlipEdges = PlainKernels::FlipEdges;
   using UndoHarm = PlainKernels::UndoHarm;
-  using SearchPlaces = PlainKernels::SearchPlaces;
+  using SearchPositions = PlainKernels::SearchPositions;
 };
 
 }  // namespace isoshell

@@ -6,7 +6,6 @@
 
 #include "core/file_format.h"
 #include "geometry/half_edges.h"
-#include "geometry/triangle_list.h"
 #include "io/mesh/obj_lines.h"
 #include "io/ply/ply_body.h"
 #include "io/polyline_readers.h"

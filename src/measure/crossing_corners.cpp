@@ -8,7 +8,7 @@
 
 namespace isoshell {
 
-void sort_places(std::vector<PointQ8>& places) {
+void sort_points(std::vector<PointQ8>& places) {
   const auto key = [](PointQ8 p) { return std::make_tuple(p.x, p.y, p.z); };
   std::sort(places.begin(), places.end(), [&](PointQ8 p, PointQ8 q) { return key(p) < key(q); });
   places.erase(std::unique(places.begin(), places.end()), places.end());
@@ -20,7 +20,7 @@ std::vector<PointQ8> corners_of(const DualMesh& mesh, const std::vector<std::arr
     for (const uint32_t t : pair)
       for (const uint32_t v : {mesh.triangles[t].a, mesh.triangles[t].b, mesh.triangles[t].c})
         corners.push_back(mesh.position[v]);
-  sort_places(corners);
+  sort_points(corners);
   return corners;
 }
 

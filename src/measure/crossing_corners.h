@@ -9,7 +9,7 @@
 namespace isoshell {
 
 /// By x, y and z, each once.
-void sort_places(std::vector<PointQ8>& places);
+void sort_points(std::vector<PointQ8>& places);
 
 /// The corners of the triangles of some pairs: by x, y and z, each position once.
 std::vector<PointQ8> corners_of(const DualMesh& mesh, const std::vector<std::array<uint32_t, 2>>& pairs);

@@ -42,20 +42,20 @@ class Search {
   LargestDistance run() {
     std::vector<Piece> pieces = whole_triangles();
     for (size_t splits = 0; splits < kMostSplits; splits += kAtATime) {
-      settle_near(pieces);
+      discard_near(pieces);
       if (pieces.empty()) break;
       const std::vector<Piece> smaller = split(take_farthest(pieces));
       pieces.insert(pieces.end(), smaller.begin(), smaller.end());
     }
-    settle(pieces.begin(), pieces.end());
-    return {found_, std::max(found_, settled_)};
+    discard(pieces.begin(), pieces.end());
+    return {found_, std::max(found_, most_of_discarded_)};
   }
 
  private:
   /// What some pieces lead to.
   struct Part {
     std::vector<Piece> pieces;
-    double found = 0, settled = 0;
+    double found = 0, most_of_discarded = 0;
   };
 
   Corner corner(const WorldPoint& p) const {
@@ -82,7 +82,7 @@ class Search {
     if (piece.at_most > enough())
       part.pieces.push_back(piece);
     else
-      part.settled = std::max(part.settled, piece.at_most);
+      part.most_of_discarded = std::max(part.most_of_discarded, piece.at_most);
   }
 
   /// Of `count` things in chunks, joined in their order.
@@ -102,7 +102,7 @@ class Search {
     all.reserve(size);
     for (Part& part : parts) {
       found_ = std::max(found_, part.found);
-      settled_ = std::max(settled_, part.settled);
+      most_of_discarded_ = std::max(most_of_discarded_, part.most_of_discarded);
       all.insert(all.end(), part.pieces.begin(), part.pieces.end());
       part.pieces = {};
     }
@@ -129,13 +129,13 @@ class Search {
     });
   }
 
-  void settle(std::vector<Piece>::iterator begin, std::vector<Piece>::iterator end) {
-    for (; begin != end; ++begin) settled_ = std::max(settled_, begin->at_most);
+  void discard(std::vector<Piece>::iterator begin, std::vector<Piece>::iterator end) {
+    for (; begin != end; ++begin) most_of_discarded_ = std::max(most_of_discarded_, begin->at_most);
   }
-  void settle_near(std::vector<Piece>& pieces) {
+  void discard_near(std::vector<Piece>& pieces) {
     const auto near =
         std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.at_most > enough(); });
-    settle(near, pieces.end());
+    discard(near, pieces.end());
     pieces.erase(near, pieces.end());
   }
   /// Removes those that may be the farthest.
@@ -169,7 +169,7 @@ class Search {
   const TriangleGrid& to_;
   double least_excess_;
   const Context& context_;
-  double found_ = 0, settled_ = 0;
+  double found_ = 0, most_of_discarded_ = 0;
 };
 
 }  // namespace

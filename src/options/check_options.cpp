@@ -5,7 +5,7 @@
 
 namespace isoshell {
 RemeshOptions checked(RemeshOptions values) {
-  AskedOptions options{std::move(values), "", {}};
+  RequestedOptions options{std::move(values), "", {}};
   for (const OptionRow& row : option_rows()) {
     if (const TextOption* text = std::get_if<TextOption>(&row.member)) {
       if (text->check) text->check(options.values);
@@ -17,7 +17,7 @@ RemeshOptions checked(RemeshOptions values) {
   return std::move(options.values);
 }
 
-void check_method(const AskedOptions& options) {
+void check_method(const RequestedOptions& options) {
   const RemeshOptions& o = options.values;
   if (o.method != Method::shell) return;
   const auto refuse = [](const char* what) { throw Error(ErrorCode::usage, "options", what); };

@@ -8,10 +8,10 @@ namespace {
 /// Names of the values of a member of RemeshOptions, which one function reads and another writes.
 template <auto Member, auto Parse, auto Name>
 TextOption named(TextOption::Number number = TextOption::Number::refused, void (*check)(RemeshOptions&) = nullptr) {
-  return {[](const std::string& shown, const std::string& text, AskedOptions& to) {
+  return {[](const std::string& shown, const std::string& text, RequestedOptions& to) {
             to.values.*Member = Parse(shown, text);
           },
-          [](const AskedOptions& from) -> std::string { return Name(from.values.*Member); }, number, check};
+          [](const RequestedOptions& from) -> std::string { return Name(from.values.*Member); }, number, check};
 }
 
 void check_features(RemeshOptions& o) {
@@ -24,10 +24,10 @@ TextOption features_option() {
 }
 
 TextOption gap_option() {
-  return {[](const std::string& shown, const std::string& text, AskedOptions& to) {
+  return {[](const std::string& shown, const std::string& text, RequestedOptions& to) {
             set_gap_width(shown, text, to.values);
           },
-          [](const AskedOptions& from) { return gap_width_text(from.values); }, TextOption::Number::written,
+          [](const RequestedOptions& from) { return gap_width_text(from.values); }, TextOption::Number::written,
           [](RemeshOptions& o) {  // -1 stood for no value
             if (o.closing_vox == -1) o.closing_vox.reset();
             if (o.closing_world == -1.) o.closing_world.reset();
@@ -37,8 +37,8 @@ TextOption gap_option() {
 }
 
 TextOption sizing_option() {
-  return {[](const std::string&, const std::string& text, AskedOptions& to) { to.sizing = text; },
-          [](const AskedOptions& from) {
+  return {[](const std::string&, const std::string& text, RequestedOptions& to) { to.sizing = text; },
+          [](const RequestedOptions& from) {
             return from.sizing.empty() && from.values.sizing ? from.values.sizing->source() : from.sizing;
           }};
 }

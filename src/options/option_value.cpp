@@ -61,7 +61,7 @@ bool OptionRow::may_be_open() const {
       [](auto value) { return Plain<std::decay_t<decltype(RemeshOptions().*value)>>::is_optional; });
 }
 
-OptionValue value_of(const OptionRow& row, const AskedOptions& options) {
+OptionValue value_of(const OptionRow& row, const RequestedOptions& options) {
   return visit_member(
       row, [&](const TextOption& text) -> OptionValue { return text.text(options); },
       [&](auto member) -> OptionValue {
@@ -75,7 +75,8 @@ OptionValue value_of(const OptionRow& row, const AskedOptions& options) {
       });
 }
 
-void set_value(const OptionRow& row, const std::string& shown_name, const OptionValue& value, AskedOptions& options) {
+void set_value(const OptionRow& row, const std::string& shown_name, const OptionValue& value,
+               RequestedOptions& options) {
   visit_member(
       row, [&](const TextOption& text) { text.parse(shown_name, std::get<std::string>(value), options); },
       [&](auto member) {
@@ -92,7 +93,7 @@ void set_value(const OptionRow& row, const std::string& shown_name, const Option
 }
 
 void set_from_text(const OptionRow& row, const std::string& shown_name, const std::string& text,
-                   AskedOptions& options) {
+                   RequestedOptions& options) {
   const OptionValue value = visit_member(
       row, [&](const TextOption&) -> OptionValue { return text; },
       [&](auto member) -> OptionValue {
@@ -102,7 +103,7 @@ void set_from_text(const OptionRow& row, const std::string& shown_name, const st
   set_value(row, shown_name, value, options);
 }
 
-std::string shown_value(const OptionRow& row, const AskedOptions& options) {
+std::string shown_value(const OptionRow& row, const RequestedOptions& options) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   std::visit(

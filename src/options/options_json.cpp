@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "options", message); }
 
-Json json_of(const OptionRow& row, const AskedOptions& options) {
+Json json_of(const OptionRow& row, const RequestedOptions& options) {
   const OptionValue value = value_of(row, options);
   if (std::holds_alternative<std::monostate>(value))
     return row.is_real() ? Json(row.former) : Json(int64_t(row.former));
@@ -95,35 +95,35 @@ void refuse_others(const Json& object) {
 
 }  // namespace
 
-bool AskedOptions::was_given(const std::string& name) const {
+bool RequestedOptions::was_given(const std::string& name) const {
   return std::find(given.begin(), given.end(), name) != given.end();
 }
 
-AskedOptions asked_options(RemeshOptions values, std::string sizing) {
-  AskedOptions asked{std::move(values), std::move(sizing), {}};
+RequestedOptions requested_options(RemeshOptions values, std::string sizing) {
+  RequestedOptions requested{std::move(values), std::move(sizing), {}};
   for (const OptionRow& row : option_rows())
-    if (value_of(row, asked) != value_of(row, {})) asked.given.push_back(row.name);
-  return asked;
+    if (value_of(row, requested) != value_of(row, {})) requested.given.push_back(row.name);
+  return requested;
 }
 
 std::string options_json(const RemeshOptions& options) {
-  const AskedOptions asked{options, "", {}};
+  const RequestedOptions requested{options, "", {}};
   Json object = Json::object();
-  for (const OptionRow& row : option_rows()) object[row.name] = json_of(row, asked);
+  for (const OptionRow& row : option_rows()) object[row.name] = json_of(row, requested);
   return object.dump(-1, ' ', false, Json::error_handler_t::replace);  // a file's name may be any bytes
 }
 
-AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown) {
+RequestedOptions parse_options_json(const std::string& json, UnknownOptions unknown) {
   const Json object = parse_object(json);
-  AskedOptions asked;
+  RequestedOptions requested;
   for (const OptionRow& row : option_rows()) {
     const auto at = object.find(row.name);
     if (at == object.end() || at->is_null()) continue;
-    asked.given.push_back(row.name);
-    set_value(row, row.name, value_in(row, *at), asked);
+    requested.given.push_back(row.name);
+    set_value(row, row.name, value_in(row, *at), requested);
   }
   if (unknown == UnknownOptions::refuse) refuse_others(object);
-  return asked;
+  return requested;
 }
 
 }  // namespace isoshell

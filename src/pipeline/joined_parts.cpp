@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "features/mesh/inner_walls.h"
+#include "features/mesh/internal_faces.h"
 #include "features/mesh/weld_for_features.h"
 #include "isoshell/readable.h"
 #include "pipeline/grid/timed.h"
@@ -12,10 +12,10 @@
 namespace isoshell {
 namespace {
 
-void warn(const WithoutWalls& found, RemeshReport& report) {
+void warn(const WithoutInternalFaces& found, RemeshReport& report) {
   const WorldPoint& at = found.interfaces.front()[0];
   std::ostringstream text;
-  text << counted(found.walls, "triangle") << " between parts left out, solid is on both sides; "
+  text << counted(found.dropped, "triangle") << " between parts left out, solid is on both sides; "
        << counted(int64_t(found.interfaces.size()), "edge") << " around them, the first at " << at.x << ' ' << at.y
        << ' ' << at.z << ", " << (found.interfaces.size() == 1 ? "is a curve" : "are curves")
        << " where creases are kept";
@@ -55,9 +55,9 @@ TriangleSoup with_caps_last(const FeatureMesh& mesh, const TriangleSoup& from) {
 }
 
 /// None where there are no walls.
-std::optional<JoinedParts> without_inner_walls(const TriangleSoup& soup, RemeshReport& report, Context& context) {
+std::optional<JoinedParts> without_internal_faces(const TriangleSoup& soup, RemeshReport& report, Context& context) {
   return timed(report, "mend", context, [&]() -> std::optional<JoinedParts> {
-    std::optional<WithoutWalls> found = drop_inner_walls(weld_for_features(soup));
+    std::optional<WithoutInternalFaces> found = drop_internal_faces(weld_for_features(soup));
     if (!found || found->interfaces.empty()) return {};
     JoinedParts joined;
     joined.soup = with_caps_last(found->mesh, soup);
@@ -76,7 +76,7 @@ std::optional<JoinedParts> join_parts(const TriangleSoup& soup, const SoupTopolo
   const InputTopology& given = measured.topology;
   std::optional<JoinedParts> joined;
   if (given.boundary_loops == 0 && measured.dirt.nonmanifold_edges > 0)
-    joined = without_inner_walls(soup, report, context);
+    joined = without_internal_faces(soup, report, context);
   return joined ? std::move(joined) : join_crossing_parts(soup, given, may_be_open, report, context);
 }
 

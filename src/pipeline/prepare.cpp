@@ -25,7 +25,7 @@ namespace {
 constexpr int32_t kCoarsestGrid = 8;
 
 /// None when the run finds it.
-std::optional<int32_t> asked_closing(const Plan& plan, const LatticeFrame& frame) {
+std::optional<int32_t> requested_closing(const Plan& plan, const LatticeFrame& frame) {
   const RemeshOptions& options = plan.options;
   if (options.closing_world) {
     const double r = std::ceil(*options.closing_world / frame.voxel_size / 2);
@@ -106,7 +106,8 @@ std::optional<double> smallest_cell_world(const TriangleSoup& soup, const Plan& 
   if (plan.options.adaptivity > 0) return kFewestCellVox * usual.voxel_size;
   LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, usual, context); });
   surface.topology = plan.input;
-  PreparedSurface p = prepare_surface(std::move(surface), asked_closing(plan, usual), plan.options, report, context);
+  PreparedSurface p =
+      prepare_surface(std::move(surface), requested_closing(plan, usual), plan.options, report, context);
   RemeshReport unsaid;
   timed(report, "lengths", context, [&] { set_lengths(p, unsaid, context); });
   set_target(p);
@@ -197,7 +198,7 @@ class GridSearch {
 
   /// None where a finer grid takes more memory than there is: what is there is better than nothing.
   std::optional<PreparedSurface> with_sheet(LatticeSurface surface, bool is_refining) {
-    const std::optional<int32_t> closing_vox = asked_closing(plan_, surface.frame);
+    const std::optional<int32_t> closing_vox = requested_closing(plan_, surface.frame);
     try {
       return prepare_surface(std::move(surface), closing_vox, plan_.options, report_, context_);
     } catch (const Error& error) {
@@ -226,9 +227,9 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
 }
 
-Prepared prepare(const TriangleSoup& soup, const RemeshOptions& asked, Context& context) {
+Prepared prepare(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {
   RemeshReport report;
-  const RemeshOptions options = with_even_length(checked(asked), soup);
+  const RemeshOptions options = with_even_length(checked(requested), soup);
   const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
   report.input.dirt = measured.dirt;
   check_area(measured.topology);

@@ -98,7 +98,7 @@ struct Attempt {
 /// From new seeds. Result: why there is none, because of room or memory; empty otherwise.
 std::string try_on_sheet(const PreparedSurface& p, Attempt& attempt, Context& context) {
   try {
-    return reason_against([&]() -> std::string {
+    return failure_reason([&]() -> std::string {
       attempt.made = {};
       attempt.made.seeds = relax_seeds(p, Begin::cold, false, attempt.report, context);
       mesh_on_sheet(p, attempt.made, attempt.report, context);
@@ -131,7 +131,7 @@ std::unique_ptr<MergedWalls> merge_where_crossing(const PreparedSurface& p, Atte
   for (int merge = 0; merge < kMostMerges && best.report.optimize.self_intersections > 0; ++merge) {
     const std::vector<PointQ8> more = crossing_corners(*OnHost(best.made.mesh), {});
     points.insert(points.end(), more.begin(), more.end());
-    sort_places(points);  // a mesh that stays has the same ones again
+    sort_points(points);  // a mesh that stays has the same ones again
     auto merged = std::make_unique<MergedWalls>(
         timed(best.report, "merge", context, [&] { return merge_walls(p, points, merge, context); }));
     if (keep_better(merged->prepared, best, context)) kept = std::move(merged);
@@ -167,14 +167,14 @@ SeedSet relax_without_creases(const PreparedSurface& p, RemeshReport& report, Co
 }
 
 /// What is not as it should be.
-void warn_of_mesh(const PreparedSurface& p, const SeededMesh& made, int64_t asked, RemeshReport& report) {
+void warn_of_mesh(const PreparedSurface& p, const SeededMesh& made, int64_t requested, RemeshReport& report) {
   if (report.dual.failed_cells > 0)
     report.warnings.push_back(
         std::to_string(report.dual.failed_cells) +
         " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
-  if (made.seeds.size() != asked)
+  if (made.seeds.size() != requested)
     report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
-                              std::to_string(asked) + ": its topology needs them at this resolution");
+                              std::to_string(requested) + ": its topology needs them at this resolution");
   if (report.optimize.self_intersections == 0) return;
   const std::vector<PointQ8> corners = crossing_corners(*OnHost(made.mesh), {});
   const WorldPoint at = p.surface.frame.to_world(corners.empty() ? made.mesh.position[0] : corners.front());
@@ -187,12 +187,12 @@ void warn_of_mesh(const PreparedSurface& p, const SeededMesh& made, int64_t aske
 
 /// From relaxed seeds, with all that is tried where the mesh has flaws.
 TriangleMesh triangulate_on_sheet(const PreparedSurface& p, Attempt& best, Context& context) {
-  const int64_t asked = best.report.coherence.began_warm ? p.target.vertices : best.made.seeds.size();
+  const int64_t requested = best.report.coherence.began_warm ? p.target.vertices : best.made.seeds.size();
   mesh_on_sheet(p, best.made, best.report, context);
   begin_again_cold(p, best, context);
   const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, best, context);
   const PreparedSurface& meshed = merged ? merged->prepared : p;
-  warn_of_mesh(meshed, best.made, asked, best.report);
+  warn_of_mesh(meshed, best.made, requested, best.report);
   measure_edges(meshed.sheet, best.made.seeds, best.made.mesh, best.report.sizing, context);
   TriangleMesh mesh = to_world(best.made.mesh, meshed.surface.frame);
   flag_gaps(meshed, OnHost(best.made.seeds)->home.view(), mesh, best.report.gaps);
@@ -233,8 +233,8 @@ RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& con
   return {std::move(mesh), std::move(best.report)};
 }
 
-RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& asked, Context& context) {
-  RemeshOptions options = asked;
+RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {
+  RemeshOptions options = requested;
   options.want_samples = false;
   Prepared prepared = prepare(soup, options, context);
   if (options.method == Method::sheet) prepared.free_samples();

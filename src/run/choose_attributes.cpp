@@ -33,10 +33,10 @@ AttributeFiles files_of(const std::vector<Attribute>& kept, AttributeFiles all, 
 }
 
 /// Of a mesh, the one place where a name can be mistyped.
-void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names& asked) {
+void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names& requested) {
   Names known;
   for (const Attribute& a : soup.attributes) known.push_back(a.name);
-  for (const std::string& name : asked) {
+  for (const std::string& name : requested) {
     if (has(known, name)) continue;
     const auto dropped = std::find_if(soup.dropped_attributes.begin(), soup.dropped_attributes.end(),
                                       [&](const DroppedAttribute& d) { return d.name == name; });

@@ -159,12 +159,12 @@ bool any_row(Holds holds) {
   return std::any_of(rows().begin(), rows().end(), holds);
 }
 
-bool is_asked(const GateRow& row, const Gates& gates) {
+bool is_requested(const GateRow& row, const Gates& gates) {
   return std::visit([&](auto member) { return bool(gates.*member); }, row.member);
 }
 
 /// As in "genus=3", with the limit as it holds.
-std::string asked_text(const GateRow& row, const Gates& gates) {
+std::string requested_text(const GateRow& row, const Gates& gates) {
   return std::visit(
       [&](auto member) -> std::string {
         if constexpr (std::is_same_v<decltype(member), bool Gates::*>)
@@ -218,11 +218,11 @@ bool are_the_inputs(const RunRecord& record) { return record.report.features.bor
 }  // namespace
 
 bool Gates::any() const {
-  return any_row([&](const GateRow& row) { return is_asked(row, *this); });
+  return any_row([&](const GateRow& row) { return is_requested(row, *this); });
 }
 
 bool Gates::needs_distance() const {
-  return any_row([&](const GateRow& row) { return row.of == GateOf::distance && is_asked(row, *this); });
+  return any_row([&](const GateRow& row) { return row.of == GateOf::distance && is_requested(row, *this); });
 }
 
 Gates parse_gates(const std::string& list) {
@@ -230,7 +230,7 @@ Gates parse_gates(const std::string& list) {
   std::istringstream items(list);
   for (std::string gate; std::getline(items, gate, ',');) {
     set_gate(gate, gates);
-    gates.asked.push_back(gate);
+    gates.requested.push_back(gate);
   }
   return gates;
 }
@@ -245,11 +245,12 @@ std::string listed_gates_of_meshes(bool with_words) {
 
 void check_gates_of_mesh(const Gates& gates, bool has_reference) {
   for (const GateRow& row : rows()) {
-    if (!is_asked(row, gates)) continue;
-    const std::string asked = std::string("--require ") + row.name;
-    if (row.of == GateOf::curves) refuse(asked + " is for a run that keeps curves; leave it out");
-    if (row.of == GateOf::frame) refuse(asked + " is for the frames of a sequence; leave it out");
-    if (row.of == GateOf::distance && !has_reference) refuse(asked + " compares with a reference; give one by --ref");
+    if (!is_requested(row, gates)) continue;
+    const std::string requested = std::string("--require ") + row.name;
+    if (row.of == GateOf::curves) refuse(requested + " is for a run that keeps curves; leave it out");
+    if (row.of == GateOf::frame) refuse(requested + " is for the frames of a sequence; leave it out");
+    if (row.of == GateOf::distance && !has_reference)
+      refuse(requested + " compares with a reference; give one by --ref");
   }
 }
 
@@ -257,9 +258,9 @@ std::vector<std::string> missed_gates(const Gates& gates, const Measured& m) {
   std::vector<std::string> missed;
   if (gates.any()) topology(m);  // refuses a run that measured nothing
   for (const GateRow& row : rows()) {
-    if (!is_asked(row, gates)) continue;
+    if (!is_requested(row, gates)) continue;
     if (const std::string what = row.miss(gates, m); !what.empty())
-      missed.push_back(asked_text(row, gates) + ": " + what);
+      missed.push_back(requested_text(row, gates) + ": " + what);
   }
   return missed;
 }

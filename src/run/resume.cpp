@@ -11,7 +11,7 @@
 namespace isoshell {
 namespace {
 
-AskedOptions kept_options(const std::string& json, const std::string& path) {
+RequestedOptions kept_options(const std::string& json, const std::string& path) {
   try {
     return parse_options_json(json, UnknownOptions::pass_over);
   } catch (const Error& e) {
@@ -33,12 +33,12 @@ bool gives_grid(double voxel_size_world, const LatticeFrame& frame) {
 bool is_chosen(const RemeshOptions& o) { return !o.closing_vox && !o.closing_world; }
 
 /// Whether a run that asks for this closing would have made the file.
-bool gives_closing(const RemeshOptions& asked, const AskedOptions& kept, const StageFile& file) {
-  if (is_chosen(asked)) return kept.was_given("close-gaps") && is_chosen(kept.values);
+bool gives_closing(const RemeshOptions& requested, const RequestedOptions& kept, const StageFile& file) {
+  if (is_chosen(requested)) return kept.was_given("close-gaps") && is_chosen(kept.values);
   const double closing_vox =
-      asked.closing_world
-          ? std::min<double>(std::ceil(*asked.closing_world / file.surface.frame.voxel_size / 2), kMaxClosingVox)
-          : double(*asked.closing_vox);
+      requested.closing_world
+          ? std::min<double>(std::ceil(*requested.closing_world / file.surface.frame.voxel_size / 2), kMaxClosingVox)
+          : double(*requested.closing_vox);
   return closing_vox == file.info.closing_vox;
 }
 
@@ -50,10 +50,10 @@ struct InFile {
 };
 
 /// Of the options whose value the file itself shows.
-std::optional<InFile> shown_in_file(const OptionRow& row, const StageFile& file, const AskedOptions& asked,
-                                    const AskedOptions& kept) {
+std::optional<InFile> shown_in_file(const OptionRow& row, const StageFile& file, const RequestedOptions& requested,
+                                    const RequestedOptions& kept) {
   const std::string name = row.name;
-  const RemeshOptions& o = asked.values;
+  const RemeshOptions& o = requested.values;
   const LatticeFrame& frame = file.surface.frame;
   const auto text = [](auto value) {
     std::ostringstream digits;
@@ -75,10 +75,11 @@ bool is_fixed(const OptionRow& row, const StageFile& file) {
 
 /// Refuses an option that differs from what made the file. JSON may give an option and leave its value open, as what
 /// options_json writes does: such an option asks for nothing.
-void check_fixed(const OptionRow& row, const StageFile& file, const AskedOptions& asked, const AskedOptions& kept) {
-  const OptionValue value = value_of(row, asked);
+void check_fixed(const OptionRow& row, const StageFile& file, const RequestedOptions& requested,
+                 const RequestedOptions& kept) {
+  const OptionValue value = value_of(row, requested);
   const bool is_open = std::holds_alternative<std::monostate>(value);
-  const InFile in_file = shown_in_file(row, file, asked, kept)
+  const InFile in_file = shown_in_file(row, file, requested, kept)
                              .value_or(InFile{is_open || value == value_of(row, kept), shown_value(row, kept)});
   if (!in_file.agrees)
     throw Error(ErrorCode::usage, "options",
@@ -88,20 +89,21 @@ void check_fixed(const OptionRow& row, const StageFile& file, const AskedOptions
 
 }  // namespace
 
-AskedOptions adopt_options(const StageFile& file, const std::string& path, const AskedOptions& asked) {
-  const AskedOptions kept = kept_options(file.info.options_json, path);
-  AskedOptions settled = asked;
-  const bool size_given = asked.was_given("vertices") || asked.was_given("edge-length") || asked.was_given("sizing");
+RequestedOptions adopt_options(const StageFile& file, const std::string& path, const RequestedOptions& requested) {
+  const RequestedOptions kept = kept_options(file.info.options_json, path);
+  RequestedOptions adopted = requested;
+  const bool size_given =
+      requested.was_given("vertices") || requested.was_given("edge-length") || requested.was_given("sizing");
   for (const OptionRow& row : option_rows()) {
     const std::string name = row.name;
     const bool fixed = is_fixed(row, file);
-    if (fixed && asked.was_given(name)) check_fixed(row, file, asked, kept);
-    const bool given = name == "vertices" || name == "edge-length" ? size_given : asked.was_given(name);
+    if (fixed && requested.was_given(name)) check_fixed(row, file, requested, kept);
+    const bool given = name == "vertices" || name == "edge-length" ? size_given : requested.was_given(name);
     // A lattice that is there takes no more than what made it.
-    if (row.on_resume != OnResume::of_run && (!given || fixed)) set_value(row, name, value_of(row, kept), settled);
+    if (row.on_resume != OnResume::of_run && (!given || fixed)) set_value(row, name, value_of(row, kept), adopted);
   }
-  settled.values.band_vox = file.shell.band_vox;
-  return settled;
+  adopted.values.band_vox = file.shell.band_vox;
+  return adopted;
 }
 
 }  // namespace isoshell

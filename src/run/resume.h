@@ -11,6 +11,6 @@ namespace isoshell {
 /// The options that were asked for, with the stage file's where none was given. Options that made what the file holds
 /// may be given only as they were then. `path` is the file's.
 /// Throws: usage, naming the option and its value there; unreadable_input when the kept options cannot be read.
-AskedOptions adopt_options(const StageFile& file, const std::string& path, const AskedOptions& asked);
+RequestedOptions adopt_options(const StageFile& file, const std::string& path, const RequestedOptions& requested);
 
 }  // namespace isoshell

@@ -9,11 +9,12 @@
 
 namespace isoshell {
 
-std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& asked) {
+std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& requested) {
   if (input.stage) return input.stage->info.left_out;
   std::string names;
   for (const Attribute& a : input.soup.attributes)
-    if (!asked || std::count(asked->begin(), asked->end(), a.name) > 0) names += (names.empty() ? "" : ", ") + a.name;
+    if (!requested || std::count(requested->begin(), requested->end(), a.name) > 0)
+      names += (names.empty() ? "" : ", ") + a.name;
   return names.empty() ? "" : names + " of " + input.facts.name();
 }
 

@@ -13,7 +13,7 @@ namespace isoshell {
 
 /// The attributes of an input, among those that are asked for, which stage files of its run do not hold; of a stage
 /// file what that has left out. Empty: none.
-std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& asked);
+std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& requested);
 
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite);

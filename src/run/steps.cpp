@@ -140,9 +140,9 @@ class RunSteps::Run {
   }
 
   RunResult finish(bool may_repeat) {
-    save_shell_if_asked();
+    save_shell_if_requested();
     if (request_.stop_after == StopAfter::shell) return result({});
-    save_voronoi_if_asked();
+    save_voronoi_if_requested();
     if (request_.stop_after == StopAfter::voronoi) return result({});
     TriangleMesh mesh = timed("triangulate", [&] { return triangulated(may_repeat); });
     timed("measure", [&] { measure(mesh); });
@@ -271,13 +271,13 @@ class RunSteps::Run {
     return files;
   }
 
-  void save_shell_if_asked() {
+  void save_shell_if_requested() {
     prepare();
     for (const std::string& path : stage_files(request_.save_shell, StopAfter::shell))
       save_shell(path, request_.overwrite);
   }
 
-  void save_voronoi_if_asked() {
+  void save_voronoi_if_requested() {
     relax();
     const std::vector<std::string> files = stage_files(request_.save_voronoi, StopAfter::voronoi);
     if (!files.empty()) save_voronoi(files, request_.overwrite);
@@ -312,7 +312,7 @@ class RunSteps::Run {
     }
     if (!request_.statistics.empty()) around_write(request_.statistics, [&] { write_statistics(record); });
     std::vector<std::string> missed = missed_gates(request_.gates, record);
-    return {std::move(mesh), std::move(record), request_.gates.asked, std::move(missed)};
+    return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed)};
   }
 
   void write_statistics(const RunRecord& record) const {
@@ -322,7 +322,7 @@ class RunSteps::Run {
   }
 
   RunRequest request_;
-  AskedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
+  RequestedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
   Context* context_ = nullptr;
   bool has_checked_files_ = false;
   std::optional<Input> input_;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "attributes/facing_place.h"
+#include "attributes/facing_point.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "geometry/outward_normals.h"
@@ -62,7 +62,7 @@ std::vector<MeshPoint> places_on(const TriangleMesh& mesh, const TriangleSoup& s
   for (size_t i = 0; i < count; ++i) facing += grid.is_facing(nearest[i].triangle, normals[i]);
   const double outward = 2 * facing < count ? -1 : 1, edge_length = mean_edge_length(mesh);
   return of_all(count, context, [&](size_t i) {
-    const MeshPoint place = facing_place(grid, mesh.vertices[i], nearest[i], outward * normals[i], edge_length);
+    const MeshPoint place = facing_point(grid, mesh.vertices[i], nearest[i], outward * normals[i], edge_length);
     const Triangle& t = surface.triangles[place.triangle];
     return is_beside(mesh.vertices[i], surface.vertices, t, place) ? nearest[i] : place;
   });
@@ -106,7 +106,7 @@ std::vector<WorldPoint> carry_onto(const TriangleMesh& mesh, const TriangleSoup&
   const std::vector<WorldPoint> normals = outward_normals(mesh.vertices, mesh.triangles);
   const double farther = 2 * mean_edge_length(mesh);
   return of_all(mesh.vertices.size(), context, [&](size_t i) {
-    const MeshPoint place = facing_place(grid, mesh.vertices[i], normals[i], farther);
+    const MeshPoint place = facing_point(grid, mesh.vertices[i], normals[i], farther);
     return place_in(now.vertices, now.triangles[place.triangle], place);
   });
 }

@@ -31,7 +31,7 @@ struct PlainSplitCells;
 }
 namespace optimize {
 struct PlainFlipEdges;
-struct PlainSearchPlaces;
+struct PlainSearchPositions;
 struct PlainStepWork;
 struct PlainUndoHarm;
 }  // namespace optimize
@@ -64,10 +64,10 @@ struct PlainKernels {
   using SplitCells = dual::PlainSplitCells;  ///< dual_split_body.h
 
   // optimize_mesh
-  using StepWork = optimize::PlainStepWork;          ///< smoothing and fit: optimize_steps.h
-  using FlipEdges = optimize::PlainFlipEdges;        ///< in independent sets: optimize_flips.h
-  using UndoHarm = optimize::PlainUndoHarm;          ///< of a step, to a fixed point: optimize_guard.h
-  using SearchPlaces = optimize::PlainSearchPlaces;  ///< for poor vertices: optimize_search.h
+  using StepWork = optimize::PlainStepWork;                ///< smoothing and fit: optimize_steps.h
+  using FlipEdges = optimize::PlainFlipEdges;              ///< in independent sets: optimize_flips.h
+  using UndoHarm = optimize::PlainUndoHarm;                ///< of a step, to a fixed point: optimize_guard.h
+  using SearchPositions = optimize::PlainSearchPositions;  ///< for poor vertices: optimize_search.h
 };
 
 /// Stands in a set for a kernel that no body asks for, since the backend does the whole stage in its own way.

@@ -179,17 +179,18 @@ TEST_CASE("sizing: creases stay with a field and with adaptivity, and a resumed 
   Folder folder;
   folder.write_off("box.off", shapes::box({-.9, -.9, -.9}, {.9, .9, .9}));
   write_grids((folder / "f.vdb").string(), {ball_sizing(0.12, 3)});
-  for (const std::string asked : {"--sizing f.vdb", "--sizing f.vdb --vertices 500 --uniform-area --fit surface",
-                                  "--vertices 500 --adaptivity 1 --uniform-area"}) {
+  for (const std::string requested : {"--sizing f.vdb", "--sizing f.vdb --vertices 500 --uniform-area --fit surface",
+                                      "--vertices 500 --adaptivity 1 --uniform-area"}) {
     const std::string quick = " -q --device cpu --force ";
-    REQUIRE(folder.run("box.off o.ply --require manifold,features,genus=0 --stats s.json " + asked + quick).status ==
-            0);
+    REQUIRE(
+        folder.run("box.off o.ply --require manifold,features,genus=0 --stats s.json " + requested + quick).status ==
+        0);
     const Json s = Json::parse(folder.content("s.json"));
     CHECK(s["features"]["kept"] == true);
-    if (contains(asked, "--vertices")) CHECK(s["counts"]["vertices"] == 500);
-    if (contains(asked, "--sizing")) CHECK(s["sizing"]["edge_error_mean"] < 0.15);
+    if (contains(requested, "--vertices")) CHECK(s["counts"]["vertices"] == 500);
+    if (contains(requested, "--sizing")) CHECK(s["sizing"]["edge_error_mean"] < 0.15);
     CHECK(s["distance"]["hausdorff"] < 0.002);
-    REQUIRE(folder.run("box.off o.shell.vdb --stop-after shell " + asked + quick).status == 0);
+    REQUIRE(folder.run("box.off o.shell.vdb --stop-after shell " + requested + quick).status == 0);
     REQUIRE(folder.run("o.shell.vdb r.ply" + quick).status == 0);
     CHECK(folder.content("r.ply") == folder.content("o.ply"));
   }
@@ -211,8 +212,8 @@ TEST_CASE("sizing: adaptivity brings the mesh nearer to a surface of uneven curv
   folder.write_off("egg.off", egg);
   double largest[2];
   for (const int adaptivity : {0, 1}) {
-    const std::string asked = " --vertices 700 -q --device cpu --stats s.json --force --adaptivity ";
-    REQUIRE(folder.run("egg.off o.ply" + asked + std::to_string(adaptivity)).status == 0);
+    const std::string requested = " --vertices 700 -q --device cpu --stats s.json --force --adaptivity ";
+    REQUIRE(folder.run("egg.off o.ply" + requested + std::to_string(adaptivity)).status == 0);
     const Json s = Json::parse(folder.content("s.json"));
     largest[adaptivity] = s["distance"]["hausdorff"];
     CHECK(s["quality"]["q_avg"] > 0.93);

@@ -111,7 +111,7 @@ TEST_CASE("pieces: a crease that is dropped at a place joins the patches beside 
   fine->paths = *fewer;
   const CutSurface cut = cut_fine_mesh(fine, made.cut.frame, context);
   CHECK(patch_count(cut) == patch_count(made.cut) - 1);
-  CHECK(!mend_tight_borders(cut));
+  CHECK(!drop_creases_at_tight_borders(cut));
   CHECK(!drop_creases(*made.cut.fine, {}));
 }
 

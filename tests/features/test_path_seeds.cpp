@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "features/seeds/carried_places.h"
+#include "features/seeds/carried_positions.h"
 #include "features/seeds/facing_curves.h"
 #include "features/seeds/path_seeds.h"
 #include "support/catch.h"
@@ -106,13 +106,13 @@ TEST_CASE("path seeds: those of the frame before stay where they are, as far as 
 
 TEST_CASE("carried places: a point lies on the nearest path, if any is near", "[curves][unit]") {
   const FineMesh mesh = strip(60, 4);
-  const std::vector<PlaceOnPath> places = places_on_paths(
+  const std::vector<PositionOnPath> places = positions_on_paths(
       mesh,
       {{1.3 * kEdge, 0.05 * kEdge, 0}, {2 * kEdge, 0.95 * kEdge, 0}, {2 * kEdge, kEdge / 2, 0}, {15 * kEdge, 0, 0}});
   CHECK(places[0].path == 0);
   CHECK(places[0].at.edge == 5);
   CHECK(places[0].at.part == Approx(0.2));
   CHECK(places[1].path == 1);
-  CHECK(places[2].path == PlaceOnPath::kNoPath);
+  CHECK(places[2].path == PositionOnPath::kNoPath);
   CHECK(places[3].at.edge == mesh.paths[0].edge_count());
 }

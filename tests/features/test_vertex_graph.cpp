@@ -76,8 +76,8 @@ TEST_CASE("vertex graph: lengths that grow along ways settle at what a search fi
       INFO("growth " << growth);
       const auto step = [&](double length, double way) { return length + growth * way; };
       const std::vector<double> expected = searched(mesh, own, step);
-      CHECK(settled(find_vertex_graph(mesh), own, step) == expected);
-      CHECK(settled_lengths(find_vertex_graph(mesh), own, growth) == expected);
+      CHECK(least_values(find_vertex_graph(mesh), own, step) == expected);
+      CHECK(graded_lengths(find_vertex_graph(mesh), own, growth) == expected);
     }
   }
 }
@@ -93,7 +93,7 @@ TEST_CASE("vertex graph: of sources that are equally near the smallest is found,
     const auto step = [](const Nearest& from, double way) {
       return from.first + way <= 9 ? Nearest{from.first + way, from.second} : Nearest{kFar, kNone};
     };
-    const std::vector<Nearest> found = settled(find_vertex_graph(mesh), own, step);
+    const std::vector<Nearest> found = least_values(find_vertex_graph(mesh), own, step);
     CHECK(found == searched(mesh, own, step));
     CHECK(std::find(found.begin(), found.end(), Nearest{kFar, kNone}) != found.end());
   }

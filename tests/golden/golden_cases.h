@@ -174,7 +174,7 @@ inline std::string run(const RunCase& c, Context& context) {
   RunResult result;
   for (int frame = 0; frame < c.frames; ++frame) {
     RunRequest request;
-    request.options = asked_options(c.options);
+    request.options = requested_options(c.options);
     request.measures = Measures::all;
     result = chain.run(input_of(c.shape(frame), "shape"), request, context);
   }

@@ -230,16 +230,16 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
   const double voxel = 2. / (kResolution - 1);
   for (const int width_vox : {1, 2, 3, 5, 8, 12, 16}) {
     const TriangleSoup ball = slotted_ball(width_vox * voxel);
-    for (const int asked_vox : {width_vox, width_vox - 4, 0}) {
-      if (asked_vox < 0) continue;
+    for (const int requested_vox : {width_vox, width_vox - 4, 0}) {
+      if (requested_vox < 0) continue;
       RemeshOptions options;
       options.resolution = kResolution;
-      options.closing_world = asked_vox * voxel;
-      options.vertices = asked_vox == width_vox ? 10000 : 2500;  // walls grow as far as edges are long
+      options.closing_world = requested_vox * voxel;
+      options.vertices = requested_vox == width_vox ? 10000 : 2500;  // walls grow as far as edges are long
       const PreparedRun run = prepare_with(ball, options);
-      INFO("slot of " << width_vox << " voxels, closing " << asked_vox << ", volume " << volume_in_balls(run));
+      INFO("slot of " << width_vox << " voxels, closing " << requested_vox << ", volume " << volume_in_balls(run));
       CHECK(run.report.input.repair.capped_loops == 0);
-      if (asked_vox == width_vox) {
+      if (requested_vox == width_vox) {
         CHECK(volume_in_balls(run) > .9);
         GapReport gaps;
         const std::vector<uint8_t> bridges = find_bridges(run.prepared.sites(), run.prepared.sheet());
@@ -251,7 +251,7 @@ TEST_CASE("prepare: a slot closes when its width is asked for, and stays open fr
         if (width_vox >= 4) CHECK(gaps.bridges == 1);
         if (width_vox >= 4) CHECK(gaps.widest_bridge_world / voxel == Approx(width_vox).margin(1.2 + .08 * width_vox));
       }
-      if (asked_vox <= width_vox - 4) CHECK(volume_in_balls(run) < .5);
+      if (requested_vox <= width_vox - 4) CHECK(volume_in_balls(run) < .5);
     }
     RemeshOptions automatic;
     automatic.resolution = kResolution;

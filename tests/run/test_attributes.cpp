@@ -71,7 +71,7 @@ RunRequest request_of(int64_t vertices) {
   RemeshOptions options;
   options.vertices = vertices;
   RunRequest request;
-  request.options = asked_options(options);
+  request.options = requested_options(options);
   return request;
 }
 

@@ -255,7 +255,7 @@ TEST_CASE("borders: a run that resumes from a shell ends with the same bytes", "
   const TemporaryFile shell("borders.vdb");
   TestContext context;
   RunRequest first;
-  first.options = asked_options(keeping_borders(600));
+  first.options = requested_options(keeping_borders(600));
   first.save_shell = shell.path;
   first.overwrite = true;
   Input input;
@@ -276,7 +276,7 @@ TEST_CASE("borders: a run that resumes from a shell ends with the same bytes", "
 TEST_CASE("borders: a run measures those it kept", "[borders]") {
   TestContext context;
   RunRequest request;
-  request.options = asked_options(keeping_borders(600));
+  request.options = requested_options(keeping_borders(600));
   request.measures = Measures::all;
   request.gates = parse_gates("manifold,boundary-loops=2,no-self-intersections,closed");
   Input input;

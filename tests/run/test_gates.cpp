@@ -47,7 +47,7 @@ TEST_CASE("gates: a list sets them, an empty one none", "[gates]") {
   CHECK(g.features);
   CHECK(g.needs_distance());
   CHECK_FALSE(parse_gates("features").needs_distance());
-  CHECK(parse_gates("closed,genus=3").asked == std::vector<std::string>{"closed", "genus=3"});
+  CHECK(parse_gates("closed,genus=3").requested == std::vector<std::string>{"closed", "genus=3"});
 }
 
 TEST_CASE("gates: what is no gate is refused with those there are", "[gates]") {

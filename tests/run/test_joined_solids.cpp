@@ -46,7 +46,7 @@ RunResult result_of(const TriangleSoup& parts, Boundary boundary = Boundary::clo
   options.vertices = 1500;
   options.boundary = boundary;
   if (boundary == Boundary::keep) options.closing_vox = 0;
-  request.options = asked_options(options);
+  request.options = requested_options(options);
   return run(input_of(parts, "parts"), request, context);
 }
 

@@ -37,7 +37,7 @@ TEST_CASE("options json: what is not given is the number that always stood for i
         R"("voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,"method":"sheet","iterations":0,)"
         R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close",)"
         R"("attributes":"all","color-features":false,"uniform-area":false})");
-  const AskedOptions back = parse_options_json(options_json(RemeshOptions{}));
+  const RequestedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
   CHECK_FALSE(back.values.edge_length_world);
   CHECK_FALSE(back.values.resolution);
@@ -71,7 +71,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.boundary = Boundary::keep;
   o.attributes = {"color", "quality"};
   o.outer_only = true;
-  const AskedOptions back = parse_options_json(options_json(o));
+  const RequestedOptions back = parse_options_json(options_json(o));
   const RemeshOptions& b = back.values;
   CHECK_FALSE(b.vertices);
   CHECK(b.edge_length_world == o.edge_length_world);
@@ -115,7 +115,7 @@ TEST_CASE("options json: every value of the widths of gaps survives", "[options]
 }
 
 TEST_CASE("options json: an object may hold few options, and null is none", "[options]") {
-  const AskedOptions few = parse_options_json(R"({"edge-length": 2, "tolerance": null, "seed": 3})");
+  const RequestedOptions few = parse_options_json(R"({"edge-length": 2, "tolerance": null, "seed": 3})");
   CHECK(few.values.edge_length_world == 2);
   CHECK(few.values.vertices == 10000);
   CHECK_FALSE(few.values.tolerance);
@@ -124,7 +124,7 @@ TEST_CASE("options json: an object may hold few options, and null is none", "[op
 }
 
 TEST_CASE("options json: options that a stage file of 7334733 keeps are read", "[options]") {
-  const AskedOptions kept = parse_options_json(
+  const RequestedOptions kept = parse_options_json(
       R"({"vertices":0,"edge-length":1.5,"band":3,"outer-only":true,"method":"sheet","iterations":9,"tolerance":-1.0,)"
       R"("step":0.0,"seed":7,"fit":"surface","uniform-area":false,"adaptivity":0.0,"gradation":1.3,"sizing":""})");
   CHECK_FALSE(kept.values.vertices);
@@ -135,11 +135,12 @@ TEST_CASE("options json: options that a stage file of 7334733 keeps are read", "
 }
 
 TEST_CASE("options json: whole numbers may be written with a point", "[options]") {
-  const AskedOptions asked = parse_options_json(R"({"vertices": 500.0, "band": 3.0, "iterations": 0.0, "seed": 7.0})");
-  CHECK(asked.values.vertices == 500);
-  CHECK(asked.values.band_vox == 3);
-  CHECK_FALSE(asked.values.max_passes);
-  CHECK(asked.values.seed == 7);
+  const RequestedOptions requested =
+      parse_options_json(R"({"vertices": 500.0, "band": 3.0, "iterations": 0.0, "seed": 7.0})");
+  CHECK(requested.values.vertices == 500);
+  CHECK(requested.values.band_vox == 3);
+  CHECK_FALSE(requested.values.max_passes);
+  CHECK(requested.values.seed == 7);
   CHECK(contains(refusal(R"({"seed": 7.5})"), "seed is 7.5; it must be a whole number"));
   CHECK(contains(refusal(R"({"seed": -1.0})"), "it must be a whole number"));
   CHECK(contains(refusal(R"({"seed": 18446744073709551616})"), "it must be a whole number"));
@@ -150,22 +151,22 @@ TEST_CASE("options json: a sizing field whose name is not UTF-8 is written all t
   RemeshOptions o;
   o.sizing = std::make_shared<NamedField>("f\xff.vdb");
   CHECK(parse_options_json(options_json(o)).sizing == "f\xEF\xBF\xBD.vdb");
-  CHECK(asked_options(o).was_given("sizing"));
+  CHECK(requested_options(o).was_given("sizing"));
 }
 
 TEST_CASE("options json: of options set in C++ those are given that differ from the defaults", "[options]") {
-  CHECK(asked_options({}).given.empty());
+  CHECK(requested_options({}).given.empty());
   RemeshOptions o;
   o.vertices = 500;
   o.tolerance = 0;
   o.closing_vox = 0;
   o.outer_only = true;
   o.want_digests = true;
-  const AskedOptions asked = asked_options(o, "f.vdb");
-  CHECK(asked.given == std::vector<std::string>{"vertices", "sizing", "close-gaps", "outer-only", "tolerance"});
-  CHECK(asked.sizing == "f.vdb");
-  CHECK(asked.values.vertices == 500);
-  CHECK(asked.values.want_digests);
+  const RequestedOptions requested = requested_options(o, "f.vdb");
+  CHECK(requested.given == std::vector<std::string>{"vertices", "sizing", "close-gaps", "outer-only", "tolerance"});
+  CHECK(requested.sizing == "f.vdb");
+  CHECK(requested.values.vertices == 500);
+  CHECK(requested.values.want_digests);
 }
 
 TEST_CASE("options json: what cannot be taken is refused by name, value and limit", "[options]") {
@@ -197,7 +198,7 @@ TEST_CASE("options: the numbers that stood for what is not given are still none"
   o.tolerance = -1;
   o.max_step_vox = 0;
   CHECK(Json::parse(options_json(o))["vertices"] == 0);
-  const AskedOptions back = parse_options_json(options_json(o));
+  const RequestedOptions back = parse_options_json(options_json(o));
   CHECK_FALSE(back.values.vertices);
   CHECK_FALSE(back.values.closing_vox);
   CHECK_FALSE(back.values.tolerance);

@@ -45,7 +45,7 @@ SequenceRequest request_in(const TemporaryFolder& folder, int frames, const std:
   SequenceRequest request;
   RemeshOptions options;
   options.vertices = 600;
-  request.frame.options = asked_options(options);
+  request.frame.options = requested_options(options);
   request.frame.input = named_input(folder / "in.##.ply");
   request.frame.output = named_output(folder / output, "", StopAfter::mesh);
   request.frames = {0, frames - 1, 1};

@@ -23,7 +23,7 @@ RunRequest small_run() {
   options.vertices = 300;
   options.resolution = 48;
   RunRequest request;
-  request.options = asked_options(options);
+  request.options = requested_options(options);
   return request;
 }
 
@@ -133,10 +133,10 @@ TEST_CASE("whole run: stage files resume to the same bytes, with what was asked 
     CHECK(digest(run(second, context).mesh) == expected);
     RemeshOptions other;
     other.closing_vox = 2;
-    second.options = asked_options(other);
+    second.options = requested_options(other);
     CHECK(contains(refusal(second, ErrorCode::usage), "--close-gaps is fixed by the "));
   }
-  const AskedOptions kept = parse_options_json(read_stage(first.save_voronoi).info.options_json);
+  const RequestedOptions kept = parse_options_json(read_stage(first.save_voronoi).info.options_json);
   CHECK(kept.values.resolution == 48);
   CHECK(kept.values.seed == 7);
 }
@@ -150,11 +150,11 @@ TEST_CASE("whole run: a stage file resumes with the JSON of the options that mad
   first.save_shell = folder / "s.vdb";
   first.save_voronoi = folder / "v.vdb";
   const uint64_t expected = digest(run(input_of(ball(), "ball"), first, context).mesh);
-  const std::string asked = options_json(first.options.values);
+  const std::string requested = options_json(first.options.values);
   for (const std::string& file : {first.save_shell, first.save_voronoi}) {
     RunRequest second;
     second.input = named_input(file);
-    second.options = parse_options_json(asked);
+    second.options = parse_options_json(requested);
     CHECK(digest(run(second, context).mesh) == expected);
     second.options = parse_options_json(R"({"outer-only": false, "resolution": 0, "voxel-size": 0})");
     CHECK(digest(run(second, context).mesh) == expected);

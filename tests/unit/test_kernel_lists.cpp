@@ -25,7 +25,7 @@ constexpr int kernels_of() {
                        typename Set::FindOutside, typename Set::JoinComponents, typename Set::ProjectVertices,
                        typename Set::ListTrianglesAround, typename Set::SortKeys, typename Set::LabelSheet,
                        typename Set::Walks, typename Set::PassWork, typename Set::SplitCells, typename Set::StepWork,
-                       typename Set::FlipEdges, typename Set::UndoHarm, typename Set::SearchPlaces>();
+                       typename Set::FlipEdges, typename Set::UndoHarm, typename Set::SearchPositions>();
 }
 
 }  // namespace

@@ -128,11 +128,12 @@ TEST_CASE("creases of fields: asking for those of sharp bodies changes no byte o
       level_set(32, [&](const WorldPoint& p) { return -blob(p); }),
   };
   for (const MadeField& field : smooth) {
-    const TriangleSoup asked = extract_iso_surface(field, 0, 0, VolumeCreases::of_sharp_bodies);
+    const TriangleSoup requested = extract_iso_surface(field, 0, 0, VolumeCreases::of_sharp_bodies);
     const TriangleSoup plain = extract_iso_surface(field, 0);
-    CHECK(asked.triangles == plain.triangles);
-    REQUIRE(asked.vertices.size() == plain.vertices.size());
-    for (size_t v = 0; v < plain.vertices.size(); ++v) REQUIRE(distance_sq(asked.vertices[v], plain.vertices[v]) == 0);
+    CHECK(requested.triangles == plain.triangles);
+    REQUIRE(requested.vertices.size() == plain.vertices.size());
+    for (size_t v = 0; v < plain.vertices.size(); ++v)
+      REQUIRE(distance_sq(requested.vertices[v], plain.vertices[v]) == 0);
   }
 }
 

@@ -87,7 +87,7 @@ void check_sequence(const Arguments& a) {
 }
 
 /// All but where the run reads from, which a front may have in memory.
-Arguments settled(const Parser& parser, const std::string& output) {
+Arguments checked_arguments(const Parser& parser, const std::string& output) {
   Arguments a;
   RunRequest& run = a.run;
   parser.set_options(a);
@@ -101,7 +101,7 @@ Arguments settled(const Parser& parser, const std::string& output) {
   return a;
 }
 
-void settle_input(RunRequest& run, const std::string& name) {
+void set_input(RunRequest& run, const std::string& name) {
   const std::optional<double> iso = run.input.iso;
   run.input = named_input(name, run.input.format);
   run.input.iso = iso;
@@ -132,10 +132,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   if (parser.has_flag("help")) return {std::nullopt, help_text(parser.app())};
   if (parser.has_flag("version")) return {std::nullopt, version_text()};
   refuse_leftovers(parser.app());
-  Arguments a = settled(parser, parser.output());
+  Arguments a = checked_arguments(parser, parser.output());
   if (parser.input().empty()) refuse("INPUT is missing; see --help");
   if (parser.output().empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
-  settle_input(a.run, parser.input());
+  set_input(a.run, parser.input());
   return {std::move(a), ""};
 }
 
@@ -146,7 +146,7 @@ Arguments parse_given_options(const std::vector<GivenOption>& given, const std::
     words.push_back("--" + option.name + (option.value ? "=" + *option.value : ""));
   parser.split(std::move(words));
   refuse_leftovers(parser.app());
-  return settled(parser, output);
+  return checked_arguments(parser, output);
 }
 
 std::vector<OptionEntry> option_table() {

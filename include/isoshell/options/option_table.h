@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "isoshell/options/asked_options.h"
 #include "isoshell/options/option_range.h"
+#include "isoshell/options/requested_options.h"
 
 namespace isoshell {
 
@@ -24,8 +24,8 @@ struct TextOption {
     read,     ///< a number is read as its text
     written,  ///< and text that is a number is written as one
   };
-  void (*parse)(const std::string& shown_name, const std::string& text, AskedOptions& to);  ///< throws usage
-  std::string (*text)(const AskedOptions& from);  ///< which parse() makes the same value of
+  void (*parse)(const std::string& shown_name, const std::string& text, RequestedOptions& to);  ///< throws usage
+  std::string (*text)(const RequestedOptions& from);  ///< which parse() makes the same value of
   Number number = Number::refused;
   void (*check)(RemeshOptions& values) = nullptr;  ///< of what was set in C++; throws usage
 };
@@ -67,12 +67,14 @@ struct OptionRow {
 const std::vector<OptionRow>& option_rows();
 
 /// None for the row's former number, too.
-OptionValue value_of(const OptionRow& row, const AskedOptions& options);
+OptionValue value_of(const OptionRow& row, const RequestedOptions& options);
 /// Throws: usage for a value out of range, under `shown_name`.
-void set_value(const OptionRow& row, const std::string& shown_name, const OptionValue& value, AskedOptions& options);
+void set_value(const OptionRow& row, const std::string& shown_name, const OptionValue& value,
+               RequestedOptions& options);
 /// From a command line or keyword; a flag's text is empty. Throws: usage.
-void set_from_text(const OptionRow& row, const std::string& shown_name, const std::string& text, AskedOptions& options);
+void set_from_text(const OptionRow& row, const std::string& shown_name, const std::string& text,
+                   RequestedOptions& options);
 /// As a person would give it; "not given" of a flag that is off and of what has no value.
-std::string shown_value(const OptionRow& row, const AskedOptions& options);
+std::string shown_value(const OptionRow& row, const RequestedOptions& options);
 
 }  // namespace isoshell

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "isoshell/options/asked_options.h"
+#include "isoshell/options/requested_options.h"
 
 namespace isoshell {
 
@@ -19,6 +19,6 @@ enum class UnknownOptions {
 /// Takes what the object has; the others keep their defaults, as does what is null. Throws: unreadable_input for text
 /// that is no object; usage for a value out of range or of another type, and for an unknown name unless it is to be
 /// passed over.
-AskedOptions parse_options_json(const std::string& json, UnknownOptions unknown = UnknownOptions::refuse);
+RequestedOptions parse_options_json(const std::string& json, UnknownOptions unknown = UnknownOptions::refuse);
 
 }  // namespace isoshell

@@ -12,7 +12,7 @@ namespace isoshell {
 
 /// What the result must be; a run that misses any is not an error, but the command then exits with 6.
 struct Gates {
-  std::vector<std::string> asked;  ///< as they were written
+  std::vector<std::string> requested;  ///< as they were written
   bool closed = false, manifold = false, no_self_intersections = false;
   bool allow_intersections = false;  ///< of a run that asks for nothing else: it misses that without this
   std::optional<int64_t> genus, components, boundary_loops;

@@ -28,8 +28,8 @@ using AroundWrite = std::function<void(const std::string& path, const std::funct
 
 struct RunRequest {
   InputRequest input;
-  AskedOptions options;  ///< a sizing field without "vertices" among the given ones decides their number
-  OutputRequest output;  ///< the mesh, or the stage file when the run stops before it
+  RequestedOptions options;  ///< a sizing field without "vertices" among the given ones decides their number
+  OutputRequest output;      ///< the mesh, or the stage file when the run stops before it
   StopAfter stop_after = StopAfter::mesh;
   std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
   std::string statistics;                ///< file, or "-"; empty: none

@@ -16,7 +16,7 @@ struct TrianglesAround {
   Buffer<Triangle> triangles;
 };
 
-/// post::PlainStepWork in lanes.
+/// optimize::PlainStepWork in lanes.
 class CpuStepSimd {
  public:
   void begin(CpuExecutor& exec, const optimize::MeshView& mesh);

@@ -166,14 +166,14 @@ class ProjectRuns {
       choose_meeting(widened(box, kReach));
       for (int k = begin; k < end; ++k) compare_chosen(order_[k]);
     }
-    settle();
+    flush();
     for (int i = 0; i < count_; ++i) {
       const int64_t far_sq = best_[i].distance_sq_q16;
       if (far_sq > int64_t(kFar) * kFar || far_sq <= (kReach - 1) * (kReach - 1)) continue;
       choose_meeting(widened({at(i), at(i)}, int32_t(isqrt(uint64_t(far_sq))) + 2));
       compare_chosen(i);
     }
-    settle();
+    flush();
     for (int i = 0; i < count_; ++i) {
       const int64_t v = begin_ + i;
       if (best_[i].distance_sq_q16 > int64_t(kFar) * kFar)
@@ -208,7 +208,7 @@ class ProjectRuns {
   void compare_chosen(int vertex) {
     const PointQ8 p = at(vertex);
     for (int k = 0; k < chosen_count_; ++k) {
-      if (feet_ == FootSimd::kLanes) settle();
+      if (feet_ == FootSimd::kLanes) flush();
       const int t = chosen_[k];
       vertex_[feet_] = vertex, triangle_[feet_] = near_.triangle[t];
       lanes_.p.set(feet_, p);
@@ -221,7 +221,7 @@ class ProjectRuns {
   static bool is_less(int64_t distance_sq, uint32_t triangle, const NearestTriangle& best) {
     return (distance_sq < best.distance_sq_q16) | ((distance_sq == best.distance_sq_q16) & (triangle < best.triangle));
   }
-  void settle() {
+  void flush() {
     lanes_.find(feet_);
     for (int k = 0; k < feet_;) {
       const int vertex = vertex_[k];

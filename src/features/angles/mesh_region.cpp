@@ -261,7 +261,7 @@ bool MeshRegion::flip(size_t triangle, size_t edge) {
 }
 
 /// Along a curve, towards both of the next vertices, in steps that double; not as far as these.
-std::vector<RegionVertex> MeshRegion::places_along(uint32_t v) const {
+std::vector<RegionVertex> MeshRegion::positions_along(uint32_t v) const {
   std::vector<RegionVertex> out;
   const RegionVertex& here = vertices_[v];
   for (const uint32_t u : next_on_curve(v)) {
@@ -273,7 +273,7 @@ std::vector<RegionVertex> MeshRegion::places_along(uint32_t v) const {
 }
 
 /// Around the home of a vertex: neighbours of that on the surface, and halfway to them.
-std::vector<RegionVertex> MeshRegion::places_around(uint32_t v) const {
+std::vector<RegionVertex> MeshRegion::positions_around(uint32_t v) const {
   const SurfaceMesh& surface = surface_->cut().surface;
   const uint32_t home = vertices_[v].home;
   RegionVertex there = vertices_[v];
@@ -306,7 +306,7 @@ bool MeshRegion::move(uint32_t v) {
   for (const size_t t : around) least += kEnough * costs_[t];
   if (least == 0) return false;
   const bool is_free = before.kind == RegionVertex::Kind::free;
-  for (const RegionVertex& there : is_free ? places_around(v) : places_along(v)) {
+  for (const RegionVertex& there : is_free ? positions_around(v) : positions_along(v)) {
     vertices_[v].home = there.home;
     vertices_[v].at = there.at;
     vertices_[v].position = there.position;
@@ -323,7 +323,7 @@ bool MeshRegion::move(uint32_t v) {
   return true;
 }
 
-void MeshRegion::settle() {
+void MeshRegion::mark_all_tried() {
   std::fill(tried_.begin(), tried_.end(), clock_);
   std::fill(looked_at_.begin(), looked_at_.end(), clock_);
   std::fill(flips_tried_.begin(), flips_tried_.end(), clock_);

@@ -61,7 +61,7 @@ class MeshRegion {
   /// The flips alone, which cost little and tell much of what is left to relax.
   void flip_edges();
   /// Lets relax leave alone what does not change from now on.
-  void settle();
+  void mark_all_tried();
 
   const std::vector<RegionVertex>& vertices() const { return vertices_; }
   const std::vector<RegionTriangle>& triangles() const { return triangles_; }
@@ -91,8 +91,8 @@ class MeshRegion {
   RegionVertex vertex_between(uint32_t u, uint32_t v, uint32_t curve, uint32_t patch, const WorldPoint& near) const;
   RegionVertex vertex_near(uint32_t start, const WorldPoint& near) const;
   RegionVertex on_curve_at(uint32_t curve, size_t at) const;
-  std::vector<RegionVertex> places_around(uint32_t v) const;
-  std::vector<RegionVertex> places_along(uint32_t v) const;
+  std::vector<RegionVertex> positions_around(uint32_t v) const;
+  std::vector<RegionVertex> positions_along(uint32_t v) const;
   bool flip(size_t triangle, size_t edge);
   bool flip_any(size_t triangle);
   bool move(uint32_t v);

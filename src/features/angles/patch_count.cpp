@@ -42,7 +42,7 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
   const auto what = surplus() > 0 ? Change::collapse : Change::split;
   for (const Change& change : {Change{what, 0, 1}, Change{what, 1, 0}}) {
     MeshRegion there = start;
-    there.settle();
+    there.mark_all_tried();
     if (!make(there, change)) continue;
     there.flip_edges();
     const double most = start.cost() + kMostPerCount;

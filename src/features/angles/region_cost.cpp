@@ -108,8 +108,8 @@ std::array<size_t, 2> MeshRegion::span(uint32_t u, uint32_t v, uint32_t curve) c
 }
 
 bool MeshRegion::is_better_than(const MeshRegion& start) const {
-  const bool is_mended = poor() <= start.poor() || cost() < kMuchLess * start.cost();
-  return is_mended && worst_sine() >= start.worst_sine();
+  const bool is_improved = poor() <= start.poor() || cost() < kMuchLess * start.cost();
+  return is_improved && worst_sine() >= start.worst_sine();
 }
 
 uint64_t MeshRegion::digest() const {

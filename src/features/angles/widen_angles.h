@@ -1,4 +1,4 @@
-// The last word on triangles beside curves: where seeds of curves left angles that no place of the others mends.
+// The last word on triangles beside curves: where seeds of curves left angles that no place of the others repairs.
 #pragma once
 
 #include <functional>

@@ -14,7 +14,7 @@ constexpr double kReach = 0.5;        ///< edges
 constexpr double kSharpDegrees = 40;  ///< as creases begin
 
 /// On the sharp edges of the mesh, where their ends have gone to.
-std::vector<WorldPoint> places_on_sharp_edges(const PreviousFrame& previous, double most_apart) {
+std::vector<WorldPoint> points_on_sharp_edges(const PreviousFrame& previous, double most_apart) {
   FeatureMesh mesh;
   mesh.vertices = previous.vertices;
   mesh.triangles = previous.triangles;
@@ -33,7 +33,7 @@ std::vector<WorldPoint> places_on_sharp_edges(const PreviousFrame& previous, dou
 
 CreasesBefore::CreasesBefore(const PreviousFrame& previous, double edge_length_world)
     : reach_world_(kReach * edge_length_world),
-      places_(places_on_sharp_edges(previous, reach_world_)),
+      places_(points_on_sharp_edges(previous, reach_world_)),
       cells_(places_, reach_world_) {}
 
 bool CreasesBefore::are_near(const WorldPoint& place) const {

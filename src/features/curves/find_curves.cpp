@@ -137,7 +137,7 @@ CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, C
 
 CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, FoundCreases found,
                          CreaseReport* report) {
-  CreaseReport& told = found.report;
+  CreaseReport& creases = found.report;
   const MeshEdges& edges = found.edges;
   const std::vector<EdgeChain> chains =
       find_chains(edges, find_curve_edges(mesh, edges, std::move(found.curve_edges), options));
@@ -159,8 +159,8 @@ CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, F
   std::sort(network.corners.begin(), network.corners.end());
   network.corners.erase(std::unique(network.corners.begin(), network.corners.end()), network.corners.end());
   for (const EdgeChain& chain : chains)
-    if (chain.kind == CurveKind::crease) told.kept_length_world += length_of(mesh, chain);
-  if (report) *report = told;
+    if (chain.kind == CurveKind::crease) creases.kept_length_world += length_of(mesh, chain);
+  if (report) *report = creases;
   return network;
 }
 

@@ -154,7 +154,7 @@ std::optional<Paths> drop_creases(const FineMesh& mesh, const std::vector<PointQ
   return without_edges(mesh, goes);
 }
 
-std::optional<Paths> mend_tight_borders(const CutSurface& cut) {
+std::optional<Paths> drop_creases_at_tight_borders(const CutSurface& cut) {
   std::vector<char> is_seed(cut.copies_first.size() - 1, 0), is_tight(is_seed);
   for (const CutCurve& curve : cut.curves)
     for (const size_t s : curve.seeds) is_seed[curve.place[s]] = 1;

@@ -19,7 +19,7 @@ std::optional<Paths> drop_creases(const FineMesh& mesh, const std::vector<PointQ
 
 /// Without the creases along borders that have less than three seeds all around; other curves there have more seeds.
 /// None where there are no such borders, or their segments are too short to be cut.
-std::optional<Paths> mend_tight_borders(const CutSurface& cut);
+std::optional<Paths> drop_creases_at_tight_borders(const CutSurface& cut);
 
 /// Per path of `before` whether `after` does not have it, with as many seeds.
 std::vector<char> which_changed(const Paths& before, const Paths& after);

@@ -33,9 +33,9 @@ VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const 
   const double e = fine.edge_length[0];
   for (int cut = 1;; ++cut) {
     VertexGraph graph = find_vertex_graph(fine);
-    if (!options.asked.vary()) return graph;
+    if (!options.requested.vary()) return graph;
     const size_t before = fine.position.size();
-    ask_for_lengths(fine, graph, frame, options.asked, options.vertices, e);
+    ask_for_lengths(fine, graph, frame, options.requested, options.vertices, e);
     if (cut == kMostCuts) return graph;
     FineMesh finer = fine;
     for (double& l : finer.edge_length) l = std::min(2 * l, e);
@@ -60,8 +60,9 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   const VertexGraph graph = with_asked_lengths(fine, frame, options, context);
   const double widest = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
   const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * widest);
-  if (options.vertices > 0 || options.asked.vary())
-    vary_edge_lengths(fine, graph, facing, {options.vertices, options.asked.growth, options.asked.field != nullptr});
+  if (options.vertices > 0 || options.requested.vary())
+    vary_edge_lengths(fine, graph, facing,
+                      {options.vertices, options.requested.growth, options.requested.field != nullptr});
   check_cancel(context, "features");
   std::vector<WorldPoint> before;
   for (const WorldPoint& p : options.before) before.push_back(on_lattice(frame, p));
@@ -86,9 +87,9 @@ CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, con
   MeshTwins twins;
   run_with_threads(context, [&] { *fine = refined(mesh, network, frame, options, context, twins); });
   CutSurface cut = cut_fine_mesh(fine, frame, context, std::move(twins));
-  cut.is_asked = options.asked.vary();
+  cut.is_requested = options.requested.vary();
   cut.seeds = options.vertices;
-  if (cut.seeds == 0 && cut.is_asked) cut.seeds = std::llround(vertices_of_lengths(*fine));
+  if (cut.seeds == 0 && cut.is_requested) cut.seeds = std::llround(vertices_of_lengths(*fine));
   return cut;
 }
 

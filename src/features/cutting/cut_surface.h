@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "features/mesh/feature_mesh.h"
-#include "features/seeds/asked_lengths.h"
+#include "features/seeds/requested_lengths.h"
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/advanced/seed_set.h"
 #include "isoshell/advanced/surface_mesh.h"
@@ -37,7 +37,7 @@ struct CutSurface {
   SurfaceMesh surface;  ///< cut into patches, with triangles that may have no area: they were thinner than a step
   LatticeFrame frame;
   double longest_edge_q8 = 0;  ///< aimed at
-  bool is_asked = false;       ///< lengths vary as was asked for
+  bool is_requested = false;   ///< lengths vary as was asked for
   std::vector<CutCurve> curves;
   int64_t corner_count = 0;
   std::vector<uint32_t> place;              ///< per vertex of the surface; kNone off borders
@@ -56,7 +56,7 @@ inline size_t patch_count(const CutSurface& cut) {
 struct CutOptions {
   double edge_length_world = 0;         ///< aimed at, everywhere the same
   int64_t vertices = 0;                 ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
-  AskedLengths asked = {};              ///< in proportion to these, or with 0 vertices these
+  RequestedLengths requested = {};      ///< in proportion to these, or with 0 vertices these
   std::vector<WorldPoint> before = {};  ///< vertices of another mesh, which stay seeds of curves where they lie on one
 };
 

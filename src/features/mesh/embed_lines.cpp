@@ -15,9 +15,9 @@ namespace {
 constexpr double kLongestWay = 3;  // of a segment
 
 /// A mesh whose edges and triangles are split one at a time.
-class SplitMesh {
+class EmbeddingMesh {
  public:
-  explicit SplitMesh(FeatureMesh mesh) : mesh_(std::move(mesh)), first_corner_(mesh_.vertices.size(), kNone) {
+  explicit EmbeddingMesh(FeatureMesh mesh) : mesh_(std::move(mesh)), first_corner_(mesh_.vertices.size(), kNone) {
     next_corner_.resize(3 * mesh_.triangles.size());
     for (uint32_t c = uint32_t(next_corner_.size()); c-- > 0;) link(c);
     for (uint32_t t = 0; t < mesh_.triangles.size(); ++t) root_.push_back(t);
@@ -167,7 +167,7 @@ class LineEmbedder {
     return edges;
   }
 
-  SplitMesh& mesh() { return mesh_; }
+  EmbeddingMesh& mesh() { return mesh_; }
 
  private:
   struct Plane {
@@ -232,7 +232,7 @@ class LineEmbedder {
     return best.u == best.v ? best.u : mesh_.split_edge(best.u, best.v, best.at);
   }
 
-  SplitMesh mesh_;
+  EmbeddingMesh mesh_;
   double tolerance_;
 };
 

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "core/parallel_ranges.h"
-#include "features/mesh/split_edges.h"
+#include "features/mesh/edge_subdivision.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"

@@ -6,7 +6,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "features/mesh/split_edges.h"
+#include "features/mesh/edge_subdivision.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
@@ -141,7 +141,7 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
 }  // namespace
 
 FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* neighbours) {
-  const SplitEdges edges(mesh, context.memory_limit_bytes, neighbours);
+  const EdgeSubdivision edges(mesh, context.memory_limit_bytes, neighbours);
   const size_t together = std::clamp<size_t>(mesh.triangles.size() / kTasks, 1, kMostTogether);
   const size_t tasks = (mesh.triangles.size() + together - 1) / together;
   std::vector<Filling> fillings(tasks, Filling(mesh));

@@ -29,7 +29,7 @@ VertexGraph find_vertex_graph(const FineMesh& mesh);
 /// more than a neighbour offers that changed, or has what that offered before; what comes out is the same as that of a
 /// search from the least value on.
 template <class Value, class Step>
-std::vector<Value> settled(const VertexGraph& graph, const std::vector<Value>& own, Step step) {
+std::vector<Value> least_values(const VertexGraph& graph, const std::vector<Value>& own, Step step) {
   const auto vertices = uint32_t(own.size());
   std::vector<Value> value = own, pulled = own;
   Buffer<uint32_t> looked_at(vertices), next(vertices);
@@ -59,8 +59,8 @@ std::vector<Value> settled(const VertexGraph& graph, const std::vector<Value>& o
   return value;
 }
 
-/// What settled gives for lengths above 0 that grow by `growth` along the way, sooner: shorter lengths spread first, in
-/// bands, so that few vertices hear of a length that a shorter one replaces.
-std::vector<double> settled_lengths(const VertexGraph& graph, const std::vector<double>& own, double growth);
+/// What least_values gives for lengths above 0 that grow by `growth` along the way, sooner: shorter lengths spread
+/// first, in bands, so that few vertices hear of a length that a shorter one replaces.
+std::vector<double> graded_lengths(const VertexGraph& graph, const std::vector<double>& own, double growth);
 
 }  // namespace isoshell

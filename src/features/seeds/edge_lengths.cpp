@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "core/parallel_ranges.h"
-#include "features/seeds/asked_lengths.h"
 #include "features/seeds/length_limits.h"
 #include "features/seeds/path_seeds.h"
+#include "features/seeds/requested_lengths.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {
@@ -23,19 +23,19 @@ constexpr double kLeastStep = 0.6;  ///< from one longest length to the next
 
 /// How long edges may be: at each vertex, and over those around it.
 struct Limits {
-  std::vector<double> asked;  ///< per vertex, over the longest
-  std::vector<double> most;   ///< per vertex, whatever the longest is
-  double growth;              ///< of a length along the way
+  std::vector<double> requested;  ///< per vertex, over the longest
+  std::vector<double> most;       ///< per vertex, whatever the longest is
+  double growth;                  ///< of a length along the way
 };
 
 /// The lengths asked for within the limits, and less where a shorter length is near.
 std::vector<double> graded(const VertexGraph& graph, const Limits& limits, double longest) {
   std::vector<double> own(limits.most.size());
   for_each_index(size_t(0), own.size(), [&](size_t v) {
-    const double asked = limits.asked[v] * longest;
-    own[v] = std::clamp(limits.most[v], std::max(kShortest * asked, longest / kMostLengthRatio), asked);
+    const double requested = limits.requested[v] * longest;
+    own[v] = std::clamp(limits.most[v], std::max(kShortest * requested, longest / kMostLengthRatio), requested);
   });
-  return settled_lengths(graph, own, limits.growth);
+  return graded_lengths(graph, own, limits.growth);
 }
 
 /// Beside strips between two curves, or two parts of one, by their width.
@@ -93,9 +93,9 @@ void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vect
   const double e = *widest;
   const bool is_even = *least == e;
   Limits limits{mesh.edge_length, std::vector<double>(mesh.position.size(), kMostLengthRatio * e), options.growth};
-  if (!options.as_asked) limits.most = most_lengths(mesh, graph, facing);
+  if (!options.as_requested) limits.most = most_lengths(mesh, graph, facing);
   if (is_even && std::all_of(limits.most.begin(), limits.most.end(), [&](double l) { return l >= e; })) return;
-  for (double& asked : limits.asked) asked /= e;
+  for (double& requested : limits.requested) requested /= e;
   if (options.vertices == 0) {
     mesh.edge_length = graded(graph, limits, e);
     return;

@@ -30,7 +30,7 @@ std::vector<uint32_t> nearest_on_paths(const FineMesh& mesh, const VertexGraph& 
   std::vector<Nearest> own(mesh.position.size(), Nearest{kFar, kNone});
   for (const CurvePath& path : mesh.paths)
     for (const uint32_t v : path.vertex) own[v] = {0, v};
-  const std::vector<Nearest> found = settled(graph, own, [&](const Nearest& from, double way) {
+  const std::vector<Nearest> found = least_values(graph, own, [&](const Nearest& from, double way) {
     return from.first + way <= reach ? Nearest{from.first + way, from.second} : Nearest{kFar, kNone};
   });
   std::vector<uint32_t> nearest(found.size());

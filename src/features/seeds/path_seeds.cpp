@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/parallel_ranges.h"
-#include "features/seeds/carried_places.h"
+#include "features/seeds/carried_positions.h"
 #include "features/seeds/seeds_across.h"
 #include "geometry/segment.h"
 
@@ -22,7 +22,7 @@ constexpr double kCostOfFacing = 0.08;
 constexpr double kGainOfStaying = 0.5;
 constexpr int kSweeps = 3;  ///< over the paths that others run along
 
-using PlacesBefore = std::vector<std::vector<PathPoint>>;  ///< per path those of seeds that may stay
+using PositionsBefore = std::vector<std::vector<PathPoint>>;  ///< per path those of seeds that may stay
 
 /// A place where a seed may be.
 struct Candidate {
@@ -33,10 +33,10 @@ struct Candidate {
   double cost = 0;     ///< of a seed there
 };
 
-PlacesBefore places_before(const FineMesh& mesh, const std::vector<WorldPoint>& points) {
-  PlacesBefore places(mesh.paths.size());
-  for (const PlaceOnPath& place : places_on_paths(mesh, points))
-    if (place.path != PlaceOnPath::kNoPath && place.at.edge < mesh.paths[place.path].edge_count())
+PositionsBefore positions_before(const FineMesh& mesh, const std::vector<WorldPoint>& points) {
+  PositionsBefore places(mesh.paths.size());
+  for (const PositionOnPath& place : positions_on_paths(mesh, points))
+    if (place.path != PositionOnPath::kNoPath && place.at.edge < mesh.paths[place.path].edge_count())
       places[place.path].push_back(place.at);
   return places;
 }
@@ -193,7 +193,7 @@ bool are_same(const std::vector<PathPoint>& a, const std::vector<PathPoint>& b) 
 
 /// Places the seeds of paths that run along one another, again where those across changed. `is_placed`: per path
 /// whether its seeds are for those across as they are.
-void sweep_over(const std::vector<size_t>& group, const SeedsAcross& across, const PlacesBefore& before,
+void sweep_over(const std::vector<size_t>& group, const SeedsAcross& across, const PositionsBefore& before,
                 std::vector<char>& is_placed, FineMesh& mesh) {
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (const size_t p : group) {
@@ -222,7 +222,7 @@ std::vector<double> segments_along(const FineMesh& mesh, const CurvePath& path) 
 
 void place_path_seeds(FineMesh& mesh, const std::vector<FacingVertices>& facing,
                       const std::vector<WorldPoint>& before) {
-  const PlacesBefore places = places_before(mesh, before);
+  const PositionsBefore places = positions_before(mesh, before);
   const SeedsAcross across(mesh, facing);
   const auto is_alone = [&](size_t p) { return mesh.paths[p].is_jagged || !across.beside(p); };
   for_each_index(size_t(0), mesh.paths.size(), [&](size_t p) {

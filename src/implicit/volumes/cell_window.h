@@ -80,7 +80,7 @@ void each_cut_cell(const float* window, Inside is_inside, Visit visit) {
 inline double finite_value(float value) { return std::clamp<double>(value, -3e38, 3e38); }
 
 /// Where an edge crosses the surface between two values: 0 at its first end, 1 at the other.
-inline double place_on_edge(float first, float second, double iso) {
+inline double crossing_on_edge(float first, float second, double iso) {
   const double from = finite_value(first), to = finite_value(second);
   return std::clamp((iso - from) / (to - from), kEdgeEnd, 1 - kEdgeEnd);
 }

@@ -69,8 +69,8 @@ class CreasePlanes {
         if (value_.empty()) read_wide();
         const int p[3] = {offset >> 6, offset >> 3 & 7, offset & 7};
         if (!is_near_bent(axis, p)) continue;
-        const double place =
-            std::clamp(place_on_edge(at[0], at[kWindowStride[axis]], inside_.iso), kCreaseEdgeEnd, 1 - kCreaseEdgeEnd);
+        const double place = std::clamp(crossing_on_edge(at[0], at[kWindowStride[axis]], inside_.iso), kCreaseEdgeEnd,
+                                        1 - kCreaseEdgeEnd);
         found.push_back(cross_at(axis, p, place, starts_inside));
       }
     return found;

@@ -100,9 +100,9 @@ Creases::Creases(const ScalarField& field, Inside inside, double rise, const std
                  [&](size_t b) { crossings_[b] = find_crease_crossings(field, inside, rise, blocks[b]); });
   for_each_index(size_t(0), blocks.size(), [&](size_t b) { vertices_[b] = find_vertices(field, inside, b); });
   even_out();
-  settle();
+  undo_inversions();
   drop_short();
-  settle();
+  undo_inversions();
   forget_given_up();
 }
 
@@ -299,7 +299,7 @@ WorldPoint Creases::evened(CreaseVertexId id) const {
 }
 
 /// Takes vertices back until no triangle turns over: each has two steps, so that ends. Returns their cells.
-std::vector<Voxel> Creases::settle() {
+std::vector<Voxel> Creases::undo_inversions() {
   std::vector<Voxel> cells;
   for (;;) {
     std::vector<std::vector<uint32_t>> turned(vertices_.size());
@@ -307,10 +307,10 @@ std::vector<Voxel> Creases::settle() {
       if (turns_over(id)) turned[id.block].push_back(id.number);
     });
     keep_nearer(turned);
-    const size_t settled = cells.size();
+    const size_t before = cells.size();
     for (size_t b = 0; b < turned.size(); ++b)
       for (const uint32_t i : turned[b]) cells.push_back(take_back({uint32_t(b), i}));
-    if (cells.size() == settled) return cells;
+    if (cells.size() == before) return cells;
   }
 }
 
@@ -348,7 +348,7 @@ bool Creases::is_farthest(CreaseVertexId id, const std::vector<std::vector<uint3
 std::vector<Voxel> Creases::take_back(const std::vector<CreaseVertexId>& which) {
   std::vector<Voxel> cells;
   for (const CreaseVertexId id : which) cells.push_back(take_back(id));
-  const std::vector<Voxel> then = settle();
+  const std::vector<Voxel> then = undo_inversions();
   cells.insert(cells.end(), then.begin(), then.end());
   forget_given_up();
   return cells;

@@ -64,7 +64,7 @@ class Creases {
   bool turns_over(CreaseVertexId id) const;
   WorldPoint evened(CreaseVertexId id) const;
   void even_out();
-  std::vector<Voxel> settle();
+  std::vector<Voxel> undo_inversions();
   Voxel take_back(CreaseVertexId id);
   void keep_nearer(std::vector<std::vector<uint32_t>>& turned) const;
   bool is_farthest(CreaseVertexId id, const std::vector<std::vector<uint32_t>>& turned) const;

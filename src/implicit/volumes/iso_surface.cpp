@@ -282,7 +282,7 @@ class IsoSurface {
   WorldPoint crossing(size_t b, const float* window, int offset, int axis) const {
     const float* at = window + window_index(offset);
     const CreaseCrossing* beside_crease = creases_ ? creases_->crossing(b, axis, offset) : nullptr;
-    double t = beside_crease ? beside_crease->place : place_on_edge(at[0], at[kWindowStride[axis]], inside_.iso);
+    double t = beside_crease ? beside_crease->place : crossing_on_edge(at[0], at[kWindowStride[axis]], inside_.iso);
     if (creases_) t = std::clamp(t, kCreaseEdgeEnd, 1 - kCreaseEdgeEnd);
     const Voxel o = plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7);
     return {o.x + (axis == 0 ? t : 0), o.y + (axis == 1 ? t : 0), o.z + (axis == 2 ? t : 0)};

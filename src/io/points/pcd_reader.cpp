@@ -69,7 +69,7 @@ class PcdReader {
       if (!words.empty() && words[0][0] != '#') read_line(words);
     }
     h_.body = p;
-    settle();
+    check_header();
   }
 
   void read_line(const std::vector<std::string>& words) {
@@ -107,7 +107,7 @@ class PcdReader {
     return value;
   }
 
-  void settle() {
+  void check_header() {
     if (h_.width > 0 && h_.height > kMaxSoupVertices / h_.width)
       source_.refuse("WIDTH " + std::to_string(h_.width) + " times HEIGHT " + std::to_string(h_.height) +
                      " is more than " + std::to_string(kMaxSoupVertices) + " points; split the file");

@@ -8,9 +8,9 @@
 namespace isoshell {
 
 /// Runs work that has another way after it. Result: why it cannot be done, said by the work, or by the stage that has
-/// no room for it; empty where it is done. Throws: all other errors, which no other way mends.
+/// no room for it; empty where it is done. Throws: all other errors, which no other way avoids.
 template <class Work>
-std::string reason_against(Work work) {
+std::string failure_reason(Work work) {
   try {
     return work();
   } catch (const NoRoom& error) {

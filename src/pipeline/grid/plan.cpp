@@ -30,7 +30,7 @@ double voxels_per_spacing(int64_t vertices) {
   return std::clamp(std::sqrt(kFewestVoxels / double(vertices)), kVoxelsPerSpacing, kMostVoxelsPerSpacing);
 }
 
-int32_t asked_voxel_resolution(double longest, double voxel_size) {
+int32_t requested_voxel_resolution(double longest, double voxel_size) {
   const int32_t resolution = resolution_for_voxel(longest, voxel_size);
   if (resolution >= kMinResolution && resolution <= kMaxResolution) return resolution;
   std::ostringstream text;
@@ -69,7 +69,7 @@ Plan plan_of(const RemeshOptions& checked_options, const InputTopology& input, c
 int32_t Plan::first_resolution() const {
   if (options.resolution) return *options.resolution;
   const double longest = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
-  if (options.voxel_size_world) return asked_voxel_resolution(longest, *options.voxel_size_world);
+  if (options.voxel_size_world) return requested_voxel_resolution(longest, *options.voxel_size_world);
   const double spacing = std::sqrt(input.area_world / double(target.vertices));
   return spacing > 0 ? resolution_for_cell(longest, spacing, target.vertices) : kMinDefaultResolution;
 }

@@ -157,16 +157,16 @@ double even_length_world(const SizingField& field, const TriangleSoup& soup) {
 
 bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
 
-AskedLengths asked_lengths(const PreparedSurface& p) {
+RequestedLengths requested_lengths(const PreparedSurface& p) {
   const RemeshOptions& options = p.options;
-  AskedLengths asked;
-  asked.growth = options.gradation - 1;
-  if (p.sheet.lengths.at.empty()) return asked;
-  asked.field = options.sizing.get();
-  asked.adaptivity = options.adaptivity;
-  asked.usual_world = p.target_of_input.edge_length_world;
-  asked.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
-  return asked;
+  RequestedLengths requested;
+  requested.growth = options.gradation - 1;
+  if (p.sheet.lengths.at.empty()) return requested;
+  requested.field = options.sizing.get();
+  requested.adaptivity = options.adaptivity;
+  requested.usual_world = p.target_of_input.edge_length_world;
+  requested.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
+  return requested;
 }
 
 bool wants_lengths(const RemeshOptions& options) { return options.sizing || options.adaptivity > 0; }
@@ -190,11 +190,11 @@ void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
     p.vertices_of_lengths = target_of(even, sheet_area_world(sheet)).vertices;
     return;
   }
-  const int64_t asked = field_decides(options) ? 0 : target_of(options, sheet_area_world(sheet)).vertices;
+  const int64_t requested = field_decides(options) ? 0 : target_of(options, sheet_area_world(sheet)).vertices;
   double cell = kCellOfEdge;
-  if (asked > 0) {
+  if (requested > 0) {
     sheet.lengths = limit_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
-    cell = cell_of_length(sheet, asked, context);
+    cell = cell_of_length(sheet, requested, context);
   }
   int64_t slope_q16 = 0;
   for (int round = 0; round < kRounds; ++round) {
@@ -202,15 +202,15 @@ void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
     slope_q16 =
         std::min<int64_t>(std::llround((options.gradation - 1) * kCellOfEdge / cell * 65536), kMostLengthSlopeQ16);
     sheet.lengths = limit_edge_lengths(sheet, bounded.raw(), slope_q16, context);
-    const double now = asked > 0 ? cell_of_length(sheet, asked, context) : cell;
-    const bool settled = std::abs(now / cell - 1) < 0.01;
-    if (settled || round + 1 == kRounds) bounded.warn(wanted, sheet, cell / kCellOfEdge, report);
+    const double now = requested > 0 ? cell_of_length(sheet, requested, context) : cell;
+    const bool has_converged = std::abs(now / cell - 1) < 0.01;
+    if (has_converged || round + 1 == kRounds) bounded.warn(wanted, sheet, cell / kCellOfEdge, report);
     cell = now;
-    if (settled) break;
+    if (has_converged) break;
   }
   if (options.adaptivity > 0)
-    smooth_lengths(asked > 0 ? asked : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
-  if (asked == 0) p.vertices_of_lengths = vertices_of_lengths(sheet, context);
+    smooth_lengths(requested > 0 ? requested : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
+  if (requested == 0) p.vertices_of_lengths = vertices_of_lengths(sheet, context);
 }
 
 double smallest_cell_vox(const PreparedSurface& p, Context& context) {
@@ -225,7 +225,7 @@ void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mes
 }
 
 void measure_edges(const CutSurface& cut, const JoinedPatches& made, SizingReport& report) {
-  if (cut.is_asked && !cut.surface.lengths.at.empty())
+  if (cut.is_requested && !cut.surface.lengths.at.empty())
     measure_edges(cut.surface, cut.frame.voxel_size, 1, made.home, made.mesh, report);
 }
 

@@ -16,7 +16,7 @@ bool wants_lengths(const RemeshOptions& options);
 bool field_decides(const RemeshOptions& options);
 
 /// What is asked for of a surface that is cut; nothing where lengths are all equal.
-AskedLengths asked_lengths(const PreparedSurface& p);
+RequestedLengths requested_lengths(const PreparedSurface& p);
 
 /// A field that decides the count, and has one length at all vertices of the soup, is an edge length.
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup);

@@ -157,13 +157,13 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
   CutPlan plan{mesh, curves, p.surface.frame, seeds};
   report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
-  how = {edge_length_for(mesh, network, seeds), 0, asked_lengths(p)};
+  how = {edge_length_for(mesh, network, seeds), 0, requested_lengths(p)};
   if (before) how.before = before->carried;
-  const bool lengths_decide = how.asked.vary() && field_decides(p.options);
-  if (!lengths_decide && (how.asked.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
+  const bool lengths_decide = how.requested.vary() && field_decides(p.options);
+  if (!lengths_decide && (how.requested.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
   SharedCut cut;
   const auto why_not_all = [&] {
-    return reason_against([&] {
+    return failure_reason([&] {
       cut = make_cut(plan, network, source, report.features, context);
       return std::string();
     });
@@ -238,7 +238,7 @@ SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, con
   if (!failed.input) return nullptr;
   const CutInput& input = *failed.input;
   SharedCut cut;
-  reason_against([&] {
+  failure_reason([&] {
     cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, nullptr, p, report, context);
     return std::string();
   });
@@ -250,7 +250,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
   CreaseReport creases;
   FeatureReport& found = report.features;
   std::vector<LostCurve> all;
-  const std::string why = reason_against([&]() -> std::string {
+  const std::string why = failure_reason([&]() -> std::string {
     const CurveNetwork network = run_with_threads(context, [&] {
       return find_curves(mesh, curves, known ? *std::move(known) : find_creases(mesh, curves), &creases);
     });

@@ -65,9 +65,9 @@ struct Wrong {
     where.push_back({in_patch, place});
   }
   /// Patches that are right now.
-  void forget(const PerPatch& mended) {
-    for (size_t p = 0; p < patch.size(); ++p) patch[p] &= !mended[p];
-    where.erase(std::remove_if(where.begin(), where.end(), [&](const auto& w) { return mended[w.first]; }),
+  void forget(const PerPatch& repaired) {
+    for (size_t p = 0; p < patch.size(); ++p) patch[p] &= !repaired[p];
+    where.erase(std::remove_if(where.begin(), where.end(), [&](const auto& w) { return repaired[w.first]; }),
                 where.end());
   }
   bool is_nowhere() const { return !any(patch); }
@@ -76,7 +76,7 @@ struct Wrong {
   std::vector<PointQ8> places() const {
     std::vector<PointQ8> out;
     for (const auto& [in_patch, place] : where) out.push_back(place);
-    sort_places(out);
+    sort_points(out);
     return out;
   }
   std::string said() const {
@@ -244,7 +244,7 @@ class PatchRounds {
     std::optional<Paths> halved = halve_segments(*cut->fine, wrong.places(), cut->longest_edge_q8);
     if (!halved) return;
     std::optional<Again> again;
-    reason_against([&]() -> std::string {  // there may be no room for the seeds of so many segments
+    failure_reason([&]() -> std::string {  // there may be no room for the seeds of so many segments
       again = make_again(cut, made, wrong, std::move(*halved));
       return "";
     });
@@ -259,10 +259,10 @@ class PatchRounds {
       auto fine = std::make_shared<FineMesh>(*before.fine);
       fine->paths = std::move(paths);
       auto after = std::make_shared<CutSurface>(cut_fine_mesh(std::move(fine), before.frame, context_));
-      after->is_asked = before.is_asked;
+      after->is_requested = before.is_requested;
       after->seeds = before.seeds;
       after->source = before.source;
-      std::optional<Paths> fewer = mend_tight_borders(*after);
+      std::optional<Paths> fewer = drop_creases_at_tight_borders(*after);
       if (!fewer) return after;
       paths = std::move(*fewer);
     }

@@ -10,7 +10,7 @@
 #include "features/angles/widen_angles.h"
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
-#include "features/mesh/split_edges.h"
+#include "features/mesh/edge_subdivision.h"
 #include "geometry/triangle_grid.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/to_host.h"
@@ -160,7 +160,7 @@ struct MeshOfPatches {
 MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
                               const PatchOptions& options, RemeshReport& report, Context& context) {
   MeshOfPatches out;
-  out.why_not = reason_against([&]() -> std::string {
+  out.why_not = failure_reason([&]() -> std::string {
     if (std::string why = mesh_in_rounds(p, cut, made, options, report, context); !why.empty()) return why;
     out.joined =
         timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, options, report, context); });
@@ -193,7 +193,7 @@ MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const PreparedSurface&
   });
   if (!cut) return failed;
   in_patches.seeds.count = cut->seeds;
-  failed.why_not = reason_against([&] {
+  failed.why_not = failure_reason([&] {
     RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
     report.relax = std::move(relaxed.report);
     made = {{}, std::move(relaxed.seeds)};

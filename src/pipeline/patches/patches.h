@@ -28,7 +28,7 @@ bool is_on_own_triangles(const PreparedSurface& p);
 struct PatchOptions {
   SeedOptions seeds;  ///< the count is that of the result's vertices: a place of a curve counts once
   RelaxOptions relax;
-  bool tolerance_asked = false;  ///< coarse levels have it, too
+  bool tolerance_requested = false;  ///< coarse levels have it, too
   OptimizeOptions optimize;
   std::shared_ptr<const PreviousFrame> previous = nullptr;  ///< that seeds begin with
 };

@@ -19,8 +19,8 @@ constexpr int64_t kFewestPerPart = 12;           ///< seeds of a level; with few
 constexpr int32_t kLastPasses = 10;              ///< of the finest level, on all triangles of the surface
 
 RelaxOptions for_finest_patches(const PatchOptions& options) {
-  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_asked);
-  if (!options.tolerance_asked) relax.tolerance_ppb = kFinestTolerancePpb;
+  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_requested);
+  if (!options.tolerance_requested) relax.tolerance_ppb = kFinestTolerancePpb;
   return relax;
 }
 
@@ -43,14 +43,14 @@ class PatchLevels {
         surfaces_.push_back(coarser_surface(surfaces_.back().cut, counts_[surfaces_.size()], 1, context));
       return "";
     };
-    reason_against(add_surfaces);  // the levels that there is no surface for are left out
+    failure_reason(add_surfaces);  // the levels that there is no surface for are left out
   }
 
   RelaxedSeeds relax() {
     for (size_t level = surfaces_.size(); level-- > 1;) relax_coarse(level);
     if (!surfaces_.empty()) relax_finest();
     RelaxOptions last = made_ ? for_finest_patches(options_) : options_.relax;
-    if (made_ && !options_.tolerance_asked) last.max_passes = std::min(last.max_passes, kLastPasses);
+    if (made_ && !options_.tolerance_requested) last.max_passes = std::min(last.max_passes, kLastPasses);
     return relax_on_sheet(cut_.surface, seeds_on(cut_, free_seeds_, 0, 0), last, context_);
   }
 
@@ -62,7 +62,7 @@ class PatchLevels {
                  : free_seeds.add(std::move(fixed), counts_[level], options_.seeds.seed);
   }
   std::optional<SeededMesh> relaxed_on(const CutSurface& surface, size_t level, int finer) const {
-    const RelaxOptions relax = for_coarse_level(options_.relax, options_.tolerance_asked);
+    const RelaxOptions relax = for_coarse_level(options_.relax, options_.tolerance_requested);
     SeedSet seeds = seeds_on(surface, FreeSeeds(surface), level, finer);
     std::optional<SeededMesh> made = relax_level(surface.surface, relax, std::move(seeds), context_);
     if (made) bring_to_host(*made);
@@ -108,7 +108,7 @@ RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& bef
   SeedSet fixed = seeds_on_curves(cut, 0);
   const FreeSeeds::Counts counts = free_seeds.counts(fixed, options.seeds.count);
   RelaxOptions relax = for_finest_patches(options);
-  if (!options.tolerance_asked) relax.max_passes = std::min(relax.max_passes, kLastPasses);
+  if (!options.tolerance_requested) relax.max_passes = std::min(relax.max_passes, kLastPasses);
   return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed), relax,
                         context);
 }

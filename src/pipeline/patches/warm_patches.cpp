@@ -5,12 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include "attributes/facing_place.h"
+#include "attributes/facing_point.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/free_seeds.h"
-#include "features/seeds/carried_places.h"
+#include "features/seeds/carried_positions.h"
 #include "geometry/outward_normals.h"
 #include "geometry/world_vector.h"
 #include "pipeline/sheet/warm_start.h"
@@ -18,7 +18,7 @@
 namespace isoshell {
 namespace {
 
-/// Six to eight passes where the surface moves little. Every pass undoes some of what was mended beside curves.
+/// Six to eight passes where the surface moves little. Every pass undoes some of what was repaired beside curves.
 constexpr int32_t kWarmPasses = 40;
 constexpr int32_t kWarmTolerancePpb = 2000000;
 
@@ -46,13 +46,13 @@ std::vector<uint32_t> homes_inside(const CutSurface& cut, const PreviousFrame& p
   TriangleGrid::Triangles triangles;
   for (const TriangleIndices& t : surface.triangles) triangles.push_back({t.a, t.b, t.c});
   const TriangleGrid grid(points, triangles);
-  const std::vector<PlaceOnPath> on_paths = places_on_paths(*cut.fine, carried_q8);
+  const std::vector<PositionOnPath> on_paths = positions_on_paths(*cut.fine, carried_q8);
   const std::vector<WorldPoint> normals = outward_normals(previous.carried, previous.triangles);
   const double edge_length_world = cut.longest_edge_q8 / kOneVoxelQ8 * cut.frame.voxel_size;
   std::vector<uint32_t> home(previous.carried.size(), kNone);
   for_each_index(size_t(0), home.size(), [&](size_t i) {
-    if (on_paths[i].path != PlaceOnPath::kNoPath) return;
-    const MeshPoint place = facing_place(grid, previous.carried[i], normals[i], edge_length_world);
+    if (on_paths[i].path != PositionOnPath::kNoPath) return;
+    const MeshPoint place = facing_point(grid, previous.carried[i], normals[i], edge_length_world);
     home[i] = corner_inside(cut, triangles[place.triangle], place);
   });
   return home;
@@ -120,7 +120,7 @@ RelaxedSeeds relax_patches_from_previous(const CutSurface& cut, const PatchOptio
   const FreeSeeds::Counts counts = free_seeds.as_before(free_seeds.counts(fixed, options.seeds.count), before);
   RelaxOptions relax = options.relax;
   relax.max_passes = std::min(relax.max_passes, kWarmPasses);
-  if (!options.tolerance_asked) relax.tolerance_ppb = kWarmTolerancePpb;
+  if (!options.tolerance_requested) relax.tolerance_ppb = kWarmTolerancePpb;
   return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, inside, options.seeds.seed), relax,
                         context);
 }

@@ -106,7 +106,7 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
                              const std::function<bool()>& is_in_vain) {
   require_seed_count(prepared.sheet, options.seeds.count);
   std::vector<int64_t> counts = level_counts(options.seeds.count, prepared.sheet.topology);
-  const RelaxOptions coarse = for_coarse_level(options.relax, options.tolerance_asked);
+  const RelaxOptions coarse = for_coarse_level(options.relax, options.tolerance_requested);
   CoarseProxies proxies(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
@@ -125,7 +125,7 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
   if (is_in_vain()) return {};
   RelaxOptions finest = options.relax;
   if (seeds.size() > 0)
-    finest = for_finest_level(finest, options.tolerance_asked);
+    finest = for_finest_level(finest, options.tolerance_requested);
   else
     seeds = place_seeds(prepared.sheet, options.seeds, context);
   return relax_on_sheet(prepared.sheet, std::move(seeds), finest, context);

@@ -9,11 +9,11 @@ namespace isoshell {
 
 struct LevelOptions {
   SeedOptions seeds;
-  RelaxOptions relax;            ///< max_passes bounds the finest level
-  bool tolerance_asked = false;  ///< then it is that of every level, else levels have their own
+  RelaxOptions relax;                ///< max_passes bounds the finest level
+  bool tolerance_requested = false;  ///< then it is that of every level, else levels have their own
 
   bool operator==(const LevelOptions& o) const {
-    return seeds == o.seeds && relax == o.relax && tolerance_asked == o.tolerance_asked;
+    return seeds == o.seeds && relax == o.relax && tolerance_requested == o.tolerance_requested;
   }
 };
 

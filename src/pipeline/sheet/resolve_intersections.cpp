@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kTriesOfFewerRounds = 4;
 
-/// With the cells of triangles that intersect split. Where a split leaves cells that no other one mends, those before
+/// With the cells of triangles that intersect split. Where a split leaves cells that no other one repairs, those before
 /// it count: the rounds are halved until all cells are disks.
 Triangulation split_where_crossing(const SurfaceMesh& surface, const SeedSet& seeds, Context& context) {
   DualOptions split;
@@ -25,14 +25,14 @@ Triangulation split_where_crossing(const SurfaceMesh& surface, const SeedSet& se
 /// From `seeds` as many as `mesh` has.
 void make_again(const SurfaceMesh& surface, const SeedSet& seeds, const OptimizeOptions& options, bool keep_ids,
                 SeededMesh& mesh, RemeshReport& report, Context& context) {
-  const int64_t asked = mesh.seeds.size();
+  const int64_t requested = mesh.seeds.size();
   Triangulation dual = split_where_crossing(surface, seeds, context);
   const DualReport found = dual.report;
   if (found.failed_cells > 0) return;
-  SeededMesh again = collapse_edges(surface, std::move(dual), {asked, true, keep_ids}, context);
-  again = collapse_edges(surface, std::move(again), {asked, false, keep_ids},
+  SeededMesh again = collapse_edges(surface, std::move(dual), {requested, true, keep_ids}, context);
+  again = collapse_edges(surface, std::move(again), {requested, false, keep_ids},
                          context);  // the count goes before what is left
-  if (again.seeds.size() != asked) return;
+  if (again.seeds.size() != requested) return;
   OptimizeOptions careful = options;
   careful.keep_apart = true;
   OptimizedMesh optimized = optimize_mesh(surface, std::move(again), careful, context);

@@ -79,11 +79,11 @@ void choose_beginning(PreparedSurface& p, RemeshReport& report) {
 }
 
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,
-                                 RelaxOptions options, bool tolerance_asked, Context& context) {
+                                 RelaxOptions options, bool tolerance_requested, Context& context) {
   SeedSet seeds = attach_to_sheet(sheet, seeds_at(previous.carried, sheet.frame), 0, context);
   if (seeds.size() < wanted) seeds = with_more(sheet, previous, std::move(seeds), wanted, context);
   options.max_passes = std::min(options.max_passes, kWarmPasses);
-  if (!tolerance_asked) options.tolerance_ppb = kWarmTolerancePpb;
+  if (!tolerance_requested) options.tolerance_ppb = kWarmTolerancePpb;
   return relax_on_sheet(sheet, std::move(seeds), options, context);
 }
 

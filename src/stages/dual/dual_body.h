@@ -154,7 +154,7 @@ class Partition {
     const RequestParting part{cells_.view(), request_.view(), stuck_.view()};
     exec_.for_each("check pairs", pairs.size(), RequestDoublePairs{pairs.view(), part});
     if (seeds_.fixed.count > 0)
-      request_double_places(exec_, pairs.view(), seeds_.fixed.joined.view(), border_.next.view(), part);
+      request_double_positions(exec_, pairs.view(), seeds_.fixed.joined.view(), border_.next.view(), part);
     request_small_components(exec_, pairs.view(), cells_, request_.view());
     return requested();
   }
@@ -169,7 +169,7 @@ class Partition {
     request_largest(exec_, cells_, count, request_.view());
     return requested();
   }
-  /// What no split can mend, of the last look.
+  /// What no split can repair, of the last look.
   int64_t stuck() { return seeds_.fixed.count > 0 ? exec_.value(View<const uint32_t>(stuck_.view()), 0) : 0; }
   Buffer<uint32_t> requested() { return exec_.select(cells_.count(), IsRequested{request_.view()}); }
 
@@ -186,9 +186,9 @@ class Partition {
     const Buffer<uint32_t> crossing = requested();
     Buffer<int64_t> moved = exec_.template make<int64_t>(cells_.count());
     exec_.for_each("settle crossing cells", cells_.count(),
-                   SettleCrossing{marked.view(), cells_.view(), writer_of(surface_, seeds_), moved.view()});
-    const int64_t settled = exec_.sum(cells_.count(), MovedSeeds{moved.view()});
-    if (crossing.size() + settled == 0 || crossing.size() > most_against_crossing_ || !take_round()) return false;
+                   MoveToOnlyVertex{marked.view(), cells_.view(), writer_of(surface_, seeds_), moved.view()});
+    const int64_t moved_seeds = exec_.sum(cells_.count(), MovedSeeds{moved.view()});
+    if (crossing.size() + moved_seeds == 0 || crossing.size() > most_against_crossing_ || !take_round()) return false;
     most_against_crossing_ -= crossing.size();
     if (!crossing.empty()) split(crossing, {}, true);
     return true;

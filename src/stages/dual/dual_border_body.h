@@ -76,12 +76,12 @@ FixedBorder follow_borders(Exec& exec, const SurfaceMesh& surface, const FixedSe
 }
 
 /// An edge of the dual, by the places that it has in the result. Those of borders come before others.
-struct PlacedPair {
+struct PositionedPair {
   static constexpr uint64_t kInside = uint64_t(1) << 63;  ///< in pair: no edge of a border
   uint64_t places, pair;
 };
-struct ByPlaces {
-  ISOSHELL_HD bool operator()(const PlacedPair& p, const PlacedPair& q) const {
+struct ByPositions {
+  ISOSHELL_HD bool operator()(const PositionedPair& p, const PositionedPair& q) const {
     return p.places != q.places ? p.places < q.places : p.pair < q.pair;
   }
 };
@@ -93,37 +93,37 @@ struct HasFixedEnd {
     return (i == 0 || pair[i - 1] != pair[i]) && int64_t(pair[i] >> 32) < fixed;
   }
 };
-struct PlacePair {
+struct PositionPair {
   View<const uint64_t> pair;
   View<const uint32_t> selected, joined, next;
-  View<PlacedPair> out;
+  View<PositionedPair> out;
   ISOSHELL_HD uint32_t place(uint32_t s) const { return s < joined.size ? joined[s] : s; }
   ISOSHELL_HD void operator()(int64_t i) const {
     const uint64_t p = pair[selected[i]];
     const uint32_t a = uint32_t(p >> 32), b = uint32_t(p);
     const bool on_border = next[a] == b || (b < next.size && next[b] == a);
-    out[i] = {MakePairs::key(place(a), place(b)), on_border ? p : p | PlacedPair::kInside};
+    out[i] = {MakePairs::key(place(a), place(b)), on_border ? p : p | PositionedPair::kInside};
   }
 };
 /// Once copies are joined, an edge of a border has the triangle of each of its patches, any other one just its own two:
 /// pairs inside of patches part when their places are one, or are joined already.
-struct RequestDoublePlaces {
-  View<const PlacedPair> placed;
+struct RequestDoublePositions {
+  View<const PositionedPair> placed;
   RequestParting part;
   ISOSHELL_HD void operator()(int64_t i) const {
-    const PlacedPair p = placed[i];
+    const PositionedPair p = placed[i];
     const bool is_double = (i > 0 && placed[i - 1].places == p.places) || p.places >> 32 == uint32_t(p.places);
-    if (p.pair & PlacedPair::kInside && is_double) part(p.pair & ~PlacedPair::kInside);
+    if (p.pair & PositionedPair::kInside && is_double) part(p.pair & ~PositionedPair::kInside);
   }
 };
 template <class Exec>
-void request_double_places(Exec& exec, View<const uint64_t> pairs, View<const uint32_t> joined,
-                           View<const uint32_t> next, const RequestParting& part) {
+void request_double_positions(Exec& exec, View<const uint64_t> pairs, View<const uint32_t> joined,
+                              View<const uint32_t> next, const RequestParting& part) {
   const Buffer<uint32_t> selected = exec.select(pairs.size, HasFixedEnd{pairs, joined.size});
-  Buffer<PlacedPair> placed = exec.template make<PlacedPair>(selected.size());
-  exec.for_each("place pairs", selected.size(), PlacePair{pairs, selected.view(), joined, next, placed.view()});
-  exec.sort(placed.view(), ByPlaces{});
-  exec.for_each("check places", placed.size(), RequestDoublePlaces{placed.view(), part});
+  Buffer<PositionedPair> placed = exec.template make<PositionedPair>(selected.size());
+  exec.for_each("place pairs", selected.size(), PositionPair{pairs, selected.view(), joined, next, placed.view()});
+  exec.sort(placed.view(), ByPositions{});
+  exec.for_each("check places", placed.size(), RequestDoublePositions{placed.view(), part});
 }
 
 }  // namespace isoshell::dual

@@ -68,7 +68,7 @@ constexpr uint32_t kSplitAnywhere = kNone - 1;
 struct RequestNonDisks {
   CellsView cells;
   View<uint32_t> request;
-  View<uint32_t> stuck;  ///< counts what no split can mend: cells that have only border vertices
+  View<uint32_t> stuck;  ///< counts what no split can repair: cells that have only border vertices
   ISOSHELL_HD void operator()(int64_t s) const {
     const bool fails = cells.size[s] > 1 && cells.euler[s] != 1, can = cells.loose(s) > 0;
     request[s] = fails && can ? kSplitAnywhere : kNoSplit;
@@ -111,7 +111,7 @@ struct RequestCrossing {
 };
 
 /// A free cell of one vertex cannot be split: its seed goes there. Counts the seeds that moved.
-struct SettleCrossing {
+struct MoveToOnlyVertex {
   View<const uint32_t> marked;
   CellsView cells;
   SeedWriter seeds;

@@ -26,7 +26,7 @@ struct CollapseCost {
     const uint32_t va = mesh.valence[a], vb = mesh.valence[b], vc = mesh.valence[c], vd = mesh.valence[d];
     if (va + vb - 4 < least_valence(a) || vc - 1 < least_valence(c) || vd - 1 < least_valence(d)) return kNever;
     if (!share_two_neighbours(a, b) || !fixed.may_merge(mesh, a, b)) return kNever;
-    const PointQ8 place = merged_place(a, b);
+    const PointQ8 place = merged_position(a, b);
     if (turns_over(a, b, place) || turns_over(b, a, place)) return kNever;
     const int32_t unevenness = excess_sq(a, va + vb - 4) + excess_sq(c, vc - 1) + excess_sq(d, vd - 1) -
                                excess_sq(a, va) - excess_sq(b, vb) - excess_sq(c, vc) - excess_sq(d, vd);
@@ -39,7 +39,7 @@ struct CollapseCost {
   }
 
  private:
-  ISOSHELL_HD PointQ8 merged_place(uint32_t a, uint32_t b) const {
+  ISOSHELL_HD PointQ8 merged_position(uint32_t a, uint32_t b) const {
     return fixed.is_fixed(a) ? position[a] : middle_of(position[a], position[b]);
   }
   ISOSHELL_HD uint32_t least_valence(uint32_t v) const { return fixed.is_fixed(v) ? 2 : 3; }

@@ -197,9 +197,9 @@ class Optimization {
 
   /// Looks for better places for the corners of triangles below kGoodQuality.
   void search(int rounds, double hold, bool onto_sheet) {
-    Kernels::SearchPlaces::run(exec_, view(), walk_,
-                               {rounds, kGoodQuality, size_, hold, onto_sheet, seeds_.fixed.count},
-                               mesh_.position.view(), seeds_.home.view(), harmed_.view());
+    Kernels::SearchPositions::run(exec_, view(), walk_,
+                                  {rounds, kGoodQuality, size_, hold, onto_sheet, seeds_.fixed.count},
+                                  mesh_.position.view(), seeds_.home.view(), harmed_.view());
   }
 
   /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are

@@ -116,13 +116,13 @@ struct PullCorners {
   ISOSHELL_HD void operator()(int64_t i) const {
     FitSample s = sample[i];
     Foot foot;
-    if (settle(i, s, foot)) pull(i, s, foot);
+    if (slide_to_foot(i, s, foot)) pull(i, s, foot);
   }
 
   // The parts of a step.
 
   /// Lets the sample slide, and finds where its foot is. False where it has no triangle.
-  ISOSHELL_HD bool settle(int64_t i, FitSample& s, Foot& foot) const {
+  ISOSHELL_HD bool slide_to_foot(int64_t i, FitSample& s, Foot& foot) const {
     if (s.triangle == kNone) {
       rest_sq[i] = 0;
       return false;

@@ -78,19 +78,19 @@ struct SearchVertex {
     const Compass compass = compass_at(v);
     const double here = worst_quality(v, p, 0);
     double best = here;
-    PointQ8 best_place = p;
+    PointQ8 best_position = p;
     for (int number = 0; number < kPlaces; ++number) {
       const PointQ8 place = place_at(p, compass, number);
       const double quality = worst_quality(v, place, best);
-      if (quality > best) best = quality, best_place = place;
+      if (quality > best) best = quality, best_position = place;
     }
-    if (best_place == p) return;
+    if (best_position == p) return;
     if (!onto_sheet) {
-      position[v] = best_place;
+      position[v] = best_position;
       return;
     }
-    const uint32_t near = walk.nearest_vertex(home[v], best_place);
-    move_onto_sheet(v, near, walk.closest_around(near, best_place), here);
+    const uint32_t near = walk.nearest_vertex(home[v], best_position);
+    move_onto_sheet(v, near, walk.closest_around(near, best_position), here);
   }
 
   // The parts of a search.
@@ -166,7 +166,7 @@ struct SearchOptions {
 
 /// Looks for better places for poor vertices, in rounds of independent ones. Only poor vertices move, so a triangle
 /// that is poor after a round was so before it or has such a vertex: after the first round few are looked at.
-struct PlainSearchPlaces {
+struct PlainSearchPositions {
   template <class Exec>
   static void run(Exec& exec, const MeshView& mesh, const WalkOntoSheet& walk, const SearchOptions& options,
                   View<PointQ8> position, View<uint32_t> home, View<uint32_t> poor) {

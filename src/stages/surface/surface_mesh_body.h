@@ -21,7 +21,7 @@ struct VertexKey {
   PointQ8 position;
   uint32_t patch, vertex;
 };
-struct ByPlace {
+struct ByPosition {
   bool operator()(const VertexKey& a, const VertexKey& b) const {
     if (a.patch != b.patch) return a.patch < b.patch;
     if (a.leaf != b.leaf) return a.leaf < b.leaf;
@@ -55,7 +55,7 @@ std::vector<uint32_t> order_vertices(Exec& exec, const SurfaceTriangles& from, S
     const PointQ8 p = from.position[size_t(v)];
     keys[v] = {leaf_key(leaf_of_voxel(voxel_of(p))), p, from.patch.empty() ? 0 : from.patch[size_t(v)], uint32_t(v)};
   });
-  exec.sort(keys.view(), ByPlace{});
+  exec.sort(keys.view(), ByPosition{});
   std::vector<uint32_t> number(from.position.size());
   surface.position = Buffer<PointQ8>(vertices);
   if (!from.patch.empty()) surface.patch = Buffer<uint32_t>(vertices);

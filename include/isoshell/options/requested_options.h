@@ -9,7 +9,7 @@
 namespace isoshell {
 
 /// A run that resumes from a stage file takes those options from the file that were not given.
-struct AskedOptions {
+struct RequestedOptions {
   RemeshOptions values;
   std::string sizing;              ///< where the sizing field is, as read_sizing takes it; empty: even edges
   std::vector<std::string> given;  ///< names of the options that were given, as JSON and the command have them; a run
@@ -20,10 +20,10 @@ struct AskedOptions {
 
 /// Options that were set in C++: given is what differs from the defaults. What a run should hold to though it is a
 /// default, such as 10000 vertices beside a sizing field, is for the caller to add to `given`.
-AskedOptions asked_options(RemeshOptions values, std::string sizing = "");
+RequestedOptions requested_options(RemeshOptions values, std::string sizing = "");
 
 /// What the paper's loop cannot do: curves, borders, frames and cells that are not even. Throws: usage for that with
 /// one of them.
-void check_method(const AskedOptions& options);
+void check_method(const RequestedOptions& options);
 
 }  // namespace isoshell

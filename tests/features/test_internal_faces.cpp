@@ -1,7 +1,7 @@
 // Walls between parts: they go, the surface around them stays, and looks outward.
 #include <algorithm>
 
-#include "features/mesh/inner_walls.h"
+#include "features/mesh/internal_faces.h"
 #include "features/mesh/mesh_edges.h"
 #include "features/mesh/weld_for_features.h"
 #include "geometry/world_vector.h"
@@ -58,9 +58,9 @@ void check_closed(const FeatureMesh& mesh) {
 
 TEST_CASE("inner walls: boxes that share faces become one solid, with a ring around each wall", "[walls][unit]") {
   for (const int count : {2, 3, 5}) {
-    const auto found = drop_inner_walls(weld_for_features(boxes_in_a_row(count)));
+    const auto found = drop_internal_faces(weld_for_features(boxes_in_a_row(count)));
     REQUIRE(found);
-    CHECK(found->walls == 2 * (count - 1));
+    CHECK(found->dropped == 2 * (count - 1));
     CHECK(found->interfaces.size() == size_t(4 * (count - 1)));
     for (const auto& edge : found->interfaces) CHECK(edge[0].x == edge[1].x);
     check_closed(found->mesh);
@@ -74,19 +74,19 @@ TEST_CASE("inner walls: it does not matter which way the faces look", "[walls][u
     INFO("turned face " << turned);
     TriangleSoup other = soup;
     std::swap(other.triangles[turned][1], other.triangles[turned][2]);
-    const auto found = drop_inner_walls(weld_for_features(other));
+    const auto found = drop_internal_faces(weld_for_features(other));
     if (!found) continue;  // a face that is turned alone makes edges whose two faces disagree
     check_closed(found->mesh);
     CHECK(volume_of(found->mesh) == Approx(2));
   }
-  const auto turned = drop_inner_walls(weld_for_features(shapes::inside_out(soup)));
+  const auto turned = drop_internal_faces(weld_for_features(shapes::inside_out(soup)));
   CHECK((!turned || volume_of(turned->mesh) > 0));
 }
 
 TEST_CASE("inner walls: a triangle without area goes on as the one behind it", "[walls][unit]") {
-  const auto found = drop_inner_walls(weld_for_features(boxes_with_junction()));
+  const auto found = drop_internal_faces(weld_for_features(boxes_with_junction()));
   REQUIRE(found);
-  CHECK(found->walls == 3);
+  CHECK(found->dropped == 3);
   check_closed(found->mesh);
   CHECK(volume_of(found->mesh) == Approx(2));
 }
@@ -99,7 +99,7 @@ TEST_CASE("inner walls: a hollow between parts stays one", "[walls][unit]") {
     const WorldPoint lo{double(i % 3), double(i / 3 % 3), double(i / 9)};
     all = shapes::together(all, shapes::box(lo, lo + WorldPoint{1, 1, 1}));
   }
-  const auto found = drop_inner_walls(weld_for_features(all));
+  const auto found = drop_internal_faces(weld_for_features(all));
   REQUIRE(found);
   check_closed(found->mesh);
   CHECK(volume_of(found->mesh) == Approx(26));
@@ -107,11 +107,11 @@ TEST_CASE("inner walls: a hollow between parts stays one", "[walls][unit]") {
 }
 
 TEST_CASE("inner walls: without walls, with borders or fins nothing is dropped", "[walls][unit]") {
-  CHECK_FALSE(drop_inner_walls(weld_for_features(shapes::box({0, 0, 0}, {1, 1, 1}))));
-  CHECK_FALSE(drop_inner_walls(
+  CHECK_FALSE(drop_internal_faces(weld_for_features(shapes::box({0, 0, 0}, {1, 1, 1}))));
+  CHECK_FALSE(drop_internal_faces(
       weld_for_features(shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1, 1, 0}, {2, 2, 1})))));
   TriangleSoup open = boxes_in_a_row(2);
   open.triangles.pop_back();
-  CHECK_FALSE(drop_inner_walls(weld_for_features(open)));
-  CHECK_FALSE(drop_inner_walls({}));
+  CHECK_FALSE(drop_internal_faces(weld_for_features(open)));
+  CHECK_FALSE(drop_internal_faces({}));
 }

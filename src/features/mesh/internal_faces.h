@@ -1,4 +1,4 @@
-// Walls between the parts of a solid.
+// Internal faces: walls between the parts of a solid.
 #pragma once
 
 #include <optional>
@@ -7,9 +7,9 @@
 
 namespace isoshell {
 
-struct WithoutWalls {
+struct WithoutInternalFaces {
   FeatureMesh mesh;                                   ///< the solid's surface, which looks outward
-  int64_t walls = 0;                                  ///< triangles that were dropped
+  int64_t dropped = 0;                                ///< triangles that were dropped
   std::vector<std::array<WorldPoint, 2>> interfaces;  ///< edges of the surface where walls met it
 };
 
@@ -17,6 +17,6 @@ struct WithoutWalls {
 /// more. Around such an edge space is cut into regions, sorted by angle; the one around everything is air, and so is
 /// one that only front sides look into; the others are solid. Parts that share no edge are left as they are. None where
 /// no wall is, an edge has one triangle, or a triangle has air on both sides. Cost: a sort of the half-edges.
-std::optional<WithoutWalls> drop_inner_walls(const FeatureMesh& mesh);
+std::optional<WithoutInternalFaces> drop_internal_faces(const FeatureMesh& mesh);
 
 }  // namespace isoshell

@@ -1,5 +1,5 @@
-// See asked_lengths.h.
-#include "features/seeds/asked_lengths.h"
+// See requested_lengths.h.
+#include "features/seeds/requested_lengths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,22 +68,22 @@ void shorten_where_curved(FineMesh& mesh, const VertexGraph& graph, double adapt
 
 }  // namespace
 
-void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame, const AskedLengths& asked,
-                     int64_t vertices, double e) {
+void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame,
+                     const RequestedLengths& requested, int64_t vertices, double e) {
   const double of_world = kOneVoxelQ8 / frame.voxel_size;
-  mesh.edge_length.assign(mesh.position.size(), asked.usual_world * of_world);
-  if (asked.field) {
+  mesh.edge_length.assign(mesh.position.size(), requested.usual_world * of_world);
+  if (requested.field) {
     std::vector<WorldPoint> points;
     points.reserve(mesh.position.size());
     for (const WorldPoint& p : mesh.position) points.push_back(frame.origin + (1 / of_world) * p);
-    const std::vector<double> length = asked.field->lengths_at(points);
+    const std::vector<double> length = requested.field->lengths_at(points);
     for (size_t v = 0; v < length.size(); ++v)
       if (length[v] > 0) mesh.edge_length[v] = length[v] * of_world;
   }
-  if (asked.adaptivity > 0) shorten_where_curved(mesh, graph, asked.adaptivity, e);
+  if (requested.adaptivity > 0) shorten_where_curved(mesh, graph, requested.adaptivity, e);
   double factor = 1;
   if (vertices > 0) factor = std::sqrt(std::max(1.0, vertices_of_lengths(mesh)) / double(vertices));
-  for (double& l : mesh.edge_length) l = std::max(l * factor, asked.shortest_world * of_world);
+  for (double& l : mesh.edge_length) l = std::max(l * factor, requested.shortest_world * of_world);
   const double most = kMostLengthRatio * *std::min_element(mesh.edge_length.begin(), mesh.edge_length.end());
   for (double& l : mesh.edge_length) l = std::min(l, most);
 }

@@ -1,5 +1,5 @@
-// drop_inner_walls (see inner_walls.h).
-#include "features/mesh/inner_walls.h"
+// drop_internal_faces (see internal_faces.h).
+#include "features/mesh/internal_faces.h"
 
 #include <algorithm>
 
@@ -164,7 +164,7 @@ std::vector<std::array<WorldPoint, 2>> find_interfaces(const FeatureMesh& mesh, 
 
 }  // namespace
 
-std::optional<WithoutWalls> drop_inner_walls(const FeatureMesh& mesh) {
+std::optional<WithoutInternalFaces> drop_internal_faces(const FeatureMesh& mesh) {
   if (mesh.triangles.empty()) return {};
   const MeshEdges edges = find_mesh_edges(mesh);
   const std::vector<uint32_t> component = components_of(mesh, edges);
@@ -174,7 +174,7 @@ std::optional<WithoutWalls> drop_inner_walls(const FeatureMesh& mesh) {
     if (e.use == EdgeUse::non_manifold) branches[component[e.face[0]]] = 1;
   }
   Regions regions(mesh, edges);
-  WithoutWalls out;
+  WithoutInternalFaces out;
   std::vector<uint8_t> is_wall(mesh.triangles.size(), 0);
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<uint32_t, 3> corner = mesh.triangles[t];
@@ -184,12 +184,12 @@ std::optional<WithoutWalls> drop_inner_walls(const FeatureMesh& mesh) {
       is_wall[t] = !front_is_air && !back_is_air;
       if (back_is_air) std::swap(corner[1], corner[2]);
     }
-    out.walls += is_wall[t];
+    out.dropped += is_wall[t];
     if (is_wall[t]) continue;
     out.mesh.triangles.push_back(corner);
     out.mesh.source_face.push_back(mesh.source_face[t]);
   }
-  if (out.walls == 0) return {};
+  if (out.dropped == 0) return {};
   out.mesh.vertices = mesh.vertices;
   out.interfaces = find_interfaces(mesh, edges, is_wall);
   return out;

@@ -1,5 +1,5 @@
-// SplitEdges (see split_edges.h).
-#include "features/mesh/split_edges.h"
+// EdgeSubdivision (see edge_subdivision.h).
+#include "features/mesh/edge_subdivision.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +82,7 @@ double longest_fine_edge(double edge_length) {
   return std::min(edge_length / kPartsOfEdge, kLongestQ8);
 }
 
-SplitEdges::SplitEdges(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours)
+EdgeSubdivision::EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours)
     : larger_end_(neighbours ? larger_ones(*neighbours) : larger_ends(mesh)),
       parts_(size_t(larger_end_.items.size()), Parts{0, 0, kNone}) {
   const std::vector<InnerPoints> on_paths = cut_paths(mesh);
@@ -92,15 +92,15 @@ SplitEdges::SplitEdges(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint3
 }
 
 /// The place of an edge among all.
-int64_t SplitEdges::find(uint32_t u, uint32_t v) const {
+int64_t EdgeSubdivision::find(uint32_t u, uint32_t v) const {
   const View<const uint32_t> from = larger_end_.in(std::min(u, v));
   return std::lower_bound(from.begin(), from.end(), std::max(u, v)) - larger_end_.items.begin();
 }
 
 /// Cuts edge i of a path at its seeds, and between them into equal parts. The next seed of the path is `seed`; where
 /// they come to be, counted from the beginning of the edge, is appended to `seed_at`.
-SplitEdges::InnerPoints SplitEdges::cut_path_edge(const FineMesh& mesh, const CurvePath& path, size_t i, size_t& seed,
-                                                  std::vector<size_t>& seed_at) {
+EdgeSubdivision::InnerPoints EdgeSubdivision::cut_path_edge(const FineMesh& mesh, const CurvePath& path, size_t i,
+                                                            size_t& seed, std::vector<size_t>& seed_at) {
   const uint32_t u = path.vertex[i], v = path.edge_end(i);
   const WorldPoint &from = mesh.position[u], &to = mesh.position[v];
   std::vector<double> stops{0};
@@ -129,7 +129,7 @@ SplitEdges::InnerPoints SplitEdges::cut_path_edge(const FineMesh& mesh, const Cu
 
 /// What path edges are cut into, from the end of the smaller number. Their seeds then are at the vertices that they
 /// will have.
-std::vector<SplitEdges::InnerPoints> SplitEdges::cut_paths(FineMesh& mesh) {
+std::vector<EdgeSubdivision::InnerPoints> EdgeSubdivision::cut_paths(FineMesh& mesh) {
   std::vector<InnerPoints> cut;
   for (CurvePath& path : mesh.paths) {
     std::vector<PathPoint> seeds;
@@ -153,17 +153,18 @@ std::vector<SplitEdges::InnerPoints> SplitEdges::cut_paths(FineMesh& mesh) {
   return cut;
 }
 
-void SplitEdges::count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths, int64_t memory_bytes) {
-  std::vector<double> asked(parts_.size());
+void EdgeSubdivision::count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths,
+                                   int64_t memory_bytes) {
+  std::vector<double> requested(parts_.size());
   for_each_index(int64_t(0), larger_end_.count(), [&](int64_t u) {
     for (int64_t i = larger_end_.first[u]; i < larger_end_.first[u + 1]; ++i) {
       const uint32_t v = larger_end_.items[i], path = parts_[size_t(i)].on_path;
-      asked[size_t(i)] =
+      requested[size_t(i)] =
           path != kNone ? double(on_paths[path].position.size())
                         : length(mesh.position[v] - mesh.position[size_t(u)]) / longest_between(mesh, uint32_t(u), v);
     }
   });
-  const double most = most_points(mesh, memory_bytes), total = std::accumulate(asked.begin(), asked.end(), 0.0);
+  const double most = most_points(mesh, memory_bytes), total = std::accumulate(requested.begin(), requested.end(), 0.0);
   if (total > most)
     throw NoRoom("features",
                  "cut into parts, the input's edges take more than " + std::to_string(int64_t(most)) +
@@ -173,12 +174,12 @@ void SplitEdges::count_points(const FineMesh& mesh, const std::vector<InnerPoint
   for (size_t i = 0; i < parts_.size(); ++i) {
     const bool is_on_path = parts_[i].on_path != kNone;
     parts_[i].first = next;
-    parts_[i].count = uint32_t(is_on_path ? asked[i] : std::max(1.0, std::ceil(asked[i])) - 1);
+    parts_[i].count = uint32_t(is_on_path ? requested[i] : std::max(1.0, std::ceil(requested[i])) - 1);
     next += parts_[i].count;
   }
 }
 
-void SplitEdges::place_points(FineMesh& mesh, const std::vector<InnerPoints>& on_paths) const {
+void EdgeSubdivision::place_points(FineMesh& mesh, const std::vector<InnerPoints>& on_paths) const {
   if (parts_.empty()) return;
   const size_t end = size_t(parts_.back().first) + parts_.back().count;
   mesh.position.resize(end);
@@ -200,13 +201,13 @@ void SplitEdges::place_points(FineMesh& mesh, const std::vector<InnerPoints>& on
   });
 }
 
-void SplitEdges::append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const {
+void EdgeSubdivision::append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const {
   const Parts& e = parts_[size_t(find(u, v))];
   out.push_back(u);
   for (uint32_t k = 0; k < e.count; ++k) out.push_back(e.first + (u < v ? k : e.count - 1 - k));
 }
 
-void SplitEdges::split_paths(FineMesh& mesh) const {
+void EdgeSubdivision::split_paths(FineMesh& mesh) const {
   for (CurvePath& path : mesh.paths) {
     std::vector<uint32_t> fine;
     for (size_t i = 0; i < path.edge_count(); ++i) append_chain(path.vertex[i], path.edge_end(i), fine);

@@ -1,5 +1,5 @@
-// See carried_places.h.
-#include "features/seeds/carried_places.h"
+// See carried_positions.h.
+#include "features/seeds/carried_positions.h"
 
 #include <algorithm>
 #include <limits>
@@ -22,8 +22,8 @@ double mean_length_on_paths(const FineMesh& mesh) {
 
 }  // namespace
 
-std::vector<PlaceOnPath> places_on_paths(const FineMesh& mesh, const std::vector<WorldPoint>& points) {
-  std::vector<PlaceOnPath> nearest(points.size());
+std::vector<PositionOnPath> positions_on_paths(const FineMesh& mesh, const std::vector<WorldPoint>& points) {
+  std::vector<PositionOnPath> nearest(points.size());
   if (points.empty()) return nearest;
   const PointCells cells(points, kCellWidth * mean_length_on_paths(mesh));
   std::vector<double> least_sq(points.size(), std::numeric_limits<double>::infinity());
@@ -43,8 +43,8 @@ std::vector<PlaceOnPath> places_on_paths(const FineMesh& mesh, const std::vector
       });
     }
   }
-  for (PlaceOnPath& place : nearest) {
-    if (place.path == PlaceOnPath::kNoPath) continue;
+  for (PositionOnPath& place : nearest) {
+    if (place.path == PositionOnPath::kNoPath) continue;
     const CurvePath& path = mesh.paths[place.path];
     if (path.is_loop && place.at.edge == path.edge_count()) place.at.edge = 0;
   }

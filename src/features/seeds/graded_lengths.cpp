@@ -1,4 +1,4 @@
-// settled_lengths (see vertex_graph.h).
+// graded_lengths (see vertex_graph.h).
 #include <algorithm>
 
 #include "core/parallel_ranges.h"
@@ -42,7 +42,7 @@ class SpreadingLengths {
         next_(uint32_t(own.size())),
         later_(uint32_t(own.size())) {}
 
-  std::vector<double> settled() {
+  std::vector<double> graded() {
     if (value_.empty()) return {};
     const double longest = *std::max_element(value_.begin(), value_.end()), band = growth_ * longest;
     for_each_index(uint32_t(0), uint32_t(value_.size()), [&](uint32_t v) {
@@ -95,8 +95,8 @@ class SpreadingLengths {
 
 }  // namespace
 
-std::vector<double> settled_lengths(const VertexGraph& graph, const std::vector<double>& own, double growth) {
-  return SpreadingLengths(graph, own, growth).settled();
+std::vector<double> graded_lengths(const VertexGraph& graph, const std::vector<double>& own, double growth) {
+  return SpreadingLengths(graph, own, growth).graded();
 }
 
 }  // namespace isoshell

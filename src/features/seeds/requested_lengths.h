@@ -8,7 +8,7 @@
 namespace isoshell {
 
 /// What is asked for beside a number of vertices. World units.
-struct AskedLengths {
+struct RequestedLengths {
   const SizingField* field = nullptr;
   double usual_world = 0;     ///< where the field says nothing
   double shortest_world = 0;  ///< none is shorter
@@ -23,7 +23,7 @@ constexpr double kMostLengthRatio = 16;
 
 /// Gives the vertices the lengths asked for: those of the field, by curvature off the paths, and at most sixteen times
 /// the shortest; above 0 vertices in proportion, so that about so many have them. `e`: the length the mesh was cut at.
-void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame, const AskedLengths& asked,
-                     int64_t vertices, double e);
+void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame,
+                     const RequestedLengths& requested, int64_t vertices, double e);
 
 }  // namespace isoshell

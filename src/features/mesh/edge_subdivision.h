@@ -17,12 +17,12 @@ inline double value_between(double a, double b, int64_t i, int64_t parts) {
 }
 
 /// The inner points of edges: consecutive vertices from the end of the smaller number to the other.
-class SplitEdges {
+class EdgeSubdivision {
  public:
   /// Appends their vertices to the mesh, and cuts its paths. `memory_bytes`: what is made of them may take so much; 0:
   /// any. `neighbours`: those of the vertices, ascending; null: not known. Throws: usage when they are far more than
   /// the area needs, or more than that.
-  SplitEdges(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours);
+  EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours);
   /// The vertices from u to v along their edge, without v.
   void append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const;
 
