@@ -59,12 +59,12 @@ int main(int argc, char** argv) {
   std::vector<std::string> expected;
   for (const std::string& mesh : a.meshes) {
     soups.push_back(read_mesh(mesh));
-    Context cpu = bench::context_of(Backend::cpu);
+    bench::BackendContext cpu(Backend::cpu);
     expected.push_back(digest_text(digest(remesh(soups.back(), options, cpu).mesh)));
   }
   bool all_right = true;
   for (const int threads : a.threads) {
-    Context context = bench::context_of(a.device == "cpu" ? Backend::cpu : Backend::cuda);
+    bench::BackendContext context(a.device == "cpu" ? Backend::cpu : Backend::cuda);
     const int64_t runs = int64_t(threads) * a.runs;
     const bench::Watch watch;
     const int failed = count_failed(soups, expected, options, threads, runs, context);

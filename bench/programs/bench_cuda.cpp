@@ -46,7 +46,7 @@ Arguments parse(int argc, char** argv) {
 /// A whole run, warm. The stages' times are those of the library's report, medians as well.
 json whole_run(const std::string& mesh, const std::string& label, const RemeshOptions& options, int repeats) {
   const TriangleSoup soup = read_mesh(mesh);
-  Context context = bench::context_of(Backend::cuda);
+  bench::BackendContext context(Backend::cuda);
   std::vector<double> ms;
   std::map<std::string, std::vector<double>> stage_ms;
   std::vector<std::string> order;
@@ -154,7 +154,7 @@ class StageRows {
 json stage_rows(const Arguments& a) {
   constexpr int32_t kPasses = 20;
   const TriangleSoup soup = read_mesh(a.mesh);
-  Context context = bench::context_of(Backend::cuda);
+  bench::BackendContext context(Backend::cuda);
   const LatticeSurface surface = snap_surface(soup, bench::frame_of(soup, a.resolution), context);
   StageRows rows(a.repeats);
   int64_t sites_count = 0;
@@ -280,7 +280,7 @@ void write_file(const std::string& path, const std::string& text) {
 }
 
 json device_json() {
-  Context context = bench::context_of(Backend::cuda);
+  bench::BackendContext context(Backend::cuda);
   const DeviceInfo d = device_info(context);
   int runtime = 0;
   cudaRuntimeGetVersion(&runtime);

@@ -25,7 +25,7 @@ struct Setup {
 
 /// On the device, where the products stay.
 Setup prepare(const TriangleSoup& soup, int32_t resolution, bool want_shell) {
-  Context cuda = bench::context_of(Backend::cuda);
+  bench::BackendContext cuda(Backend::cuda);
   Setup s;
   s.surface = snap_surface(soup, bench::frame_of(soup, resolution), cuda);
   s.sites = voxelize(s.surface, cuda);
@@ -44,7 +44,7 @@ struct Outcome {
 
 template <class Relax>
 Outcome relaxed(const SeedSet& start, int32_t passes, Backend backend, Relax relax) {
-  Context context = bench::context_of(backend);
+  bench::BackendContext context(backend);
   SeedSet seeds = to_host(start);
   RelaxOptions options;
   options.max_passes = passes;
@@ -79,7 +79,7 @@ bool check(const char* method, const SeedSet& start, Relax relax) {
 bool check_dual(const Sheet& sheet, const SeedSet& start) {
   uint64_t digests[2];
   for (const Backend backend : {Backend::cpu, Backend::cuda}) {
-    Context context = bench::context_of(backend);
+    bench::BackendContext context(backend);
     const Triangulation made = triangulate_dual(sheet, to_host(start), {}, context);
     digests[backend == Backend::cuda] = digest(to_world(to_host(made.mesh), sheet.frame)) ^ digest(to_host(made.seeds));
   }
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
                   (long long)(want_shell ? setup.shell.voxels.voxel_count() : 0), watch.ms());
       continue;
     }
-    Context cpu = bench::context_of(Backend::cpu);
+    bench::BackendContext cpu(Backend::cpu);
     const int64_t k = std::atoll(word);
     const auto on_sheet = [&](SeedSet& seeds, const RelaxOptions& o, Context& c) {
       RelaxedSeeds relaxed = relax_on_sheet(setup.sheet, std::move(seeds), o, c);

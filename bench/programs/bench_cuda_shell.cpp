@@ -158,7 +158,7 @@ json compare(const LatticeSurface& on_host, const LatticeSurface& on_device, int
 
 int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
-  Context host = bench::context_of(Backend::cpu), device = bench::context_of(Backend::cuda);
+  bench::BackendContext host(Backend::cpu), device(Backend::cuda);
   TriangleSoup soup = read_mesh(args.mesh);
   while (int64_t(soup.triangles.size()) < args.triangles) soup = split(soup);
   json rows = json::array();

@@ -83,7 +83,7 @@ json measure(const Setup& setup, int64_t count, int repeats, Context& context) {
 
 int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
-  Context context = bench::context_of(Backend::cpu, args.threads);
+  bench::BackendContext context(Backend::cpu, args.threads);
   const Setup setup = prepare(args, context);
   json rows = json::array();
   for (const int64_t count : args.seeds) rows.push_back(measure(setup, count, args.repeats, context));

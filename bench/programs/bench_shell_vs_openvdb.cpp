@@ -46,7 +46,7 @@ double cpu_now_ms() {
 }
 
 json run_ours(const Arguments& args) {
-  Context context = bench::context_of(Backend::cpu, args.threads);
+  bench::BackendContext context(Backend::cpu, args.threads);
   const TriangleSoup soup = read_mesh(args.mesh);
   const LatticeFrame frame = bench::frame_of(soup, args.resolution);
   const bench::PeakMemory memory;

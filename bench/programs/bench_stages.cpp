@@ -69,7 +69,7 @@ class Rows {
 
 int main(int argc, char** argv) try {
   const Arguments args = parse(argc, argv);
-  Context context = bench::context_of(Backend::cpu, args.threads);
+  bench::BackendContext context(Backend::cpu, args.threads);
   Rows rows(args.repeats);
 
   const TriangleSoup soup = rows.run(

@@ -105,7 +105,9 @@ inline LatticeFrame frame_of(const TriangleSoup& soup, int32_t resolution) {
 }
 
 /// Made where it is returned, since a context is not copied.
-inline Context context_of(Backend backend, int threads = 0) { return {backend, 0, threads, 0, {}, {false}, {}}; }
+struct BackendContext : Context {
+  explicit BackendContext(Backend on, int with_threads = 0) { backend = on, threads = with_threads; }
+};
 
 /// JSON on standard output, with where it was measured.
 inline void print_result(nlohmann::json result) {

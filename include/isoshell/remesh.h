@@ -28,7 +28,7 @@ class Prepared {
   bool is_in_patches() const;          ///< the input's own triangles, or the sheet, are cut along curves and borders
   bool has_bridges() const;            ///< gaps may be closed by voxels of the sheet
   const RemeshReport& report() const;  ///< what was measured up to here
-  void free_samples();                 ///< relax() and triangulate() of the method sheet do not read them
+  void free_samples();  ///< of all copies: relax() and triangulate() of the method sheet do not read them
 
   const PreparedSurface& parts() const { return *parts_; }  ///< of the library alone
 

@@ -32,7 +32,7 @@ class Stages:
         source, context, options: as remesh() takes them, but for what concerns files and requirements.
 
     Raises:
-        Error: as remesh() does. After prepare() or relax() failed, or were interrupted, the stages refuse to go on.
+        Error: as remesh() does. After a stage failed, or anything was interrupted, the stages refuse to go on.
     """
 
     def __init__(self, source: SourceLike, *, context: Optional[Context] = None, **options: Unpack[Options]) -> None:
@@ -44,6 +44,7 @@ class Stages:
         place, progress = settle(context, given)
         self._run = _isoshell.StageRun(place, source_of(source, sizing), keywords_for(source, given),
                                       progress, listener(given))
+        self._result: Optional[Result] = None
 
     def prepare(self) -> Stages:
         """Repair the surface, choose the grid, voxelise: surface, sites, shell and sheet."""
@@ -57,7 +58,9 @@ class Stages:
 
     def triangulate(self) -> Result:
         """Make the mesh: the dual of the tessellation, repaired and improved."""
-        return Result(self._run.triangulate())
+        if self._result is None:
+            self._result = Result(self._run.triangulate())
+        return self._result
 
     @property
     def digests(self) -> dict[str, str]:

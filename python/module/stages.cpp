@@ -64,7 +64,7 @@ class StageRun {
 
   RunResult triangulate() {
     relax();
-    return work([](RunSteps& steps, const RunRequest&, Context& context) { return steps.finish(context, true); });
+    return add([](RunSteps& steps, const RunRequest&, Context& context) { return steps.finish(context, true); });
   }
 
   void save_shell(const std::string& path, bool overwrite) {
@@ -84,6 +84,7 @@ class StageRun {
   }
 
   std::map<std::string, std::string> digests() const {
+    check_goes_on();
     if (relaxed_) return relaxed_->report.digests;
     return prepared_ ? prepared_->report().digests : std::map<std::string, std::string>();
   }
@@ -117,9 +118,30 @@ class StageRun {
   template <class Work>
   using Made = std::invoke_result_t<Work, RunSteps&, const RunRequest&, Context&>;
 
+  void check_goes_on() const {
+    if (!steps_) refuse("these stages were interrupted or failed; begin anew");
+  }
+
+  void end() {
+    steps_.reset();
+    prepared_ = nullptr;
+    relaxed_ = nullptr;
+  }
+
+  /// What was interrupted may still be at work.
   template <class Work>
   Made<Work> work(Work stage) {
-    if (!steps_) refuse("these stages were interrupted or failed; begin anew");
+    check_goes_on();
+    try {
+      return done_by_steps(std::move(stage));
+    } catch (const nb::python_error&) {
+      end();
+      throw;
+    }
+  }
+
+  template <class Work>
+  Made<Work> done_by_steps(Work stage) {
     return watched(*place_, source_, requested_, [steps = steps_, stage](const RunRequest& request, Context& context) {
       steps->report_to(request.tell, request.around_write);
       return stage(*steps, request, context);
@@ -132,9 +154,7 @@ class StageRun {
     try {
       return work(std::move(stage));
     } catch (...) {
-      steps_.reset();
-      prepared_ = nullptr;
-      relaxed_ = nullptr;
+      end();
       throw;
     }
   }

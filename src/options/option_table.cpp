@@ -1,9 +1,14 @@
 #include "isoshell/options/option_table.h"
 
+#include <limits>
+
 #include "isoshell/options/option_text.h"
 
 namespace isoshell {
 namespace {
+
+constexpr OptionRange kLength{0, std::numeric_limits<double>::max(), true};
+constexpr double kMostVertices = std::numeric_limits<int32_t>::max();
 
 /// Names of the values of a member of RemeshOptions, which one function reads and another writes.
 template <auto Member, auto Parse, auto Name>
@@ -16,7 +21,7 @@ TextOption named(TextOption::Number number = TextOption::Number::refused, void (
 
 void check_features(RemeshOptions& o) {
   if (o.features.creases == Features::Creases::threshold)
-    check_range("features.degrees", o.features.degrees, option_range::crease);
+    check_range("features.degrees", o.features.degrees, kCreaseDegrees);
 }
 
 TextOption features_option() {
@@ -31,7 +36,7 @@ TextOption gap_option() {
           [](RemeshOptions& o) {  // -1 stood for no value
             if (o.closing_vox == -1) o.closing_vox.reset();
             if (o.closing_world == -1.) o.closing_world.reset();
-            if (o.closing_vox) check_range("closing_vox", *o.closing_vox, option_range::closing);
+            if (o.closing_vox) check_range("closing_vox", *o.closing_vox, {0, kMaxClosingVox});
             if (o.closing_world) check_range("closing_world", *o.closing_world, {});
           }};
 }
@@ -46,29 +51,64 @@ TextOption sizing_option() {
 std::vector<OptionRow> size_rows() {
   const char* group = "Size of the result";
   return {
-      {group, "vertices", "K", "number of vertices of the result", "10000", "vertices", &RemeshOptions::vertices,
-       OnResume::of_seeds, option_range::vertices},
+      {group,
+       "vertices",
+       "K",
+       "number of vertices of the result",
+       "10000",
+       "vertices",
+       &RemeshOptions::vertices,
+       OnResume::of_seeds,
+       {4, kMostVertices}},
       {group, "edge-length", "L", "target edge length in world units, instead of --vertices", "", "edge_length_world",
-       &RemeshOptions::edge_length_world, OnResume::of_seeds, option_range::length, 0, "vertices"},
+       &RemeshOptions::edge_length_world, OnResume::of_seeds, kLength, 0, "vertices"},
       {group, "sizing", "F.vdb[:GRID]",
        "float grid of target edge lengths in world units; without --vertices it also decides the number of vertices",
        "", "sizing", sizing_option(), OnResume::of_seeds},
-      {group, "adaptivity", "A", "fraction of the vertices, 0 to 1, distributed by curvature instead of area", "0",
-       "adaptivity", &RemeshOptions::adaptivity, OnResume::of_seeds, option_range::adaptivity},
-      {group, "gradation", "G", "maximum ratio of neighbouring edge lengths, above 1 and at most 10", "1.2",
-       "gradation", &RemeshOptions::gradation, OnResume::of_seeds, option_range::gradation},
+      {group,
+       "adaptivity",
+       "A",
+       "fraction of the vertices, 0 to 1, distributed by curvature instead of area",
+       "0",
+       "adaptivity",
+       &RemeshOptions::adaptivity,
+       OnResume::of_seeds,
+       {0, 1}},
+      {group,
+       "gradation",
+       "G",
+       "maximum ratio of neighbouring edge lengths, above 1 and at most 10",
+       "1.2",
+       "gradation",
+       &RemeshOptions::gradation,
+       OnResume::of_seeds,
+       {1, 10, true}},
   };
 }
 
 std::vector<OptionRow> grid_rows() {
   const char* group = "Grid";
   return {
-      {group, "resolution", "R", "voxels along the longest side, 8 to 8192", "cells are 4.5 to 5.5 voxels wide",
-       "resolution", &RemeshOptions::resolution, OnResume::of_shell, option_range::resolution},
+      {group,
+       "resolution",
+       "R",
+       "voxels along the longest side, 8 to 8192",
+       "cells are 4.5 to 5.5 voxels wide",
+       "resolution",
+       &RemeshOptions::resolution,
+       OnResume::of_shell,
+       {8, kMaxResolution}},
       {group, "voxel-size", "S", "voxel size in world units, instead of --resolution", "", "voxel_size_world",
-       &RemeshOptions::voxel_size_world, OnResume::of_shell, option_range::length, 0, "resolution"},
-      {group, "band", "D", "thickness of the shell in voxels, 1 to 20", "2", "band_vox", &RemeshOptions::band_vox,
-       OnResume::of_shell, option_range::band},
+       &RemeshOptions::voxel_size_world, OnResume::of_shell, kLength, 0, "resolution"},
+      {group,
+       "band",
+       "D",
+       "thickness of the shell in voxels, 1 to 20",
+       "2",
+       "band_vox",
+       &RemeshOptions::band_vox,
+       OnResume::of_shell,
+       {1, kMaxBandVox}},
       {group, "close-gaps", "W", "maximum width of the gaps to bridge: W in world units, voxels as 4vox, 0, or auto",
        "auto", "closing_world", gap_option(), OnResume::of_shell},
       {group, "outer-only", "", "drop what lies inside of closed surfaces (default: keep hollows)", "", "outer_only",
@@ -82,12 +122,34 @@ std::vector<OptionRow> relaxation_rows() {
       {group, "method", "sheet|shell",
        "sheet: exact clipped Voronoi cells on the closed sheet; shell: the paper's iteration on voxels of the shell",
        "sheet", "method", named<&RemeshOptions::method, parse_method, method_name>(), OnResume::of_seeds},
-      {group, "iterations", "N", "maximum number of relaxation passes on the finest level of seeds", "the method's own",
-       "max_passes", &RemeshOptions::max_passes, OnResume::of_seeds, option_range::iterations},
-      {group, "tolerance", "E", "stop when the energy falls by less than this fraction per pass", "the method's own",
-       "tolerance", &RemeshOptions::tolerance, OnResume::of_seeds, option_range::tolerance, -1},
-      {group, "step", "U", "maximum movement of a seed per pass, in voxels", "the method's own", "max_step_vox",
-       &RemeshOptions::max_step_vox, OnResume::of_seeds, option_range::step},
+      {group,
+       "iterations",
+       "N",
+       "maximum number of relaxation passes on the finest level of seeds",
+       "the method's own",
+       "max_passes",
+       &RemeshOptions::max_passes,
+       OnResume::of_seeds,
+       {1, 1000000}},
+      {group,
+       "tolerance",
+       "E",
+       "stop when the energy falls by less than this fraction per pass",
+       "the method's own",
+       "tolerance",
+       &RemeshOptions::tolerance,
+       OnResume::of_seeds,
+       {0, 1},
+       -1},
+      {group,
+       "step",
+       "U",
+       "maximum movement of a seed per pass, in voxels",
+       "the method's own",
+       "max_step_vox",
+       &RemeshOptions::max_step_vox,
+       OnResume::of_seeds,
+       {1. / kOneVoxelQ8, 1000}},
       {group, "seed", "N", "seed of the random number generator", "0", "seed", &RemeshOptions::seed,
        OnResume::of_seeds},
   };
@@ -102,7 +164,7 @@ std::vector<OptionRow> shape_rows() {
       {group, "features", "auto|off|DEG[,FILE]",
        "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
        "or more; off: none; and the lines of FILE, OBJ (l) or PLY (edges), as auto,curves.obj",
-       "auto", "features", features_option(), OnResume::of_seeds, option_range::crease},
+       "auto", "features", features_option(), OnResume::of_seeds, kCreaseDegrees},
       {group, "boundary", "close|keep",
        "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
        "--close-gaps are borders of the result",

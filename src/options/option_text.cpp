@@ -114,7 +114,7 @@ Features parse_features(const std::string& option, const std::string& text) {
   } else if (creases != "auto") {
     features.creases = Features::Creases::threshold;
     features.degrees = parse_number(option + " is neither off nor auto: the angle of creases", creases);
-    check_range(option, features.degrees, option_range::crease);
+    check_range(option, features.degrees, kCreaseDegrees);
   }
   return features;
 }

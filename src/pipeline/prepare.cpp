@@ -93,7 +93,6 @@ void finish(PreparedSurface& p, const PatchSource& source, RemeshReport& report,
   }
   report_surface(p, report);
   timed(report, "lengths", context, [&] { set_lengths(p, report, context); });
-  set_target(p);
   if (wants_lengths(options)) choose_beginning(p, report);
   cut_into_patches(source, p, report, context);
   note_digests(p, report, context);
@@ -110,7 +109,6 @@ std::optional<double> smallest_cell_world(const TriangleSoup& soup, const Plan& 
       prepare_surface(std::move(surface), requested_closing(plan, usual), plan.options, report, context);
   RemeshReport unsaid;
   timed(report, "lengths", context, [&] { set_lengths(p, unsaid, context); });
-  set_target(p);
   if (p.sheet.lengths.at.empty()) return {};
   return smallest_cell_vox(p, context) * usual.voxel_size;
 }
@@ -139,14 +137,14 @@ class GridSearch {
 
   /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
   PreparedSurface best_grid() {
-    const bool free_grid = plan_.chooses_grid();
     const int32_t usual = plan_.first_resolution();
-    const int32_t first = free_grid && wants_lengths(plan_.options)
+    const int32_t first = plan_.chooses_grid() && wants_lengths(plan_.options)
                               ? resolution_for_lengths(soup_, plan_, usual, report_, context_)
                               : usual;
     // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
     const bool reachable = can_compare(plan_.input) && shows_all_parts(plan_.target.vertices, plan_.input);
-    const int32_t cap = free_grid && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
+    const int32_t cap =
+        plan_.chooses_grid() && reachable ? std::max(first, std::min(4 * usual, kMaxResolution)) : first;
     const bool had_curves = plan_.options.previous && plan_.options.previous->had_curves;
     if (had_curves && allows(first, false))
       if (std::optional<PreparedSurface> cut = cut_at_once(snapped(first))) return std::move(*cut);

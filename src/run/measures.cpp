@@ -10,12 +10,13 @@ namespace isoshell {
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record) {
   record.topology = check_mesh(mesh);
   record.quality = measure_quality(mesh);
-  std::vector<std::string> warnings = warnings_of_quality(*record.quality);
+  std::vector<std::string> warnings;
   const RemeshReport& report = record.report;
   const int64_t borders = report.features.border_loops;
   if (!record.topology->is_manifold_with(borders) && report.dual.failed_cells == 0)
-    warnings.insert(warnings.begin(), std::string("the result is not a ") + (borders > 0 ? "" : "closed ") +
-                                          "2-manifold, which should not be: please report the input");
+    warnings.push_back(std::string("the result is not a ") + (borders > 0 ? "" : "closed ") +
+                       "2-manifold, which should not be: please report the input");
+  for (std::string& text : warnings_of_quality(*record.quality)) warnings.push_back(std::move(text));
   return warnings;
 }
 

@@ -35,10 +35,10 @@ MeshTopology topology_of(const ComplexCounts& c) {
   return t;
 }
 
-std::vector<std::string> missed_of(const MeshInfo& info, const Gates& gates) {
+std::vector<std::string> missed_of(const MeshInfo& info, const TriangleMesh& mesh, const Gates& gates) {
+  if (!gates.any()) return {};
   const std::optional<MeshTopology> topology = topology_of(info.census.counts);
-  std::optional<MeshQuality> quality(std::in_place);
-  quality->theta_min_deg = info.census.shapes.angle_min_deg;
+  const std::optional<MeshQuality> quality = measure_quality(mesh);
   Measured measured{topology, quality, info.distance};
   measured.self_intersections = info.census.intersecting_pairs;
   return missed_gates(gates, measured);
@@ -62,7 +62,7 @@ MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gate
     const TriangleMesh other = mesh_of(std::move(reference->soup));
     step("distance", context, [&] { info.distance = measure_distance(measured, other, context, {kSamples, true}); });
   }
-  info.missed_gates = missed_of(info, gates);
+  info.missed_gates = missed_of(info, measured, gates);
   return info;
 }
 

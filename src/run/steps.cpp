@@ -1,7 +1,6 @@
 // See run/steps.h.
 #include "isoshell/run/steps.h"
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -52,7 +51,13 @@ class RunSteps::Run {
   /// Runs steps in a context, and says what was written before an interruption.
   template <class Work>
   std::invoke_result_t<Work> in(Context& context, Work work) {
+    struct Book {
+      Run& run;
+      ~Book() { run.before_ms_ += ms_since(run.start_); }
+    };
     context_ = &context;
+    start_ = Clock::now();
+    const Book book{*this};
     try {
       if (record_.device.backend.empty()) record_.device = device_info(context);  // no time is lost where there is none
       return work();
@@ -128,6 +133,7 @@ class RunSteps::Run {
 
   const Relaxed& relax() {
     if (relaxed_) return *relaxed_;
+    if (is_over_) refuse_use("the seeds went into the mesh; keep them by finish(context, true)");
     prepare();
     if (!options_.values.want_shell && options_.values.method == Method::sheet)
       prepared_->free_samples();  // made the sheet, and are not read again
@@ -139,12 +145,13 @@ class RunSteps::Run {
     return *relaxed_;
   }
 
-  RunResult finish(bool may_repeat) {
+  RunResult finish(bool keeps_seeds) {
+    if (is_over_) refuse_use("the run is over; begin another");
     save_shell_if_requested();
     if (request_.stop_after == StopAfter::shell) return result({});
     save_voronoi_if_requested();
     if (request_.stop_after == StopAfter::voronoi) return result({});
-    TriangleMesh mesh = timed("triangulate", [&] { return triangulated(may_repeat); });
+    TriangleMesh mesh = timed("triangulate", [&] { return triangulated(keeps_seeds); });
     timed("measure", [&] { measure(mesh); });
     if (measures_all() || request_.gates.needs_distance())
       timed("distance", [&] { measure_distances(*prepared_, mesh, record_, *context_); });
@@ -152,7 +159,7 @@ class RunSteps::Run {
     if (!soup.attributes.empty())
       mesh.attributes =
           timed("attributes", [&] { return transfer_attributes(soup, soup.attributes, mesh, *context_); });
-    mesh.files = may_repeat ? soup.files : std::move(soup.files);
+    mesh.files = std::move(soup.files);
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
     if (options_.values.color_features) show_features(mesh);
     const OutputRequest& output = record_.output;
@@ -164,12 +171,14 @@ class RunSteps::Run {
   }
 
   void save_shell(const std::string& path, bool overwrite) {
+    check_shell_is_wanted();
     const Prepared& p = prepare();
     write_step("save-shell", path,
                [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(p, overwrite)); });
   }
 
   void save_voronoi(const std::vector<std::string>& paths, bool overwrite) {
+    check_shell_is_wanted();
     const SeedSet& seeds = relax().seeds;
     const Prepared& p = *prepared_;
     if (p.is_in_patches())
@@ -188,6 +197,10 @@ class RunSteps::Run {
   }
 
  private:
+  void check_shell_is_wanted() const {
+    if (!options_.values.want_shell) refuse_use("a stage file has the shell, and want_shell did not ask for it");
+  }
+
   bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
   bool measures_all() const {
     return request_.measures == Measures::all || !request_.statistics.empty() || !request_.report.empty();
@@ -223,7 +236,7 @@ class RunSteps::Run {
   }
 
   void read_sizing_field() {
-    if (options_.sizing.empty()) return;
+    if (options_.sizing.empty() || std::exchange(has_read_sizing_, true)) return;
     options_.values.sizing =
         timed("sizing", [&] { return read_sizing(options_.sizing, context_->memory_limit_bytes); });
     tell(MessageKind::note, "sizing: " + options_.sizing);
@@ -252,8 +265,9 @@ class RunSteps::Run {
     input_->soup = std::move(without_faces);
   }
 
-  TriangleMesh triangulated(bool may_repeat) {
-    Relaxed relaxed = may_repeat ? Relaxed{to_host(relaxed_->seeds), relaxed_->report} : std::move(*relaxed_);
+  TriangleMesh triangulated(bool keeps_seeds) {
+    Relaxed relaxed = keeps_seeds ? Relaxed{to_host(relaxed_->seeds), relaxed_->report} : std::move(*relaxed_);
+    if (!keeps_seeds) relaxed_.reset();
     RemeshResult made = triangulate(*prepared_, std::move(relaxed), *context_);
     record_.report = std::move(made.report);
     return std::move(made.mesh);
@@ -302,8 +316,9 @@ class RunSteps::Run {
   }
 
   RunResult result(TriangleMesh mesh) {
-    RunRecord record = record_;  // another result may follow
-    record.total_ms = ms_since(start_);
+    is_over_ = true;
+    RunRecord record = std::move(record_);
+    record.total_ms = before_ms_ + ms_since(start_);
     record.host_peak_bytes = process_peak_bytes();
     record.device_peak_bytes = device_memory_peak_bytes(context_->device);
     for (const std::string& text : record.report.warnings) {
@@ -324,14 +339,15 @@ class RunSteps::Run {
   RunRequest request_;
   RequestedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
   Context* context_ = nullptr;
-  bool has_checked_files_ = false;
+  bool has_checked_files_ = false, has_read_sizing_ = false, is_over_ = false;
   std::optional<Input> input_;
   std::optional<Prepared> prepared_;
   std::optional<Relaxed> relaxed_;
   RunRecord record_;
-  std::string left_out_;  ///< of the input, by stage files
-  std::string written_;   ///< files that are whole, for who interrupts
-  Clock::time_point start_ = Clock::now();
+  std::string left_out_;     ///< of the input, by stage files
+  std::string written_;      ///< files that are whole, for who interrupts
+  Clock::time_point start_;  ///< of the steps that go on
+  double before_ms_ = 0;     ///< of those before them
 };
 
 RunSteps::RunSteps(RunRequest request) : run_(std::make_unique<Run>(std::move(request))) {}
@@ -372,8 +388,8 @@ void RunSteps::save_voronoi(const std::string& path, bool overwrite, Context& co
   run_->in(context, [&] { run_->save_voronoi({path}, overwrite); });
 }
 
-RunResult RunSteps::finish(Context& context, bool may_repeat) {
-  return run_->in(context, [&] { return run_->finish(may_repeat); });
+RunResult RunSteps::finish(Context& context, bool keeps_seeds) {
+  return run_->in(context, [&] { return run_->finish(keeps_seeds); });
 }
 
 void RunSteps::report_to(Tell tell, AroundWrite around_write) {

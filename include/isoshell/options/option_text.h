@@ -32,6 +32,8 @@ int64_t parse_count(const std::string& option, const std::string& text);
 /// Throws: usage when the value is outside of the range.
 void check_range(const std::string& option, double value, const OptionRange& range);
 
+constexpr OptionRange kCreaseDegrees{1, 179};  ///< by which faces at a crease may turn
+
 /// The value beside `text` among the choices. Throws: usage, which lists them.
 template <class Value>
 Value parse_choice(const std::string& option, const std::string& text,

@@ -21,21 +21,21 @@ class RunSteps {
 
   /// Checks that every file can be written, and reads the input.
   void read(Context& context);
-  /// The same with an input that was read already, or came from memory.
+  /// The same with an input that was read already, or came from memory; prepare() then checks the files.
   void take(Input input, Context& context);
-  const Input& input() const;  ///< once it is there; without triangles once they are prepared
+  const Input& input() const;  ///< once it is there; when prepared without triangles, unless attributes are on them
 
   /// What the run would take, from its input alone. Throws: usage for a stage file.
   RunEstimate estimate(Context& context);
   const Prepared& prepare(Context& context);
   const Relaxed& relax(Context& context);
-  /// Stage files beside those of the request, which want_shell must have asked for. Throws: usage for the seeds of
+  /// Stage files beside those of the request. Throws: usage unless want_shell asked for the shell, and for the seeds of
   /// patches, which a Voronoi stage file does not hold; as writing does.
   void save_shell(const std::string& path, bool overwrite, Context& context);
   void save_voronoi(const std::string& path, bool overwrite, Context& context);
-  /// All that is left: the mesh, its measures, its files and the gates. With `may_repeat` the seeds of relax() stay,
-  /// and it can be called again.
-  RunResult finish(Context& context, bool may_repeat = false);
+  /// All that is left: the mesh, its measures, its files and the gates. The run is over then: only with `keeps_seeds`
+  /// those of relax() are there still.
+  RunResult finish(Context& context, bool keeps_seeds = false);
 
   /// Who is told from now on, and called around each writing of a file: as in a request.
   void report_to(Tell tell, AroundWrite around_write);

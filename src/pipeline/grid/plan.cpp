@@ -40,6 +40,8 @@ int32_t requested_voxel_resolution(double longest, double voxel_size) {
   throw Error(ErrorCode::usage, "grid", text.str());
 }
 
+}  // namespace
+
 int64_t vertices_of_edge(double edge_world, double area_world) {
   const double vertices = area_world / (kAreaPerEdgeSq * edge_world * edge_world);
   if (!(vertices <= double(kMaxVertices))) {  // a tiny length squares to 0
@@ -50,8 +52,6 @@ int64_t vertices_of_edge(double edge_world, double area_world) {
   }
   return std::max<int64_t>(4, std::llround(vertices));
 }
-
-}  // namespace
 
 Target target_of(int64_t vertices, double area_world) {
   return {vertices, std::sqrt(area_world / double(vertices) / kAreaPerEdgeSq)};

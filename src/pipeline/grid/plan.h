@@ -16,6 +16,8 @@ struct Target {
 Target target_of(const RemeshOptions& options, double area_world);
 /// Of so many vertices.
 Target target_of(int64_t vertices, double area_world);
+/// So many vertices have edges of this length. Throws: as target_of.
+int64_t vertices_of_edge(double edge_world, double area_world);
 
 /// Area of a sheet in world units.
 double sheet_area_world(const Sheet& sheet);

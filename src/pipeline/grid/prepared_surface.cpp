@@ -20,6 +20,10 @@ void set_target(PreparedSurface& p) {
     p.target.vertices = target_of(p.options, sheet_area_world(p.sheet)).vertices;
 }
 
+double edge_length_on_sheet_world(const PreparedSurface& p) {
+  return target_of(p.options, sheet_area_world(p.sheet)).edge_length_world;
+}
+
 Prepared::Prepared(std::shared_ptr<PreparedSurface> parts) : parts_(std::move(parts)) {}
 const LatticeSurface& Prepared::surface() const { return parts_->surface; }
 const SiteSet& Prepared::sites() const { return parts_->sites; }

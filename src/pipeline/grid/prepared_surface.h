@@ -48,6 +48,9 @@ PreparedSurface begin_with(LatticeSurface surface, const RemeshOptions& checked_
 /// Sets p.target, once the sheet and its lengths are there; a surface without a sheet keeps that of the input.
 void set_target(PreparedSurface& p);
 
+/// How long edges are for the area of the sheet. Cost: O(sheet).
+double edge_length_on_sheet_world(const PreparedSurface& p);
+
 inline bool has_sheet(const PreparedSurface& p) { return p.sheet.vertex_count() > 0; }
 
 }  // namespace isoshell

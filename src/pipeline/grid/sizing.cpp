@@ -177,7 +177,9 @@ RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) 
   return options;
 }
 
-void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
+namespace {
+
+void find_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
   const RemeshOptions& options = p.options;
   if (!wants_lengths(options)) return;
   Sheet& sheet = p.sheet;
@@ -185,9 +187,7 @@ void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
   const double first = wanted[0], voxel_size = sheet.frame.voxel_size;
   if (std::all_of(wanted.begin(), wanted.end(), [&](double l) { return l == first; })) {
     if (!field_decides(options)) return;
-    RemeshOptions even = options;
-    even.edge_length_world = first;
-    p.vertices_of_lengths = target_of(even, sheet_area_world(sheet)).vertices;
+    p.vertices_of_lengths = vertices_of_edge(first, sheet_area_world(sheet));
     return;
   }
   const int64_t requested = field_decides(options) ? 0 : target_of(options, sheet_area_world(sheet)).vertices;
@@ -211,6 +211,13 @@ void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
   if (options.adaptivity > 0)
     smooth_lengths(requested > 0 ? requested : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
   if (requested == 0) p.vertices_of_lengths = vertices_of_lengths(sheet, context);
+}
+
+}  // namespace
+
+void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
+  find_lengths(p, report, context);
+  set_target(p);
 }
 
 double smallest_cell_vox(const PreparedSurface& p, Context& context) {

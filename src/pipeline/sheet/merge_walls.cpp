@@ -28,13 +28,11 @@ MergedWalls merge_walls(const PreparedSurface& prepared, const std::vector<Point
   p.closing_vox = prepared.closing_vox;
   p.vertices_of_lengths = prepared.vertices_of_lengths;
   p.grown = {prepared.grown.distance_vox, prepared.grown.only_flaps, host_copy(prepared.grown.voxels)};
-  const double edge_world = target_of(p.options, sheet_area_world(p.sheet)).edge_length_world;
-  const double edge_vox = edge_world / p.surface.frame.voxel_size;
+  const double edge_vox = edge_length_on_sheet_world(p) / p.surface.frame.voxel_size;
   merged.grown_vox = std::min(std::max(1, growth_for_edge(edge_vox) / 4) << times_before, kMostGrownVox);
   grow_at(p, sites_near(p.sites, points, edge_vox), merged.grown_vox, smallest_component_q16(p), context);
   RemeshReport unsaid;
   set_lengths(p, unsaid, context);
-  set_target(p);
   return merged;
 }
 

@@ -126,8 +126,7 @@ class Preparation {
   /// A solid whose false handles were cut is no longer that of its sites, and stays as it is.
   void thicken_flaps(PreparedSurface& p) {
     if (p.sheet.topology.cut_handles > 0) return;
-    const double edge_world = target_of(options_, sheet_area_world(p.sheet)).edge_length_world;
-    const int32_t grown_vox = growth_for_edge(edge_world / p.surface.frame.voxel_size);
+    const int32_t grown_vox = growth_for_edge(edge_length_on_sheet_world(p) / p.surface.frame.voxel_size);
     timed(report_, "sheet", context_, [&] { return grow_flaps(p, grown_vox, smallest_component_q16(p), context_); });
   }
 
