@@ -147,9 +147,14 @@ TEST_CASE("collapse: ids below the number left are kept, and others take those s
   const Sheet sheet = sheet_of_soup(shapes::torus(2, 0.7, 160, 70), 256, 1, 1);
   for (const int64_t target : {400, 399, 350, 120}) {
     Meshed m = meshed(sheet, 400, 20, context);
-    const SeededMesh closed = collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {target}, context);
-    const SeededMesh kept =
-        collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {target, false, true}, context);
+    on_host(m.mesh);
+    const auto collapsed = [&](const CollapseOptions& options) {
+      SeededMesh made = collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, options, context);
+      on_host(made.mesh);
+      on_host(made.seeds);
+      return made;
+    };
+    const SeededMesh closed = collapsed({target}), kept = collapsed({target, false, true});
     INFO(target << " vertices");
     // The same mesh under other numbers: found by positions, of which no two are the same.
     std::map<std::tuple<int32_t, int32_t, int32_t>, uint32_t> at;
