@@ -104,7 +104,7 @@ inline LatticeFrame frame_of(const TriangleSoup& soup, int32_t resolution) {
   return LatticeFrame::around(lo, hi, resolution);
 }
 
-/// Made where it is returned, since a context is not copied.
+/// A context on this backend.
 struct BackendContext : Context {
   explicit BackendContext(Backend on, int with_threads = 0) { backend = on, threads = with_threads; }
 };

@@ -21,17 +21,12 @@ namespace nb = nanobind;
 namespace isoshell::python {
 namespace {
 
-/// As a run with these features reads it.
-Input read_file(InputRequest file, const Features& features, const Tell& tell, const Context& context) {
-  file.creases = volume_creases(features);
-  return read_input(file, context.memory_limit_bytes, tell);
-}
-
 /// What the run of a request starts from, to be read again.
 Source source_of(const RunRequest& request) {
   return {"",
-          [file = request.input, features = request.options.values.features](
-              const RunRequest& again, const Context& c) { return read_file(file, features, again.tell, c); },
+          [request](const RunRequest& again, const Context& context) {
+            return read_input_of(request, context.memory_limit_bytes, again.tell);
+          },
           {},
           {}};
 }
@@ -49,8 +44,7 @@ nb::tuple read_surface(Place& place, const Source& source, const Keywords& keywo
   const RequestFromPython requested = request_from_python(source, keywords, "", nb::none(), std::move(tell));
   TriangleMesh mesh =
       watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
-        if (read) return surface_of(read(request, context));
-        return surface_of(read_file(request.input, request.options.values.features, request.tell, context));
+        return surface_of(input_of_run(read, request, context));
       });
   const nb::object owner = nb::cast(std::move(mesh));
   const auto& kept = nb::cast<const TriangleMesh&>(owner);

@@ -47,7 +47,10 @@ class StageRun {
   const Prepared& prepare() {
     if (!prepared_)
       prepared_ = add([read = source_.read](RunSteps& steps, const RunRequest& request, Context& context) {
-        steps.take(input_of_run(read, request, context), context);
+        if (read)
+          steps.take(read(request, context), context);
+        else
+          steps.read(context);
         if (steps.input().stage)
           refuse(steps.input().facts.name() + " is a stage file; isoshell.remesh resumes from it");
         return &steps.prepare(context);

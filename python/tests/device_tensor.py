@@ -40,7 +40,7 @@ class Driver:
     """The device 0 of this process. Raises OSError where there is no driver or device."""
 
     def __init__(self) -> None:
-        self.library = ctypes.CDLL("libcuda.so.1")
+        self.functions = ctypes.CDLL("libcuda.so.1")
         self.call("cuInit", 0)
         device = c_int()
         self.call("cuDeviceGet", byref(device), 0)
@@ -51,7 +51,7 @@ class Driver:
         self.call("cuStreamCreate", byref(self.stream), 1)  # waits for no other, and the default ones not for it
 
     def call(self, name: str, *arguments: object) -> None:
-        status = getattr(self.library, name)(*arguments)
+        status = getattr(self.functions, name)(*arguments)
         if status:
             raise OSError(f"{name} failed with {status}")
 

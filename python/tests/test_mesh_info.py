@@ -65,6 +65,17 @@ def test_a_ball_of_booleans_and_a_cloud_may_be_the_reference(ball):
     assert isoshell.mesh_info(ball, ref=cloud)["reference"]["kind"] == "points"
 
 
+def test_a_cloud_is_read_without_creases_as_the_command_reads_it(certificate, ball, tmp_path):
+    random = np.random.default_rng(1)
+    points = random.uniform(-1, 1, (4_000, 3))
+    points[np.arange(len(points)), random.integers(0, 3, len(points))] = random.choice([-1.0, 1.0], len(points))
+    np.savetxt(tmp_path / "points.xyz", points, fmt="%.17g")
+    mesh = write_obj(tmp_path / "ball.obj", *ball)
+    of_command = certificate(mesh, "--ref", tmp_path / "points.xyz")[1]
+    assert of_command == isoshell.mesh_info(mesh, ref=tmp_path / "points.xyz")
+    assert of_command["distance"] == isoshell.mesh_info(mesh, ref=isoshell.Points(points))["distance"]
+
+
 def test_a_requirement_that_is_missed_is_an_error_with_the_certificate(certificate, ball, tmp_path):
     mesh = write_obj(tmp_path / "open.obj", ball[0], ball[1][:-1])
     with pytest.raises(isoshell.Error) as caught:

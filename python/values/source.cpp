@@ -147,10 +147,7 @@ void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, 
 }  // namespace
 
 Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context) {
-  if (read) return read(request, context);
-  InputRequest file = request.input;
-  file.creases = volume_creases(request.options.values.features);
-  return read_input(file, context.memory_limit_bytes, request.tell);
+  return read ? read(request, context) : read_input_of(request, context.memory_limit_bytes, request.tell);
 }
 
 RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context) {

@@ -1,11 +1,14 @@
 // The half-edges of any triangles, by their edges.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/buckets.h"
+#include "isoshell/error.h"
 
 namespace isoshell {
 
@@ -28,9 +31,14 @@ struct EdgeSide {
 /// By the smaller ends of their edges, then ascending.
 using EdgeSides = Buckets<EdgeSide, uint32_t>;
 
-/// There are at most UINT32_MAX / 3 triangles. Cost: linear in triangles for bounded valence, and in vertices; 8
-/// bytes a half-edge and 4 a vertex.
+/// Cost: linear in triangles for bounded valence, and in vertices; 8 bytes a half-edge and 4 a vertex. Throws:
+/// out_of_memory for more than UINT32_MAX / 3 triangles, whose half-edges have no numbers.
 inline EdgeSides find_edge_sides(const std::vector<std::array<uint32_t, 3>>& triangles, size_t vertices) {
+  constexpr size_t kMost = std::numeric_limits<uint32_t>::max() / 3;
+  if (triangles.size() > kMost)
+    throw Error(
+        ErrorCode::out_of_memory, "edges",
+        std::to_string(triangles.size()) + " triangles; their edges can be listed of at most " + std::to_string(kMost));
   return sort_into_buckets<EdgeSide, uint32_t>(int64_t(vertices), int64_t(triangles.size()), [&](int64_t t, auto put) {
     const auto& c = triangles[size_t(t)];
     for (size_t i = 0; i < 3; ++i) {

@@ -75,11 +75,9 @@ class RunSteps::Run {
 
   void read() {
     if (input_) return;
-    InputRequest request = request_.input;
-    request.creases = volume_creases(options_.values.features);
     take(timed("read", [&] {
-      return read_input(request, context_->memory_limit_bytes,
-                        [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+      return read_input_of(request_, context_->memory_limit_bytes,
+                           [&](MessageKind kind, const std::string& text) { tell(kind, text); });
     }));
   }
 
@@ -98,7 +96,7 @@ class RunSteps::Run {
     if (!std::exchange(has_checked_files_, true)) check_outputs(request_);
   }
 
-  const Input& input() const { return *input_; }
+  const Input& input() const { return input_.value(); }
 
   RunEstimate estimate() {
     read();
@@ -236,7 +234,7 @@ class RunSteps::Run {
   }
 
   void read_sizing_field() {
-    if (options_.sizing.empty() || std::exchange(has_read_sizing_, true)) return;
+    if (options_.sizing.empty() || options_.values.sizing) return;  // there is none, or it was read
     options_.values.sizing =
         timed("sizing", [&] { return read_sizing(options_.sizing, context_->memory_limit_bytes); });
     tell(MessageKind::note, "sizing: " + options_.sizing);
@@ -339,7 +337,7 @@ class RunSteps::Run {
   RunRequest request_;
   RequestedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
   Context* context_ = nullptr;
-  bool has_checked_files_ = false, has_read_sizing_ = false, is_over_ = false;
+  bool has_checked_files_ = false, is_over_ = false;
   std::optional<Input> input_;
   std::optional<Prepared> prepared_;
   std::optional<Relaxed> relaxed_;

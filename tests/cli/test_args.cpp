@@ -1,5 +1,8 @@
 // The command line alone: what is refused, with which words, and what it turns into. No stage runs here.
+#include <set>
+
 #include "isoshell/error.h"
+#include "isoshell/options/option_table.h"
 #include "support/catch.h"
 #include "support/refusals.h"
 #include "vdb_isomesh/args.h"
@@ -209,6 +212,11 @@ TEST_CASE("args: the table of options has them all, with what stands for their v
       if (option.name == name) return option;
     return OptionEntry{};
   };
+  std::set<std::string> names;
+  for (const OptionEntry& option : table) CHECK(names.insert(option.name).second);
+  for (const OptionRow& row : option_rows()) CHECK(entry(row.name).text == row.text);
+  for (const char* name : {"iso", "save-shell", "stats", "report", "force", "frames", "require", "device", "help"})
+    CHECK(names.count(name) == 1);
   CHECK(entry("vertices").value == "K");
   CHECK(entry("vertices").fallback == "10000");
   CHECK_FALSE(entry("vertices").real);

@@ -8,8 +8,10 @@
 
 namespace isoshell {
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-inline bool says(const Error& error, const std::string& part) { return contains(error.what(), part); }
+[[nodiscard]] inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+[[nodiscard]] inline bool says(const Error& error, const std::string& part) { return contains(error.what(), part); }
 
 /// What `work` throws; fails the test when it throws nothing.
 template <class Work>

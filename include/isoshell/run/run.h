@@ -71,7 +71,10 @@ RunEstimate dry_run(const RunRequest& request, Context& context);
 /// The same of what is in memory already.
 RunEstimate dry_run(Input input, const RunRequest& request, Context& context);
 
-/// How a run with these features has a volume read; a run from a file does so by itself.
+/// How a run with these features has a volume or points read.
 VolumeCreases volume_creases(const Features& features);
+
+/// Reads the input as a run of the request does. Throws: as read_input().
+Input read_input_of(const RunRequest& request, int64_t memory_limit_bytes, const Tell& tell);
 
 }  // namespace isoshell
