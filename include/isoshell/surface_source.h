@@ -8,6 +8,7 @@
 
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/attribute.h"
+#include "isoshell/regions.h"
 
 namespace isoshell {
 
@@ -40,6 +41,7 @@ struct TriangleSoup {
   std::vector<Attribute> attributes;                 ///< as read; what repair or union changed has none
   AttributeFiles files;                              ///< that attributes speak of
   std::vector<DroppedAttribute> dropped_attributes;  ///< of the file, that no reader takes
+  FaceRegions regions;                               ///< that the triangles part; empty: they bound one solid
 };
 
 }  // namespace isoshell

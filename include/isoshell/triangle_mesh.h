@@ -7,6 +7,7 @@
 
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/attribute.h"
+#include "isoshell/regions.h"
 
 namespace isoshell {
 
@@ -32,6 +33,7 @@ struct TriangleMesh {
   std::vector<Attribute> attributes = {};  ///< of the input, where they were transferred
   AttributeFiles files = {};               ///< that attributes speak of
   MeshFeatures features = {};              ///< of the input, where they were kept
+  FaceRegions regions = {};                ///< of the input, where it has any
 };
 
 }  // namespace isoshell

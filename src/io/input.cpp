@@ -198,6 +198,8 @@ const char* kind_name(InputKind kind) {
       return "points";
     case InputKind::volume:
       return "volume";
+    case InputKind::labels:
+      return "labels";
     case InputKind::stage:
       return "stage";
   }

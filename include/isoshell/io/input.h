@@ -13,9 +13,9 @@
 
 namespace isoshell {
 
-enum class InputKind { mesh, points, volume, stage };
+enum class InputKind { mesh, points, volume, labels, stage };
 
-/// "mesh", "points", "volume" or "stage".
+/// "mesh", "points", "volume", "labels" or "stage".
 const char* kind_name(InputKind kind);
 
 /// A file and what is needed to read it.

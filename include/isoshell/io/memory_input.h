@@ -37,6 +37,16 @@ struct DenseVolume {
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info);
 
+/// The walls between voxels of different labels, faired within the voxels: every region is bounded by closed triangles,
+/// which it shares with those beside it (see implicit/labels). `surface.regions` says what they part. Result: the same
+/// for any number of threads. Throws: usage for an array without voxels, a number of labels that is not theirs, or
+/// steps that span no volume; nothing_to_mesh where all voxels have one label; out_of_memory over the limit, if that is
+/// above 0.
+TriangleSoup surface_of_labels(const LabelVolume& volume, const std::string& name, int64_t memory_limit_bytes);
+
+/// The same as an input. Throws: as surface_of_labels does.
+Input input_of(const LabelVolume& volume, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {});
+
 /// The same as an input. Throws: as surface_of_volume does.
 Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                const Tell& tell = {});

@@ -1,0 +1,41 @@
+// Regions: the labelled parts of space that a surface parts from one another, and volumes of labels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isoshell/advanced/lattice.h"
+
+namespace isoshell {
+
+/// What a person calls a region.
+struct RegionName {
+  int32_t label;
+  std::string name;
+};
+
+/// The regions that the faces of a mesh part from one another. Faces of a mesh without regions bound one solid.
+struct FaceRegions {
+  /// Per triangle the label of the region behind it and of the one in front, that its normal points into. The first one
+  /// is never the background; of two that are not it is the smaller one. Empty: no regions.
+  std::vector<std::array<int32_t, 2>> labels;
+  int32_t background = 0;              ///< the label of what is no region
+  std::vector<RegionName> names = {};  ///< ascending by label; labels may have none
+
+  bool empty() const { return labels.empty(); }
+};
+
+/// Labels of voxels on a regular lattice. The centre of voxel (i, j, k) is at origin + i * step[0] + j * step[1] +
+/// k * step[2]; what lies outside of the array is background.
+struct LabelVolume {
+  std::array<int32_t, 3> size_vox{0, 0, 0};
+  std::vector<int32_t> labels;  ///< i fastest, then j, then k
+  WorldPoint origin_world{0, 0, 0};
+  std::array<WorldPoint, 3> step_world{WorldPoint{1, 0, 0}, WorldPoint{0, 1, 0}, WorldPoint{0, 0, 1}};
+  int32_t background = 0;
+  std::vector<RegionName> names = {};  ///< ascending by label
+};
+
+}  // namespace isoshell
