@@ -22,6 +22,7 @@ struct FaceRegions {
   /// is never the background; of two that are not it is the smaller one. Empty: no regions.
   std::vector<std::array<int32_t, 2>> labels;
   int32_t background = 0;              ///< the label of what is no region
+  bool are_of_voxels = false;          ///< walls between voxels, which have no creases that are more than their steps
   std::vector<RegionName> names = {};  ///< ascending by label; labels may have none
 
   bool empty() const { return labels.empty(); }

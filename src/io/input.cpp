@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <sstream>
+#include <unordered_set>
 
 #include "core/attribute_values.h"
 #include "core/file_format.h"
@@ -153,6 +154,16 @@ class Reader {
           "from it");
   }
 
+  void hold(const LabelVolume& labels) {
+    input_.facts.kind = InputKind::labels;
+    hold(surface_of_labels(labels, input_.facts.name(), memory_limit_bytes_));
+    std::unordered_set<int32_t> regions;
+    for (const auto& pair : input_.soup.regions.labels) regions.insert(pair.begin(), pair.end());
+    regions.erase(labels.background);
+    note(counted(int64_t(regions.size()), "region") + ", " + std::to_string(labels.size_vox[0]) + " x " +
+         std::to_string(labels.size_vox[1]) + " x " + std::to_string(labels.size_vox[2]) + " voxels");
+  }
+
   Input taken() { return std::move(input_); }
 
  private:
@@ -242,6 +253,12 @@ Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_
   check_points(cloud, name);
   Reader reader(name, memory_limit_bytes, tell);
   reader.hold(cloud, creases);
+  return reader.taken();
+}
+
+Input input_of(const LabelVolume& volume, const std::string& name, int64_t memory_limit_bytes, const Tell& tell) {
+  Reader reader(name, memory_limit_bytes, tell);
+  reader.hold(volume);
   return reader.taken();
 }
 

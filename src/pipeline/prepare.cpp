@@ -15,6 +15,7 @@
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
+#include "pipeline/regions/region_walls.h"
 #include "pipeline/repaired_input.h"
 #include "pipeline/sheet/prepare_surface.h"
 #include "pipeline/sheet/warm_start.h"
@@ -228,6 +229,11 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {
   RemeshReport report;
   const RemeshOptions options = with_even_length(checked(requested), soup);
+  if (!soup.regions.empty()) {
+    PreparedSurface p = prepare_regions(soup, options, report, context);
+    p.report = std::move(report);
+    return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
+  }
   const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
   report.input.dirt = measured.dirt;
   check_area(measured.topology);

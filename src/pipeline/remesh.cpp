@@ -17,6 +17,7 @@
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
+#include "pipeline/regions/mesh_of_regions.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/flag_gaps.h"
 #include "pipeline/sheet/merge_walls.h"
@@ -199,6 +200,7 @@ TriangleMesh triangulate_on_sheet(const PreparedSurface& p, Attempt& best, Conte
 
 /// On its patches, or where that fails on the sheet without curves.
 TriangleMesh triangulate_anyhow(const PreparedSurface& p, Attempt& best, Context& context) {
+  if (p.walls) return triangulate_regions(p, best.made, patch_options(p, false), best.report, context);
   SheetWhenNeeded sheet(p, context);
   if (!p.cut || best.made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(best.report), best, context);
   const PatchOptions in_patches = patch_options(p, best.report.coherence.began_warm);

@@ -7,7 +7,7 @@
 #include "features/cutting/cut_fine_mesh.h"
 #include "features/cutting/cut_piece.h"
 #include "isoshell/mesh_topology.h"
-#include "pipeline/patches/flat_patches.h"
+#include "pipeline/defects/flat_patches.h"
 #include "support/catch.h"
 #include "support/feature_shapes.h"
 #include "support/made_patches.h"

@@ -1,5 +1,5 @@
 // Where the triangles of patches are no surface, on meshes of a few triangles.
-#include "pipeline/patches/patch_defects.h"
+#include "pipeline/defects/patch_defects.h"
 #include "support/catch.h"
 #include "support/soup_sheet.h"
 
@@ -44,7 +44,12 @@ TEST_CASE("patch defects: an edge of three triangles, a vertex of two fans and o
 TEST_CASE("patch defects: an edge inside of a patch that another patch has, too", "[features][unit]") {
   // Two squares over the corners 0 to 3 and their copies 4 to 7, both cut from 0 to 2.
   const std::vector<TriangleIndices> squares{{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}};
-  CHECK(find_patch_defects(made_of(8, squares, {0, 1, 2, 3, 0, 1, 2, 3})) == Wrong{0, 2, 4, 6});
+  CHECK(find_patch_defects(made_of(8, squares, {0, 1, 2, 3, 0, 5, 2, 7})) == Wrong{0, 2, 4, 6});
   const std::vector<TriangleIndices> crossed{{0, 1, 2}, {0, 2, 3}, {4, 7, 5}, {5, 7, 6}};
   CHECK(find_patch_defects(made_of(8, crossed, {0, 1, 2, 3, 0, 1, 2, 3})).empty());
+}
+
+TEST_CASE("patch defects: two faces with the same corners bound nothing", "[features][unit]") {
+  const std::vector<TriangleIndices> pillow{{0, 1, 2}, {3, 5, 4}};
+  CHECK(find_patch_defects(made_of(6, pillow, {0, 1, 2, 0, 1, 2})) == Wrong{0, 1, 2, 3, 4, 5});
 }

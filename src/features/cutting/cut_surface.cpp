@@ -53,6 +53,7 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   const double e = options.edge_length_world / frame.voxel_size * kOneVoxelQ8;
   fine.edge_length.assign(fine.position.size(), kFirstCut * e);
   fine.triangles = mesh.triangles;
+  fine.source_face = mesh.source_face;
   fine.paths = curve_paths(fine.position, fine.triangles, network);
   find_jagged_paths(fine.position, e, fine.paths);
   fine = refine_mesh(std::move(fine), context);

@@ -38,6 +38,7 @@ struct CutSurface {
   LatticeFrame frame;
   double longest_edge_q8 = 0;  ///< aimed at
   bool is_requested = false;   ///< lengths vary as was asked for
+  bool parts_regions = false;  ///< patches are walls between regions, and every curve must stay
   std::vector<CutCurve> curves;
   int64_t corner_count = 0;
   std::vector<uint32_t> place;              ///< per vertex of the surface; kNone off borders

@@ -17,6 +17,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kFewestOfClosed = 4;  ///< vertices of a closed surface
+constexpr double kTinyLoop = 3;         ///< edges
 constexpr int64_t kSlack = 8;           ///< a patch keeps so many seeds more or less than it needs, or one in so many
 
 int64_t doubled_area(const SurfaceMesh& surface, TriangleIndices t) {
@@ -79,6 +80,38 @@ FreeSeeds::FreeSeeds(const CutSurface& cut) : cut_(cut) {
     patch.share_inside += share[t];
   }
   for (Patch& patch : patches_) patch.euler /= 2;
+  find_tiny_loops();
+}
+
+void FreeSeeds::find_tiny_loops() {
+  const SurfaceMesh& surface = cut_.surface;
+  const EdgeLengths& lengths = surface.lengths;
+  for (int64_t c = 0; c < surface.chains.count(); ++c) {
+    const int64_t begin = surface.chains.first[c], end = surface.chains.first[c + 1];
+    double edges = 0;
+    for (int64_t i = begin; i < end && edges < kTinyLoop; ++i) {
+      const uint32_t v = surface.chains.vertex[i], w = surface.chains.vertex[i + 1 < end ? i + 1 : begin];
+      const Vec64 step = difference(surface.position[v], surface.position[w]);
+      edges += std::sqrt(double(dot(step, step))) / (lengths.at.empty() ? cut_.longest_edge_q8 : double(lengths.at[v]));
+    }
+    if (edges >= kTinyLoop) continue;
+    if (tiny_loop_of_.empty()) tiny_loop_of_.assign(size_t(surface.vertex_count()), kNone);
+    for (int64_t i = begin; i < end; ++i) tiny_loop_of_[surface.chains.vertex[i]] = uint32_t(tiny_loops_.size());
+    tiny_loops_.push_back({patch_of(surface.chains.vertex[begin]), edges});
+  }
+}
+
+/// Fixed seeds on the border of each patch, but of a tiny loop its edges of the length aimed at.
+std::vector<double> FreeSeeds::on_border_by_length(const SeedSet& fixed) const {
+  const Counts all = fixed_of(fixed);
+  std::vector<double> out(all.begin(), all.end());
+  if (tiny_loops_.empty()) return out;
+  std::vector<double> on_loop(tiny_loops_.size(), 0);
+  for (int64_t s = 0; s < fixed.fixed.count; ++s)
+    if (const uint32_t loop = tiny_loop_of_[fixed.home[s]]; loop != kNone) ++on_loop[loop];
+  for (size_t l = 0; l < on_loop.size(); ++l)
+    out[tiny_loops_[l].patch] -= std::max(0.0, on_loop[l] - tiny_loops_[l].edges);
+  return out;
 }
 
 /// A triangle's share of the seeds: its doubled area over the square of its edge length, the least being 1.
@@ -113,10 +146,11 @@ int64_t FreeSeeds::closed_parts(const SeedSet& fixed) const {
 FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) const {
   const Counts on_border = fixed_of(fixed);
   const int64_t places = count_places(fixed.fixed), least = fewest(fixed) - places;
+  const std::vector<double> border = on_border_by_length(fixed);
   double shares = 0, taken = 0;
   for (size_t p = 0; p < patches_.size(); ++p) {
     shares += double(patches_[p].share);
-    taken += double(on_border[p]) / 2 - double(patches_[p].euler);
+    taken += border[p] / 2 - double(patches_[p].euler);
   }
   if (vertices < places + least)
     throw NoRoom("features",
@@ -127,7 +161,7 @@ FreeSeeds::Counts FreeSeeds::counts(const SeedSet& fixed, int64_t vertices) cons
   std::vector<double> demand, area;
   for (size_t p = 0; p < patches_.size(); ++p) {
     const Patch& patch = patches_[p];
-    const double inner = double(patch.share) * per_share - double(on_border[p]) / 2 + double(patch.euler) -
+    const double inner = double(patch.share) * per_share - border[p] / 2 + double(patch.euler) -
                          double(on_border[p] == 0 ? kFewestOfClosed : 0);
     demand.push_back(std::max(0.0, inner));
     area.push_back(double(patch.share));

@@ -18,7 +18,8 @@ class FreeSeeds {
   /// As many as it takes for `vertices` places in all, where fixed seeds that are joined are one place. Patches share
   /// them by what Euler's formula leaves for their inside: a patch with area A, a border of b seeds and Euler
   /// characteristic x has 2 / sqrt(3) A / e^2 - b / 2 + x inner vertices. A patch has no more than half of its
-  /// vertices; what there is no room for goes to others. Throws: usage when the fixed seeds alone are more than that,
+  /// vertices; what there is no room for goes to others. A loop of the border that is shorter than three edges has more
+  /// seeds than edges of that length: b counts the edges. Throws: usage when the fixed seeds alone are more than that,
   /// or no patch has room.
   Counts counts(const SeedSet& fixed, int64_t vertices) const;
   /// Places that it takes at least.
@@ -55,7 +56,15 @@ class FreeSeeds {
 
   size_t patch_of(uint32_t vertex) const { return cut_.surface.patch[vertex]; }
   bool is_inside(uint32_t vertex) const { return cut_.place[vertex] == kNone; }
+  /// A loop of a border that is shorter than three edges.
+  struct TinyLoop {
+    size_t patch;
+    double edges;  ///< of the length aimed at, all around it
+  };
+
   int64_t seed_share(TriangleIndices t) const;
+  void find_tiny_loops();
+  std::vector<double> on_border_by_length(const SeedSet& fixed) const;
   Counts fixed_of(const SeedSet& fixed) const;
   void fill(int64_t seeds, std::vector<double> demand, std::vector<double> area, Counts& counts) const;
   FreeSeed seed_in(uint32_t triangle, uint64_t random) const;
@@ -66,6 +75,8 @@ class FreeSeeds {
 
   const CutSurface& cut_;
   std::vector<Patch> patches_;
+  std::vector<TinyLoop> tiny_loops_;
+  std::vector<uint32_t> tiny_loop_of_;  ///< per vertex; kNone elsewhere; empty: there are none
 };
 
 }  // namespace isoshell

@@ -42,7 +42,8 @@ bool is_jagged(const std::vector<WorldPoint>& position, double edge_length, cons
 
 void find_jagged_paths(const std::vector<WorldPoint>& position, double edge_length, std::vector<CurvePath>& paths) {
   for (CurvePath& path : paths)
-    path.is_jagged = path.kind == CurveKind::border && is_jagged(position, edge_length, path);
+    path.is_jagged = (path.kind == CurveKind::border || path.kind == CurveKind::non_manifold) &&
+                     is_jagged(position, edge_length, path);
 }
 
 }  // namespace isoshell

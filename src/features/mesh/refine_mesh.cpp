@@ -56,6 +56,7 @@ class Filling {
   std::vector<WorldPoint> inside;
   std::vector<double> inside_length;
   MeshTriangles triangles;
+  std::vector<uint32_t> source_face;
 
  private:
   const WorldPoint& at(uint32_t v) const { return v < first_new_ ? mesh_.position[v] : inside[v - first_new_]; }
@@ -111,7 +112,7 @@ class Filling {
 constexpr size_t kTasks = 1024;        ///< into which the triangles are shared: where they are few, some are large
 constexpr size_t kMostTogether = 256;  ///< triangles that are filled by one task
 
-/// Appends what the tasks made, in their order.
+/// Puts what the tasks made behind the vertices, in their order, and in the place of the triangles.
 void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
   const auto outside = uint32_t(mesh.position.size());
   std::vector<size_t> first_vertex{outside}, first_triangle{0};
@@ -125,6 +126,7 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
   mesh.position.resize(first_vertex.back());
   mesh.edge_length.resize(first_vertex.back());
   mesh.triangles.resize(first_triangle.back());
+  if (!mesh.source_face.empty()) mesh.source_face.resize(first_triangle.back());
   for_each_index(size_t(0), fillings.size(), [&](size_t i) {
     const Filling& f = fillings[i];
     const auto shift = uint32_t(first_vertex[i]) - outside;
@@ -133,6 +135,7 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
                    [&](const auto& t) {
                      return std::array{moved(t[0]), moved(t[1]), moved(t[2])};
                    });
+    std::copy(f.source_face.begin(), f.source_face.end(), mesh.source_face.begin() + int64_t(first_triangle[i]));
     std::copy(f.inside.begin(), f.inside.end(), mesh.position.begin() + int64_t(first_vertex[i]));
     std::copy(f.inside_length.begin(), f.inside_length.end(), mesh.edge_length.begin() + int64_t(first_vertex[i]));
   });
@@ -156,6 +159,8 @@ FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* n
         chain[i].push_back(c[(i + 1) % 3]);
       }
       fillings[task].fill(Chain(chain[0]), Chain(chain[1]), Chain(chain[2]));
+      if (!mesh.source_face.empty())
+        fillings[task].source_face.resize(fillings[task].triangles.size(), mesh.source_face[t]);
     }
   });
   check_cancel(context, "features");

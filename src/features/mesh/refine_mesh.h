@@ -15,6 +15,7 @@ struct FineMesh {
   std::vector<WorldPoint> position;
   std::vector<double> edge_length;  ///< per vertex that of the result to aim at there
   MeshTriangles triangles;
+  std::vector<uint32_t> source_face;  ///< per triangle, as in FeatureMesh; empty: not known
   std::vector<CurvePath> paths;
 };
 

@@ -21,6 +21,7 @@ struct GrownSolid {
 
 class CreaseSearch;
 struct CutSurface;
+struct RegionWalls;
 struct RelaxedMeanwhile;
 
 struct PreparedSurface {
@@ -38,6 +39,7 @@ struct PreparedSurface {
   std::shared_ptr<const PreviousFrame> previous;  ///< that of the options, where the run begins with it
   std::shared_ptr<CreaseSearch> creases;          ///< looked for while a device makes the sheet
   std::shared_ptr<const CutSurface> cut;      ///< the input's own triangles in patches; null where no features are kept
+  std::shared_ptr<const RegionWalls> walls;   ///< of regions, which the surface parts; null: it bounds one solid
   std::shared_ptr<RelaxedMeanwhile> relaxed;  ///< on a device while creases were looked for, in case there are none
   RemeshReport report;                        ///< up to here
 };

@@ -13,12 +13,14 @@
 #include "features/cutting/cut_piece.h"
 #include "features/cutting/free_seeds.h"
 #include "measure/crossing_corners.h"
+#include "pipeline/defects/fan_patches.h"
+#include "pipeline/defects/flat_patches.h"
+#include "pipeline/defects/part_twins.h"
+#include "pipeline/defects/patch_defects.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
-#include "pipeline/patches/flat_patches.h"
 #include "pipeline/patches/new_crossings.h"
-#include "pipeline/patches/patch_defects.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/resolve_intersections.h"
 #include "pipeline/sheet/warm_start.h"
@@ -27,8 +29,9 @@ namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 10;
-constexpr size_t kMostWork = 2;      ///< of all rounds after the first one, over that of the whole surface
-constexpr size_t kMostHelpless = 1;  ///< the same of rounds that did not help, where there is another way
+constexpr size_t kMostWork = 2;           ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostHelpless = 1;       ///< the same of rounds that did not help, where there is another way
+constexpr size_t kMostWorkOfRegions = 3;  ///< the same where every curve must stay
 constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
@@ -98,10 +101,11 @@ class PatchRounds {
     if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
       if (options_.previous || is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
-      if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
-      std::optional<Paths> fewer = drop_creases(*cut->fine, wrong.places());
-      if (!fewer) return wrong.said();
-      Again again = make_again(cut, made, wrong, std::move(*fewer));
+      const size_t most_work = cut->parts_regions ? kMostWorkOfRegions : kMostWork;
+      if (round == kMostRounds || work_ > most_work * cut->fine->triangles.size()) return wrong.said();
+      std::optional<Paths> other = other_paths(*cut, wrong);
+      if (!other) return wrong.said();
+      Again again = make_again(cut, made, wrong, std::move(*other));
       cut = again.cut;
       made = std::move(again.made);
       wrong = std::move(again.wrong);
@@ -112,6 +116,12 @@ class PatchRounds {
  private:
   OptimizeOptions optimize_options() const {
     return options_.previous ? for_warm_frame(options_.optimize) : options_.optimize;
+  }
+
+  /// Without creases around what is wrong; between regions, where all stay, with shorter segments there.
+  static std::optional<Paths> other_paths(const CutSurface& cut, const Wrong& wrong) {
+    if (cut.parts_regions) return halve_segments(*cut.fine, wrong.places(), cut.longest_edge_q8);
+    return drop_creases(*cut.fine, wrong.places());
   }
 
   /// What comes of other paths.
@@ -143,7 +153,12 @@ class PatchRounds {
   /// Dual and optimisation of relaxed seeds. Result: the patches that fail, which then have no triangles.
   Wrong mesh_patches(const CutSurface& cut, SeededMesh& made) {
     Wrong failed(cut);
-    if (!make_dual(cut, made)) {
+    const bool are_disks = make_dual(cut, made);
+    if (cut.parts_regions) {
+      bring_to_host(made);
+      part_twins(cut, made);
+    }
+    if (!are_disks) {
       bring_to_host(made);
       add_defects(cut, made, find_patch_defects(made), failed);
       failed.forget(triangulate_flat(cut, failed.patch, made));
@@ -236,6 +251,9 @@ class PatchRounds {
     const Wrong wrong = find_wrong(cut, made, failed);
     if (wrong.is_nowhere()) return wrong;
     failed.forget(triangulate_flat(cut, wrong.patch, made));
+    if (!cut.parts_regions) return find_wrong(cut, made, failed);
+    const Wrong still = find_wrong(cut, made, failed);
+    failed.forget(triangulate_as_fans(cut, still.patch, made));
     return find_wrong(cut, made, failed);
   }
 
@@ -260,6 +278,7 @@ class PatchRounds {
       fine->paths = std::move(paths);
       auto after = std::make_shared<CutSurface>(cut_fine_mesh(std::move(fine), before.frame, context_));
       after->is_requested = before.is_requested;
+      after->parts_regions = before.parts_regions;
       after->seeds = before.seeds;
       after->source = before.source;
       std::optional<Paths> fewer = drop_creases_at_tight_borders(*after);

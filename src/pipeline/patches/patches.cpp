@@ -7,7 +7,6 @@
 #include "core/copy_product.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "features/angles/widen_angles.h"
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/edge_subdivision.h"
@@ -18,7 +17,6 @@
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/readable.h"
-#include "measure/crossing_corners.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
@@ -26,10 +24,10 @@
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/given_lines.h"
-#include "pipeline/patches/new_crossings.h"
 #include "pipeline/patches/part_fans.h"
 #include "pipeline/patches/patch_rounds.h"
 #include "pipeline/patches/sheet_when_needed.h"
+#include "pipeline/patches/wide_angles.h"
 #include "pipeline/sheet/crease_search.h"
 #include "pipeline/sheet/flag_gaps.h"
 #include "pipeline/sheet/relax_meanwhile.h"
@@ -69,18 +67,6 @@ std::vector<uint32_t> nearest_of_sheet(const Sheet& of, const TriangleMesh& mesh
     nearest[v] = sheet.triangles[at.triangle][corner];
   });
   return nearest;
-}
-
-/// The patches put together, with better angles beside curves; it intersects itself no more than before.
-JoinedPatches with_wide_angles(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made,
-                               const PatchOptions& options, const RemeshReport& report, Context& context) {
-  const bool may_cross = report.optimize.self_intersections > 0;  // where the input does
-  NewCrossings crossings(p, cut, context);
-  const auto wrong_corners = [&](const DualMesh& mesh) {
-    const TrianglePairs pairs = crossings.all(mesh, {});
-    return corners_of(mesh, may_cross ? crossings.wrong_of(mesh, pairs) : pairs);
-  };
-  return join_and_widen(cut, made, {options.seeds.count, options.previous != nullptr}, wrong_corners, context);
 }
 
 /// Of each curve that was found what is still one.

@@ -1,5 +1,5 @@
 // triangulate_flat (see flat_patches.h).
-#include "pipeline/patches/flat_patches.h"
+#include "pipeline/defects/flat_patches.h"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,10 @@
 namespace isoshell {
 namespace {
 
-constexpr double kMostOffPlane = 2;  ///< 1/256 voxel: vertices are rounded to whole steps
-constexpr double kScale = 32;        ///< of coordinates in the plane, in which points are rounded once more
-constexpr double kNearBorder = 0.5;  ///< edge lengths, below which a free seed is left out
+constexpr double kMostOffPlane = 2;   ///< 1/256 voxel: vertices are rounded to whole steps
+constexpr double kLeastCosine = 0.3;  ///< of triangles to the plane that a patch of walls is seen on
+constexpr double kScale = 32;         ///< of coordinates in the plane, in which points are rounded once more
+constexpr double kNearBorder = 0.5;   ///< edge lengths, below which a free seed is left out
 
 WorldPoint point(PointQ8 p) { return {double(p.x), double(p.y), double(p.z)}; }
 
@@ -39,16 +40,22 @@ struct Plane {
 /// What the patches of a surface consist of.
 struct PatchParts {
   std::vector<WorldPoint> area;                             ///< sum of the doubled area vectors
+  std::vector<double> least_cosine;                         ///< of triangles to that
   std::vector<std::vector<std::vector<uint32_t>>> borders;  ///< per border the fixed seeds along it
   std::vector<std::vector<uint32_t>> free_seeds;
 
   PatchParts(const CutSurface& cut, const SeedSet& seeds)
-      : area(patch_count(cut), {0, 0, 0}), borders(area.size()), free_seeds(area.size()) {
+      : area(patch_count(cut), {0, 0, 0}), least_cosine(area.size(), 1), borders(area.size()), free_seeds(area.size()) {
     const SurfaceMesh& surface = cut.surface;
-    for (const TriangleIndices& t : surface.triangles)
-      area[surface.patch[t.a]] =
-          area[surface.patch[t.a]] +
-          doubled_area(point(surface.position[t.a]), point(surface.position[t.b]), point(surface.position[t.c]));
+    const auto area_of = [&](const TriangleIndices& t) {
+      return doubled_area(point(surface.position[t.a]), point(surface.position[t.b]), point(surface.position[t.c]));
+    };
+    for (const TriangleIndices& t : surface.triangles) area[surface.patch[t.a]] = area[surface.patch[t.a]] + area_of(t);
+    for (const TriangleIndices& t : surface.triangles) {
+      const WorldPoint own = area_of(t), &all = area[surface.patch[t.a]];
+      double& least = least_cosine[surface.patch[t.a]];
+      if (const double size = length(own) * length(all); size > 0) least = std::min(least, dot(own, all) / size);
+    }
     for (int64_t c = 0; c < surface.chains.count(); ++c) {
       std::vector<uint32_t> along;
       for (int64_t i = surface.chains.first[c]; i < surface.chains.first[c + 1]; ++i) {
@@ -73,7 +80,7 @@ class FlatPatch {
   std::optional<Triangles> triangulate() {
     if (parts_.borders[patch_].empty() || !(length(parts_.area[patch_]) > 0)) return {};
     const Plane plane(position(parts_.borders[patch_][0][0]), parts_.area[patch_]);
-    if (!is_flat(plane)) return {};
+    if (!is_flat(plane) && !is_seen_once()) return {};
     list_borders();
     for (const uint32_t seed : parts_.free_seeds[patch_])
       if (!is_near_border(seed)) seeds_.push_back(seed);
@@ -89,6 +96,9 @@ class FlatPatch {
 
  private:
   WorldPoint position(uint32_t seed) const { return point(made_.mesh.position[seed]); }
+
+  /// Whether no two parts of walls lie on top of each other, as seen along the normal of the plane.
+  bool is_seen_once() const { return cut_.parts_regions && parts_.least_cosine[patch_] > kLeastCosine; }
 
   bool is_flat(const Plane& plane) const {
     const auto& patch = cut_.surface.patch;

@@ -1,5 +1,5 @@
 // find_patch_defects (see patch_defects.h).
-#include "pipeline/patches/patch_defects.h"
+#include "pipeline/defects/patch_defects.h"
 
 #include <algorithm>
 
@@ -32,6 +32,7 @@ class Defects {
     look_at_edges();
     look_at_fans();
     look_at_joined_edges();
+    look_at_joined_faces();
     std::vector<uint32_t> wrong;
     for (uint32_t v = 0; v < vertices_; ++v)
       if (is_wrong_[v]) wrong.push_back(v);
@@ -67,6 +68,21 @@ class Defects {
       for (size_t i = begin; is_inside && end > begin + 1 && i < end; ++i)
         for (const uint32_t v : joined_[i].end) is_wrong_[v] = 1;
     }
+  }
+
+  /// Two faces of the joined mesh with the same corners bound nothing.
+  void look_at_joined_faces() {
+    std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> faces;  ///< joined corners ascending, triangle
+    for (uint32_t t = 0; t < triangles_.size(); ++t) {
+      std::array<uint32_t, 3> c{joined(triangles_[t][0]), joined(triangles_[t][1]), joined(triangles_[t][2])};
+      std::sort(c.begin(), c.end());
+      if (int64_t(c[2]) < seeds_->fixed.count) faces.push_back({c, t});
+    }
+    std::sort(faces.begin(), faces.end());
+    for (size_t i = 1; i < faces.size(); ++i)
+      if (faces[i].first == faces[i - 1].first)
+        for (const uint32_t t : {faces[i].second, faces[i - 1].second})
+          for (const uint32_t v : triangles_[t]) is_wrong_[v] = 1;
   }
 
   uint32_t start_of(const EdgeSide& side) const { return triangles_[side.half_edge / 3][side.half_edge % 3]; }

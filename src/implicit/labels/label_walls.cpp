@@ -1,0 +1,250 @@
+// find_label_walls (see label_walls.h).
+#include "implicit/labels/label_walls.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "implicit/labels/wall_corner.h"
+#include "isoshell/advanced/voxel_set.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+/// Labels at any place.
+class Labels {
+ public:
+  explicit Labels(const LabelVolume& volume) : volume_(volume) {}
+
+  int32_t size(int axis) const { return volume_.size_vox[size_t(axis)]; }
+  int32_t background() const { return volume_.background; }
+  int32_t at(Voxel v) const {
+    const bool is_inside = v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size(0) && v.y < size(1) && v.z < size(2);
+    return is_inside ? volume_.labels[(size_t(v.z) * size_t(size(1)) + size_t(v.y)) * size_t(size(0)) + size_t(v.x)]
+                     : volume_.background;
+  }
+  std::array<int32_t, 8> around(Voxel corner) const {
+    std::array<int32_t, 8> label;
+    for (int o = 0; o < 8; ++o)
+      label[size_t(o)] = at({corner.x - 1 + (o & 1), corner.y - 1 + (o >> 1 & 1), corner.z - 1 + (o >> 2 & 1)});
+    return label;
+  }
+
+ private:
+  const LabelVolume& volume_;
+};
+
+Voxel stepped(Voxel v, int axis, int32_t by) {
+  (axis == 0 ? v.x : axis == 1 ? v.y : v.z) += by;
+  return v;
+}
+
+/// A corner that has vertices.
+struct UsedCorner {
+  uint32_t place;  ///< in its layer of corners: y (size_x + 1) + x
+  uint32_t first;  ///< of its vertices, among those of the layer
+  WallCorner walls;
+};
+
+/// The corners of one z.
+struct CornerLayer {
+  std::vector<UsedCorner> used;  ///< ascending by place
+  uint32_t vertices = 0;
+
+  CornerLayer() = default;
+  CornerLayer(const Labels& labels, int32_t z) {
+    const int32_t width = labels.size(0) + 1;
+    for (int32_t y = 0; y <= labels.size(1); ++y)
+      for (int32_t x = 0; x < width; ++x) {
+        const std::array<int32_t, 8> label = labels.around({x, y, z});
+        if (std::all_of(label.begin(), label.end(), [&](int32_t l) { return l == label[0]; })) continue;
+        used.push_back({uint32_t(y) * uint32_t(width) + uint32_t(x), vertices, WallCorner(label)});
+        vertices += uint32_t(used.back().walls.sheets);
+      }
+  }
+  const UsedCorner& at(uint32_t place) const {
+    return *std::lower_bound(used.begin(), used.end(), place,
+                             [](const UsedCorner& c, uint32_t p) { return c.place < p; });
+  }
+};
+
+/// A pair of parted walls along a lattice edge: the vertex in its middle is of the layer of the edge's first corner.
+struct Middle {
+  uint32_t place;
+  uint8_t axis, pair;
+  bool operator==(const Middle& o) const { return place == o.place && axis == o.axis && pair == o.pair; }
+  bool operator<(const Middle& o) const {
+    return place != o.place ? place < o.place : axis != o.axis ? axis < o.axis : pair < o.pair;
+  }
+};
+
+/// Makes the walls, layer by layer.
+class WallMaker {
+ public:
+  explicit WallMaker(const LabelVolume& volume)
+      : labels_(volume), corners_(size_t(volume.size_vox[2]) + 1), middles_(corners_.size()) {}
+
+  LabelWalls make() {
+    for_each_index(size_t(0), corners_.size(), [&](size_t z) {
+      corners_[z] = CornerLayer(labels_, int32_t(z));
+      middles_[z] = middles_of(int32_t(z));
+    });
+    number_vertices();
+    LabelWalls walls;
+    walls.rest_halves.resize(first_vertex_.back());
+    std::vector<LabelWalls> layers(corners_.size());
+    for_each_index(size_t(0), corners_.size(), [&](size_t z) {
+      place_vertices(z, walls.rest_halves);
+      layers[z] = faces_of(int32_t(z));
+    });
+    for (LabelWalls& layer : layers) {
+      walls.faces.insert(walls.faces.end(), layer.faces.begin(), layer.faces.end());
+      walls.labels.insert(walls.labels.end(), layer.labels.begin(), layer.labels.end());
+      layer = {};
+    }
+    return walls;
+  }
+
+ private:
+  uint32_t width() const { return uint32_t(labels_.size(0)) + 1; }
+  uint32_t place_of(Voxel corner) const { return uint32_t(corner.y) * width() + uint32_t(corner.x); }
+  Voxel corner_at(uint32_t place, size_t z) const {
+    return {int32_t(place % width()), int32_t(place / width()), int32_t(z)};
+  }
+
+  /// Around the lattice edge that leaves a corner along an axis, in turn from the octant nearest to the origin.
+  WallEdge edge_from(Voxel corner, int axis) const {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    return WallEdge({labels_.at(stepped(stepped(corner, u, -1), v, -1)), labels_.at(stepped(corner, v, -1)),
+                     labels_.at(corner), labels_.at(stepped(corner, u, -1))});
+  }
+
+  std::vector<Middle> middles_of(int32_t z) const {
+    std::vector<Middle> found;
+    for (const UsedCorner& c : corners_[size_t(z)].used)
+      for (int axis = 0; axis < 3; ++axis)
+        if (edge_from(corner_at(c.place, size_t(z)), axis).is_parted)
+          for (uint8_t pair = 0; pair < 2; ++pair) found.push_back({c.place, uint8_t(axis), pair});
+    return found;
+  }
+
+  /// Of each layer those at corners, then those in the middles of edges.
+  void number_vertices() {
+    first_vertex_.assign(1, 0);
+    for (size_t z = 0; z < corners_.size(); ++z)
+      first_vertex_.push_back(first_vertex_.back() + corners_[z].vertices + middles_[z].size());
+    if (first_vertex_.back() >= kNone / 4)
+      throw Error(ErrorCode::out_of_memory, "read",
+                  "the walls between labels have " + std::to_string(first_vertex_.back()) + " corners; at most " +
+                      std::to_string(kNone / 4) + " can be numbered: make the volume coarser");
+  }
+
+  void place_vertices(size_t z, std::vector<Voxel>& rest_halves) const {
+    size_t next = first_vertex_[z];
+    for (const UsedCorner& c : corners_[z].used) {
+      const Voxel at = corner_at(c.place, z);
+      for (int s = 0; s < c.walls.sheets; ++s) rest_halves[next++] = {2 * at.x, 2 * at.y, 2 * at.z};
+    }
+    for (const Middle& m : middles_[z]) {
+      const Voxel at = corner_at(m.place, z);
+      rest_halves[next++] = stepped({2 * at.x, 2 * at.y, 2 * at.z}, m.axis, 1);
+    }
+  }
+
+  /// The vertex of a face at its corner that lies so on it: `octant` is that of the face's nearer voxel there.
+  uint32_t vertex_at(Voxel corner, int octant, int axis) const {
+    const UsedCorner& used = corners_[size_t(corner.z)].at(place_of(corner));
+    return uint32_t(first_vertex_[size_t(corner.z)]) + used.first +
+           used.walls.sheet_of_arc[size_t(arc_of(octant, axis))];
+  }
+  uint32_t middle_at(Voxel corner, int axis, int pair) const {
+    const size_t z = size_t(corner.z);
+    const Middle middle{place_of(corner), uint8_t(axis), uint8_t(pair)};
+    const auto at = std::lower_bound(middles_[z].begin(), middles_[z].end(), middle) - middles_[z].begin();
+    return uint32_t(first_vertex_[z] + corners_[z].vertices + size_t(at));
+  }
+
+  /// The face at the near side of a voxel along an axis, from its corner nearest to the origin around the axis.
+  std::vector<uint32_t> polygon_of(Voxel voxel, int axis) const {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const Voxel corner[4] = {voxel, stepped(voxel, u, 1), stepped(stepped(voxel, u, 1), v, 1), stepped(voxel, v, 1)};
+    const int octant[4] = {1 << u | 1 << v, 1 << v, 0, 1 << u};
+    // Which wall of its lattice edges the face is: those run along u from corners 0 and 3, along v from 1 and 0.
+    const struct {
+      int from, along, wall;
+    } edge[4] = {{0, u, wall_beside(axis, u, true)},
+                 {1, v, wall_beside(axis, v, false)},
+                 {3, u, wall_beside(axis, u, false)},
+                 {0, v, wall_beside(axis, v, true)}};
+    std::vector<uint32_t> polygon;
+    for (int i = 0; i < 4; ++i) {
+      polygon.push_back(vertex_at(corner[i], octant[i], axis));
+      const Voxel from = corner[edge[i].from];
+      const WallEdge walls = edge_from(from, edge[i].along);
+      if (walls.is_parted) polygon.push_back(middle_at(from, edge[i].along, walls.pair_of(edge[i].wall)));
+    }
+    return polygon;
+  }
+
+  /// Which wall around a lattice edge is the face that stands on `axis` and lies beside the edge along its third axis,
+  /// on the far side of it or on the near one. Voxels around the edge are, in turn, (0, 0), (1, 0), (1, 1) and (0, 1)
+  /// along the two axes that follow the edge's.
+  static int wall_beside(int axis, int edge_axis, bool is_far) {
+    if (axis == (edge_axis + 1) % 3) return is_far ? 2 : 0;  // between voxels that differ along the first of the two
+    return is_far ? 1 : 3;
+  }
+
+  void add_face(Voxel voxel, int axis, LabelWalls& out) const {
+    const int32_t near = labels_.at(stepped(voxel, axis, -1)), far = labels_.at(voxel),
+                  background = labels_.background();
+    if (near == far) return;
+    std::vector<uint32_t> polygon = polygon_of(voxel, axis);  // as seen from the far side
+    std::array<int32_t, 2> label{near, far};
+    if (near == background || (far != background && far < near)) {
+      std::reverse(polygon.begin(), polygon.end());
+      label = {far, near};
+    }
+    if (polygon.size() == 4) {
+      out.faces.push_back({polygon[0], polygon[1], polygon[2], polygon[3]});
+      out.labels.push_back(label);
+      return;
+    }
+    // Around a vertex in the middle of an edge: no triangle then has that edge's two ends, which the other pair has.
+    const auto is_middle = [&](uint32_t v) { return is_middle_vertex(v); };
+    std::rotate(polygon.begin(), std::find_if(polygon.begin(), polygon.end(), is_middle), polygon.end());
+    for (size_t i = 1; i + 1 < polygon.size(); ++i) {
+      out.faces.push_back({polygon[0], polygon[i], polygon[i + 1], kNone});
+      out.labels.push_back(label);
+    }
+  }
+  bool is_middle_vertex(uint32_t vertex) const {
+    const size_t z =
+        size_t(std::upper_bound(first_vertex_.begin(), first_vertex_.end(), size_t(vertex)) - first_vertex_.begin()) -
+        1;
+    return vertex >= first_vertex_[z] + corners_[z].vertices;
+  }
+
+  /// Of the voxels of one z, and of those beyond the array.
+  LabelWalls faces_of(int32_t z) const {
+    LabelWalls out;
+    for (int32_t y = 0; y <= labels_.size(1); ++y)
+      for (int32_t x = 0; x <= labels_.size(0); ++x)
+        for (int axis = 0; axis < 3; ++axis) {
+          const bool is_beyond[3] = {x == labels_.size(0), y == labels_.size(1), z == labels_.size(2)};
+          if (!is_beyond[(axis + 1) % 3] && !is_beyond[(axis + 2) % 3]) add_face({x, y, z}, axis, out);
+        }
+    return out;
+  }
+
+  Labels labels_;
+  std::vector<CornerLayer> corners_;
+  std::vector<std::vector<Middle>> middles_;  ///< per layer of corners, ascending
+  std::vector<size_t> first_vertex_;          ///< per layer, and one more
+};
+
+}  // namespace
+
+LabelWalls find_label_walls(const LabelVolume& volume) { return WallMaker(volume).make(); }
+
+}  // namespace isoshell

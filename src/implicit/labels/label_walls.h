@@ -1,0 +1,28 @@
+// The faces between voxels of different labels, as a mesh.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/buckets.h"
+#include "isoshell/advanced/lattice.h"
+#include "isoshell/regions.h"
+
+namespace isoshell {
+
+/// Walls with vertices at corners of voxels. Corner (x, y, z) is the one of voxel (x, y, z) nearest to the origin.
+struct LabelWalls {
+  std::vector<Voxel> rest_halves;              ///< per vertex where it lies on the lattice, in half voxels
+  std::vector<std::array<uint32_t, 4>> faces;  ///< four corners in turn, as seen from the second region; of triangles
+                                               ///< the last one is kNone
+  std::vector<std::array<int32_t, 2>> labels;  ///< per face, as in FaceRegions
+};
+
+/// Every sheet of walls at a corner of the lattice has a vertex of its own there, and where the walls along a lattice
+/// edge are parted each pair has one in its middle: so every two vertices have at most one edge, which has two faces,
+/// or three or four that part as many different regions. A region's boundary has two faces at each of its edges, and
+/// touches itself in vertices only. Result: by layers of voxels along z, whatever the number of threads. Cost: a look
+/// at every voxel, and O(walls). Throws: out_of_memory where vertices cannot be numbered in 32 bits.
+LabelWalls find_label_walls(const LabelVolume& volume);
+
+}  // namespace isoshell

@@ -1,0 +1,14 @@
+// The mesh of a run that parts regions.
+#pragma once
+
+#include "pipeline/patches/patches.h"
+
+namespace isoshell {
+
+/// As triangulate_patches, of walls: every region is closed, and the faces say which regions they part. Where patches
+/// are no disks, or triangles intersect, curves get more seeds there, and the result more vertices. Where that does not
+/// end it the result is the walls as they came in, which is said in the report.
+TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
+                                 RemeshReport& report, Context& context);
+
+}  // namespace isoshell

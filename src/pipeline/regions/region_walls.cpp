@@ -1,0 +1,83 @@
+// prepare_regions (see region_walls.h).
+#include "pipeline/regions/region_walls.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/watched.h"
+#include "features/cutting/curve_seeds.h"
+#include "features/cutting/free_seeds.h"
+#include "features/mesh/weld_for_features.h"
+#include "isoshell/error.h"
+#include "isoshell/mesh_topology.h"
+#include "pipeline/grid/sizing.h"
+#include "pipeline/grid/timed.h"
+#include "pipeline/patches/cut_curves.h"
+#include "pipeline/patches/feature_report.h"
+#include "pipeline/patches/patches.h"
+#include "pipeline/sheet/crease_search.h"
+
+namespace isoshell {
+namespace {
+
+void check_asked_for(const RemeshOptions& options) {
+  const auto refuse = [](const char* what) {
+    throw Error(ErrorCode::usage, "regions",
+                std::string(what) + ": the input parts regions, which are meshed on their walls");
+  };
+  if (options.method != Method::sheet) refuse("--method shell cannot be used");
+  if (options.want_shell) refuse("there is no shell to save");
+}
+
+CurveOptions curves_between_regions(const PreparedSurface& p) {
+  CurveOptions curves = curve_options(p.options, nullptr, p.target.edge_length_world);
+  const bool asked = p.options.features.creases == Features::Creases::threshold;
+  if (p.walls->regions.are_of_voxels && !asked) curves.mode = CreaseMode::off;
+  return curves;
+}
+
+SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, Context& context) {
+  const FeatureMesh& mesh = p.walls->mesh;
+  CutOptions how{edge_length_for(mesh, network, p.target.vertices), 0, requested_lengths(p)};
+  if (!p.options.edge_length_world && !(how.requested.vary() && field_decides(p.options)))
+    how.vertices = p.target.vertices;
+  auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
+  const SeedSet fixed = seeds_on_curves(*cut, 0);
+  const int64_t wanted = cut->seeds > 0 ? cut->seeds : p.target.vertices;
+  cut->seeds = std::max(wanted, FreeSeeds(*cut).fewest(fixed));
+  cut->parts_regions = true;
+  cut->source = std::make_shared<const CutSource>();
+  return cut;
+}
+
+}  // namespace
+
+PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report,
+                                Context& context) {
+  check_asked_for(options);
+  const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
+  report.input.dirt = measured.dirt;
+  const Plan plan = plan_of(options, measured.topology, bounding_box(soup));
+  LatticeSurface surface;
+  surface.frame = LatticeFrame::around(plan.box.min, plan.box.max, plan.first_resolution());
+  surface.topology = measured.topology;
+  surface.topology.closed = surface.topology.oriented = true;  // as each region's own surface is
+  PreparedSurface p = begin_with(std::move(surface), options);
+  timed(report, "features", context, [&] {
+    auto walls = std::make_shared<RegionWalls>();
+    walls->mesh = run_with_threads(context, [&] { return weld_for_features(soup); });
+    walls->regions = soup.regions;
+    p.walls = std::move(walls);
+    const CurveNetwork network =
+        run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
+    report_found(p.walls->mesh, network, false, report.features);
+    const SharedCut cut = cut_walls(p, network, context);
+    report.features.patches = int64_t(patch_count(*cut));
+    p.cut = cut;
+  });
+  report.input.topology = measured.topology;
+  report.grid.frame = p.surface.frame;
+  return p;
+}
+
+}  // namespace isoshell

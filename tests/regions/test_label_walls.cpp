@@ -1,0 +1,115 @@
+// Walls between voxels of different labels, and how they are faired, on orderly volumes and on ugly ones.
+#include <tbb/task_arena.h>
+
+#include "implicit/labels/wall_corner.h"
+#include "isoshell/advanced/stages.h"
+#include "isoshell/io/memory_input.h"
+#include "isoshell/mesh_census.h"
+#include "regions/label_volumes.h"
+#include "regions/region_oracle.h"
+#include "support/refusals.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+std::map<int32_t, int64_t> voxels_of(const LabelVolume& volume) {
+  std::map<int32_t, int64_t> count;
+  for (const int32_t label : volume.labels)
+    if (label != volume.background) ++count[label];
+  return count;
+}
+
+TriangleMesh mesh_of(const TriangleSoup& soup) {
+  TriangleMesh mesh;
+  mesh.vertices = soup.vertices;
+  mesh.triangles = soup.triangles;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("the walls of any labels bound closed regions that do not cross, and part what voxels part") {
+  TestContext context;
+  for (uint32_t number = 0; number < 200; ++number) {
+    const LabelVolume volume = random_labels(number);
+    INFO("random volume " << number);
+    if (voxels_of(volume).empty()) continue;
+    const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+    REQUIRE(soup.regions.labels.size() == soup.triangles.size());
+    CHECK(fault_of_regions(soup.triangles, soup.regions) == "");
+    CHECK(pairs_of(soup.regions) == pairs_of(volume));
+    CHECK(take_census(mesh_of(soup), context).intersecting_pairs == 0);
+    for (const auto& [label, world] : volumes_of_regions(soup.vertices, soup.triangles, soup.regions)) {
+      INFO("region " << label);
+      CHECK(world > 0);
+    }
+  }
+}
+
+TEST_CASE("a single voxel is a region of six faces around its centre") {
+  LabelVolume volume = label_volume(3, 3, 3);
+  volume.labels[13] = 5;
+  volume.origin_world = {10, 20, 30};
+  volume.step_world = {WorldPoint{2, 0, 0}, WorldPoint{0, 2, 0}, WorldPoint{0, 0, 2}};
+  const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+  CHECK(soup.triangles.size() == 12);
+  CHECK(soup.vertices.size() == 8);
+  WorldPoint sum{0, 0, 0};
+  for (const WorldPoint& p : soup.vertices) sum = {sum.x + p.x, sum.y + p.y, sum.z + p.z};
+  CHECK(sum.x / 8 == 12);
+  CHECK(sum.y / 8 == 22);
+  CHECK(sum.z / 8 == 32);
+  for (const auto& pair : soup.regions.labels) CHECK(pair == std::array<int32_t, 2>{5, 0});
+}
+
+TEST_CASE("a mirrored volume has the same regions, which look outward still") {
+  LabelVolume volume = voronoi_grains(12, 5);
+  const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+  volume.step_world[1] = {0, -1, 0};
+  const TriangleSoup mirrored = surface_of_labels(volume, "labels", 0);
+  const auto volumes = volumes_of_regions(soup.vertices, soup.triangles, soup.regions);
+  for (const auto& [label, world] : volumes_of_regions(mirrored.vertices, mirrored.triangles, mirrored.regions))
+    CHECK_THAT(world, Catch::Matchers::WithinRel(volumes.at(label), 1e-9));
+}
+
+TEST_CASE("walls do not depend on the number of threads") {
+  const LabelVolume volume = voronoi_grains(24, 20);
+  const auto walls_with = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return surface_of_labels(volume, "labels", 0); });
+  };
+  const TriangleSoup one = walls_with(1), two = walls_with(2);
+  CHECK(one.triangles == two.triangles);
+  CHECK(one.regions.labels == two.regions.labels);
+  bool are_equal = one.vertices.size() == two.vertices.size();
+  for (size_t v = 0; are_equal && v < one.vertices.size(); ++v)
+    are_equal = one.vertices[v].x == two.vertices[v].x && one.vertices[v].y == two.vertices[v].y &&
+                one.vertices[v].z == two.vertices[v].z;
+  CHECK(are_equal);
+}
+
+TEST_CASE("walls that touch in a lattice edge are parted there, and each of both pairs has a vertex of its own") {
+  const LabelVolume volume = label_volume(2, 2, 1, [](int i, int j, int) { return i == j ? 1 : 0; });
+  const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+  CHECK(fault_of_regions(soup.triangles, soup.regions) == "");
+  const WallEdge edge({1, 0, 1, 0});
+  CHECK(edge.is_parted);
+  CHECK_FALSE(edge.is_odd_alone);  // the smaller label stays connected: the background
+}
+
+TEST_CASE("a volume of labels that is none is refused with what is wrong") {
+  LabelVolume volume = label_volume(2, 2, 2);
+  CHECK(contains(message_of(ErrorCode::nothing_to_mesh, [&] { surface_of_labels(volume, "seg.vdb", 0); }),
+                 "seg.vdb: all its voxels are background, 0"));
+  volume.labels.pop_back();
+  CHECK(contains(message_of(ErrorCode::usage, [&] { surface_of_labels(volume, "seg.vdb", 0); }),
+                 "7 labels for 8 voxels"));
+  volume = voronoi_grains(8, 3);
+  volume.step_world[2] = {1, 0, 0};
+  CHECK(contains(message_of(ErrorCode::usage, [&] { surface_of_labels(volume, "seg.vdb", 0); }), "span no volume"));
+  volume = voronoi_grains(24, 30);
+  CHECK(contains(message_of(ErrorCode::out_of_memory, [&] { surface_of_labels(volume, "seg.vdb", 100000); }),
+                 "more than the limit"));
+}
