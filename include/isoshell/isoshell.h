@@ -27,6 +27,7 @@
 #include "isoshell/options/option_text.h"
 #include "isoshell/quality.h"
 #include "isoshell/readable.h"
+#include "isoshell/region_census.h"
 #include "isoshell/regions.h"
 #include "isoshell/remesh.h"
 #include "isoshell/remesh_many.h"

@@ -255,15 +255,15 @@ class Counter {
   EdgeCensus found_;
 };
 
-int64_t count_duplicates(Triangles triangles) {
+}  // namespace
+
+int64_t count_duplicates(std::vector<std::array<uint32_t, 3>> triangles) {
   for (auto& t : triangles) std::sort(t.begin(), t.end());
   tbb::parallel_sort(triangles.begin(), triangles.end());
   int64_t count = 0;
   for (size_t i = 1; i < triangles.size(); ++i) count += triangles[i] == triangles[i - 1];
   return count;
 }
-
-}  // namespace
 
 int64_t count_loops(IndexSets& fans, const std::vector<uint32_t>& boundary, int64_t half_edges) {
   if (boundary.empty()) return 0;

@@ -1,6 +1,7 @@
 // What kind of complex any mesh is, edge by edge.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/index_sets.h"
@@ -20,5 +21,8 @@ EdgeCensus count_complex(const TriangleMesh& mesh, const WorldPoint& middle, int
 /// `boundary`: half-edges of edges with one face; those that end in one fan of faces belong to one loop. `fans`: of
 /// corners, as many as half-edges; a non-manifold edge ends a fan.
 int64_t count_loops(IndexSets& fans, const std::vector<uint32_t>& boundary, int64_t half_edges);
+
+/// Triangles with the corners of another one, in any order, beyond the first.
+int64_t count_duplicates(std::vector<std::array<uint32_t, 3>> triangles);
 
 }  // namespace isoshell

@@ -1,0 +1,69 @@
+// What can be counted and measured of the regions that the faces of a mesh part: the regions of a certificate, and each
+// of them as a mesh of its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isoshell/backend.h"
+#include "isoshell/triangle_mesh.h"
+
+namespace isoshell {
+
+/// The boundary of a region: the faces that it lies behind, and turned around those that it is in front of.
+struct RegionCounts {
+  int32_t label = 0;
+  std::string name;  ///< empty: it has none
+  int64_t faces = 0, vertices = 0;
+  int64_t components = 0;          ///< of its faces, connected through edges; hollows are some
+  int64_t genus = -1;              ///< sum over the components; -1 unless closed
+  int64_t open_edges = 0;          ///< with another number of its faces than two
+  int64_t inconsistent_edges = 0;  ///< with two of its faces that pass it in the same direction
+  int64_t touching_vertices = 0;   ///< fans of its faces around vertices, beyond the first one of each
+  bool closed = false;             ///< every edge has two of its faces, which pass it in opposite directions
+  double volume_world = 0;         ///< signed, about the middle of the bounding box
+  double area_world = 0;
+};
+
+/// The faces between two regions, or one and the background.
+struct RegionWall {
+  std::array<int32_t, 2> labels;  ///< the smaller one first
+  int64_t faces = 0;
+  double area_world = 0;
+};
+
+struct RegionCensus {
+  int32_t background = 0;             ///< is no region
+  std::vector<RegionCounts> regions;  ///< of all labels that faces have but the background, ascending
+  std::vector<RegionWall> walls;      ///< ascending
+  int64_t curve_edges = 0;            ///< with three faces or more: regions meet there
+  int64_t corners = 0;                ///< vertices of these where one of them ends, or more than two meet
+  int64_t duplicate_faces = 0;        ///< with the corners of another one, in any order, beyond the first: walls that
+                                      ///< regions do not share. By positions, so copies of vertices hide none
+  int64_t coincident_vertices = 0;    ///< at the position of another one, beyond the first
+  int64_t intersecting_pairs = 0;     ///< of triangles, as in MeshCensus
+  bool every_region_closed = false;   ///< and there is one
+
+  /// Whether each region is bounded by a surface of its own that it shares with those beside it, and no two faces meet
+  /// but where they share corners.
+  bool is_sound() const { return every_region_closed && duplicate_faces == 0 && intersecting_pairs == 0; }
+};
+
+/// `intersecting_pairs`: where they were counted already. Result: the same for every number of threads; sums run in the
+/// order of faces. Cost: sorts of corners, edges and faces, region by region side by side; a search for intersections.
+/// Throws: usage for a mesh without regions, labels that are not one pair a face, a face with one region on both sides,
+/// and a triangle that names no vertex; interrupted.
+RegionCensus take_region_census(const TriangleMesh& mesh, Context& context,
+                                std::optional<int64_t> intersecting_pairs = {});
+
+/// A region by itself: its faces, in their order, turned outward, and their vertices, in theirs. Where it touches
+/// itself in a vertex, each fan of faces has one of its own, one behind the other: the result is a closed 2-manifold
+/// where the region is closed. Positions are the same bytes. Attributes go along, normals turned with their faces;
+/// patches, curves and regions do not. Cost: a look at all faces, a sort of the region's corners and edges. Throws: as
+/// take_region_census does, and usage for a label that no face has, or the background's.
+TriangleMesh region_of(const TriangleMesh& mesh, int32_t label);
+
+}  // namespace isoshell
