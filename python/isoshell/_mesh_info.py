@@ -25,8 +25,9 @@ def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
     Args:
         mesh: a mesh as remesh() takes it: a path, (vertices, faces), an object that has both, isoshell.Mesh, a Result.
         ref: also measure distances and deviations of normals from this surface, both ways: any source of remesh().
-        require: closed, manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, min-angle=DEG, and
-            with ref max-deviation=W (world units) and normal-deviation=DEG; a list, or one text with commas.
+        require: closed, manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, regions (each closed,
+            with shared walls), min-angle=DEG, and with ref max-deviation=W (world units) and normal-deviation=DEG; a
+            list, or one text with commas.
         input_format: format of a mesh in a file: obj, ply, stl, off, glb or gltf; by its name without it.
         ref_format: format of a ref in a file: one of those, or xyz, pcd, vdb or nvdb.
         context: where to run, and who hears of progress; otherwise threads and max_memory say it.
@@ -34,7 +35,8 @@ def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
         max_memory: refuse input that needs more, as "512M", "8G" or bytes; without it 80 % of what is free.
 
     Returns:
-        What the command writes with --json: topology, quality, edges, valence, distance (None without ref) and more.
+        What the command writes with --json: topology, regions (None of a mesh without), quality, edges, valence,
+            distance (None without ref) and more.
 
     Raises:
         Error: GATE_FAILED when the mesh does not meet `require`: the error's info has what would have been returned.

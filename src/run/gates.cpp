@@ -40,12 +40,47 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
+std::string shown(const RegionCounts& region) {
+  return text("region ", region.label, region.name.empty() ? "" : " (" + region.name + ")");
+}
+
+/// What is wrong with the first region that is not closed; empty where all are.
+std::string open_region(const RegionCensus& census) {
+  for (const RegionCounts& r : census.regions) {
+    if (r.closed) continue;
+    std::string what = shown(r) + " is not closed: ";
+    if (r.open_edges > 0)
+      return what + counted(r.open_edges, "edge has", "edges have") + " another number of its faces than two";
+    return what + counted(r.inconsistent_edges, "edge", "edges") + " with two faces that pass it the same way";
+  }
+  return census.every_region_closed ? "" : "the mesh has no region";
+}
+
+std::string miss_regions(const Gates&, const Measured& m) {
+  if (!m.regions) return "the mesh has no regions";
+  const RegionCensus& census = *m.regions;
+  std::string what = open_region(census);
+  const auto add = [&](int64_t count, const char* one, const char* several) {
+    if (count > 0) what += (what.empty() ? "" : "; ") + counted(count, one, several);
+  };
+  add(census.duplicate_faces, "face is there twice", "faces are there twice");
+  add(census.intersecting_pairs, "pair of triangles intersects", "pairs of triangles intersect");
+  return what;
+}
+
 std::string miss_closed(const Gates&, const Measured& m) {
+  if (m.regions) return open_region(*m.regions);
   const MeshTopology& t = topology(m);
   return t.closed ? "" : "the mesh has " + counted(t.boundary_loops, "open boundary", "open boundaries");
 }
 
 std::string miss_manifold(const Gates&, const Measured& m) {
+  if (m.regions) {
+    for (const RegionCounts& r : m.regions->regions)
+      if (r.touching_vertices > 0)
+        return shown(r) + " touches itself in " + counted(r.touching_vertices, "vertex", "vertices");
+    return open_region(*m.regions);
+  }
   if (topology(m).is_manifold_with(m.border_loops())) return "";
   return m.border_loops() > 0 ? "the mesh is not a 2-manifold with the borders that were kept"
                               : "the mesh is not a closed 2-manifold";
@@ -120,6 +155,13 @@ const std::vector<GateRow>& rows() {
       {"genus", "G", "", &Gates::genus, {}, GateOf::mesh, miss_genus},
       {"components", "N", "", &Gates::components, {}, GateOf::mesh, miss_components},
       {"boundary-loops", "N", "", &Gates::boundary_loops, {}, GateOf::mesh, miss_boundary_loops},
+      {"regions",
+       "",
+       "each is closed, walls are shared, no triangles intersect",
+       &Gates::regions,
+       {},
+       GateOf::mesh,
+       miss_regions},
       {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
       {"max-deviation",
        "W",
@@ -267,13 +309,16 @@ std::vector<std::string> missed_gates(const Gates& gates, const Measured& m) {
 
 std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& record) {
   const RemeshReport& report = record.report;
-  const int64_t pairs = report.optimize.self_intersections;
+  const bool has_regions = record.regions.has_value();
+  const int64_t pairs = has_regions ? record.regions->intersecting_pairs : report.optimize.self_intersections;
   Measured m{record.topology, record.quality, record.distance};
-  if (report.is_optimized) m.self_intersections = pairs;
+  if (report.is_optimized || has_regions) m.self_intersections = pairs;
+  if (has_regions) m.regions = &*record.regions;
   m.features = &report.features;
   if (record.options.previous) m.coherence = &report.coherence;
   std::vector<std::string> missed = missed_gates(gates, m);
-  if (pairs > 0 && !gates.allow_intersections && !gates.no_self_intersections && !are_the_inputs(record))
+  const bool is_asked = gates.no_self_intersections || gates.regions;
+  if (pairs > 0 && !gates.allow_intersections && !is_asked && !are_the_inputs(record))
     missed.insert(missed.begin(), "the result intersects itself in " + counted(pairs, "pair", "pairs") +
                                       " of triangles; --allow-intersections takes it as it is");
   return missed;

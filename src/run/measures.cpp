@@ -7,15 +7,27 @@
 
 namespace isoshell {
 
-std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record) {
+namespace {
+
+/// What should not be of a result, whatever the input is; empty where all is well.
+std::string flaw_of(const RunRecord& record) {
+  const int64_t borders = record.report.features.border_loops;
+  if (record.regions)
+    return record.regions->every_region_closed ? "" : "the walls of the result do not close every region";
+  if (record.topology->is_manifold_with(borders)) return "";
+  return std::string("the result is not a ") + (borders > 0 ? "" : "closed ") + "2-manifold";
+}
+
+}  // namespace
+
+std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context) {
   record.topology = check_mesh(mesh);
   record.quality = measure_quality(mesh);
+  if (!mesh.regions.empty()) record.regions = take_region_census(mesh, context);
   std::vector<std::string> warnings;
-  const RemeshReport& report = record.report;
-  const int64_t borders = report.features.border_loops;
-  if (!record.topology->is_manifold_with(borders) && report.dual.failed_cells == 0)
-    warnings.push_back(std::string("the result is not a ") + (borders > 0 ? "" : "closed ") +
-                       "2-manifold, which should not be: please report the input");
+  const std::string flaw = flaw_of(record);
+  if (!flaw.empty() && record.report.dual.failed_cells == 0)
+    warnings.push_back(flaw + ", which should not be: please report the input");
   for (std::string& text : warnings_of_quality(*record.quality)) warnings.push_back(std::move(text));
   return warnings;
 }

@@ -8,8 +8,9 @@
 
 namespace isoshell {
 
-/// Topology and quality, on the triangles alone: no stage's word is taken for them. Result: what there is to warn of.
-std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record);
+/// Topology, quality and regions, on the triangles alone: no stage's word is taken for them. Result: what there is to
+/// warn of. Throws: interrupted.
+std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context);
 
 /// Distances from the surface as it was meshed, and of borders that were kept. Throws: interrupted.
 void measure_distances(const Prepared& prepared, const TriangleMesh& mesh, RunRecord& record, Context& context);

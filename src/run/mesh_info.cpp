@@ -13,7 +13,11 @@ constexpr int64_t kSamples = 200000;
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "mesh_info", message); }
 
-TriangleMesh mesh_of(TriangleSoup soup) { return {std::move(soup.vertices), std::move(soup.triangles)}; }
+TriangleMesh mesh_of(TriangleSoup soup) {
+  TriangleMesh mesh{std::move(soup.vertices), std::move(soup.triangles)};
+  mesh.regions = std::move(soup.regions);
+  return mesh;
+}
 
 /// What gates ask of a topology, from the counts. Where no edge is wrong, fans through all edges are those of
 /// manifolds.
@@ -41,6 +45,7 @@ std::vector<std::string> missed_of(const MeshInfo& info, const TriangleMesh& mes
   const std::optional<MeshQuality> quality = measure_quality(mesh);
   Measured measured{topology, quality, info.distance};
   measured.self_intersections = info.census.intersecting_pairs;
+  if (info.regions) measured.regions = &*info.regions;
   return missed_gates(gates, measured);
 }
 
@@ -57,6 +62,9 @@ MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gate
   info.dirt = mesh.soup.dirt;
   const TriangleMesh measured = mesh_of(std::move(mesh.soup));
   step("census", context, [&] { info.census = take_census(measured, context, info.dirt.degenerate_faces); });
+  if (!measured.regions.empty())
+    step("regions", context,
+         [&] { info.regions = take_region_census(measured, context, info.census.intersecting_pairs); });
   if (reference) {
     info.reference = reference->facts;
     const TriangleMesh other = mesh_of(std::move(reference->soup));

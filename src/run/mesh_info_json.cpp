@@ -3,6 +3,7 @@
 
 #include "io/bytes/output_file.h"
 #include "isoshell/run/mesh_info.h"
+#include "run/regions_json.h"
 
 namespace isoshell {
 namespace {
@@ -117,6 +118,7 @@ std::string mesh_info_json(const MeshInfo& info) {
   j["dirt"] = dirt_json(info.dirt);
   j["diagonal"] = info.census.diagonal_world;
   j["topology"] = topology_json(info.census);
+  j["regions"] = regions_json(info.regions);
   j["quality"] = quality_json(info.census.shapes);
   j["edges"] = edges_json(info.census.edges);
   j["valence"] = valence_json(info.census.valence);

@@ -4,6 +4,7 @@
 
 #include "isoshell/options/options_json.h"
 #include "isoshell/run/record.h"
+#include "run/regions_json.h"
 
 namespace isoshell {
 namespace {
@@ -286,6 +287,7 @@ std::string statistics_json(const RunRecord& r) {
   j["gaps"] = gaps_json(r);
   j["attributes"] = attributes_json(r.attributes);
   j["topology"] = topology_json(r);
+  j["regions"] = regions_json(r.regions);
   j["quality"] = quality_json(r);
   j["features"] = features_json(r.report.features);
   j["coherence"] = coherence_json(r);

@@ -299,7 +299,7 @@ class RunSteps::Run {
     record_.vertices = int64_t(mesh.vertices.size());
     record_.triangles = int64_t(mesh.triangles.size());
     if (request_.measures == Measures::none && !measures_all() && !request_.gates.any()) return;
-    for (const std::string& text : measure_mesh(mesh, record_)) warn(text);
+    for (const std::string& text : measure_mesh(mesh, record_, *context_)) warn(text);
   }
 
   void show_features(TriangleMesh& mesh) {

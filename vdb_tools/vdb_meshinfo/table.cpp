@@ -1,6 +1,7 @@
 // A certificate as a table: a title a group, a line a measure.
 #include "vdb_meshinfo/table.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -10,6 +11,7 @@ namespace isoshell::tool {
 namespace {
 
 constexpr int kNameWidth = 30, kBarWidth = 40;
+constexpr size_t kMostRows = 100;  ///< of regions, and of walls; JSON has them all
 
 class Table {
  public:
@@ -41,14 +43,54 @@ class Table {
   std::ostringstream out_;
 };
 
-void add_topology(const MeshCensus& census, Table& table) {
+std::string kind_of(const MeshInfo& info) {
+  const ComplexCounts& c = info.census.counts;
+  if (info.regions)
+    return info.regions->every_region_closed ? "walls of closed regions" : "walls of regions that are not all closed";
+  if (c.closed_manifold)
+    return c.nonorientable_components > 0 ? "closed 2-manifold, not orientable" : "closed 2-manifold";
+  const bool has_borders_only = c.closed_components + c.bordered_components == c.components && c.repeated_corners == 0;
+  return has_borders_only ? "2-manifold with borders" : "not a 2-manifold";
+}
+
+std::string shape_of(const RegionCounts& r) {
+  std::string text = r.closed ? "closed, genus " + with_commas(r.genus) : "not closed";
+  if (r.open_edges > 0) text += ", " + counted(r.open_edges, "open edge");
+  if (r.inconsistent_edges > 0) text += ", " + counted(r.inconsistent_edges, "inconsistent edge");
+  if (r.touching_vertices > 0) text += ", touches itself in " + counted(r.touching_vertices, "vertex", "vertices");
+  return text + ", " + counted(r.components, "component") + ", " + counted(r.faces, "triangle") + ", volume " +
+         Table::text_of(r.volume_world) + ", area " + Table::text_of(r.area_world);
+}
+
+void add_rest(size_t rows, Table& table) {
+  if (rows > kMostRows) table.row("and more", with_commas(int64_t(rows - kMostRows)) + "; --json has them all");
+}
+
+void add_regions(const RegionCensus& census, Table& table) {
+  table.title("Regions");
+  for (size_t i = 0; i < std::min(census.regions.size(), kMostRows); ++i) {
+    const RegionCounts& r = census.regions[i];
+    table.row(std::to_string(r.label) + (r.name.empty() ? "" : " (" + r.name + ")") + ' ', shape_of(r));
+  }
+  add_rest(census.regions.size(), table);
+  table.row("every one closed", census.every_region_closed ? "yes" : "no");
+  table.count("edges of three faces or more", census.curve_edges);
+  table.count("corners of these", census.corners);
+  table.count("triangles that are there twice", census.duplicate_faces);
+  table.title("Walls");
+  for (size_t i = 0; i < std::min(census.walls.size(), kMostRows); ++i) {
+    const RegionWall& w = census.walls[i];
+    table.row(std::to_string(w.labels[0]) + " | " + std::to_string(w.labels[1]),
+              counted(w.faces, "triangle") + ", area " + Table::text_of(w.area_world));
+  }
+  add_rest(census.walls.size(), table);
+}
+
+void add_topology(const MeshInfo& info, Table& table) {
+  const MeshCensus& census = info.census;
   const ComplexCounts& c = census.counts;
   table.title("Topology");
-  table.row("kind", c.closed_manifold
-                        ? c.nonorientable_components > 0 ? "closed 2-manifold, not orientable" : "closed 2-manifold"
-                    : c.closed_components + c.bordered_components == c.components && c.repeated_corners == 0
-                        ? "2-manifold with borders"
-                        : "not a 2-manifold");
+  table.row("kind", kind_of(info));
   table.count("vertices", c.vertices);
   table.count("triangles", c.triangles);
   table.count("edges", c.edges);
@@ -58,9 +100,11 @@ void add_topology(const MeshCensus& census, Table& table) {
   table.count("Euler characteristic", c.euler);
   table.count("boundary edges", c.boundary_edges);
   table.count("boundary loops", c.boundary_loops);
-  table.count("non-manifold edges", c.nonmanifold_edges);
-  table.count("non-manifold vertices", c.nonmanifold_vertices);
-  table.count("inconsistently oriented edges", c.inconsistent_edges);
+  if (!info.regions) {  // what counts is said of each region
+    table.count("non-manifold edges", c.nonmanifold_edges);
+    table.count("non-manifold vertices", c.nonmanifold_vertices);
+    table.count("inconsistently oriented edges", c.inconsistent_edges);
+  }
   table.count("components inside out", c.inverted_components);
   table.count("unreferenced vertices", c.vertices - c.referenced_vertices);
   table.count("duplicate vertices", c.duplicate_vertices);
@@ -114,7 +158,8 @@ void add_side(const char* title, const OneSidedDistance& d, const NormalDeviatio
 
 std::string mesh_info_table(const MeshInfo& info) {
   Table table;
-  add_topology(info.census, table);
+  add_topology(info, table);
+  if (info.regions) add_regions(*info.regions, table);
   add_quality(info.census, table);
   if (info.distance) {
     const MeshDistance& d = *info.distance;

@@ -17,6 +17,7 @@ struct Gates {
   bool allow_intersections = false;  ///< of a run that asks for nothing else: it misses that without this
   std::optional<int64_t> genus, components, boundary_loops;
   bool features = false;  ///< no curve was lost
+  bool regions = false;   ///< RegionCensus::is_sound()
   std::optional<double> min_angle_deg, max_deviation_world, normal_deviation_deg;
   std::optional<double> kept_edges_pct;  ///< of a frame that follows another; others meet them
   std::optional<int64_t> born;
@@ -25,12 +26,14 @@ struct Gates {
   bool needs_distance() const;
 };
 
-/// What gates look at. References to what is there for as long as they are asked.
+/// What gates look at. References to what is there for as long as they are asked. Where there are regions, each of them
+/// is what must be closed, or a manifold.
 struct Measured {
   const std::optional<MeshTopology>& topology;
   const std::optional<MeshQuality>& quality;
   const std::optional<MeshDistance>& distance;
   std::optional<int64_t> self_intersections = {};  ///< pairs of triangles; none where the mesh was not tested
+  const RegionCensus* regions = nullptr;           ///< of a mesh that has any
   const FeatureReport* features = nullptr;         ///< of a run
   const CoherenceReport* coherence = nullptr;      ///< of a frame that follows another
 

@@ -8,6 +8,7 @@
 #include "isoshell/distance.h"
 #include "isoshell/io/input.h"
 #include "isoshell/mesh_census.h"
+#include "isoshell/region_census.h"
 #include "isoshell/run/gates.h"
 
 namespace isoshell {
@@ -23,14 +24,15 @@ struct MeshInfo {
   std::optional<InputFacts> reference;
   DirtCounts dirt;  ///< of the mesh's file; what a reader left out is in no other count but repeated corners
   MeshCensus census;
+  std::optional<RegionCensus> regions;  ///< of a mesh that has any; edges of more than two faces are no flaw of it then
   std::optional<MeshDistance> distance;  ///< of the mesh and the reference
   std::vector<std::string> missed_gates;
 };
 
-/// Reads, counts and measures; nothing is repaired or snapped. Its steps ("read", "census", "distance") are progress of
-/// the context. Result: the same for every number of threads. Throws: usage for a gate of curves, a gate of distances
-/// without a reference, a mesh that is no mesh and a reference that is a stage file; and as read_input, take_census and
-/// measure_distance do.
+/// Reads, counts and measures; nothing is repaired or snapped. Its steps ("read", "census", "regions", "distance") are
+/// progress of the context. Result: the same for every number of threads. Throws: usage for a gate of curves, a gate of
+/// distances without a reference, a mesh that is no mesh and a reference that is a stage file; and as read_input,
+/// take_census, take_region_census and measure_distance do.
 MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell = {});
 /// The same of what is read already, or came from memory.
 MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gates, Context& context);

@@ -12,6 +12,7 @@
 #include "isoshell/io/input.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
+#include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
@@ -35,6 +36,7 @@ struct RunRecord {
   RemeshReport report;
   std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
   std::optional<MeshQuality> quality;
+  std::optional<RegionCensus> regions;    ///< of a result that has any
   std::optional<MeshDistance> distance;   ///< of the result and the input, as repaired
   std::optional<BorderMeasures> borders;  ///< the same, of a run that kept borders
   int64_t vertices = -1, triangles = -1;  ///< of the result; -1 when the run stopped before it

@@ -1,0 +1,93 @@
+// What a certificate says of a mesh whose faces part regions, and which conditions on it are met.
+#include <utility>
+
+#include "isoshell/error.h"
+#include "isoshell/run/mesh_info.h"
+#include "support/catch.h"
+#include "support/refusals.h"
+#include "unit/region_cubes.h"
+
+using namespace isoshell;
+
+namespace {
+
+MeshInfo info_of(TriangleMesh mesh, const std::string& gates = "") {
+  TriangleSoup soup;
+  soup.vertices = std::move(mesh.vertices);
+  soup.triangles = std::move(mesh.triangles);
+  soup.regions = std::move(mesh.regions);
+  Context context;
+  return mesh_info(input_of(std::move(soup), "cubes"), std::nullopt, parse_gates(gates), context);
+}
+
+std::vector<std::string> missed_of(TriangleMesh mesh, const std::string& gates) {
+  return info_of(std::move(mesh), gates).missed_gates;
+}
+
+TriangleMesh folded_cubes() {
+  TriangleMesh mesh = two_cubes();
+  for (WorldPoint& p : mesh.vertices)
+    if (p.x == 2) p.x = .5;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("region gates: boxes that share a wall meet all that is asked of regions", "[gates][regions]") {
+  CHECK(missed_of(two_cubes(), "regions,closed,manifold,no-self-intersections").empty());
+}
+
+TEST_CASE("region gates: what is missed is one sentence with what is there", "[gates][regions]") {
+  using Sentences = std::vector<std::string>;
+  TriangleMesh open = two_cubes();
+  open.regions.names = {{2, "bone"}};
+  remove_face(open, face_between(open, {2, 0}));
+  CHECK(missed_of(open, "regions") == Sentences{"regions: region 2 (bone) is not closed: 3 edges have another number "
+                                                "of its faces than two"});
+  CHECK(missed_of(open, "closed,manifold").size() == 2);
+  CHECK(missed_of(two_cubes_of_two_walls(), "regions") == Sentences{"regions: 2 faces are there twice"});
+  REQUIRE(missed_of(folded_cubes(), "regions").size() == 1);
+  CHECK(contains(missed_of(folded_cubes(), "regions")[0], "of triangles intersect"));
+  TriangleMesh turned = two_cubes();
+  std::swap(turned.triangles[0][1], turned.triangles[0][2]);
+  REQUIRE(missed_of(turned, "regions").size() == 1);
+  CHECK(contains(missed_of(turned, "regions")[0], "with two faces that pass it the same way"));
+}
+
+TEST_CASE("region gates: a region that touches itself in a vertex is closed and no manifold", "[gates][regions]") {
+  const TriangleMesh mesh = mesh_of(LabelledCubes{{2, 2, 2}, {1, 0, 0, 0, 0, 0, 0, 1}});
+  CHECK(missed_of(mesh, "regions,closed").empty());
+  CHECK(missed_of(mesh, "manifold") == std::vector<std::string>{"manifold: region 1 touches itself in 1 vertex"});
+}
+
+TEST_CASE("region gates: a mesh without regions misses them", "[gates][regions]") {
+  TriangleMesh mesh = two_cubes();
+  mesh.regions = {};
+  CHECK(missed_of(mesh, "regions") == std::vector<std::string>{"regions: the mesh has no regions"});
+  CHECK_FALSE(info_of(mesh).regions.has_value());
+  CHECK(contains(mesh_info_json(info_of(mesh)), "\"regions\": null"));
+}
+
+TEST_CASE("region gates: a run's result is judged by its regions", "[gates][regions]") {
+  Context context;
+  RunRecord record;
+  record.topology.emplace();
+  record.quality.emplace();
+  CHECK(missed_gates(parse_gates("regions"), record).size() == 1);
+  record.regions = take_region_census(two_cubes(), context);
+  CHECK(missed_gates(parse_gates("regions,closed,manifold,no-self-intersections"), record).empty());
+  CHECK(contains(statistics_json(record), "\"every_region_closed\": true"));
+  record.regions = take_region_census(folded_cubes(), context);
+  CHECK(missed_gates(parse_gates("regions"), record).size() == 1);
+  CHECK(missed_gates(parse_gates(""), record).size() == 1);
+  Gates as_it_is;
+  as_it_is.allow_intersections = true;
+  CHECK(missed_gates(as_it_is, record).empty());
+}
+
+TEST_CASE("region gates: the certificate has each region and wall", "[mesh_info][regions]") {
+  const std::string json = mesh_info_json(info_of(two_cubes()));
+  CHECK(contains(json, "\"label\": 2"));
+  CHECK(contains(json, "\"walls\""));
+  CHECK(contains(json, "\"every_region_closed\": true"));
+}
