@@ -26,6 +26,8 @@ struct RegionCounts {
   bool closed = false;             ///< every edge has two of its faces, which pass it in opposite directions
   double volume_world = 0;         ///< signed, about the middle of the bounding box
   double area_world = 0;
+
+  bool is_inside_out() const { return closed && volume_world < 0; }
 };
 
 /// The faces between two regions, or one and the background.
@@ -45,25 +47,29 @@ struct RegionCensus {
                                       ///< regions do not share. By positions, so copies of vertices hide none
   int64_t coincident_vertices = 0;    ///< at the position of another one, beyond the first
   int64_t intersecting_pairs = 0;     ///< of triangles, as in MeshCensus
+  int64_t inside_out_regions = 0;     ///< closed ones of negative volume
   bool every_region_closed = false;   ///< and there is one
 
-  /// Whether each region is bounded by a surface of its own that it shares with those beside it, and no two faces meet
-  /// but where they share corners.
-  bool is_sound() const { return every_region_closed && duplicate_faces == 0 && intersecting_pairs == 0; }
+  /// Whether each region lies in a closed surface that it shares with those beside it, and no two faces meet but where
+  /// they share corners.
+  bool is_sound() const {
+    return every_region_closed && duplicate_faces == 0 && inside_out_regions == 0 && intersecting_pairs == 0;
+  }
 };
 
 /// `intersecting_pairs`: where they were counted already. Result: the same for every number of threads; sums run in the
 /// order of faces. Cost: sorts of corners, edges and faces, region by region side by side; a search for intersections.
 /// Throws: usage for a mesh without regions, labels that are not one pair a face, a face with one region on both sides,
-/// and a triangle that names no vertex; interrupted.
+/// and a triangle that names a vertex that is not there or not finite; interrupted.
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context,
                                 std::optional<int64_t> intersecting_pairs = {});
 
 /// A region by itself: its faces, in their order, turned outward, and their vertices, in theirs. Where it touches
 /// itself in a vertex, each fan of faces has one of its own, one behind the other: the result is a closed 2-manifold
 /// where the region is closed. Positions are the same bytes. Attributes go along, normals turned with their faces;
-/// patches, curves and regions do not. Cost: a look at all faces, a sort of the region's corners and edges. Throws: as
-/// take_region_census does, and usage for a label that no face has, or the background's.
+/// patches, curves and regions do not. Cost: a look at all faces, a sort of the region's corners and edges. Throws:
+/// usage as take_region_census does, but for positions that are not finite, and for a label that no face has, or the
+/// background's.
 TriangleMesh region_of(const TriangleMesh& mesh, int32_t label);
 
 }  // namespace isoshell

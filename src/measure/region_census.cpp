@@ -4,13 +4,16 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "geometry/box.h"
 #include "geometry/half_edges.h"
+#include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
+#include "isoshell/error.h"
 #include "measure/complex_counts.h"
 #include "measure/region_surface.h"
 #include "measure/self_intersections.h"
@@ -24,10 +27,13 @@ double area_of(const TriangleMesh& mesh, uint32_t face) {
   return shape_of(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).area;
 }
 
-std::string name_of(const FaceRegions& regions, int32_t label) {
-  for (const RegionName& n : regions.names)
-    if (n.label == label) return n.name;
-  return "";
+/// Intersections are asked of positions.
+void require_finite(const TriangleMesh& mesh) {
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t v : t)
+      if (!is_finite(mesh.vertices[v]))
+        throw Error(ErrorCode::usage, "regions",
+                    "vertex " + std::to_string(v) + " is not finite; leave its triangles out");
 }
 
 /// Per label the faces that have it, ascending.
@@ -62,7 +68,7 @@ RegionCounts count_region(const TriangleMesh& mesh, int32_t label, std::vector<u
   RegionComplex complex = complex_of(surface);
   RegionCounts counts;
   counts.label = label;
-  counts.name = name_of(mesh.regions, label);
+  counts.name = region_name(mesh.regions, label);
   counts.faces = int64_t(surface.face.size());
   counts.vertices = int64_t(surface.vertex.size());
   counts.components = count_sets(complex.parts, surface.face.size());
@@ -115,6 +121,7 @@ int64_t count_duplicate_faces(const TriangleMesh& mesh, const std::vector<uint32
 
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context, std::optional<int64_t> intersecting_pairs) {
   require_regions(mesh);
+  require_finite(mesh);
   return run_with_threads(context, [&] {
     RegionCensus census;
     census.background = mesh.regions.background;
@@ -128,6 +135,8 @@ RegionCensus take_region_census(const TriangleMesh& mesh, Context& context, std:
     });
     census.every_region_closed = std::all_of(census.regions.begin(), census.regions.end(),
                                              [](const RegionCounts& region) { return region.closed; });
+    census.inside_out_regions = std::count_if(census.regions.begin(), census.regions.end(),
+                                              [](const RegionCounts& region) { return region.is_inside_out(); });
     census.walls = count_walls(mesh);
     count_curves(mesh, census);
     check_cancel(context, "regions");

@@ -16,9 +16,8 @@ std::string listed_labels(const TriangleMesh& mesh) {
   const std::vector<int32_t> labels = region_labels(mesh);
   std::string list;
   for (size_t i = 0; i < std::min(labels.size(), kMostNamed); ++i) {
-    list += (i > 0 ? ", " : "") + std::to_string(labels[i]);
-    for (const RegionName& n : mesh.regions.names)
-      if (n.label == labels[i] && !n.name.empty()) list += " (" + n.name + ")";
+    const std::string name = region_name(mesh.regions, labels[i]);
+    list += (i > 0 ? ", " : "") + std::to_string(labels[i]) + (name.empty() ? "" : " (" + name + ")");
   }
   if (labels.size() > kMostNamed) list += " and " + std::to_string(labels.size() - kMostNamed) + " more";
   return list;

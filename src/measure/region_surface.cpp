@@ -4,7 +4,6 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "geometry/half_edges.h"
@@ -40,6 +39,13 @@ std::vector<int32_t> region_labels(const TriangleMesh& mesh) {
   tbb::parallel_sort(labels.begin(), labels.end());
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   return labels;
+}
+
+std::string region_name(const FaceRegions& regions, int32_t label) {
+  const auto& names = regions.names;
+  const auto found = std::lower_bound(names.begin(), names.end(), label,
+                                      [](const RegionName& name, int32_t wanted) { return name.label < wanted; });
+  return found != names.end() && found->label == label ? found->name : "";
 }
 
 RegionSurface surface_of_region(const TriangleMesh& mesh, int32_t label, std::vector<uint32_t> faces) {

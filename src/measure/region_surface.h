@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/index_sets.h"
@@ -15,6 +16,9 @@ void require_regions(const TriangleMesh& mesh);
 
 /// Of all labels that faces have but the background, ascending.
 std::vector<int32_t> region_labels(const TriangleMesh& mesh);
+
+/// Empty: it has none.
+std::string region_name(const FaceRegions& regions, int32_t label);
 
 struct RegionSurface {
   std::vector<uint32_t> face;                      ///< of the whole mesh, ascending

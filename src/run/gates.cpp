@@ -64,6 +64,7 @@ std::string miss_regions(const Gates&, const Measured& m) {
     if (count > 0) what += (what.empty() ? "" : "; ") + counted(count, one, several);
   };
   add(census.duplicate_faces, "face is there twice", "faces are there twice");
+  add(census.inside_out_regions, "region is inside out", "regions are inside out");
   add(census.intersecting_pairs, "pair of triangles intersects", "pairs of triangles intersect");
   return what;
 }

@@ -20,7 +20,9 @@ Json dirt_json(const DirtCounts& d) {
           {"short_faces", d.short_faces}};
 }
 
-Json topology_json(const MeshCensus& census) {
+/// With regions the mesh encloses no volume of its own: its inner walls face one of the two that they part.
+Json topology_json(const MeshInfo& info) {
+  const MeshCensus& census = info.census;
   const ComplexCounts& c = census.counts;
   return {{"vertices", c.vertices},
           {"triangles", c.triangles},
@@ -43,7 +45,7 @@ Json topology_json(const MeshCensus& census) {
           {"nonmanifold_vertices", c.nonmanifold_vertices},
           {"bow_ties", c.bow_ties},
           {"closed_manifold", c.closed_manifold},
-          {"volume", c.volume_world},
+          {"volume", info.regions ? Json() : Json(c.volume_world)},
           {"self_intersecting_pairs", census.intersecting_pairs},
           {"self_intersecting_triangles", census.intersecting_triangles}};
 }
@@ -117,7 +119,7 @@ std::string mesh_info_json(const MeshInfo& info) {
   j["reference"] = info.reference ? facts_json(*info.reference) : Json();
   j["dirt"] = dirt_json(info.dirt);
   j["diagonal"] = info.census.diagonal_world;
-  j["topology"] = topology_json(info.census);
+  j["topology"] = topology_json(info);
   j["regions"] = regions_json(info.regions);
   j["quality"] = quality_json(info.census.shapes);
   j["edges"] = edges_json(info.census.edges);

@@ -30,6 +30,7 @@ inline nlohmann::ordered_json regions_json(const std::optional<RegionCensus>& ce
     walls.push_back({{"labels", {w.labels[0], w.labels[1]}}, {"triangles", w.faces}, {"area", w.area_world}});
   return {{"background", census->background},
           {"every_region_closed", census->every_region_closed},
+          {"inside_out_regions", census->inside_out_regions},
           {"duplicate_triangles", census->duplicate_faces},
           {"duplicate_vertices", census->coincident_vertices},
           {"self_intersecting_pairs", census->intersecting_pairs},

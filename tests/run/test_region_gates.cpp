@@ -48,6 +48,9 @@ TEST_CASE("region gates: what is missed is one sentence with what is there", "[g
   CHECK(missed_of(two_cubes_of_two_walls(), "regions") == Sentences{"regions: 2 faces are there twice"});
   REQUIRE(missed_of(folded_cubes(), "regions").size() == 1);
   CHECK(contains(missed_of(folded_cubes(), "regions")[0], "of triangles intersect"));
+  TriangleMesh inverted = two_cubes();
+  for (auto& t : inverted.triangles) std::swap(t[1], t[2]);
+  CHECK(missed_of(inverted, "regions") == Sentences{"regions: 2 regions are inside out"});
   TriangleMesh turned = two_cubes();
   std::swap(turned.triangles[0][1], turned.triangles[0][2]);
   REQUIRE(missed_of(turned, "regions").size() == 1);

@@ -68,7 +68,8 @@ TEST_CASE("whole run: statistics have the keys of schema 1, whether written or a
                                          "grid",           "counts",  "gaps",       "attributes",   "topology",
                                          "features",       "quality", "sizing",     "borders",      "distance",
                                          "normals",        "energy",  "timings_ms", "memory_bytes", "device",
-                                         "device_details", "digests", "warnings",   "coherence"});
+                                         "device_details", "digests", "warnings",   "coherence",    "regions"});
+  CHECK(j["regions"].is_null());
   CHECK(j["schema"] == 1);
   CHECK(keys(j["options"]) == std::set<std::string>{"vertices", "edge-length", "band", "outer-only", "method",
                                                     "iterations", "tolerance", "step", "seed", "fit", "uniform-area",

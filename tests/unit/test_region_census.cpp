@@ -184,6 +184,16 @@ TEST_CASE("region census: boxes of one region may touch in a vertex, not in an e
   CHECK(edge.corners == 2);
 }
 
+TEST_CASE("region census: regions in faces that are all turned are inside out", "[regions][unit]") {
+  TriangleMesh mesh = two_cubes();
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  const RegionCensus census = census_of(mesh);
+  CHECK(census.every_region_closed);
+  CHECK(census.inside_out_regions == 2);
+  CHECK(census.regions[0].volume_world == Approx(-1));
+  CHECK_FALSE(census.is_sound());
+}
+
 TEST_CASE("region census: faces that cross are counted", "[regions][unit]") {
   TriangleMesh mesh = two_cubes();
   for (WorldPoint& p : mesh.vertices)
@@ -231,6 +241,9 @@ TEST_CASE("region census: what is no complex of regions is refused", "[regions][
   mesh = two_cubes();
   mesh.triangles[0][0] = 12;
   CHECK(contains(refusal(mesh), "vertex 12"));
+  mesh = two_cubes();
+  mesh.vertices[5].y = NAN;
+  CHECK(contains(refusal(mesh), "vertex 5 is not finite"));
 }
 
 TEST_CASE("region of: each of two boxes is a closed mesh with its vertices in order", "[regions][unit]") {

@@ -58,6 +58,7 @@ std::string shape_of(const RegionCounts& r) {
   if (r.open_edges > 0) text += ", " + counted(r.open_edges, "open edge");
   if (r.inconsistent_edges > 0) text += ", " + counted(r.inconsistent_edges, "inconsistent edge");
   if (r.touching_vertices > 0) text += ", touches itself in " + counted(r.touching_vertices, "vertex", "vertices");
+  if (r.is_inside_out()) text += ", inside out";
   return text + ", " + counted(r.components, "component") + ", " + counted(r.faces, "triangle") + ", volume " +
          Table::text_of(r.volume_world) + ", area " + Table::text_of(r.area_world);
 }
@@ -76,7 +77,7 @@ void add_regions(const RegionCensus& census, Table& table) {
   table.row("every one closed", census.every_region_closed ? "yes" : "no");
   table.count("edges of three faces or more", census.curve_edges);
   table.count("corners of these", census.corners);
-  table.count("triangles that are there twice", census.duplicate_faces);
+  table.count("triangles there twice", census.duplicate_faces);
   table.title("Walls");
   for (size_t i = 0; i < std::min(census.walls.size(), kMostRows); ++i) {
     const RegionWall& w = census.walls[i];
@@ -89,29 +90,32 @@ void add_regions(const RegionCensus& census, Table& table) {
 void add_topology(const MeshInfo& info, Table& table) {
   const MeshCensus& census = info.census;
   const ComplexCounts& c = census.counts;
+  const bool is_of_one = !info.regions;  // otherwise this is said of each region
   table.title("Topology");
   table.row("kind", kind_of(info));
   table.count("vertices", c.vertices);
   table.count("triangles", c.triangles);
   table.count("edges", c.edges);
   table.count("components", c.components);
-  table.count("closed components", c.closed_components);
-  table.count("genus of these", c.genus);
+  if (is_of_one) {
+    table.count("closed components", c.closed_components);
+    table.count("genus of these", c.genus);
+  }
   table.count("Euler characteristic", c.euler);
   table.count("boundary edges", c.boundary_edges);
   table.count("boundary loops", c.boundary_loops);
-  if (!info.regions) {  // what counts is said of each region
+  if (is_of_one) {
     table.count("non-manifold edges", c.nonmanifold_edges);
     table.count("non-manifold vertices", c.nonmanifold_vertices);
     table.count("inconsistently oriented edges", c.inconsistent_edges);
+    table.count("components inside out", c.inverted_components);
   }
-  table.count("components inside out", c.inverted_components);
   table.count("unreferenced vertices", c.vertices - c.referenced_vertices);
   table.count("duplicate vertices", c.duplicate_vertices);
   table.count("duplicate triangles", c.duplicate_triangles);
   table.count("triangles, corner repeated", c.repeated_corners);
   table.count("degenerate triangles", census.shapes.degenerate);
-  table.number("volume", c.volume_world);
+  if (is_of_one) table.number("volume", c.volume_world);
   table.number("area", census.shapes.area_world);
   table.title("Self-intersections");
   table.count("pairs of triangles", census.intersecting_pairs);
