@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel_ranges.h"
 #include "geometry/half_edges.h"
 #include "geometry/triangle_list.h"
 #include "isoshell/error.h"
@@ -64,8 +65,10 @@ RegionSurface surface_of_region(const TriangleMesh& mesh, int32_t label, std::ve
   std::vector<uint32_t>& vertex = surface.vertex;
   tbb::parallel_sort(vertex.begin(), vertex.end());
   vertex.erase(std::unique(vertex.begin(), vertex.end()), vertex.end());
-  for (auto& t : surface.triangles)
-    for (uint32_t& v : t) v = uint32_t(std::lower_bound(vertex.begin(), vertex.end(), v) - vertex.begin());
+  for_each_index(size_t(0), surface.triangles.size(), [&](size_t t) {
+    for (uint32_t& v : surface.triangles[t])
+      v = uint32_t(std::lower_bound(vertex.begin(), vertex.end(), v) - vertex.begin());
+  });
   return surface;
 }
 
