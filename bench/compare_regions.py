@@ -17,9 +17,11 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 import region_volumes
 from region_judge import RegionMesh, heads, judge, line
+from region_topology import components
 
 
 def from_pairs(vertices, triangles, pairs):
@@ -89,6 +91,45 @@ def run_vtk(volume, smoothing=True):
     return vtk_to_numpy(made.GetPoints().GetData()), triangles, pairs
 
 
+def run_vtk_fewer(volume, vertices):
+    """vtkDecimatePro without splits leaves vertices of edges with more than two faces where they are, but forgets which
+    labels a face parts: the mesh of before goes along, to find them again."""
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+
+    points, triangles, pairs = run_vtk(volume)
+    mesh, coordinates, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
+    coordinates.SetData(numpy_to_vtk(points))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(triangles.ravel(), np.int64), deep=True))
+    mesh.SetPoints(coordinates)
+    mesh.SetPolys(cells)
+    fewer = vtk.vtkDecimatePro()
+    fewer.SetInputData(mesh)
+    fewer.PreserveTopologyOn()
+    fewer.SplittingOff()
+    fewer.SetTargetReduction(max(0.0, 1 - vertices / len(points)))
+    fewer.Update()
+    made = fewer.GetOutput()
+    fewer_triangles = vtk_to_numpy(made.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return vtk_to_numpy(made.GetPoints().GetData()), fewer_triangles, (points, triangles, pairs)
+
+
+def with_labels_of(points, triangles, before):
+    """Gives each patch of faces, that edges with two faces join, the labels that most of the nearest faces of before have."""
+    old_points, old_triangles, old_pairs = before
+    nearest = cKDTree(old_points[old_triangles].mean(axis=1)).query(points[triangles].mean(axis=1))[1]
+    names, of = np.unique(old_pairs, axis=0, return_inverse=True)
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, edge, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    edge = edge.reshape(-1)
+    order = np.argsort(edge, kind="stable")
+    joined = (order[count[edge[order]] == 2] // 3).reshape(-1, 2)
+    patches, patch = components(len(triangles), *joined.T)
+    votes = np.zeros((patches, len(names)), np.int32)
+    np.add.at(votes, (patch, of.reshape(-1)[nearest]), 1)
+    return from_pairs(points, triangles, names[np.argmax(votes, axis=1)][patch])
+
+
 def run_serra(volume, reduction=0, **settings):
     import serra_mesh
 
@@ -142,18 +183,19 @@ def faces_in(meshes):
 
 
 def programs(volume, vertices):
-    """Name, module, and the call: what it takes with what normalises it. Reductions aim at the count of vertices, with
-    three faces to two vertices of a wall that is there twice."""
+    """Name, module, what prepares the call that is timed, and what normalises its result. Where walls are there twice,
+    `fewer` asks for four faces a vertex: about as many vertices as asked, once those in the same place are joined."""
     both = lambda made: from_pairs(*made)  # noqa: E731
     each = lambda made: from_labels(made, volume)  # noqa: E731
     taubin = {"fairing": 20, "fairing_taubin": True}
 
-    def fewer(run, **settings):  # a mesh of n shared vertices has about 2 n faces a side of each wall
-        factor = max(1, round(faces_in(run(volume, **settings)) / (4 * vertices)))
+    def fewer(run, **settings):
+        factor = max(1, faces_in(run(volume, **settings)) / (4 * vertices))
         return lambda: run(volume, reduction=factor, **settings)
 
     return [("vtk", "vtk", lambda: lambda: run_vtk(volume), both),
             ("vtk, not smoothed", "vtk", lambda: lambda: run_vtk(volume, False), both),
+            ("vtk, fewer", "vtk", lambda: lambda: run_vtk_fewer(volume, vertices), lambda made: with_labels_of(*made)),
             ("serra-mesh", "serra_mesh", lambda: lambda: run_serra(volume, **taubin), each),
             ("serra-mesh, fewer", "serra_mesh", lambda: fewer(run_serra, **taubin), each),
             ("zmesh", "zmesh", lambda: lambda: run_zmesh(volume), each),

@@ -21,7 +21,7 @@ from region_topology import RegionMesh
 MOST_CENTRES = 20_000
 MOST_FACES_CROSSED = 1_000_000  # of more, crossings are not searched for
 
-COLUMNS = [("vertices", "vertices", "{:d}"), ("closed_regions", "closed regions", "{}"),
+COLUMNS = [("vertices", "vertices", "{:d}"), ("welded_vertices", "joined", "{:d}"), ("closed_regions", "closed regions", "{}"),
            ("manifold_regions", "manifold regions", "{}"), ("shared_wall_pct", "walls shared %", "{:.1f}"),
            ("matching_wall_pct", "walls that match %", "{:.1f}"), ("lost_added_pairs", "pairs lost, added", "{}"),
            ("same_topology_regions", "topology of voxels", "{}"), ("volume_error_pct", "volume error %", "{:.2f}"),

@@ -9,6 +9,7 @@ from conftest import SOURCE
 pytest.importorskip("scipy")
 sys.path.append(str(SOURCE / "bench"))
 
+from region_geometry import crossing  # noqa: E402
 from region_judge import RegionMesh, heads, judge, line  # noqa: E402
 from region_volumes import KINDS, grains, random_labels, sheets_in_t, touching_cubes  # noqa: E402
 
@@ -139,3 +140,34 @@ def test_the_planes_of_grains_are_half_a_voxel_or_less_from_the_faces_of_voxels(
 def test_a_mesh_on_the_planes_of_two_grains_is_exact():
     mesh = two_cubes()
     assert judge(mesh, planes={(1, 2): np.array([1.0, 0, 0, 1])})["normal_deg"] == pytest.approx(0)
+
+
+def crosses_exactly(a, b):
+    """Whether an edge of one of two triangles of whole numbers meets the inside of the other."""
+    def side(p, q, r, s):
+        return int(np.sign(np.linalg.det(np.array([q - p, r - p, s - p], float)).round()))
+
+    for edges, face in ((a, b), (b, a)):
+        for i in range(3):
+            p, q = edges[i], edges[(i + 1) % 3]
+            if side(*face, p) * side(*face, q) < 0 and len({side(p, q, face[j], face[(j + 1) % 3]) for j in range(3)}) == 1:
+                return True
+    return False
+
+
+def test_crossings_of_random_triangles_are_found_exactly():
+    triangles = np.random.default_rng(5).integers(-20, 20, (2000, 2, 3, 3))
+    expected = {i for i, (a, b) in enumerate(triangles) if crosses_exactly(a, b)}
+    found, overlaps = crossing(triangles[:, 0].astype(float), triangles[:, 1].astype(float), 1e-9)
+    assert set(found.tolist()) == expected and 100 < len(expected) < 1900 and len(overlaps) == 0
+
+
+def test_triangles_that_share_a_corner_or_an_edge_cross_or_overlap_only_if_they_do():
+    flat = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+    others = {"beside": [[0, 0, 0], [1, 0, 0], [0, -1, 0]], "folded": [[0, 0, 0], [1, 0, 0], [0.2, 0.7, 0]],
+              "upright": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "corner": [[0, 0, 0], [-1, 0, 1], [-1, 0, -1]],
+              "through": [[0, 0, 0], [0.3, 0.3, 1], [0.3, 0.3, -1]], "corner, folded": [[0, 0, 0], [1, 1, 0], [2, 1, 0]]}
+    pairs = np.array(list(others.values()), float)
+    found, overlaps = crossing(np.repeat(flat[None], len(pairs), axis=0), pairs, 1e-6)
+    assert [list(others)[i] for i in found] == ["through"]
+    assert [list(others)[i] for i in overlaps] == ["folded", "corner, folded"]
