@@ -4,7 +4,7 @@
 usage: compare_regions.py grains:128 | cubes | sheets | shell | FILE.npy | FILE.nii.gz   [--only NAME...] [--repeats 3]
                           [--vertices 50000] [--json FILE] [--most-faces 1000000]
 
-Runs those of vtk (vtkSurfaceNets3D), serra-mesh, zmesh, pygalmesh and isoshell that are installed. Seconds are the best of
+Runs those of vtk (vtkSurfaceNets3D), serra-mesh, zmesh and isoshell that are installed. Seconds are the best of
 the repeats, by the clock, from the array of labels to the arrays of the mesh; a program that makes a mesh per label is
 timed for all of them. nibabel reads .nii.gz. All programs get a frame of background of one voxel, in which walls to the
 outside lie; it is taken off again.
@@ -150,32 +150,11 @@ def got(mesh, shift=0):  # zmesh closes regions by a frame of its own, which mov
     return np.asarray(mesh.vertices) - np.float32(shift), np.asarray(mesh.faces)
 
 
-def run_pygalmesh(volume, cell):
-    import pygalmesh
-
-    made = pygalmesh.generate_from_array(np.pad(volume, 1).astype(np.uint16), (1, 1, 1), max_facet_distance=0.5,
-                                         max_cell_circumradius=cell)
-    tetrahedra = made.cells_dict["tetra"]
-    return walls_of_tetrahedra(made.points - 1, tetrahedra, np.concatenate(made.cell_data["medit:ref"])[-len(tetrahedra):])
-
-
-def walls_of_tetrahedra(points, tetrahedra, labels):
-    """The faces between tetrahedra of different labels, each once, and both labels."""
-    faces = tetrahedra[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
-    of = np.repeat(labels, 4)
-    _, first, whole, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_inverse=True,
-                                       return_counts=True)
-    total = np.bincount(whole.reshape(-1), of).astype(np.int64)
-    other = np.where(count == 1, 0, total - of[first])
-    wall = other != of[first]
-    return points, faces[first][wall], np.stack([of[first], other], axis=1)[wall]
-
-
 def run_isoshell(volume, vertices):
     import isoshell
 
     made = isoshell.remesh(isoshell.Labels(volume), vertices=vertices)
-    return made.vertices, made.triangles, made.regions
+    return made.vertices, made.faces, made.regions
 
 
 def faces_in(meshes):
@@ -200,7 +179,6 @@ def programs(volume, vertices):
             ("serra-mesh, fewer", "serra_mesh", lambda: fewer(run_serra, **taubin), each),
             ("zmesh", "zmesh", lambda: lambda: run_zmesh(volume), each),
             ("zmesh, fewer", "zmesh", lambda: fewer(run_zmesh), each),
-            ("pygalmesh", "pygalmesh", lambda: lambda: run_pygalmesh(volume, volume.shape[0] / 20), both),
             ("isoshell", "isoshell", lambda: lambda: run_isoshell(volume, vertices), both)]
 
 

@@ -48,8 +48,8 @@ def judge_arrays(mesh):
             "unused_vertices": len(mesh.vertices) - len(np.unique(corners))}
 
 
-def judge_boundaries(mesh, boundaries):
-    """Of every region: closed, oriented, manifold once fans are parted."""
+def judge_boundaries(boundaries):
+    """Of every region: closed, oriented, manifold once fans are parted, not inside out."""
     count = len(boundaries.labels)
     open_edges = np.bincount(boundaries.edge_label[boundaries.balance != 0], minlength=count)
     many_edges = np.bincount(boundaries.edge_label[boundaries.counts != 2], minlength=count)
@@ -59,6 +59,7 @@ def judge_boundaries(mesh, boundaries):
     shells, euler, fans = boundaries.shells()
     return {"regions": count, "closed_regions": f"{int((open_edges == 0).sum())} of {count}",
             "manifold_regions": f"{int((many_edges == 0).sum())} of {count}",
+            "inside_out": boundaries.labels[boundaries.volumes() <= 0].tolist()[:100],
             "not_closed": boundaries.labels[open_edges > 0].tolist()[:100],
             "edges_out_of_balance": int(open_edges.sum()), "edges_with_4": len(four),
             "edges_with_others": int(((boundaries.counts != 2) & (boundaries.counts != 4)).sum()),
@@ -101,11 +102,13 @@ def kept_voxels(mesh, volume, most=MOST_CENTRES):
 
 def judge(mesh, volume=None, origin=(0, 0, 0), spacing=(1, 1, 1), planes=None, most_faces=MOST_FACES_CROSSED):
     """All figures of a mesh, by name. Shapes are judged in the units of the mesh, all else in voxels."""
+    if len(mesh.triangles) == 0:
+        raise ValueError("a mesh without faces cannot be judged")
     found = geometry.shape(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.triangles))
     mesh = in_voxels(mesh, np.asarray(origin, np.float64), np.asarray(spacing, np.float64))
     found |= judge_arrays(mesh)
     boundaries = topology.Boundaries(mesh)
-    found |= judge_boundaries(mesh, boundaries)
+    found |= judge_boundaries(boundaries)
     welded = topology.weld(mesh)
     count, shared, matching = topology.walls(welded)
     found |= {"welded_vertices": len(welded.vertices), "wall_faces": count,

@@ -9,6 +9,7 @@ from conftest import SOURCE
 pytest.importorskip("scipy")
 sys.path.append(str(SOURCE / "bench"))
 
+from compare_regions import from_labels  # noqa: E402
 from region_geometry import crossing  # noqa: E402
 from region_judge import RegionMesh, heads, judge, line  # noqa: E402
 from region_volumes import KINDS, grains, random_labels, sheets_in_t, touching_cubes  # noqa: E402
@@ -71,7 +72,13 @@ def test_a_missing_outer_face_opens_one_region_and_a_missing_wall_face_both():
 def test_a_face_that_is_turned_over_is_out_of_balance():
     mesh = two_cubes()
     mesh.triangles[0] = mesh.triangles[0, ::-1]
-    assert judged(mesh)["not_closed"] == [1] and judged(mesh)["edges_out_of_balance"] == 3
+    assert judged(mesh)["inside_out"] == [] and judged(mesh)["not_closed"] == [1] and judged(mesh)["edges_out_of_balance"] == 3
+
+
+def test_a_region_that_is_turned_over_is_closed_but_inside_out():
+    mesh = two_cubes()
+    mesh.triangles = mesh.triangles[:, ::-1]
+    assert judged(mesh)["inside_out"] == [1, 2] and judged(mesh)["torn_centres"] == 2
 
 
 def test_a_wall_that_is_there_twice_is_not_shared():
@@ -171,3 +178,19 @@ def test_triangles_that_share_a_corner_or_an_edge_cross_or_overlap_only_if_they_
     found, overlaps = crossing(np.repeat(flat[None], len(pairs), axis=0), pairs, 1e-6)
     assert [list(others)[i] for i in found] == ["through"]
     assert [list(others)[i] for i in overlaps] == ["folded", "corner, folded"]
+
+
+def test_meshes_by_label_find_the_labels_in_front_of_their_faces():
+    labels = np.pad(VOXELS, 1)
+    mesh = voxel_faces(labels)
+    by_label = {}
+    for label in (1, 2):
+        bounds = (mesh.regions == label).any(axis=1)
+        turned = mesh.regions[bounds, 1] == label
+        by_label[label] = mesh.vertices, np.where(turned[:, None], mesh.triangles[bounds][:, ::-1], mesh.triangles[bounds])
+    found = judge(from_labels(by_label, labels), labels)
+    assert found["closed_regions"] == "2 of 2" and found["lost_added_pairs"] == "0, 0" and found["wall_faces"] == 4
+    assert found["shared_wall_pct"] == 0 and found["matching_wall_pct"] == 100 and found["crossings"] == 0
+    by_label[2] = by_label[2][0] + [0.01, 0, 0], by_label[2][1]
+    found = judge(from_labels(by_label, labels), labels)
+    assert found["matching_wall_pct"] == 0 and found["lost_added_pairs"] == "0, 0" and found["wall_faces"] == 4
