@@ -148,8 +148,7 @@ def self_intersections(mesh, tolerance=1e-6):
 
 
 def labels_of_vertices(mesh):
-    """A table of vertices and labels, how many faces with the label each vertex has; the labels; and which vertices touch
-    background."""
+    """A table of vertices and labels: how many faces with the label each vertex has; and the labels of its columns."""
     names, of = np.unique(mesh.regions, return_inverse=True)
     of = of.reshape(mesh.regions.shape)
     rows, columns = np.repeat(mesh.triangles.ravel(), 2), np.repeat(of, 3, axis=0).ravel()

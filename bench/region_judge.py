@@ -13,6 +13,7 @@ import argparse
 import json
 
 import numpy as np
+from scipy import ndimage
 
 import region_geometry as geometry
 import region_topology as topology
@@ -90,7 +91,7 @@ def judge_against_voxels(mesh, boundaries, found, volume):
 def kept_voxels(mesh, volume, most=MOST_CENTRES):
     """Of the centres of voxels that are not background or beside such, up to so many by chance: the share whose label is
     that of the region around them."""
-    beside = topology.ndimage.binary_dilation(np.pad(volume != mesh.background, 1), np.ones((3, 3, 3)))
+    beside = ndimage.binary_dilation(np.pad(volume != mesh.background, 1), np.ones((3, 3, 3)))
     centres = np.argwhere(beside) - 1
     if len(centres) > most:
         centres = centres[np.random.default_rng(1).choice(len(centres), most, replace=False)]
