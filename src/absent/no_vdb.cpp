@@ -1,4 +1,5 @@
 // Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
+#include "io/vdb/grid_kinds.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/sizing_vdb.h"
@@ -29,6 +30,15 @@ void save_preview(const std::string& path, const LatticeFrame&, const Shell&, co
 }
 std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions&) {
   throw_without_openvdb(ErrorCode::unreadable_input, source.name());
+}
+LabelVolume read_labels(const std::string& path, const LabelReadOptions&) {
+  throw_without_openvdb(ErrorCode::unreadable_input, path);
+}
+LabelGrid read_label_grid(const MeshSource& source, const LabelReadOptions&) {
+  throw_without_openvdb(ErrorCode::unreadable_input, source.name());
+}
+void write_labels(const std::string& path, const LabelVolume&, const LabelWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
 }
 bool unpack_stream(View<const char>, bool, View<char>) {
   throw_without_openvdb(ErrorCode::unreadable_input, "a packed .nvdb file");

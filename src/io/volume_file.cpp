@@ -90,14 +90,7 @@ TriangleSoup described_surface_of(const ScalarField& field, const VolumeReadOpti
 }
 
 void check_map(const ScalarField& field) {
-  const auto& m = field.to_world.at;
-  const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  bool finite = std::isfinite(det) && det != 0;
-  for (const auto& row : m)
-    for (const double value : row) finite = finite && std::isfinite(value);
-  if (!finite)
+  if (!is_invertible(field.to_world))
     throw Error(ErrorCode::unreadable_input, "read",
                 field.title() + " has a transform that is not finite or has no inverse");
 }

@@ -30,6 +30,18 @@ inline AffineMap lattice_map(const WorldPoint& spacing, const WorldPoint& origin
   return {{{spacing.x, 0, 0, origin.x}, {0, spacing.y, 0, origin.y}, {0, 0, spacing.z, origin.z}}};
 }
 
+/// Whether all of it is finite and it has an inverse.
+inline bool is_invertible(const AffineMap& map) {
+  const auto& m = map.at;
+  const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  bool finite = std::isfinite(det) && det != 0;
+  for (const auto& row : m)
+    for (const double value : row) finite = finite && std::isfinite(value);
+  return finite;
+}
+
 /// Length of a voxel's edges, 0 where they differ or are not square to each other.
 inline double cube_edge(const AffineMap& map) {
   constexpr double kSlack = 0.01;

@@ -7,7 +7,9 @@
 #include <istream>
 
 #include "io/bytes/memory_stream.h"
+#include "io/openvdb/grid_map.h"
 #include "io/openvdb/vdb_stream.h"
+#include "io/vdb/grid_kinds.h"
 #include "io/vdb/volume_readers.h"
 
 namespace isoshell {
@@ -23,14 +25,7 @@ class VdbField : public ScalarField {
 
   explicit VdbField(typename GridT::ConstPtr grid) : grid_(std::move(grid)) {
     background = double(grid_->background());
-    // Not by getAffineMap(), which throws where the determinant is almost 0.
-    const auto map = grid_->transform().baseMap();
-    for (int j = 0; j < 4; ++j) {
-      openvdb::Vec3d axis(0.0);
-      if (j < 3) axis[j] = 1;
-      const openvdb::Vec3d column = j < 3 ? map->applyJacobian(axis) : map->applyMap(axis);
-      for (int i = 0; i < 3; ++i) to_world.at[i][j] = column[i];
-    }
+    to_world = affine_map_of(*grid_);
   }
 
   std::vector<Voxel> blocks() const override {
@@ -65,31 +60,6 @@ class VdbField : public ScalarField {
  private:
   const typename GridT::ConstPtr grid_;
 };
-
-/// "Tree_float_5_4_3_HalfFloat" as users know it.
-std::string short_type(const std::string& type) {
-  const size_t begin = type.find('_') + 1, end = type.find("_5_4_3");
-  return end == std::string::npos || begin > end ? type : type.substr(begin, end - begin);
-}
-
-VolumeGrid describe(const VdbGridSpan& span) {
-  VolumeGrid grid;
-  grid.name = span.name.substr(0, span.name.find('\x1e'));  // behind it OpenVDB numbers grids of the same name
-  grid.type = short_type(span.type);
-  const auto found = span.texts.find(openvdb::GridBase::META_GRID_CLASS);
-  grid.grid_class = found == span.texts.end() ? "unknown" : found->second;
-  if (span.instance)
-    grid.flaw = "shares the values of another grid; name that one";
-  else if (grid.type == "bool" || grid.type == "mask")
-    grid.flaw = "holds no distances or densities, only which voxels are set";
-  else if (grid.type.compare(0, 3, "vec") == 0)
-    grid.flaw = "holds vectors, which have no surface";
-  else if (grid.type.compare(0, 6, "ptdata") == 0)
-    grid.flaw = "holds points; export them as .ply, .xyz or .pcd";
-  else if (grid.type != "float" && grid.type != "double")
-    grid.flaw = "holds values of a type that is not meshed; save it as float";
-  return grid;
-}
 
 }  // namespace
 
@@ -128,7 +98,7 @@ std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const Vol
   const View<const char> bytes{source.begin(), source.size()};
   const VdbLayout layout = read_vdb_layout(source.name(), bytes);
   std::vector<VolumeGrid> grids;
-  for (const VdbGridSpan& span : layout.grids) grids.push_back(describe(span));
+  for (const VdbGridSpan& span : layout.grids) grids.push_back(as_volume(span));
   const size_t chosen = choose_grid(source.name(), grids, options);
   const VdbGridSpan& span = layout.grids[chosen];
   check_volume_memory(source.name(), grids[chosen], check_vdb_tree(source.name(), bytes, span), options);

@@ -18,7 +18,8 @@ std::string list_of(const std::vector<VolumeGrid>& grids) {
 
 std::string VolumeGrid::text() const { return "\"" + name + "\" (" + type + ", " + grid_class + ")"; }
 
-size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named, const VolumeReadOptions& options) {
+size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named, const VolumeReadOptions& options,
+                   const char* wanted) {
   const std::vector<VolumeGrid> grids = with_names_apart(named);
   std::vector<size_t> fit, level_sets;
   for (size_t i = 0; i < grids.size(); ++i) {
@@ -39,7 +40,7 @@ size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named
                     list_of(grids));
   std::string why;
   for (const VolumeGrid& grid : grids) why += (why.empty() ? "; " : ", ") + grid.text() + " " + grid.flaw;
-  throw Error(ErrorCode::nothing_to_mesh, "read", path + ": holds no grid that has a surface" + why);
+  throw Error(ErrorCode::nothing_to_mesh, "read", path + ": holds no grid " + wanted + why);
 }
 
 void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_t bytes,

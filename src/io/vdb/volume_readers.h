@@ -18,8 +18,9 @@ struct VolumeGrid {
 };
 
 /// Which of the grids to read. Throws: usage when several would do or the name is not there, nothing_to_mesh when none
-/// would.
-size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& grids, const VolumeReadOptions& options);
+/// would; `wanted` is what messages say that none is.
+size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& grids, const VolumeReadOptions& options,
+                   const char* wanted = "that has a surface");
 
 /// Throws: out_of_memory when reading would take more than the limit.
 void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_t bytes,
