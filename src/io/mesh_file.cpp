@@ -41,6 +41,8 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWri
   const FormatRow& row = row_of(path, options.format, writes_mesh, "write_mesh");
   if (!mesh.gap.empty() && mesh.gap.size() != mesh.vertices.size())
     throw Error(ErrorCode::usage, "write_mesh", "the mesh has another number of gap flags than of vertices");
+  if (!mesh.regions.empty() && mesh.regions.labels.size() != mesh.triangles.size())
+    throw Error(ErrorCode::usage, "write_mesh", "the mesh has regions of another number of faces than it has");
   for (const Attribute& a : mesh.attributes)
     if (const std::string misfit = misfit_of(a, mesh.vertices.size(), mesh.triangles.size()); !misfit.empty())
       throw Error(ErrorCode::usage, "write_mesh", misfit);

@@ -1,7 +1,8 @@
-// glTF out: one mesh with a primitive for each material, in one file.
+// glTF out: one mesh with a primitive for each material and pair of regions, in one file.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/attribute_values.h"
@@ -13,6 +14,7 @@
 #include "io/gltf/gltf_uri.h"
 #include "io/gltf/gltf_vertices.h"
 #include "io/mesh/precision.h"
+#include "io/mesh/region_pairs.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 
@@ -178,22 +180,36 @@ class GltfWriter {
         {{"componentType", type}, {"normalized", type != kF32}, {"count", split_.vertex.size()}, {"type", "VEC4"}});
   }
 
-  /// A primitive for each material that has faces, those without one first; faces keep their order.
+  /// A primitive for each material and pair of regions that has faces, those without a material first; faces keep their
+  /// order.
   void put_triangles() {
-    std::vector<std::vector<uint32_t>> faces(material_ ? material_->labels.size() + 1 : 1);
+    const RegionPairs regions = pairs_of(mesh_.regions);
+    std::map<std::pair<size_t, size_t>, std::vector<uint32_t>> faces;  // of a material, 0 being none, and a pair
     for (size_t t = 0; t < split_.triangles.size(); ++t)
-      faces[material_ ? size_t(material_->values[t] + 1) : 0].push_back(uint32_t(t));
-    for (size_t m = 0; m < faces.size(); ++m) {
-      if (faces[m].empty()) continue;
+      faces[{material_ ? size_t(material_->values[t] + 1) : 0, regions.of_face.empty() ? 0 : regions.of_face[t]}]
+          .push_back(uint32_t(t));
+    for (const auto& [part, of_part] : faces) {
       const size_t start = bytes_.size();
-      for (const uint32_t t : faces[m])
+      for (const uint32_t t : of_part)
         for (const uint32_t v : split_.triangles[t]) put(bytes_, v);
       Json primitive = {{"attributes", attributes_}};
       primitive["indices"] =
-          close(start, kIndexData, 0, {{"componentType", kU32}, {"count", 3 * faces[m].size()}, {"type", "SCALAR"}});
-      if (m > 0) primitive["material"] = m - 1;
+          close(start, kIndexData, 0, {{"componentType", kU32}, {"count", 3 * of_part.size()}, {"type", "SCALAR"}});
+      if (part.first > 0) primitive["material"] = part.first - 1;
+      if (!regions.labels.empty()) primitive["extras"] = {{"regions", regions.labels[part.second]}};
       primitives_.push_back(primitive);
     }
+  }
+
+  /// The mesh, which says what its primitives' regions are called.
+  Json mesh_of_primitives() const {
+    Json mesh = {{"primitives", primitives_}};
+    const FaceRegions& regions = mesh_.regions;
+    if (regions.empty()) return mesh;
+    Json names = Json::object();
+    for (const RegionName& region : regions.names) names[std::to_string(region.label)] = region.name;
+    mesh["extras"] = {{"region_background", regions.background}, {"region_names", names}};
+    return mesh;
   }
 
   void put_document() {
@@ -203,7 +219,7 @@ class GltfWriter {
                  {"scene", 0},
                  {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
                  {"nodes", Json::array({node})},
-                 {"meshes", Json::array({{{"primitives", primitives_}}})},
+                 {"meshes", Json::array({mesh_of_primitives()})},
                  {"accessors", accessors_},
                  {"bufferViews", views_}};
     if (material_) put_gltf_materials(mesh_.files.gltf_materials, material_->labels, document_, bytes_);

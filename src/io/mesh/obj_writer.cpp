@@ -1,4 +1,5 @@
-// OBJ out: positions with colours, texture coordinates and normals of corners, objects, groups and materials of faces.
+// OBJ out: positions with colours, texture coordinates and normals of corners, objects, groups and materials of faces,
+// and regions as groups.
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -7,6 +8,7 @@
 #include "core/number_type.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/row_buffer.h"
+#include "io/mesh/region_pairs.h"
 #include "isoshell/io/mesh_file.h"
 
 namespace isoshell {
@@ -30,6 +32,10 @@ class ObjWriter {
       for (Names& names : names_)
         if (a.domain == AttributeDomain::face && a.name == names.attribute && !a.labels.empty()) names.of = &a;
     }
+    if (mesh.regions.empty()) return;
+    Names& groups = names_[2];
+    groups_ = groups_of_regions(mesh.regions, groups.of);
+    groups.of = &groups_;
   }
 
   void write() {
@@ -147,6 +153,7 @@ class ObjWriter {
   OutputFile& file_;
   const TriangleMesh& mesh_;
   const Attribute *color_ = nullptr, *uv_ = nullptr, *normal_ = nullptr;
+  Attribute groups_;  ///< of regions
   Names names_[3] = {{kMaterialName, "usemtl"}, {kObjectName, "o"}, {kGroupName, "g"}};
 };
 

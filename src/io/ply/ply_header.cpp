@@ -19,6 +19,13 @@ constexpr TypeName kTypes[] = {
     {"float", "float32", PlyType::f32, 4}, {"double", "float64", PlyType::f64, 8},
 };
 
+struct NoteKind {
+  const char* name;
+  size_t words_before_name;
+};
+constexpr NoteKind kNotes[] = {
+    {kTextureNote, 2}, {kLibraryNote, 2}, {kLabelNote, 4}, {kRegionNote, 3}, {kBackgroundNote, 2}};
+
 // Reads the header line by line; lines end in \n, \r\n or \r.
 class HeaderReader {
  public:
@@ -72,8 +79,10 @@ class HeaderReader {
 
   /// A name may hold blanks: it goes to the end of the line.
   void read_comment() {
-    const size_t words_before_name = words_[1] == kLabelNote ? 4 : 2;
-    if (words_[1] != kTextureNote && words_[1] != kLibraryNote && words_[1] != kLabelNote) return;
+    const auto kind = std::find_if(std::begin(kNotes), std::end(kNotes),
+                                   [&](const NoteKind& note) { return words_[1] == note.name; });
+    if (kind == std::end(kNotes)) return;
+    const size_t words_before_name = kind->words_before_name;
     if (words_.size() <= words_before_name) return;
     const char* p = source_.begin() + line_;
     for (size_t i = 0; i < words_before_name; ++i) p = skip_token(skip_blanks(p, p_), p_);

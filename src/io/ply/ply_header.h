@@ -36,16 +36,19 @@ struct PlyElement {
   bool has_list() const;
 };
 
-/// Comments that hold more than words: names of images, as MeshLab writes them, of libraries of materials, and labels.
+/// Comments that hold more than words: names of images, as MeshLab writes them, of libraries of materials, labels
+/// and regions.
 constexpr const char* kTextureNote = "TextureFile";
 constexpr const char* kLibraryNote = "mtllib";
-constexpr const char* kLabelNote = "label";  ///< followed by the attribute's name, the number and the label
+constexpr const char* kLabelNote = "label";    ///< followed by the attribute's name, the number and the label
+constexpr const char* kRegionNote = "region";  ///< followed by the region's label and its name
+constexpr const char* kBackgroundNote = "region_background";  ///< followed by the label of what is no region
 
 struct PlyHeader {
   PlyEncoding encoding{};
   std::vector<PlyElement> elements;
   int64_t body = 0;                             ///< offset of the first byte behind the header
-  std::vector<std::vector<std::string>> notes;  ///< words of the comments that name files or labels
+  std::vector<std::vector<std::string>> notes;  ///< words of the comments that name files, labels or regions
 
   const PlyElement* find(const std::string& element) const;
 };

@@ -8,6 +8,7 @@
 #include "core/attribute_values.h"
 #include "io/bytes/text_scan.h"
 #include "io/ply/ply_body.h"
+#include "io/ply/ply_regions.h"
 
 namespace isoshell {
 namespace {
@@ -151,6 +152,7 @@ TriangleSoup read_ply_faces(const MeshSource& source) {
   add_vertex_attributes(std::move(body.attributes), of_faces.attributes, soup);
   add_face_attributes(layout, body, std::move(of_faces.attributes), soup);
   drop_wrong_labels(soup.attributes);
+  take_regions(header, soup);
   soup.files = find_files(header);
   soup.dirt.long_rows = body.dirt.long_rows;
   soup.dirt.surplus_rows = body.dirt.surplus_rows;

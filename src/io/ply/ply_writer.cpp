@@ -1,4 +1,4 @@
-// PLY out: binary, with attributes of vertices, corners and faces.
+// PLY out: binary, with attributes of vertices, corners and faces, and regions.
 #include <set>
 
 #include "core/attribute_values.h"
@@ -7,6 +7,7 @@
 #include "io/bytes/row_buffer.h"
 #include "io/mesh/precision.h"
 #include "io/ply/ply_attributes.h"
+#include "io/ply/ply_regions.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 
@@ -65,6 +66,7 @@ class PlyWriter {
     for (const Attribute* a : of_faces_)
       for (size_t i = 0; i < a->labels.size(); ++i)
         text += comment(std::string(kLabelNote) + " " + a->name + " " + std::to_string(i) + " " + a->labels[i]);
+    text += region_notes();
     text += "element vertex " + std::to_string(mesh_.vertices.size()) + "\n";
     std::set<std::string> names;
     for (const char* axis : {"x", "y", "z"}) text += property(type, axis, names);
@@ -77,12 +79,26 @@ class PlyWriter {
     text += property("list uchar uint", "vertex_indices", names);
     for (const Attribute* a : of_corners_)
       text += property(std::string("list uchar ") + name_of(a->type), ply_list_name(*a), names);
+    for (const char* name : {kRegionInside, kRegionOutside})
+      if (!mesh_.regions.empty()) text += property("int", name, names);
     for (const Attribute* a : of_faces_)
       for (const std::string& name : ply_names(*a)) text += property(name_of(a->type), name, names);
     if (edges_)
       text += "element edge " + std::to_string(edges_->size()) +
               "\nproperty uint vertex1\nproperty uint vertex2\nproperty uint curve\n";
     file_.write(text + "end_header\n");
+  }
+
+  /// What of the regions is not of faces. A background of 0 goes without saying.
+  std::string region_notes() const {
+    const FaceRegions& regions = mesh_.regions;
+    if (regions.empty()) return "";
+    std::string text;
+    if (regions.background != 0)
+      text += comment(std::string(kBackgroundNote) + " " + std::to_string(regions.background));
+    for (const RegionName& region : regions.names)
+      text += comment(std::string(kRegionNote) + " " + std::to_string(region.label) + " " + region.name);
+    return text;
   }
 
   /// Throws: usage for a name that a property before has.
@@ -124,7 +140,7 @@ class PlyWriter {
   }
 
   void write_faces() {
-    const int64_t row_bytes = 13 + int64_t(of_corners_.size()) + 3 * bytes_of(of_corners_) + bytes_of(of_faces_);
+    const int64_t row_bytes = 21 + int64_t(of_corners_.size()) + 3 * bytes_of(of_corners_) + bytes_of(of_faces_);
     write_rows(file_, int64_t(mesh_.triangles.size()), row_bytes, [&](int64_t i, RowBuffer& out) {
       out.put(char(3));
       for (const uint32_t corner : mesh_.triangles[size_t(i)]) out.put_binary(corner);
@@ -132,6 +148,8 @@ class PlyWriter {
         out.put(char(3 * a->components));
         for (size_t c = 0; c < 3; ++c) put(out, *a, 3 * size_t(i) + c);
       }
+      if (!mesh_.regions.empty())
+        for (const int32_t label : mesh_.regions.labels[size_t(i)]) out.put_binary(label);
       for (const Attribute* a : of_faces_) put(out, *a, size_t(i));
     });
   }
