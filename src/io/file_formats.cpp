@@ -36,13 +36,19 @@ FormatRow of_meshes(const char* name, TriangleSoup (*read)(const MeshSource&),
 FormatRow of_ply() {
   FormatRow row = of_meshes("ply", read_ply, write_ply, what_ply_lacks);
   row.read_points = read_ply_points;
-  row.format.reads_points = row.format.holds_edges = row.format.holds_textures = true;
+  row.format.reads_points = row.format.holds_edges = row.format.holds_textures = row.format.holds_regions = true;
+  return row;
+}
+
+FormatRow of_obj() {
+  FormatRow row = of_meshes("obj", read_obj, write_obj, what_obj_lacks);
+  row.format.holds_regions = true;
   return row;
 }
 
 FormatRow of_gltf(const char* name, void (*write)(OutputFile&, const TriangleMesh&, const MeshWriteOptions&)) {
   FormatRow row = of_meshes(name, read_gltf, write, what_gltf_lacks);
-  row.format.holds_gltf_materials = true;
+  row.format.holds_gltf_materials = row.format.holds_regions = true;
   return row;
 }
 
@@ -62,7 +68,7 @@ FormatRow of_volumes(const char* name) {
 const std::vector<FormatRow>& rows() {
   static const std::vector<FormatRow> all = {
       of_ply(),
-      of_meshes("obj", read_obj, write_obj, what_obj_lacks),
+      of_obj(),
       of_meshes("stl", read_stl, write_stl,
                 [](const Attribute&) -> std::string { return "STL files are written without attributes"; }),
       of_meshes("off", read_off, write_off,

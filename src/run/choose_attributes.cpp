@@ -48,6 +48,15 @@ void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names&
   }
 }
 
+/// Regions are no attribute: walls between them stay, but which of them a face parts is lost.
+void warn_of_lost_regions(const Input& input, const std::string& format, const Tell& tell) {
+  const FileFormat* const file = find_format(format);
+  if (!tell || input.soup.regions.empty() || !file || !file->writes_mesh || file->holds_regions) return;
+  tell(MessageKind::warning, input.facts.name() + ": " + format +
+                                 " files do not say which regions a face parts; those of " +
+                                 listed_formats([](const FileFormat& f) { return f.holds_regions; }) + " do");
+}
+
 }  // namespace
 
 void choose_attributes(Input& input, const std::optional<Names>& names, const std::string& format,
@@ -76,6 +85,7 @@ void choose_attributes(Input& input, const std::optional<Names>& names, const st
     if (tell)
       tell(names && has(*names, d.name) ? MessageKind::warning : MessageKind::note,
            input.facts.name() + ": " + d.name + " dropped: " + d.reason);
+  warn_of_lost_regions(input, format, tell);
 }
 
 }  // namespace isoshell

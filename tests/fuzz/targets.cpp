@@ -11,6 +11,7 @@
 #include "io/file_formats.h"
 #include "io/points/point_readers.h"
 #include "io/polyline_readers.h"
+#include "io/vdb/grid_kinds.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
@@ -31,6 +32,13 @@ void check(const Attribute& a, const TriangleSoup& soup) {
     if (i >= values) std::abort();
 }
 
+/// Every face parts two regions, or none does.
+void check(const FaceRegions& regions, const TriangleSoup& soup) {
+  if (!regions.empty() && regions.labels.size() != soup.triangles.size()) std::abort();
+  for (const auto& [behind, front] : regions.labels)
+    if (behind == regions.background || (front != regions.background && behind >= front)) std::abort();
+}
+
 void run_mesh(const char* format, View<const char> bytes) {
   const auto read = find_row(format)->read;
   const TriangleSoup soup = read(MeshSource("fuzz", bytes));
@@ -38,6 +46,7 @@ void run_mesh(const char* format, View<const char> bytes) {
     for (const uint32_t corner : t)
       if (corner >= soup.vertices.size()) std::abort();
   for (const Attribute& a : soup.attributes) check(a, soup);
+  check(soup.regions, soup);
 }
 
 template <Polylines (*read)(const MeshSource&)>
@@ -61,6 +70,13 @@ void run_volume(View<const char> bytes) {
   for (const auto& t : soup.triangles)
     for (const uint32_t corner : t)
       if (corner >= soup.vertices.size()) std::abort();
+}
+
+void run_labels(View<const char> bytes) {
+  const LabelVolume volume = read_label_grid(MeshSource("fuzz", bytes), {"", kVolumeMemory}).volume;
+  int64_t voxels = 1;
+  for (const int32_t size : volume.size_vox) voxels *= size;
+  if (voxels < 1 || int64_t(volume.labels.size()) != voxels) std::abort();
 }
 
 /// Stage files are read by name: the bytes get one in memory.
@@ -88,6 +104,7 @@ const std::vector<Target>& targets() {
                                           {"xyz", run_points<read_xyz>},
                                           {"pcd", run_points<read_pcd>},
                                           {"volume", run_volume},
+                                          {"labels", run_labels},
                                           {"stage", run_stage}};
   return all;
 }

@@ -2,6 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
+#include "run/choose_attributes.h"
 #include "support/mesh_files.h"
 #include "support/refusals.h"
 
@@ -130,4 +132,19 @@ TEST_CASE("regions: labels of another number of faces are refused", "[mesh_file]
   TriangleMesh mesh = two_tetrahedra();
   mesh.regions.labels.pop_back();
   CHECK(says(error_of([&] { written(mesh, "ply"); }), "another number of faces"));
+}
+
+TEST_CASE("regions: a run whose format does not hold them warns", "[mesh_file][unit]") {
+  for (const FileFormat& format : file_formats()) {
+    Input input;
+    input.facts.path = "bones.ply";
+    input.soup.regions = two_tetrahedra().regions;
+    AttributeReport report;
+    std::string warnings;
+    choose_attributes(input, {}, format.name, report, [&](MessageKind kind, const std::string& text) {
+      if (kind == MessageKind::warning) warnings += text;
+    });
+    INFO(format.name);
+    CHECK(contains(warnings, "which regions a face parts") == (format.name == "stl" || format.name == "off"));
+  }
 }

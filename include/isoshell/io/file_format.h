@@ -14,6 +14,7 @@ struct FileFormat {
   bool holds_edges = false;           ///< of curves, beside triangles
   bool holds_textures = false;        ///< names of images, AttributeFiles::textures
   bool holds_gltf_materials = false;  ///< AttributeFiles::gltf_materials
+  bool holds_regions = false;         ///< TriangleMesh::regions
 };
 
 /// All of them. Meshes come first, and the default for meshes first of these.
