@@ -17,7 +17,8 @@ using Labels = std::vector<std::array<int32_t, 2>>;
 TriangleMesh two_tetrahedra() {
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}},
                     {{0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 1, 2}, {0, 4, 1}, {0, 2, 4}, {1, 4, 2}}};
-  mesh.regions = {{{3, 0}, {3, 0}, {3, 0}, {3, 7}, {7, 0}, {7, 0}, {7, 0}}, 0, {{3, "femur"}, {7, "left tibia"}}};
+  mesh.regions.labels = {{3, 0}, {3, 0}, {3, 0}, {3, 7}, {7, 0}, {7, 0}, {7, 0}};
+  mesh.regions.names = {{3, "femur"}, {7, "left tibia"}};
   return mesh;
 }
 
