@@ -87,6 +87,15 @@ class Result:
         return self._made.features
 
     @property
+    def regions(self) -> dict[str, Any]:
+        """The regions of the source that faces part, where it has any.
+
+        labels (M, 2), int32: of each face the region behind it and the one that its normal points into; (0, 2) where
+        there are no regions. background: the label of what is no region. names: a dict from labels to names.
+        """
+        return self._made.regions
+
+    @property
     def report(self) -> dict[str, Any]:
         """What the command's --stats writes: topology, quality, features, times, warnings and more.
 

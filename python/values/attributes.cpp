@@ -152,4 +152,17 @@ nb::dict features_of(const TriangleMesh& mesh) {
   return dict;
 }
 
+nb::dict regions_of(const TriangleMesh& mesh) {
+  const FaceRegions& r = mesh.regions;
+  std::vector<int32_t> labels;
+  for (const auto& [behind, front] : r.labels) labels.insert(labels.end(), {behind, front});
+  nb::dict names;
+  for (const RegionName& region : r.names) names[nb::int_(region.label)] = region.name;
+  nb::dict dict;
+  dict["labels"] = array_of(std::move(labels), {r.labels.size(), 2});
+  dict["background"] = r.background;
+  dict["names"] = names;
+  return dict;
+}
+
 }  // namespace isoshell::python

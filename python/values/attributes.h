@@ -1,4 +1,4 @@
-// Attributes and features of a mesh as arrays.
+// Attributes, features and regions of a mesh as arrays.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -23,5 +23,8 @@ Attribute attribute_of(const std::string& name, const std::string& domain, const
 
 /// patch, curve_edges, curve, corners: arrays of int32.
 nanobind::dict features_of(const TriangleMesh& mesh);
+
+/// labels, an array of two int32 a face or of none; background; names by label.
+nanobind::dict regions_of(const TriangleMesh& mesh);
 
 }  // namespace isoshell::python

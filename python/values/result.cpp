@@ -34,6 +34,9 @@ void bind_result(nb::module_& m) {
       .def_prop_ro(
           "features", [](const RunResult& r) { return features_of(r.mesh); },
           nb::for_getter(nb::sig("def features(self, /) -> dict[str, typing.Any]")))
+      .def_prop_ro(
+          "regions", [](const RunResult& r) { return regions_of(r.mesh); },
+          nb::for_getter(nb::sig("def regions(self, /) -> dict[str, typing.Any]")))
       .def_prop_ro("statistics", [](const RunResult& r) { return statistics_json(r.record); })
       .def_prop_ro("digest", [](const RunResult& r) { return digest_text(digest(r.mesh)); })
       .def_ro("gates", &RunResult::gates)

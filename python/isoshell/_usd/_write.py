@@ -13,6 +13,7 @@ from .._result import Result
 from . import Origin, library, reason_of, split_name
 from ._attributes import PrimvarWriter
 from ._materials import relative_asset, write_materials
+from ._regions import write_regions
 from ._vdb_header import Box, Grid, grids_of
 
 if TYPE_CHECKING:
@@ -86,6 +87,7 @@ def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str
     write_shape(pxr, mesh, result, offset_of(result.vertices), pxr.Usd.TimeCode.Default())
     PrimvarWriter(pxr, mesh, origin).write(result)
     _write_materials(pxr, stage, root.GetPath().AppendChild(MATERIALS), mesh, result, origin, folder)
+    write_regions(pxr, mesh, result)
     for file, of_file in zip(files, grids):
         name = os.path.basename(file).removesuffix(".vdb").split(".")[-1]
         _write_volume(pxr, stage, _free(pxr, root, name, names), file, of_file, folder)
