@@ -14,6 +14,7 @@
 #include "core/attribute_values.h"
 #include "core/file_format.h"
 #include "io/faces/face_collector.h"
+#include "io/vdb/grid_kinds.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
@@ -81,6 +82,8 @@ void check_points(const PointCloud& cloud, const std::string& name) {
                counted(int64_t(cloud.position.size()), "point") + "; give one normal a point");
 }
 
+[[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
+
 class Reader {
  public:
   Reader(const std::string& path, int64_t memory_limit_bytes, const Tell& tell)
@@ -106,7 +109,7 @@ class Reader {
       read_stage_file();
     else
       read_volume_file(request);
-    if (request.iso && input_.facts.kind != InputKind::volume) refuse_use("--iso is for volumes; leave it out");
+    if (request.iso && input_.facts.kind != InputKind::volume) refuse_iso();
   }
 
   void hold(TriangleSoup soup) {
@@ -154,13 +157,13 @@ class Reader {
           "from it");
   }
 
-  void hold(const LabelVolume& labels) {
+  void hold(const LabelVolume& labels, const std::string& origin = "") {
     input_.facts.kind = InputKind::labels;
     hold(surface_of_labels(labels, input_.facts.name(), memory_limit_bytes_));
     std::unordered_set<int32_t> regions;
     for (const auto& pair : input_.soup.regions.labels) regions.insert(pair.begin(), pair.end());
     regions.erase(labels.background);
-    note(counted(int64_t(regions.size()), "region") + ", " + std::to_string(labels.size_vox[0]) + " x " +
+    note(origin + counted(int64_t(regions.size()), "region") + ", " + std::to_string(labels.size_vox[0]) + " x " +
          std::to_string(labels.size_vox[1]) + " x " + std::to_string(labels.size_vox[2]) + " voxels");
   }
 
@@ -176,9 +179,17 @@ class Reader {
   }
 
   void read_volume_file(const InputRequest& request) {
+    const MeshSource source(request.path);
+    if (holds_labels(source, request.grid)) return read_label_file(source, request);
     hold_volume([&](VolumeInfo& volume) {
-      return read_volume(request.path, {request.grid, request.iso, memory_limit_bytes_, request.creases}, volume);
+      return read_volume(source, {request.grid, request.iso, memory_limit_bytes_, request.creases}, volume);
     });
+  }
+
+  void read_label_file(const MeshSource& source, const InputRequest& request) {
+    if (request.iso) refuse_iso();  // before the labels are read
+    const LabelGrid grid = read_label_grid(source, {request.grid, memory_limit_bytes_});
+    hold(grid.volume, "grid " + grid.name + ", ");
   }
 
   void read_stage_file() {

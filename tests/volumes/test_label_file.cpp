@@ -176,6 +176,36 @@ TEST_CASE("labels: a grid over the memory limit is refused before its array is m
   CHECK(says(refusal(file.path, {"", 1 << 30}), "more than the limit of 1024 MiB"));
 }
 
+TEST_CASE("labels: a grid of labels is an input, where it is named or the file holds no volume", "[labels][unit]") {
+  const TemporaryFile file("input.vdb");
+  const auto seg = new_grid<openvdb::Int32Grid>("seg", 0);
+  seg->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(4)), 3);
+  seg->fill(openvdb::CoordBBox(openvdb::Coord(5, 0, 0), openvdb::Coord(9, 4, 4)), 7);
+  seg->setTransform(openvdb::math::Transform::createLinearTransform(.5));
+  seg->insertMeta("label:7", openvdb::StringMetadata("femur"));
+  const auto fog = new_grid<openvdb::FloatGrid>("fog", 0);
+  fog->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(4)), 1);
+  const auto flags = new_grid<openvdb::BoolGrid>("flags", false);
+  std::string said;
+  const Tell tell = [&](MessageKind, const std::string& text) { said += text + "\n"; };
+  write(file.path, {flags, seg});
+  const Input input = read_input(named_input(file.path), 0, tell);
+  CHECK(input.facts.kind == InputKind::labels);
+  CHECK(contains(said, file.path + ": grid seg, 2 regions, 10 x 5 x 5 voxels"));
+  CHECK(input.soup.regions.labels.size() == input.soup.triangles.size());
+  REQUIRE(input.soup.regions.names.size() == 1);
+  CHECK(input.soup.regions.names[0].name == "femur");
+  CHECK((input.facts.box_max && std::abs(input.facts.box_max->x - 4.75) < .3));
+  InputRequest request = named_input(file.path);
+  request.iso = .5;
+  CHECK(says(error_of([&] { read_input(request, 0); }), "--iso is for volumes"));
+  CHECK(error_of([&] { read_input(named_input(file.path + ":flags"), 0); }).code() == ErrorCode::nothing_to_mesh);
+  CHECK(error_of([&] { read_input(named_input(file.path), 1 << 16); }).code() == ErrorCode::out_of_memory);
+  write(file.path, {fog, seg});
+  CHECK(read_input(request, 0).facts.kind == InputKind::volume);
+  CHECK(read_input(named_input(file.path + ":seg"), 0).facts.kind == InputKind::labels);
+}
+
 TEST_CASE("labels: transforms that are frustums are refused", "[labels][unit]") {
   const TemporaryFile file("frustum.vdb");
   const auto grid = new_grid<openvdb::Int32Grid>("seg", 0);
