@@ -3,6 +3,8 @@
 
 #include "cli/command.h"
 #include "support/catch.h"
+#include "support/refusals.h"
+#include "unit/region_cubes.h"
 
 using namespace isoshell;
 
@@ -130,4 +132,26 @@ TEST_CASE("mesh info: files that cannot be measured are refused", "[cli][mesh_in
   CHECK(folder.run("index.off").status == 3);
   CHECK(folder.run("empty.off").status == 5);
   CHECK(folder.run("missing.off").status == 3);
+}
+
+TEST_CASE("mesh info: walls of regions are judged by the regions that they close", "[cli][mesh_info][regions]") {
+  cli::Folder folder;
+  TriangleMesh mesh = two_cubes();
+  mesh.regions.names = {{1, "grey matter"}, {2, "bone"}};
+  write_mesh(folder / "cubes.ply", mesh, {"ply"});
+  remove_face(mesh, face_between(mesh, {2, 0}));
+  write_mesh(folder / "open.ply", mesh, {"ply"});
+  const auto table = folder.run("cubes.ply --require regions,closed,manifold");
+  CHECK(table.status == 0);
+  CHECK(contains(table.out, "walls of closed regions"));
+  CHECK(contains(table.out, "1 (grey matter)"));
+  CHECK_FALSE(contains(table.out, "non-manifold"));
+  const auto regions = info_of(folder, "cubes.ply")["regions"];
+  REQUIRE(regions["regions"].size() == 2);
+  CHECK(regions["regions"][1]["name"] == "bone");
+  CHECK(regions["regions"][1]["volume"].get<double>() == Approx(1));
+  CHECK(regions["walls"].size() == 3);
+  const auto open = folder.run("open.ply --require regions");
+  CHECK(open.status == 6);
+  CHECK(contains(open.err, "gate failed: regions: region 2 (bone) is not closed"));
 }
