@@ -37,6 +37,8 @@ struct LabelVolume {
   std::array<WorldPoint, 3> step_world{WorldPoint{1, 0, 0}, WorldPoint{0, 1, 0}, WorldPoint{0, 0, 1}};
   int32_t background = 0;
   std::vector<RegionName> names = {};  ///< ascending by label
+  /// Islands of fewer voxels get the label around them before anything is meshed; 0: none do.
+  int64_t smallest_island_vox = 8;
 };
 
 }  // namespace isoshell

@@ -159,7 +159,8 @@ class Reader {
 
   void hold(const LabelVolume& labels, const std::string& origin = "") {
     input_.facts.kind = InputKind::labels;
-    hold(surface_of_labels(labels, input_.facts.name(), memory_limit_bytes_));
+    hold(surface_of_labels(labels, input_.facts.name(), memory_limit_bytes_,
+                           [&](MessageKind kind, const std::string& text) { tell(kind, text); }));
     std::unordered_set<int32_t> regions;
     for (const auto& pair : input_.soup.regions.labels) regions.insert(pair.begin(), pair.end());
     regions.erase(labels.background);

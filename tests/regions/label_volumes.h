@@ -10,6 +10,7 @@ namespace isoshell {
 
 inline LabelVolume label_volume(int32_t x, int32_t y, int32_t z) {
   LabelVolume v;
+  v.smallest_island_vox = 0;
   v.size_vox = {x, y, z};
   v.labels.assign(size_t(x) * size_t(y) * size_t(z), 0);
   return v;

@@ -99,6 +99,37 @@ TEST_CASE("walls that touch in a lattice edge are parted there, and each of both
   CHECK_FALSE(edge.is_odd_alone);  // the smaller label stays connected: the background
 }
 
+TEST_CASE("islands of few voxels get the label around them, and no region is lost") {
+  LabelVolume volume = label_volume(16, 16, 16, [](int i, int j, int k) {
+    if (i == 3 && j == 3 && k == 3) return 2;              // a speck of a region that is elsewhere, too
+    if (i == 12 && j == 12 && k == 12) return 3;           // all that there is of its region
+    if (i == 5 && j == 9 && (k == 4 || k == 5)) return 0;  // a hole
+    return i < 8 ? 1 : 2;
+  });
+  volume.smallest_island_vox = 8;
+  std::vector<std::string> told;
+  const TriangleSoup soup =
+      surface_of_labels(volume, "labels", 0, [&](MessageKind, const std::string& text) { told.push_back(text); });
+  REQUIRE(told.size() == 1);
+  CHECK(told[0] == "2 islands of fewer than 8 voxels, 3 in all, got the label around them");
+  const std::set<std::array<int32_t, 2>> pairs{{0, 1}, {0, 2}, {1, 2}, {2, 3}};
+  CHECK(pairs_of(soup.regions) == pairs);
+  const auto volumes = volumes_of_regions(soup.vertices, soup.triangles, soup.regions);
+  CHECK(volumes.size() == 3);
+}
+
+TEST_CASE("regions that touched in an island alone are named") {
+  LabelVolume volume = label_volume(12, 6, 6, [](int i, int j, int k) {
+    if (i == 6 && j == 3 && k == 3) return 1;
+    return i < 5 ? 1 : i < 7 ? 2 : 3;
+  });
+  volume.smallest_island_vox = 8;
+  std::vector<std::string> told;
+  surface_of_labels(volume, "labels", 0, [&](MessageKind, const std::string& text) { told.push_back(text); });
+  REQUIRE(told.size() == 2);
+  CHECK(told[1] == "regions that touched in such islands alone touch no more: 1 and 3");
+}
+
 TEST_CASE("a volume of labels that is none is refused with what is wrong") {
   LabelVolume volume = label_volume(2, 2, 2);
   CHECK(contains(message_of(ErrorCode::nothing_to_mesh, [&] { surface_of_labels(volume, "seg.vdb", 0); }),

@@ -50,13 +50,13 @@ void limit_by_gaps(const std::vector<FacingVertices>& facing, double e, std::vec
 /// By turns as edges of the length asked for see them: each vertex takes those within a length that is at most twice
 /// its own.
 std::vector<double> most_lengths(const FineMesh& mesh, const VertexGraph& graph,
-                                 const std::vector<FacingVertices>& facing) {
+                                 const std::vector<FacingVertices>& facing, bool is_rough) {
   const auto [least, widest] = std::minmax_element(mesh.edge_length.begin(), mesh.edge_length.end());
   std::vector<double> most(mesh.position.size(), 2 * *widest);
   for (double e = *widest;; e /= 2) {
     std::vector<double> here(mesh.position.size(), 2 * *widest);
     limit_by_curve_turns(mesh.position, mesh.paths, e, here);
-    limit_by_surface_turns(mesh, graph, e, here);
+    if (!is_rough) limit_by_surface_turns(mesh, graph, e, here);
     for (size_t v = 0; v < here.size(); ++v)
       if (mesh.edge_length[v] <= e) most[v] = here[v];
     if (*least > e / 2) break;
@@ -93,7 +93,7 @@ void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vect
   const double e = *widest;
   const bool is_even = *least == e;
   Limits limits{mesh.edge_length, std::vector<double>(mesh.position.size(), kMostLengthRatio * e), options.growth};
-  if (!options.as_requested) limits.most = most_lengths(mesh, graph, facing);
+  if (!options.as_requested) limits.most = most_lengths(mesh, graph, facing, options.is_rough);
   if (is_even && std::all_of(limits.most.begin(), limits.most.end(), [&](double l) { return l >= e; })) return;
   for (double& requested : limits.requested) requested /= e;
   if (options.vertices == 0) {

@@ -61,7 +61,7 @@ Buckets<uint32_t> followed_by(const LabelWalls& walls) {
 }
 
 constexpr int32_t kOne = 1 << 16;  ///< steps a voxel, until positions are rounded to 1/256 voxel
-constexpr int32_t kReach = kOne / 2;
+constexpr int32_t kReach = kOne / 2, kThinReach = kOne / 4;
 
 /// In 1/65536 voxel.
 struct FinePoint {
@@ -71,11 +71,11 @@ struct FinePoint {
 int32_t rest_of(int32_t halves) { return halves * (kOne / 2); }
 
 /// One part in so many of the way to the mean, rounded down, within reach of the rest.
-int32_t stepped(int32_t at, int64_t sum, int64_t count, int64_t parts, int32_t halves) {
+int32_t stepped(int32_t at, int64_t sum, int64_t count, int64_t parts, int32_t halves, int32_t reach) {
   const int64_t weighted = sum + (parts - 1) * int64_t(at) * count, of = parts * count;
   const int64_t down = weighted / of - (weighted % of < 0 ? 1 : 0);
   const int32_t rest = rest_of(halves);
-  return int32_t(std::clamp<int64_t>(down, rest - kReach, rest + kReach));
+  return int32_t(std::clamp<int64_t>(down, rest - reach, rest + reach));
 }
 
 class ElasticNet {
@@ -99,9 +99,11 @@ class ElasticNet {
       }
       const FinePoint& p = at_[v];
       const Voxel& h = walls_.rest_halves[v];
+      const int32_t reach = walls_.is_thin[v] ? kThinReach : kReach;
       next_[v] = of.size == 0 ? p
-                              : FinePoint{stepped(p.x, x, of.size, parts, h.x), stepped(p.y, y, of.size, parts, h.y),
-                                          stepped(p.z, z, of.size, parts, h.z)};
+                              : FinePoint{stepped(p.x, x, of.size, parts, h.x, reach),
+                                          stepped(p.y, y, of.size, parts, h.y, reach),
+                                          stepped(p.z, z, of.size, parts, h.z, reach)};
     });
     at_.swap(next_);
   }

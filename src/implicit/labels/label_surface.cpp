@@ -4,13 +4,16 @@
 #include <string>
 
 #include "geometry/world_vector.h"
+#include "implicit/labels/absorb_islands.h"
 #include "implicit/labels/fair_walls.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
 
+constexpr size_t kMostNamed = 10;
 constexpr int64_t kBytesPerWall = 260;  ///< measured at the peak, over the faces between voxels
 
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
@@ -71,11 +74,29 @@ WorldPoint to_world(const LabelVolume& volume, const PointQ8& p) {
          vox(p.z) * volume.step_world[2];
 }
 
+/// Says which islands were absorbed, and which regions no longer touch.
+void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const Tell& tell) {
+  if (absorbed.islands == 0 || !tell) return;
+  tell(MessageKind::warning, counted(absorbed.islands, "island") + " of fewer than " +
+                                 counted(volume.smallest_island_vox, "voxel") + ", " + with_commas(absorbed.voxels) +
+                                 " in all, got the label around them");
+  if (absorbed.lost_pairs.empty()) return;
+  std::string text = "regions that touched in such islands alone touch no more:";
+  for (size_t i = 0; i < std::min(absorbed.lost_pairs.size(), kMostNamed); ++i)
+    text += (i > 0 ? ", " : " ") + std::to_string(absorbed.lost_pairs[i][0]) + " and " +
+            std::to_string(absorbed.lost_pairs[i][1]);
+  if (absorbed.lost_pairs.size() > kMostNamed)
+    text += " and " + std::to_string(absorbed.lost_pairs.size() - kMostNamed) + " more pairs";
+  tell(MessageKind::warning, text);
+}
+
 }  // namespace
 
-TriangleSoup surface_of_labels(const LabelVolume& volume, const std::string& name, int64_t memory_limit_bytes) {
+TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, int64_t memory_limit_bytes,
+                               const Tell& tell) {
   check_volume(volume, name);
   check_memory(volume, name, memory_limit_bytes);
+  tell_of(absorb_islands(volume), volume, tell);
   const LabelWalls walls = find_label_walls(volume);
   if (walls.faces.empty())
     throw Error(

@@ -93,9 +93,11 @@ class WallMaker {
     number_vertices();
     LabelWalls walls;
     walls.rest_halves.resize(first_vertex_.back());
+    walls.is_thin.assign(first_vertex_.back(), 0);
     std::vector<LabelWalls> layers(corners_.size());
     for_each_index(size_t(0), corners_.size(), [&](size_t z) {
       place_vertices(z, walls.rest_halves);
+      mark_thin(z, walls.is_thin);
       layers[z] = faces_of(int32_t(z));
     });
     for (LabelWalls& layer : layers) {
@@ -138,6 +140,24 @@ class WallMaker {
       throw Error(ErrorCode::out_of_memory, "read",
                   "the walls between labels have " + std::to_string(first_vertex_.back()) + " corners; at most " +
                       std::to_string(kNone / 4) + " can be numbered: make the volume coarser");
+  }
+
+  bool is_thin_at(Voxel corner) const {
+    for (int o = 0; o < 8; ++o) {
+      const Voxel v{corner.x - 1 + (o & 1), corner.y - 1 + (o >> 1 & 1), corner.z - 1 + (o >> 2 & 1)};
+      const int32_t own = labels_.at(v);
+      for (int axis = 0; axis < 3; ++axis)
+        if (labels_.at(stepped(v, axis, 1)) != own && labels_.at(stepped(v, axis, -1)) != own) return true;
+    }
+    return false;
+  }
+  void mark_thin(size_t z, std::vector<uint8_t>& is_thin) const {
+    size_t next = first_vertex_[z];
+    for (const UsedCorner& c : corners_[z].used) {
+      const bool thin = is_thin_at(corner_at(c.place, z));
+      for (int s = 0; s < c.walls.sheets; ++s) is_thin[next++] = thin;
+    }
+    for (size_t m = 0; m < middles_[z].size(); ++m) is_thin[next++] = 1;
   }
 
   void place_vertices(size_t z, std::vector<Voxel>& rest_halves) const {

@@ -12,7 +12,8 @@ namespace isoshell {
 
 /// Walls with vertices at corners of voxels. Corner (x, y, z) is the one of voxel (x, y, z) nearest to the origin.
 struct LabelWalls {
-  std::vector<Voxel> rest_halves;              ///< per vertex where it lies on the lattice, in half voxels
+  std::vector<uint8_t> is_thin;    ///< per vertex: a voxel beside it has other labels on both sides along an axis
+  std::vector<Voxel> rest_halves;  ///< per vertex where it lies on the lattice, in half voxels
   std::vector<std::array<uint32_t, 4>> faces;  ///< four corners in turn, as seen from the second region; of triangles
                                                ///< the last one is kNone
   std::vector<std::array<int32_t, 2>> labels;  ///< per face, as in FaceRegions

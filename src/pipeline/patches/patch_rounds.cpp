@@ -2,6 +2,7 @@
 #include "pipeline/patches/patch_rounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "features/cutting/cut_fine_mesh.h"
 #include "features/cutting/cut_piece.h"
 #include "features/cutting/free_seeds.h"
+#include "features/seeds/edge_lengths.h"
 #include "measure/crossing_corners.h"
 #include "pipeline/defects/fan_patches.h"
 #include "pipeline/defects/flat_patches.h"
@@ -21,6 +23,7 @@
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/new_crossings.h"
+#include "pipeline/patches/next_cut.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/resolve_intersections.h"
 #include "pipeline/sheet/warm_start.h"
@@ -92,7 +95,12 @@ class PatchRounds {
  public:
   PatchRounds(const PreparedSurface& p, const CutSurface& cut, const PatchOptions& options, RemeshReport& report,
               Context& context)
-      : options_(options), report_(report), context_(context), crossings_(p, cut, context) {}
+      : options_(options),
+        report_(report),
+        context_(context),
+        crossings_(p, cut, context),
+        all_may_cross_(cut.parts_regions),
+        count_(options.seeds.count) {}
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
     report_.dual = {};
@@ -103,9 +111,9 @@ class PatchRounds {
       if (options_.previous || is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
       const size_t most_work = cut->parts_regions ? kMostWorkOfRegions : kMostWork;
       if (round == kMostRounds || work_ > most_work * cut->fine->triangles.size()) return wrong.said();
-      std::optional<Paths> other = other_paths(*cut, wrong);
-      if (!other) return wrong.said();
-      Again again = make_again(cut, made, wrong, std::move(*other));
+      std::optional<NextCut> change = next_cut(*cut, wrong.places());
+      if (!change) return wrong.said();
+      Again again = make_again(cut, made, wrong, std::move(*change));
       cut = again.cut;
       made = std::move(again.made);
       wrong = std::move(again.wrong);
@@ -116,12 +124,6 @@ class PatchRounds {
  private:
   OptimizeOptions optimize_options() const {
     return options_.previous ? for_warm_frame(options_.optimize) : options_.optimize;
-  }
-
-  /// Without creases around what is wrong; between regions, where all stay, with shorter segments there.
-  static std::optional<Paths> other_paths(const CutSurface& cut, const Wrong& wrong) {
-    if (cut.parts_regions) return halve_segments(*cut.fine, wrong.places(), cut.longest_edge_q8);
-    return drop_creases(*cut.fine, wrong.places());
   }
 
   /// What comes of other paths.
@@ -179,12 +181,14 @@ class PatchRounds {
 
   /// Of so many vertices the whole mesh has twice as many triangles.
   bool is_hopeless(const Wrong& wrong) const {
+    if (all_may_cross_) return false;
     return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
   }
 
-  /// Whether rounds took long and did not help, where the curves can be laid on the sheet instead.
+  /// Whether rounds took long and did not help, where there is another way: curves are laid on the sheet, and walls
+  /// stay as they came in.
   bool is_helpless(const CutSurface& cut) const {
-    return cut.source->input && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
+    return (cut.source->input || cut.parts_regions) && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
   }
 
   /// Result: whether all cells are disks.
@@ -263,7 +267,7 @@ class PatchRounds {
     if (!halved) return;
     std::optional<Again> again;
     failure_reason([&]() -> std::string {  // there may be no room for the seeds of so many segments
-      again = make_again(cut, made, wrong, std::move(*halved));
+      again = make_again(cut, made, wrong, {std::move(*halved), {}});
       return "";
     });
     if (!again || again->wrong.failed() > 0 || again->wrong.where.size() >= wrong.where.size()) return;
@@ -272,9 +276,11 @@ class PatchRounds {
     wrong = std::move(again->wrong);
   }
 
-  std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, Paths paths) const {
+  std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, NextCut change) {
+    Paths paths = std::move(change.paths);
     for (;;) {
       auto fine = std::make_shared<FineMesh>(*before.fine);
+      if (!change.edge_length.empty()) fine->edge_length = change.edge_length;
       fine->paths = std::move(paths);
       auto after = std::make_shared<CutSurface>(cut_fine_mesh(std::move(fine), before.frame, context_));
       after->is_requested = before.is_requested;
@@ -282,16 +288,21 @@ class PatchRounds {
       after->seeds = before.seeds;
       after->source = before.source;
       std::optional<Paths> fewer = drop_creases_at_tight_borders(*after);
-      if (!fewer) return after;
+      if (!fewer) {
+        if (!change.edge_length.empty())
+          count_ +=
+              std::max<int64_t>(0, std::llround(vertices_of_lengths(*after->fine) - vertices_of_lengths(*before.fine)));
+        return after;
+      }
       paths = std::move(*fewer);
     }
   }
 
   /// Along changed paths, with new patches beside these and in place of those that are wrong.
   Again make_again(const std::shared_ptr<const CutSurface>& before, const SeededMesh& made, const Wrong& wrong,
-                   Paths paths) {
+                   NextCut change) {
     const std::shared_ptr<const CutSurface> next =
-        timed(report_, "features", context_, [&] { return cut_again(*before, std::move(paths)); });
+        timed(report_, "features", context_, [&] { return cut_again(*before, std::move(change)); });
     PerPatch goes = wrong.patch;
     const std::vector<char> changed = which_changed(before->fine->paths, next->fine->paths);
     for (size_t c = 0; c < changed.size(); ++c)
@@ -304,7 +315,7 @@ class PatchRounds {
     const CutPiece piece = piece_of(*next, comes, context_);
     work_ += piece.cut.fine->triangles.size();
     PatchOptions options = options_;
-    options.seeds.count = count_for(piece.cut, free_of(*next, comes, options_.seeds.count));
+    options.seeds.count = count_for(piece.cut, free_of(*next, comes, count_));
     SeededMesh part = gather_patches(
         piece.cut, {{made, through(vertices_after(*before, *next, all_of(*before)), in_piece(piece, *next))}});
     part.seeds = timed(report_, "relax", context_,
@@ -344,6 +355,8 @@ class PatchRounds {
   RemeshReport& report_;
   Context& context_;
   NewCrossings crossings_;
+  bool all_may_cross_;        ///< no number of crossings is too large to begin with
+  int64_t count_;             ///< of seeds, as many as the lengths around what was wrong ask for
   size_t work_ = 0;           ///< triangles of the fine mesh on which patches were made again
   size_t helpless_work_ = 0;  ///< of these the last ones, after which no less was wrong
 };

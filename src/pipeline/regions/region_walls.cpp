@@ -39,6 +39,7 @@ CurveOptions curves_between_regions(const PreparedSurface& p) {
 SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, Context& context) {
   const FeatureMesh& mesh = p.walls->mesh;
   CutOptions how{edge_length_for(mesh, network, p.target.vertices), 0, requested_lengths(p)};
+  how.is_rough = p.walls->regions.are_of_voxels;
   if (!p.options.edge_length_world && !(how.requested.vary() && field_decides(p.options)))
     how.vertices = p.target.vertices;
   auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
