@@ -32,8 +32,11 @@ std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& recor
   return warnings;
 }
 
-void measure_distances(const Prepared& prepared, const TriangleMesh& mesh, RunRecord& record, Context& context) {
-  const TriangleMesh input = to_world(to_host(prepared.surface()));
+void measure_distances(const Prepared& prepared, const TriangleSoup& soup, const TriangleMesh& mesh, RunRecord& record,
+                       Context& context) {
+  const bool has_regions = !soup.regions.empty();
+  const TriangleMesh input =
+      has_regions ? TriangleMesh{soup.vertices, soup.triangles} : to_world(to_host(prepared.surface()));
   record.distance = measure_distance(mesh, input, context);
   if (record.report.features.border_loops > 0) record.borders = measure_borders(mesh, input, context);
 }

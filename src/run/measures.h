@@ -12,8 +12,10 @@ namespace isoshell {
 /// warn of. Throws: interrupted.
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context);
 
-/// Distances from the surface as it was meshed, and of borders that were kept. Throws: interrupted.
-void measure_distances(const Prepared& prepared, const TriangleMesh& mesh, RunRecord& record, Context& context);
+/// Distances from the surface as it was meshed, of regions from their walls as they are in `soup`, and of borders that
+/// were kept. Throws: interrupted.
+void measure_distances(const Prepared& prepared, const TriangleSoup& soup, const TriangleMesh& mesh, RunRecord& record,
+                       Context& context);
 
 /// Sites with two walls in one voxel. Throws: interrupted.
 int64_t count_risky_sites(const Prepared& prepared, Context& context);

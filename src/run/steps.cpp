@@ -122,10 +122,11 @@ class RunSteps::Run {
     read_lines();
     prepared_ = timed("prepare", [&] { return prepared_from(*input_); });
     if (!attributes.empty()) input_->soup.attributes = std::move(attributes);
-    if (input_->soup.attributes.empty()) free_soup();
+    const bool has_regions = !input_->soup.regions.empty();  // then distances are from the walls as they came
+    if (input_->soup.attributes.empty() && !(has_regions && measures_distance())) free_soup();
     record_.report = prepared_->report();
-    for (const std::string& text : warnings_of_repair(record_.report, record_.input.name())) warn(text);
-    if (measures_all()) timed("risks", [&] { record_.risky_sites = count_risky_sites(*prepared_, *context_); });
+    for (const std::string& text : warnings_of_repair(record_.report, record_.input.name(), has_regions)) warn(text);
+    if (measures_all() && !has_regions) timed("risks", [&] { record_.risky_sites = count_risky_sites(*prepared_, *context_); });
     return *prepared_;
   }
 
@@ -151,8 +152,8 @@ class RunSteps::Run {
     if (request_.stop_after == StopAfter::voronoi) return result({});
     TriangleMesh mesh = timed("triangulate", [&] { return triangulated(keeps_seeds); });
     timed("measure", [&] { measure(mesh); });
-    if (measures_all() || request_.gates.needs_distance())
-      timed("distance", [&] { measure_distances(*prepared_, mesh, record_, *context_); });
+    if (measures_distance())
+      timed("distance", [&] { measure_distances(*prepared_, input_->soup, mesh, record_, *context_); });
     TriangleSoup& soup = input_->soup;
     if (!soup.attributes.empty())
       mesh.attributes =
@@ -203,6 +204,8 @@ class RunSteps::Run {
   bool measures_all() const {
     return request_.measures == Measures::all || !request_.statistics.empty() || !request_.report.empty();
   }
+
+  bool measures_distance() const { return measures_all() || request_.gates.needs_distance(); }
 
   template <class Work>
   std::invoke_result_t<Work> timed(const char* name, Work work) {

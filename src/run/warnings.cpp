@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input) {
+std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input, bool has_regions) {
   std::vector<std::string> warnings;
   const auto note = [&](int64_t count, const std::string& what) {
     if (count > 0) warnings.push_back(input + ": " + with_commas(count) + " " + what);
@@ -23,7 +23,7 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   note(d.degenerate_faces, "faces without area");
   note(d.duplicate_faces, "repeated faces");
   note(d.unreferenced_vertices, "vertices that no face uses");
-  note(d.nonmanifold_edges, "edges that more than two faces share");
+  if (!has_regions) note(d.nonmanifold_edges, "edges that more than two faces share");
   note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
   const RepairReport& m = report.input.repair;
   note(m.joined_vertices, "vertices of boundaries joined over cracks");

@@ -9,8 +9,9 @@
 
 namespace isoshell {
 
-/// A sentence for every kind of dirt and repair that the report counts. `input` is what messages call the input.
-std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input);
+/// A sentence for every kind of dirt and repair that the report counts; edges of more than two faces are none of the
+/// walls between regions. `input` is what messages call the input.
+std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input, bool has_regions);
 
 /// About the mesh itself: one sentence that names its worst angles, none when all are 30 degrees or more.
 std::vector<std::string> warnings_of_quality(const MeshQuality& quality);
