@@ -48,7 +48,7 @@ def type_of(option: _isoshell.OptionEntry) -> str:
         return "bool"
     if option.real:
         return "float"
-    if option.value.startswith("F."):
+    if option.value.startswith("F.") or option.value == "DIR":
         return "Path"
     if "|" in option.value:
         words = ", ".join(f'"{word}"' for word in option.value.split("|"))

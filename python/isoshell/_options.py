@@ -54,6 +54,8 @@ class Options(TypedDict, total=False):
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
         save_voronoi: also write the Voronoi volume, to resume from.
+        split_regions: also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the
+            format of OUTPUT.
         stop_after: stop after this stage; OUTPUT is its .vdb file.
         stats: write all statistics as JSON; - writes to standard output.
         report: also write a page that shows the result beside the input, with all that was measured; by the Python
@@ -103,6 +105,7 @@ class Options(TypedDict, total=False):
     output_format: Optional[str]
     save_shell: Optional[Path]
     save_voronoi: Optional[Path]
+    split_regions: Optional[Path]
     stop_after: Optional[Literal["shell", "voronoi"]]
     stats: Optional[Union[bool, Path]]
     report: Optional[Path]

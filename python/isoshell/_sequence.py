@@ -56,8 +56,8 @@ def remesh_sequence(source: Union[Path, Iterable[SourceLike]], *, frames: Option
         no_coherence: begin every frame anew.
         keep_going: go on after a frame that cannot be read or meshed, or misses a requirement: see Frames.errors.
         resume: leave out the frames whose output is there, and go on after them, to the same bytes; in PLY.
-        context, options: as remesh() takes them, but for report; stats, save_shell and save_voronoi are names with
-            #### or %04d.
+        context, options: as remesh() takes them, but for report and split_regions; stats, save_shell and save_voronoi are
+            names with #### or %04d.
 
     Returns:
         An iterator of the results.
@@ -127,6 +127,9 @@ class _Sequence:
         self._keep_going, self._resume = flags["keep_going"], flags["resume"]
         self._target = "" if output is None else os.fsdecode(output)
         self._output = "" if is_usd(self._target) else self._target  # what the library writes
+        if options.get("split_regions"):
+            raise Error("split_regions is for one frame; leave it out: Result.region has the regions of each",
+                        stage="options")
         if self._resume and (not self._target or is_usd(self._target)):
             raise Error("resume needs output to be a name of PLY files, as out.####.ply", stage="options")
         self._frames = self._frames_of(source, _text_of(frames))

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from ._options import Options
 
-OF_WHOLE_RUNS = ("save_shell", "save_voronoi", "stop_after", "stats", "report", "force", "require",
-                 "allow_intersections", "output_format", "color_features")
+OF_WHOLE_RUNS = ("save_shell", "save_voronoi", "split_regions", "stop_after", "stats", "report", "force",
+                 "require", "allow_intersections", "output_format", "color_features")
 
 
 class Stages:

@@ -2,17 +2,24 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <vector>
 
 #include "core/file_format.h"
+#include "io/bytes/output_file.h"
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
+#include "isoshell/io/mesh_file.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/options/option_text.h"
+#include "isoshell/region_census.h"
 
 namespace isoshell {
 namespace {
@@ -24,6 +31,15 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse_vdb_to_pipe() { refuse_use("a .vdb file cannot be written to standard output; name a file"); }
 
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+void check_folder(const std::string& path, const fs::path& folder) {
+  std::error_code code;
+  if (!fs::is_directory(folder, code)) refuse(path + ": there is no folder " + folder.string());
+  if (access(folder.c_str(), W_OK) != 0)
+    refuse(path + ": cannot write in " + folder.string() + ": " + std::strerror(errno));
+}
+
 void check_output(const std::string& path, bool overwrite) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
@@ -31,10 +47,70 @@ void check_output(const std::string& path, bool overwrite) {
   if (fs::exists(status) && !fs::is_regular_file(status))
     refuse(path + ": is not a regular file; name another, or - for standard output");
   if (fs::exists(status) && !overwrite) refuse(path + ": exists already; --force replaces it");
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, code)) refuse(path + ": there is no folder " + folder.string());
-  if (access(folder.c_str(), W_OK) != 0)
-    refuse(path + ": cannot write in " + folder.string() + ": " + std::strerror(errno));
+  check_folder(path, folder_of(path));
+}
+
+/// A folder that is there, or can be made.
+void check_folder_of_regions(const std::string& path) {
+  std::error_code code;
+  if (fs::is_directory(path, code)) return check_folder(path, path);
+  if (fs::exists(fs::status(path, code))) refuse(path + ": is no folder; --split-regions needs one");
+  check_folder(path, folder_of(fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path()));
+}
+
+std::vector<std::string> files_of(const RunRequest& r) {
+  std::vector<std::string> files = {r.output.path, r.statistics, r.report, r.save_shell, r.save_voronoi};
+  if (!r.save_voronoi.empty()) files.push_back(preview_path(r.save_voronoi));
+  if (r.stop_after == StopAfter::voronoi && !r.output.path.empty()) files.push_back(preview_path(r.output.path));
+  return files;
+}
+
+void check_files(const std::vector<std::string>& files, bool overwrite) {
+  std::set<fs::path> named;
+  for (const std::string& file : files) {
+    if (file.empty() || file == "-") continue;
+    check_output(file, overwrite);
+    if (!named.insert(fs::path(file).lexically_normal()).second)
+      refuse_use(file + " is named twice; every result needs its own file");
+  }
+}
+
+/// The name of a region as one of a file: without what separates folders or means something to a shell.
+std::string safe_name(std::string name) {
+  constexpr size_t kLongest = 120;  // bytes; file systems take 255
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = byte >= 0x80 || std::isalnum(byte) != 0 || c == '-' || c == '.' || c == '_';
+    if (!is_plain) c = '_';
+  }
+  if (name.size() > kLongest) {
+    size_t end = kLongest;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;  // no part of a letter stays
+    name.resize(end);
+  }
+  if (!name.empty() && (name[0] == '.' || name[0] == '-')) name[0] = '_';
+  return name;
+}
+
+std::string in_lower_case(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// Appends their labels to names that are used twice, until none is: a name has its label once, and those that have one
+/// differ.
+void part_equal_names(std::map<int32_t, std::string>& name_of_label) {
+  std::set<int32_t> numbered;
+  for (bool has_changed = true; has_changed;) {
+    has_changed = false;
+    std::map<std::string, int> uses;
+    for (const auto& [label, name] : name_of_label) ++uses[in_lower_case(name)];
+    for (auto& [label, name] : name_of_label)
+      if (uses[in_lower_case(name)] > 1 && numbered.insert(label).second) {
+        name += "_" + std::to_string(label);
+        has_changed = true;
+      }
+  }
 }
 
 }  // namespace
@@ -78,6 +154,8 @@ void check_request(const RunRequest& r) {
   check_method(r.options);
   if (r.gates.any() && r.stop_after != StopAfter::mesh) refuse_use("--require needs a mesh; leave out --stop-after");
   if (!r.report.empty() && r.stop_after != StopAfter::mesh) refuse_use("--report needs a mesh; leave out --stop-after");
+  if (!r.split_regions.empty() && r.stop_after != StopAfter::mesh)
+    refuse_use("--split-regions needs a mesh; leave out --stop-after");
   if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
   if (r.save_shell == "-" || r.save_voronoi == "-") refuse_vdb_to_pipe();
   possible_features(r.options.values, r);
@@ -90,20 +168,68 @@ void check_request(const RunRequest& r) {
 }
 
 void check_outputs(const RunRequest& r) {
-  std::vector<std::string> files = {r.output.path, r.statistics, r.report, r.save_shell, r.save_voronoi};
-  if (!r.save_voronoi.empty()) files.push_back(preview_path(r.save_voronoi));
-  if (r.stop_after == StopAfter::voronoi && !r.output.path.empty()) files.push_back(preview_path(r.output.path));
   if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty()))
     refuse(
         "this build writes no .vdb files: leave out --stop-after, --save-shell and --save-voronoi, or build with "
         "-DISOSHELL_VDB=ON");
-  for (size_t i = 0; i < files.size(); ++i) {
-    if (files[i].empty() || files[i] == "-") continue;
-    check_output(files[i], r.overwrite);
-    for (size_t j = 0; j < i; ++j)
-      if (fs::path(files[i]).lexically_normal() == fs::path(files[j]).lexically_normal())
-        refuse_use(files[i] + " is named twice; every result needs its own file");
-  }
+  check_files(files_of(r), r.overwrite);
+  if (!r.split_regions.empty()) check_folder_of_regions(r.split_regions);
+}
+
+std::vector<RegionFile> region_files(const FaceRegions& regions, const std::string& folder, const std::string& format) {
+  std::map<int32_t, std::string> name_of_label;
+  for (const std::array<int32_t, 2>& pair : regions.labels)
+    for (const int32_t label : pair)
+      if (label != regions.background) name_of_label.try_emplace(label);
+  for (const auto& [label, name] : regions.names)
+    if (const auto found = name_of_label.find(label); found != name_of_label.end()) found->second = safe_name(name);
+  for (auto& [label, name] : name_of_label)
+    if (name.empty()) name = std::to_string(label);
+  part_equal_names(name_of_label);
+  std::vector<RegionFile> files;
+  for (const auto& [label, name] : name_of_label)
+    files.push_back({label, (fs::path(folder) / (name + "." + format)).string()});
+  return files;
+}
+
+std::vector<RegionFile> checked_region_files(const RunRequest& r, const FaceRegions& regions) {
+  if (r.split_regions.empty()) return {};
+  if (regions.empty())
+    refuse_use("--split-regions is for volumes of labels and meshes of regions, and INPUT has none; leave it out");
+  const std::string format = named_output(r.output.path, r.output.format, r.stop_after).format;
+  std::vector<RegionFile> files = region_files(regions, r.split_regions, format.empty() ? "ply" : format);
+  if (!fs::exists(r.split_regions)) return files;
+  std::vector<std::string> all = files_of(r);
+  for (const RegionFile& file : files) all.push_back(file.path);
+  check_files(all, r.overwrite);
+  return files;
+}
+
+std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, const TriangleMesh& mesh,
+                                      const std::function<void(const std::string&)>& warn) {
+  std::set<int32_t> labels;
+  for (const auto& [behind, front] : mesh.regions.labels) labels.insert({behind, front});
+  std::vector<RegionFile> kept;
+  for (const RegionFile& file : files)
+    if (labels.count(file.label) > 0)
+      kept.push_back(file);
+    else
+      warn("region " + std::to_string(file.label) + " has no faces in the result, and gets no file of its own");
+  return kept;
+}
+
+void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite) {
+  std::error_code code;
+  const fs::path folder = folder_of(file.path);
+  fs::create_directory(folder, code);
+  if (code) refuse(folder.string() + ": cannot be made: " + code.message());
+  write_mesh(file.path, region_of(mesh, file.label), {"", overwrite});
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  OutputFile file(path, true);
+  file.write(text);
+  file.commit();
 }
 
 }  // namespace isoshell

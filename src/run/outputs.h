@@ -1,7 +1,10 @@
 // Where results go: checks before the run, so that hours of work do not end at a locked door.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "isoshell/run/run.h"
 
@@ -15,6 +18,31 @@ std::string preview_path(const std::string& path);
 /// may be replaced. Throws: unwritable_output, also when this build cannot write its format; usage when two results
 /// would share one file.
 void check_outputs(const RunRequest& request);
+
+/// A region's own file.
+struct RegionFile {
+  int32_t label;
+  std::string path;
+};
+
+/// One for each region that faces have, ascending by label: the folder's file of its name, or else of its label. What
+/// file systems and shells may not take in a name becomes an underscore, and the label follows where names would be the
+/// same, in upper or lower case.
+std::vector<RegionFile> region_files(const FaceRegions& regions, const std::string& folder, const std::string& format);
+
+/// Those that the request wants, of the format of its output, each of which can be written; it may want none. Throws:
+/// usage for a surface without regions; as check_outputs().
+std::vector<RegionFile> checked_region_files(const RunRequest& request, const FaceRegions& regions);
+
+/// Those whose regions the mesh still has; warns of others.
+std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, const TriangleMesh& mesh,
+                                      const std::function<void(const std::string&)>& warn);
+
+/// The region's closed mesh, in its folder, which is made where it is not there. Throws: as write_mesh().
+void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite);
+
+/// A file that appears whole, or standard output. It replaces one that is there: checks have refused what it may not.
+void write_text(const std::string& path, const std::string& text);
 
 /// What a run can keep of the features that are asked for, or that the stage file has that it resumes: a Voronoi stage
 /// file holds none. Throws: usage where a threshold, or that borders are kept, is asked for and such a file.

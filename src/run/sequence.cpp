@@ -121,6 +121,7 @@ void check_sequence(const SequenceRequest& request) {
   if (every.input.path == "-" || every.output.path == "-" || every.statistics == "-")
     refuse("a sequence is read from and written to files; name them by a pattern, as mesh.####.ply");
   if (!every.report.empty()) refuse("--report shows one frame; leave out --frames, or make it of a frame");
+  if (!every.split_regions.empty()) refuse("--split-regions is for one frame; leave out --frames");
   if (request.resume && every.output.format != "ply")
     refuse("--resume needs PLY files, which keep the numbers of vertices and their positions exactly");
   std::vector<std::string> missing, there;

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "io/bytes/output_file.h"
 #include "isoshell/advanced/digest.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
@@ -109,6 +108,7 @@ class RunSteps::Run {
     if (prepared_) return *prepared_;
     check_files();
     read();
+    region_files_ = checked_region_files(request_, input_->soup.regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
     if (input_->stage && !left_out_.empty())
       warn(input_->facts.name() + ": the result is without " + left_out_ +
@@ -126,7 +126,8 @@ class RunSteps::Run {
     if (input_->soup.attributes.empty() && !(has_regions && measures_distance())) free_soup();
     record_.report = prepared_->report();
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name(), has_regions)) warn(text);
-    if (measures_all() && !has_regions) timed("risks", [&] { record_.risky_sites = count_risky_sites(*prepared_, *context_); });
+    if (measures_all() && !has_regions)
+      timed("risks", [&] { record_.risky_sites = count_risky_sites(*prepared_, *context_); });
     return *prepared_;
   }
 
@@ -166,6 +167,8 @@ class RunSteps::Run {
       write_step("write", output.path, [&] {
         write_mesh(output.path, mesh, {output.format, request_.overwrite, options_.values.color_features});
       });
+    for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
+      write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite); });
     return result(std::move(mesh));
   }
 
@@ -326,15 +329,10 @@ class RunSteps::Run {
       record.warnings.push_back(text);
       if (request_.tell) request_.tell(MessageKind::warning, text);
     }
-    if (!request_.statistics.empty()) around_write(request_.statistics, [&] { write_statistics(record); });
+    if (!request_.statistics.empty())
+      around_write(request_.statistics, [&] { write_text(request_.statistics, statistics_json(record)); });
     std::vector<std::string> missed = missed_gates(request_.gates, record);
     return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed)};
-  }
-
-  void write_statistics(const RunRecord& record) const {
-    OutputFile file(request_.statistics, true);  // check_outputs has refused what may not be replaced
-    file.write(statistics_json(record));
-    file.commit();
   }
 
   RunRequest request_;
@@ -345,6 +343,7 @@ class RunSteps::Run {
   std::optional<Prepared> prepared_;
   std::optional<Relaxed> relaxed_;
   RunRecord record_;
+  std::vector<RegionFile> region_files_;
   std::string left_out_;     ///< of the input, by stage files
   std::string written_;      ///< files that are whole, for who interrupts
   Clock::time_point start_;  ///< of the steps that go on

@@ -100,6 +100,10 @@ std::vector<CommandOption> file_options() {
       {{group, "save-shell", "F.vdb", "also write the shell, to resume from"}, text_of(&RunRequest::save_shell)},
       {{group, "save-voronoi", "F.vdb", "also write the Voronoi volume, to resume from"},
        text_of(&RunRequest::save_voronoi)},
+      {{group, "split-regions", "DIR",
+        "also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the format of "
+        "OUTPUT"},
+       text_of(&RunRequest::split_regions)},
       {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"},
        unless_empty(set_stop_after)},
       {{group, "stats", "F.json", "write all statistics as JSON; - writes to standard output"},

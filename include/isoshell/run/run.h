@@ -32,6 +32,7 @@ struct RunRequest {
   OutputRequest output;      ///< the mesh, or the stage file when the run stops before it
   StopAfter stop_after = StopAfter::mesh;
   std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
+  std::string split_regions;             ///< folder for a file of each region; empty: none
   std::string statistics;                ///< file, or "-"; empty: none
   std::string report;  ///< page that the front writes of the result afterwards, from all that is measured; empty: none
   Gates gates;
