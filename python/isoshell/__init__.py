@@ -16,6 +16,7 @@ from ._context import Context
 from ._errors import Error, RunWarning
 from ._isoshell import VERSION as __version__
 from ._isoshell import ErrorCode
+from ._labels import Labels
 from ._many import remesh_many
 from ._mesh_info import mesh_info
 from ._options import Options
@@ -29,12 +30,12 @@ from ._stages import Stages
 if _TYPE_CHECKING:
     from . import usd as usd
 
-__all__ = ["Context", "Error", "ErrorCode", "Frames", "Mesh", "Options", "Points", "Result", "RunWarning", "Stages",
-           "Volume", "__version__", "estimate", "mesh_info", "remesh", "remesh_many",
-           "remesh_sequence", "report"]
+__all__ = ["Context", "Error", "ErrorCode", "Frames", "Labels", "Mesh", "Options", "Points", "Result", "RunWarning",
+           "Stages", "Volume", "__version__", "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence",
+           "report"]
 
-for _name in ("Context", "Error", "Frames", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume", "estimate",
-              "mesh_info", "remesh", "remesh_many", "remesh_sequence", "report"):
+for _name in ("Context", "Error", "Frames", "Labels", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume",
+              "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence", "report"):
     globals()[_name].__module__ = __name__
 
 

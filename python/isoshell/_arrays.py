@@ -30,6 +30,17 @@ def array_of(argument: str, value: Any) -> np.ndarray[Any, Any]:
     return array
 
 
+def triple_of(argument: str, value: Any) -> tuple[float, float, float]:
+    """One number for all axes, or three."""
+    import numpy as np
+
+    numbers = array_of(argument, value).astype(np.float64)
+    if numbers.shape not in ((), (3,)):
+        raise Error(f"{argument} must be one number or three, and has the shape {numbers.shape}")
+    x, y, z = np.broadcast_to(numbers, 3).tolist()
+    return x, y, z
+
+
 def _gives_dlpack_only(value: Any) -> bool:
     import numpy as np
 

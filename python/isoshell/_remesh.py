@@ -30,8 +30,9 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
             scene.usda:/World/Mesh (see isoshell.usd); (vertices, faces), arrays of (K, 3) numbers in world units and of
             (M, 3) whole numbers, or faces of more corners; anything with .vertices and .faces, such as a mesh of
             trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Mesh, which has attributes;
-            isoshell.Points; isoshell.Volume. Arrays are whatever numpy or DLPack can take, of the host, or of a CUDA
-            device where the module was built with CUDA; they are copied once, those of a device to the host first.
+            isoshell.Points; isoshell.Volume; isoshell.Labels, whose result has regions. Arrays are whatever numpy or
+            DLPack can take, of the host, or of a CUDA device where the module was built with CUDA; they are copied
+            once, those of a device to the host first.
         output: also write the result there, as the command does, or as a stage of USD, which names the files of
             save_shell and save_voronoi as volumes.
         context: where to run; otherwise device, threads and max_memory say it.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 from . import _isoshell
 from ._errors import Error
+from ._labels import label_of
 from ._usd import Origin, is_usd
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     from ._keywords import Keywords
+    from ._sources import Mesh
 
     Floats = np.ndarray[Any, np.dtype[np.float64]]
     Ints = np.ndarray[Any, np.dtype[np.int32]]
@@ -94,6 +96,32 @@ class Result:
         there are no regions. background: the label of what is no region. names: a dict from labels to names.
         """
         return self._made.regions
+
+    @property
+    def region_names(self) -> dict[int, str]:
+        """What regions are called, by label; without those that have no name."""
+        names: dict[int, str] = self._made.regions["names"]
+        return names
+
+    def region(self, label: int) -> Mesh:
+        """One region by itself, a closed mesh that faces outward, with the attributes of its vertices and faces.
+
+        Its vertices are where the result has them; a vertex in which the region touches itself is there once for each
+        sheet of faces. What is counted and measured of regions, and whether each is closed, is report["regions"].
+
+        Raises:
+            Error: of code USAGE for the background and for a label that no face has.
+        """
+        from ._sources import Mesh
+
+        vertices, faces, attributes = self._made.region(label_of("label", label))
+        of: dict[str, dict[str, Any]] = {"vertex": {}, "face": {}, "corner": {}}
+        for name, domain, values, _ in attributes:
+            of[domain][name] = values
+        mesh = Mesh(vertices, faces, of_vertices=of["vertex"], of_faces=of["face"], of_corners=of["corner"],
+                    labels={name: labels for name, _, _, labels in attributes if labels})
+        mesh.name = self.region_names.get(label, f"region {label}")
+        return mesh
 
     @property
     def report(self) -> dict[str, Any]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of
+from ._arrays import array_of, triple_of
 from ._errors import Error
 from ._isoshell import Source
+from ._labels import Labels, lattice_of, values_of
 from ._result import Result
 from ._usd import Origin, is_usd
 
@@ -109,7 +110,8 @@ class Volume:
         self.velocities = velocities
 
 
-SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, MeshLike, PolyDataLike, Tuple[Any, Any]]
+SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, Labels, MeshLike, PolyDataLike,
+                   Tuple[Any, Any]]
 
 
 def opened(given: Any) -> Any:
@@ -134,7 +136,7 @@ def frame_source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
     source = source_of(given, sizing)
     if isinstance(given, Volume) and given.velocities is not None:
         vectors = _vectors_of(given.velocities, array_of("volume", given.values).shape)
-        source.set_velocities(vectors, _triple("spacing", given.spacing), _triple("origin", given.origin))
+        source.set_velocities(vectors, triple_of("spacing", given.spacing), triple_of("origin", given.origin))
     elif isinstance(given, Mesh) and given.velocities is not None:
         vertices = array_of("vertices", given.vertices)
         source.set_velocities_of_vertices(_vectors_of(given.velocities, vertices.shape[:1]), vertices,
@@ -160,6 +162,8 @@ def _source_of(given: Any) -> Source:
         return Source.points(array_of("points", given.positions), normals)
     if isinstance(given, Volume):
         return Source.volume(*_lattice_of("volume", given))
+    if isinstance(given, Labels):
+        return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:
         return _source_of_faces("(vertices, faces)", given[0], given[1])
     if isinstance(given, Result):
@@ -171,8 +175,8 @@ def _source_of(given: Any) -> Source:
         vertices, faces = getattr(given, name, None), getattr(given, "faces", None)
         if vertices is not None and faces is not None:
             return _source_of_faces(type(given).__name__, vertices, faces)
-    raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Mesh, Points "
-                f"or Volume, and is {type(given).__name__}")
+    raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Mesh, Points, "
+                f"Volume or Labels, and is {type(given).__name__}")
 
 
 def sizing_of(options: dict[str, Any]) -> Optional[Volume]:
@@ -275,15 +279,5 @@ def _lattice_of(argument: str, volume: Volume) -> tuple[Any, tuple[float, float,
     import numpy as np
 
     values = array_of(argument, volume.values)
-    return (values.astype(np.float32, copy=False), _triple("spacing", volume.spacing),
-            _triple("origin", volume.origin))
-
-
-def _triple(argument: str, value: Any) -> tuple[float, float, float]:
-    import numpy as np
-
-    numbers = array_of(argument, value).astype(np.float64)
-    if numbers.shape not in ((), (3,)):
-        raise Error(f"{argument} must be one number or three, and has the shape {numbers.shape}")
-    x, y, z = np.broadcast_to(numbers, 3).tolist()
-    return x, y, z
+    return (values.astype(np.float32, copy=False), triple_of("spacing", volume.spacing),
+            triple_of("origin", volume.origin))

@@ -11,6 +11,7 @@
 #include "values/device_arrays.h"
 #include "values/errors.h"
 #include "values/keywords.h"
+#include "values/labels.h"
 #include "values/result.h"
 #include "values/source.h"
 
@@ -22,6 +23,7 @@ NB_MODULE(_isoshell, m) {
   bind_errors(m);
   bind_keywords(m);
   bind_device_arrays(m);
+  bind_labels(m);
   bind_source(m);
   bind_context(m);
   bind_result(m);

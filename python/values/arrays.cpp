@@ -1,6 +1,7 @@
 #include "values/arrays.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -104,6 +105,35 @@ void copy_indices(const char* argument, const AnyArray& a, size_t end, uint32_t*
   if (!known) refuse(argument, " must be whole numbers, such as int32 or int64, and is " + type_text(a.dtype()));
 }
 
+[[noreturn]] void refuse_label(const char* argument, size_t i, size_t j, size_t k, const std::string& value) {
+  refuse(argument, "[" + std::to_string(i) + ", " + std::to_string(j) + ", " + std::to_string(k) + "] is " + value +
+                       "; labels are whole numbers from " + std::to_string(INT32_MIN) + " to " +
+                       std::to_string(INT32_MAX) + ": number the regions anew");
+}
+
+template <class T>
+bool fits_32_bits(T value) {
+  if constexpr (std::is_signed_v<T>)
+    return int64_t(value) >= INT32_MIN && int64_t(value) <= INT32_MAX;
+  else
+    return uint64_t(value) <= uint64_t(INT32_MAX);
+}
+
+template <class T>
+void copy_labels(const char* argument, const AnyArray& a, int32_t* to) {
+  const auto* const bytes = static_cast<const std::byte*>(a.data());
+  size_t at = 0;
+  for (size_t k = 0; k < a.shape(2); ++k)
+    for (size_t j = 0; j < a.shape(1); ++j)
+      for (size_t i = 0; i < a.shape(0); ++i) {
+        T value;
+        const int64_t place = int64_t(i) * a.stride(0) + int64_t(j) * a.stride(1) + int64_t(k) * a.stride(2);
+        std::memcpy(&value, bytes + place * int64_t(sizeof(T)), sizeof(T));
+        if (!fits_32_bits(value)) refuse_label(argument, i, j, k, std::to_string(value));
+        to[at++] = int32_t(value);
+      }
+}
+
 }  // namespace
 
 std::vector<WorldPoint> points_of(const char* argument, const AnyArray& a) {
@@ -131,6 +161,18 @@ std::vector<uint32_t> indices_of(const char* argument, const AnyArray& a, size_t
   std::vector<uint32_t> indices(a.shape(0));
   copy_indices(argument, a, end, indices.data());
   return indices;
+}
+
+std::vector<int32_t> labels_of(const char* argument, const AnyArray& a) {
+  if (a.ndim() != 3) refuse(argument, " must have 3 dimensions, and has the shape " + shape_text(a));
+  std::vector<int32_t> labels(a.shape(0) * a.shape(1) * a.shape(2));
+  const bool known = of_whole_type(a, [&](auto zero) {
+    using T = decltype(zero);
+    const nb::gil_scoped_release released;
+    copy_labels<T>(argument, a, labels.data());
+  });
+  if (!known) refuse(argument, " must be whole numbers, such as uint8 or int32, and is " + type_text(a.dtype()));
+  return labels;
 }
 
 const float* floats_of(const char* argument, const AnyArray& a, size_t dimensions) {

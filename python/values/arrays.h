@@ -25,6 +25,10 @@ std::vector<std::array<uint32_t, 3>> triangles_of(const char* argument, const An
 /// One row of whole numbers from 0 on, such as corners of polygons. Throws: as triangles_of.
 std::vector<uint32_t> indices_of(const char* argument, const AnyArray& array, size_t end);
 
+/// Three axes of whole numbers, the first one fastest. Throws: usage for another shape or type, and, naming its value
+/// and place, for one that 32 bits do not hold.
+std::vector<int32_t> labels_of(const char* argument, const AnyArray& array);
+
 /// Throws: usage for what is no array of `dimensions` of single precision in the host's memory.
 const float* floats_of(const char* argument, const AnyArray& array, size_t dimensions);
 

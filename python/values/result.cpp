@@ -4,8 +4,11 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <utility>
+
 #include "isoshell/advanced/digest.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/region_census.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
 
@@ -20,6 +23,17 @@ void save(const RunResult& result, const std::string& path, bool overwrite) {
   MeshWriteOptions options;
   options.overwrite = overwrite;
   write_mesh(path, result.mesh, options);
+}
+
+/// Vertices, faces and attributes of one region's boundary.
+nb::tuple region(const RunResult& result, int32_t label) {
+  TriangleMesh mesh = [&] {
+    const nb::gil_scoped_release released;
+    return region_of(result.mesh, label);
+  }();
+  const nb::object owner = nb::cast(std::move(mesh));
+  const auto& kept = nb::cast<const TriangleMesh&>(owner);
+  return nb::make_tuple(rows_of(kept.vertices, owner), rows_of(kept.triangles, owner), attributes_of(kept));
 }
 
 }  // namespace
@@ -41,6 +55,9 @@ void bind_result(nb::module_& m) {
       .def_prop_ro("digest", [](const RunResult& r) { return digest_text(digest(r.mesh)); })
       .def_ro("gates", &RunResult::gates)
       .def_ro("missed_gates", &RunResult::missed_gates)
+      .def("region", region, nb::arg("label"),
+           nb::sig("def region(self, label: int) -> tuple[typing.Any, typing.Any, list[tuple[str, str, typing.Any, "
+                   "list[str]]]]"))
       .def("save", save, nb::arg("path"), nb::arg("overwrite"), nb::call_guard<nb::gil_scoped_release>());
 }
 

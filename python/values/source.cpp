@@ -20,6 +20,7 @@
 #include "isoshell/triangle_mesh.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/labels.h"
 
 namespace nb = nanobind;
 
@@ -121,6 +122,18 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
           {}};
 }
 
+Source labels(const AnyArray& values, const LabelLattice& lattice) {
+  const auto given = std::make_shared<LabelVolume>(label_volume_of(values, lattice));
+  return {"",
+          [given](const RunRequest& request, const Context& context) {
+            refuse_iso(request);
+            const LabelVolume volume = std::move(*given);  // freed when its walls are there
+            return input_of(volume, "labels", context.memory_limit_bytes, request.tell);
+          },
+          {},
+          {}};
+}
+
 void set_velocities(Source& source, const AnyArray& vectors, const Triple& spacing, const Triple& origin) {
   const float* first = floats_of("velocities", vectors, 4);
   const auto part = [&](int64_t axis) { return lattice(first + axis * vectors.stride(3), vectors, spacing, origin); };
@@ -169,6 +182,8 @@ void bind_source(nb::module_& m) {
       .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
                   nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
                           "float, float]) -> Source"))
+      .def_static("labels", labels, nb::arg("values"), nb::arg("lattice"),
+                  nb::sig("def labels(values: typing.Any, lattice: LabelLattice) -> Source"))
       .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),
            nb::arg("faces"),
            nb::sig("def set_velocities_of_vertices(self, velocities: typing.Any, vertices: typing.Any, faces: "

@@ -1,0 +1,120 @@
+"""Volumes of labels, whose regions a run meshes together."""
+
+from __future__ import annotations
+
+import operator
+import os
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
+
+from . import _isoshell
+from ._arrays import array_of, triple_of
+from ._errors import Error
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Triple = Tuple[float, float, float]
+
+INT32 = (-(2**31), 2**31 - 1)
+
+
+class Labels:
+    """Labels of voxels: a segmentation, the grains of a polycrystal, the phases of a material.
+
+    A region is all voxels of one label; what is outside of the array is background. The result has the walls between
+    regions once, and the closed boundary of each: see Result.regions and Result.region.
+
+    Args:
+        array: (X, Y, Z) whole numbers of any type and strides that fit int32; voxel (i, j, k) is centred at
+            origin + (i, j, k) * spacing. Where the array begins with z, give array.transpose(2, 1, 0).
+        spacing: world units from a voxel to the next, one number or one an axis.
+        origin: the centre of voxel (0, 0, 0), world units.
+        affine: (4, 4), from (i, j, k, 1) to world units, as nibabel has it; instead of spacing and origin. It may turn,
+            skew and mirror.
+        names: what regions are called, by label.
+        background: the label of what is no region.
+    """
+
+    def __init__(self, array: Any, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), affine: Any = None,
+                 names: Optional[Mapping[int, str]] = None, background: int = 0) -> None:
+        self.array = array
+        self.spacing = spacing
+        self.origin = origin
+        self.affine = affine
+        self.names = dict(names or {})
+        self.background = background
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write an Int32Grid to a .vdb file, which the command and remesh() read as these labels.
+
+        Raises:
+            Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True; of code
+                USAGE for what remesh() refuses.
+        """
+        _isoshell.write_labels(os.fsdecode(path), values_of(self), lattice_of(self), overwrite)
+
+
+def values_of(labels: Labels) -> np.ndarray[Any, Any]:
+    """The array as whole numbers."""
+    import numpy as np
+
+    values = array_of("labels", labels.array)
+    if values.dtype.kind == "f":
+        raise Error(f"labels must be whole numbers, and are {values.dtype}; round them: "
+                    "numpy.rint(array).astype(numpy.int32)")
+    return values.astype(np.uint8) if values.dtype.kind == "b" else values
+
+
+def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
+    """Where the voxels are, and what their regions are called."""
+    if labels.affine is None:
+        origin, steps = _of_spacing(labels.spacing, labels.origin)
+    else:
+        origin, steps = _of_affine(labels)
+    names = {label_of("a key of names", label): _name(label, name) for label, name in labels.names.items()}
+    return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names)
+
+
+def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:
+    x, y, z = triple_of("spacing", spacing)
+    if not min(x, y, z) > 0:
+        raise Error(f"spacing must be above 0, and is {(x, y, z)}; a volume that is mirrored needs affine")
+    return triple_of("origin", origin), [(x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)]
+
+
+def _of_affine(labels: Labels) -> tuple[Triple, list[Triple]]:
+    import numpy as np
+
+    if triple_of("spacing", labels.spacing) != (1, 1, 1) or triple_of("origin", labels.origin) != (0, 0, 0):
+        raise Error("affine says spacing and origin already; leave them out")
+    matrix = array_of("affine", labels.affine).astype(np.float64)
+    if matrix.shape != (4, 4):
+        raise Error(f"affine must have the shape (4, 4), and has {matrix.shape}")
+    if not np.array_equal(matrix[3], (0, 0, 0, 1)):
+        raise Error(f"the last row of affine must be 0, 0, 0, 1, and is {', '.join(f'{v:g}' for v in matrix[3])}")
+    first, second, third, origin = (_as_triple(matrix[:3, column]) for column in range(4))
+    return origin, [first, second, third]
+
+
+def _as_triple(numbers: np.ndarray[Any, Any]) -> Triple:
+    x, y, z = numbers.tolist()
+    return x, y, z
+
+
+def label_of(argument: str, value: Any) -> int:
+    """A label as int, which 32 bits hold."""
+    try:
+        label = operator.index(value)
+    except TypeError:
+        raise Error(f"{argument} is {value!r}; labels are whole numbers") from None
+    if not INT32[0] <= label <= INT32[1]:
+        raise Error(f"{argument} is {label}; labels are whole numbers from {INT32[0]} to {INT32[1]}")
+    return label
+
+
+def _name(label: Any, name: Any) -> str:
+    if not isinstance(name, str):
+        raise Error(f"names[{label!r}] is {name!r}; it must be text")
+    if not name.strip() or not name.isprintable():
+        raise Error(f"names[{label!r}] is {name!r}; a name is one line of text that can be printed")
+    return name

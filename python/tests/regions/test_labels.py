@@ -1,0 +1,254 @@
+"""Volumes of labels: grains by formula, what is refused, and the regions that a result has."""
+
+from __future__ import annotations
+
+import json
+import pickle
+
+import isoshell
+import numpy as np
+import pytest
+from isoshell import ErrorCode, Labels
+
+QUICK = {"vertices": 3000, "device": "cpu"}
+N = 24
+
+
+def grains(n: int = N, count: int = 5) -> np.ndarray:
+    """A polycrystal that fills a cube: each voxel has the label of the nearest of a few random points, from 1."""
+    points = np.random.default_rng(5).uniform(0, n, (count, 3))
+    at = np.stack(np.meshgrid(*[np.arange(n)] * 3, indexing="ij"), axis=-1)[..., None, :]
+    return (np.argmin(((at - points) ** 2).sum(axis=-1), axis=-1) + 1).astype(np.int32)
+
+
+@pytest.fixture(scope="module")
+def polycrystal() -> isoshell.Result:
+    return isoshell.remesh(Labels(grains(), names={1: "ferrite", 3: "pearlite"}), stats=True, **QUICK)
+
+
+def is_closed(faces: np.ndarray) -> bool:
+    """Every edge has two faces, which pass it in opposite directions."""
+    passed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    key = passed.min(axis=1) * (passed.max() + 1) + passed.max(axis=1)
+    _, edge, uses = np.unique(key, return_inverse=True, return_counts=True)
+    turns = np.bincount(edge, weights=np.sign(passed[:, 1] - passed[:, 0]))
+    return bool(np.all(uses == 2) and np.all(turns == 0))
+
+
+def volume_of(vertices: np.ndarray, faces: np.ndarray) -> float:
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6
+
+
+def digest(labels: Labels) -> str:
+    return isoshell.remesh(labels, **QUICK).digest
+
+
+def test_each_face_has_the_region_behind_it_and_the_one_in_front(polycrystal):
+    pairs = polycrystal.regions["labels"]
+    assert pairs.shape == (len(polycrystal.faces), 2) and pairs.dtype == np.int32
+    assert polycrystal.regions["background"] == 0 and np.all(pairs[:, 0] != 0)
+    assert np.unique(pairs).tolist() == [0, 1, 2, 3, 4, 5]
+    middles = polycrystal.vertices[polycrystal.faces].mean(axis=1)
+    a, b, c = polycrystal.vertices[polycrystal.faces].transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    padded = np.pad(grains(), 3)
+    sides = [padded[tuple(np.rint(middles + way * normals).astype(int).T + 3)] for way in (-1.2, 1.2)]
+    assert np.mean((sides[0] == pairs[:, 0]) & (sides[1] == pairs[:, 1])) > 0.9
+
+
+def test_every_region_is_a_closed_mesh_as_large_as_its_voxels(polycrystal):
+    counts = np.bincount(grains().ravel())
+    for label in range(1, 6):
+        region = polycrystal.region(label)
+        assert is_closed(region.faces)
+        assert volume_of(region.vertices, region.faces) == pytest.approx(counts[label], rel=0.08)
+        assert len(region.faces) == np.any(polycrystal.regions["labels"] == label, axis=1).sum()
+        kept = {tuple(row) for row in polycrystal.vertices.tolist()}
+        assert {tuple(row) for row in region.vertices.tolist()} <= kept
+
+
+def test_the_report_counts_what_the_meshes_of_regions_have(polycrystal):
+    census = polycrystal.report["regions"]
+    assert polycrystal.report["input"]["kind"] == "labels"
+    assert census["every_region_closed"] and census["self_intersecting_pairs"] == 0
+    for counted in census["regions"]:
+        region = polycrystal.region(counted["label"])
+        assert counted["triangles"] == len(region.faces) and counted["closed"]
+        assert counted["volume"] == pytest.approx(volume_of(region.vertices, region.faces))
+    assert [counted["name"] for counted in census["regions"]] == ["ferrite", None, "pearlite", None, None]
+
+
+def test_regions_have_their_names(polycrystal):
+    assert polycrystal.region_names == {1: "ferrite", 3: "pearlite"}
+    assert polycrystal.region(3).name == "pearlite" and polycrystal.region(2).name == "region 2"
+
+
+def test_a_region_is_a_source(polycrystal):
+    again = isoshell.remesh(polycrystal.region(2), vertices=300, device="cpu", features="off")
+    assert again.report["topology"]["closed"] and len(again.regions["labels"]) == 0
+
+
+@pytest.mark.parametrize("label", [0, 9, 2**40, 1.5])
+def test_a_region_that_is_not_there_is_refused(polycrystal, label):
+    with pytest.raises(isoshell.Error) as caught:
+        polycrystal.region(label)
+    assert caught.value.code == ErrorCode.USAGE
+
+
+def test_a_result_without_regions_says_so(ball):
+    result = isoshell.remesh(ball, vertices=100, resolution=32, device="cpu")
+    assert result.region_names == {} and result.regions["labels"].shape == (0, 2) and result.report["regions"] is None
+    with pytest.raises(isoshell.Error):
+        result.region(1)
+
+
+def test_labels_in_any_order_and_type_give_the_same_mesh(polycrystal):
+    labels = grains()
+    for kind in (np.uint8, np.int8, np.int16, np.uint16, np.uint32, np.int64, np.uint64, ">i4", ">u8"):
+        assert digest(Labels(labels.astype(kind))) == polycrystal.digest, kind
+    wide = np.zeros((2 * N, N + 3, N), np.uint16)
+    wide[::2, 3:] = labels
+    for order in (np.asfortranarray(labels), labels[::-1].copy()[::-1], wide[::2, 3:], labels.tolist(),
+                  np.ascontiguousarray(labels.transpose(2, 1, 0)).transpose(2, 1, 0)):
+        assert digest(Labels(order)) == polycrystal.digest
+
+
+def test_true_and_false_are_one_and_zero():
+    inside = grains() == 2
+    assert digest(Labels(inside)) == digest(Labels(inside.astype(np.int32)))
+
+
+def test_a_voxel_is_centred_at_origin_and_multiples_of_spacing():
+    labels = np.zeros((9, 8, 7), np.uint8)
+    labels[2:7, 2:6, 2:5] = 4
+    result = isoshell.remesh(Labels(labels, spacing=(1, 2, 3), origin=(10, 20, 30)), vertices=500, device="cpu")
+    middle = (result.vertices.min(axis=0) + result.vertices.max(axis=0)) / 2
+    assert middle == pytest.approx((10 + 4, 20 + 2 * 3.5, 30 + 3 * 3), abs=0.1)
+    assert np.all(np.abs(np.ptp(result.vertices, axis=0) - (5, 8, 9)) < (1, 2, 3))  # half a voxel at each end
+
+
+def test_an_affine_says_the_same_and_may_mirror():
+    labels, spacing, origin = grains(), (0.5, 0.5, 0.75), (1, -2, 3)
+    affine = np.diag([*spacing, 1.0])
+    affine[:3, 3] = origin
+    assert digest(Labels(labels, affine=affine)) == digest(Labels(labels, spacing, origin))
+    mirrored = affine @ np.diag([-1, 1, 1, 1])
+    result = isoshell.remesh(Labels(labels, affine=mirrored), **QUICK)
+    for label in range(1, 6):
+        region = result.region(label)
+        assert is_closed(region.faces)
+        assert volume_of(region.vertices, region.faces) == pytest.approx((labels == label).sum() * 0.1875, rel=0.08)
+
+
+def test_the_background_may_be_any_label():
+    labels = np.where(grains() == 1, -7, grains())
+    pairs = isoshell.remesh(Labels(labels, background=-7), **QUICK).regions
+    assert pairs["background"] == -7 and np.unique(pairs["labels"]).tolist() == [-7, 2, 3, 4, 5]
+
+
+LARGE = np.array([0, 1, 2**31, 0, 1, 2, 0, 1], np.int64).reshape(2, 2, 2)
+
+
+@pytest.mark.parametrize("labels, said", [
+    (Labels(LARGE), r"labels\[0, 1, 0\] is 2147483648"),
+    (Labels(LARGE.astype(np.uint64)), r"labels\[0, 1, 0\] is 2147483648"),
+    (Labels(-LARGE - 1), r"labels\[0, 1, 0\] is -2147483649"),
+    (Labels(np.full((1, 1, 1), 2**64 - 1, np.uint64)), r"labels\[0, 0, 0\] is 18446744073709551615"),
+    (Labels(np.ones((2, 2, 2))), "round them"),
+    (Labels(np.ones((2, 2, 2), np.float16)), "round them"),
+    (Labels(np.ones((2, 2, 2), complex)), "labels must be an array of numbers"),
+    (Labels(np.ones((2, 2), int)), "labels must have 3 dimensions"),
+    (Labels(np.ones((0, 2, 2), int)), "labels"),
+    (Labels(grains(), spacing=0), "spacing must be above 0"),
+    (Labels(grains(), spacing=(1, -1, 1)), "needs affine"),
+    (Labels(grains(), spacing=(1, 1)), "spacing must be one number or three"),
+    (Labels(grains(), spacing=np.nan), "spacing must be above 0"),
+    (Labels(grains(), origin=(0, np.inf, 0)), "labels"),
+    (Labels(grains(), affine=np.eye(3)), r"affine must have the shape \(4, 4\)"),
+    (Labels(grains(), affine=np.ones((4, 4))), "the last row of affine"),
+    (Labels(grains(), affine=np.diag([1, 1, 0, 1])), "span no volume"),
+    (Labels(grains(), affine=np.eye(4), spacing=2), "affine says spacing"),
+    (Labels(grains(), names={"a": "b"}), "a key of names is 'a'"),
+    (Labels(grains(), names={1: 2}), r"names\[1\] is 2"),
+    (Labels(grains(), names={1: "a\nb"}), r"names\[1\]"),
+    (Labels(grains(), names={2**31: "a"}), "a key of names is 2147483648"),
+    (Labels(grains(), background=0.5), "background is 0.5"),
+])
+def test_what_is_no_volume_of_labels_is_refused(labels, said):
+    with pytest.raises(isoshell.Error, match=said) as caught:
+        isoshell.remesh(labels, **QUICK)
+    assert caught.value.code == ErrorCode.USAGE
+
+
+def test_nothing_but_background_is_nothing_to_mesh():
+    with pytest.raises(isoshell.Error, match="background") as caught:
+        isoshell.remesh(Labels(np.zeros((4, 4, 4), int)))
+    assert caught.value.code == ErrorCode.NOTHING_TO_MESH
+
+
+def test_isovalues_are_for_volumes_of_values():
+    with pytest.raises(isoshell.Error, match="iso is for volumes"):
+        isoshell.remesh(Labels(grains()), iso=1, **QUICK)
+
+
+def test_labels_are_meshed_in_contexts_and_side_by_side_and_estimated(polycrystal):
+    labels = Labels(grains())
+    with isoshell.Context(device="cpu", threads=1) as context:
+        assert isoshell.remesh(labels, context=context, vertices=3000).digest == polycrystal.digest
+        assert isoshell.estimate(labels, context=context, vertices=3000)["memory_bytes"] > 0
+    many = isoshell.remesh_many([labels, labels], workers=2, **QUICK)
+    assert [result.digest for result in many] == [polycrystal.digest] * 2
+
+
+def test_labels_can_be_pickled(polycrystal):
+    assert digest(pickle.loads(pickle.dumps(Labels(grains())))) == polycrystal.digest
+
+
+def test_a_file_of_labels_gives_the_command_and_python_the_same_mesh(tmp_path, command, polycrystal):
+    affine = np.array([[0.5, 0, 0, 1], [0, 0.5, 0, 2], [0, 0.25, 1, 3], [0, 0, 0, 1]])
+    labels = Labels(grains(), affine=affine, names={1: "ferrite", 3: "pearlite"})
+    labels.save(tmp_path / "grains.vdb")
+    made = isoshell.remesh(labels, **QUICK)
+    read = isoshell.remesh(tmp_path / "grains.vdb", **QUICK)
+    assert read.digest == made.digest and read.region_names == {1: "ferrite", 3: "pearlite"}
+    assert np.array_equal(read.regions["labels"], made.regions["labels"])
+    done = command(tmp_path / "grains.vdb", tmp_path / "grains.ply", "--vertices", 3000, "--device", "cpu", "--stats",
+                   tmp_path / "stats.json", "--require", "regions")
+    assert done.returncode == 0, done.stderr
+    stats = json.loads((tmp_path / "stats.json").read_text())
+    assert len(stats["regions"]["regions"]) == 5
+    made.save(tmp_path / "python.ply")
+    assert (tmp_path / "python.ply").read_bytes() == (tmp_path / "grains.ply").read_bytes()
+    with pytest.raises(isoshell.Error) as caught:
+        labels.save(tmp_path / "grains.vdb")
+    assert caught.value.code == ErrorCode.UNWRITABLE_OUTPUT
+    labels.save(tmp_path / "grains.vdb", overwrite=True)
+
+
+def test_regions_are_split_into_files_of_their_own(tmp_path, polycrystal):
+    result = isoshell.remesh(Labels(grains(), names={1: "ferrite", 3: "a/b c"}), output=tmp_path / "all.off",
+                             split_regions=tmp_path / "parts", **QUICK)
+    files = sorted(path.name for path in (tmp_path / "parts").iterdir())
+    assert files == ["2.off", "4.off", "5.off", "a_b_c.off", "ferrite.off"]
+    info = isoshell.mesh_info(tmp_path / "parts/a_b_c.off", require="closed")
+    assert info["topology"]["triangles"] == len(result.region(3).faces)
+
+
+def test_a_file_of_a_region_that_is_there_is_found_before_the_work(tmp_path):
+    (tmp_path / "2.ply").write_text("precious")
+    with pytest.raises(isoshell.Error, match="2.ply: exists already") as caught:
+        isoshell.remesh(Labels(grains()), split_regions=tmp_path, **QUICK)
+    assert caught.value.code == ErrorCode.UNWRITABLE_OUTPUT
+    assert [path.name for path in tmp_path.iterdir()] == ["2.ply"]
+    isoshell.remesh(Labels(grains()), split_regions=tmp_path, force=True, **QUICK)
+    assert len(list(tmp_path.iterdir())) == 5 and (tmp_path / "2.ply").read_bytes()[:4] == b"ply\n"
+
+
+def test_surfaces_without_regions_are_not_split(tmp_path, ball):
+    with pytest.raises(isoshell.Error, match="split_regions is for volumes of labels"):
+        isoshell.remesh(ball, vertices=100, split_regions=tmp_path / "parts", device="cpu")
+    assert not (tmp_path / "parts").exists()
+    with pytest.raises(isoshell.Error, match="split_regions"):
+        isoshell.remesh_many([ball], split_regions=tmp_path)

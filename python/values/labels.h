@@ -1,0 +1,31 @@
+// Volumes of labels: what one run starts from, and files of them.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "isoshell/regions.h"
+#include "values/arrays.h"
+
+namespace isoshell::python {
+
+/// What Python says of a volume beside its labels.
+struct LabelLattice {
+  std::array<double, 3> origin;                ///< the centre of the first voxel, world units
+  std::array<std::array<double, 3>, 3> steps;  ///< from a voxel to the next, along each axis of the array
+  int32_t background = 0;
+  std::map<int32_t, std::string> names;
+};
+
+/// Throws: usage, as labels_of() does.
+LabelVolume label_volume_of(const AnyArray& labels, const LabelLattice& lattice);
+
+/// LabelLattice and write_labels.
+void bind_labels(nanobind::module_& m);
+
+}  // namespace isoshell::python
