@@ -10,7 +10,7 @@ from ._context import Context
 from ._errors import Error, note, warn
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._result import Result, checked
-from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of
+from ._sources import Mesh, SourceLike, is_true_or_false, opened, sizing_of, source_of
 from ._usd import is_usd
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def result_of(made: _isoshell.RunResult, start: _isoshell.Source, keywords: Keyw
               volumes: list[str]) -> Result:
     """What a run made of a source, with what a report would need of it."""
     return Result(made, start if start.is_file else None, [word for word in keywords if word[0] in READING],
-                  getattr(source, "origin", None), volumes)
+                  source.origin if isinstance(source, Mesh) else None, volumes)
 
 
 def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> None:

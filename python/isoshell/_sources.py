@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequen
 
 from ._arrays import array_of, triple_of
 from ._errors import Error
-from ._isoshell import Source
+from ._isoshell import RunResult, Source
 from ._labels import Labels, lattice_of, values_of
 from ._result import Result
 from ._usd import Origin, is_usd
@@ -42,7 +42,8 @@ class PolyDataLike(Protocol):
 class Mesh:
     """Triangles with attributes, which the result keeps: see the option `attributes`.
 
-    Where uv, texnumber or values with labels jump, the result has edges. A Result that is a source has its attributes.
+    Where uv, texnumber or values with labels jump, the result has edges. A Result that is a source has its attributes
+    and regions.
 
     Args:
         vertices: (K, 3), world units.
@@ -168,7 +169,7 @@ def _source_of(given: Any) -> Source:
         return _source_of_faces("(vertices, faces)", given[0], given[1])
     if isinstance(given, Result):
         named = [attribute for attribute in given._named_attributes() if attribute[0] != "gap"]
-        return _source_of_triangles("result", given.vertices, given.faces, named)
+        return _source_of_triangles("result", given.vertices, given.faces, named, given._made)
     if isinstance(given, Mesh):
         return _source_of_triangles(given.name, given.vertices, given.faces, _attributes_of(given))
     for name in ("vertices", "points"):
@@ -206,7 +207,7 @@ def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
     if indices.ndim == 2 and indices.shape[1] > 3:
         sizes = np.full(indices.shape[0], indices.shape[1], np.int64)
         return Source.polygons(name, positions, sizes, indices.reshape(-1))
-    return Source.triangles(name, positions, indices, [])
+    return Source.triangles(name, positions, indices, [], None)
 
 
 def _attributes_of(mesh: Mesh) -> list[Named]:
@@ -215,10 +216,11 @@ def _attributes_of(mesh: Mesh) -> list[Named]:
             for domain, values_of in domains.items() for name, values in values_of.items()]
 
 
-def _source_of_triangles(name: str, vertices: Any, faces: Any, attributes: Sequence[Named]) -> Source:
+def _source_of_triangles(name: str, vertices: Any, faces: Any, attributes: Sequence[Named],
+                         regions_of: Optional[RunResult] = None) -> Source:
     given = [(attribute.removesuffix(f":{domain}"), domain, _rows(attribute, domain, values), labels)
              for attribute, domain, values, labels in attributes]
-    return Source.triangles(name, array_of("vertices", vertices), array_of("faces", faces), given)
+    return Source.triangles(name, array_of("vertices", vertices), array_of("faces", faces), given, regions_of)
 
 
 def _rows(name: str, domain: str, values: Any) -> np.ndarray[Any, Any]:

@@ -49,12 +49,13 @@ Source surface(const std::string& name, TriangleSoup soup) {
 using GivenAttribute = std::tuple<std::string, std::string, AnyArray, std::vector<std::string>>;
 
 Source triangles(const std::string& name, const AnyArray& vertices, const AnyArray& faces,
-                 const std::vector<GivenAttribute>& attributes) {
+                 const std::vector<GivenAttribute>& attributes, const RunResult* regions_of) {
   TriangleSoup soup;
   soup.vertices = points_of("vertices", vertices);
   soup.triangles = triangles_of("faces", faces, soup.vertices.size());
   for (const auto& [attribute, domain, values, labels] : attributes)
     soup.attributes.push_back(attribute_of(attribute, domain, values, labels));
+  if (regions_of) soup.regions = regions_of->mesh.regions;
   return surface(name, std::move(soup));
 }
 
@@ -172,8 +173,9 @@ void bind_source(nb::module_& m) {
       .def_prop_ro("is_file", &Source::is_file)
       .def_static("file", file, nb::arg("path"))
       .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"), nb::arg("attributes"),
+                  nb::arg("regions_of").none(),
                   nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any, attributes: "
-                          "list[tuple[str, str, typing.Any, list[str]]]) -> Source"))
+                          "list[tuple[str, str, typing.Any, list[str]]], regions_of: RunResult | None) -> Source"))
       .def_static("polygons", polygons, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
                   nb::sig("def polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "
                           "Source"))

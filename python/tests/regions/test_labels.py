@@ -252,3 +252,32 @@ def test_surfaces_without_regions_are_not_split(tmp_path, ball):
     assert not (tmp_path / "parts").exists()
     with pytest.raises(isoshell.Error, match="split_regions"):
         isoshell.remesh_many([ball], split_regions=tmp_path)
+
+
+def test_a_result_that_is_a_source_keeps_its_regions_and_their_names(tmp_path, polycrystal):
+    again = isoshell.remesh(polycrystal, vertices=1000, device="cpu")
+    assert again.report["regions"]["every_region_closed"] and again.region_names == polycrystal.region_names
+    assert np.unique(again.regions["labels"]).tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_frames_of_labels_have_regions_and_are_not_split(tmp_path):
+    frames = isoshell.remesh_sequence([Labels(grains())] * 2, vertices=1000, device="cpu")
+    assert [frame.report["regions"]["every_region_closed"] for frame in frames] == [True, True]
+    with pytest.raises(isoshell.Error, match="split_regions is for one frame"):
+        isoshell.remesh_sequence([Labels(grains())], split_regions=tmp_path)
+
+
+def test_a_stage_of_usd_of_labels_has_subsets_and_files_of_regions_beside_it(tmp_path):
+    pytest.importorskip("pxr")
+    isoshell.remesh(Labels(grains(), origin=(1, 2, 3)), output=tmp_path / "grains.usda", split_regions=tmp_path / "parts",
+                    **QUICK)
+    assert "region_1_0" in (tmp_path / "grains.usda").read_text()
+    assert sorted(path.name for path in (tmp_path / "parts").iterdir()) == [f"{label}.ply" for label in range(1, 6)]
+
+
+def test_the_certificate_has_distances_from_the_walls(polycrystal):
+    distance = polycrystal.report["distance"]
+    assert 0 < distance["to_input_max"] < 1 and 0 < distance["from_input_max"] < 1
+    with pytest.raises(isoshell.Error, match="max-deviation") as caught:
+        isoshell.remesh(Labels(grains()), require="max-deviation=0.001", **QUICK)
+    assert caught.value.code == ErrorCode.GATE_FAILED
