@@ -56,8 +56,8 @@ def remesh_sequence(source: Union[Path, Iterable[SourceLike]], *, frames: Option
         no_coherence: begin every frame anew.
         keep_going: go on after a frame that cannot be read or meshed, or misses a requirement: see Frames.errors.
         resume: leave out the frames whose output is there, and go on after them, to the same bytes; in PLY.
-        context, options: as remesh() takes them, but for report and split_regions; stats, save_shell and save_voronoi are
-            names with #### or %04d.
+        context, options: as remesh() takes them, but for report and split_regions; stats, save_shell and save_voronoi
+            are names with #### or %04d.
 
     Returns:
         An iterator of the results.
