@@ -33,16 +33,19 @@ class Labels:
             skew and mirror.
         names: what regions are called, by label.
         background: the label of what is no region.
+        smallest_island: islands of fewer voxels, connected through faces, get the label around them, which is warned of;
+            the largest one of each region stays. 0: all stay.
     """
 
     def __init__(self, array: Any, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), affine: Any = None,
-                 names: Optional[Mapping[int, str]] = None, background: int = 0) -> None:
+                 names: Optional[Mapping[int, str]] = None, background: int = 0, smallest_island: int = 8) -> None:
         self.array = array
         self.spacing = spacing
         self.origin = origin
         self.affine = affine
         self.names = dict(names or {})
         self.background = background
+        self.smallest_island = smallest_island
 
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write an Int32Grid to a .vdb file, which the command and remesh() read as these labels.
@@ -72,7 +75,8 @@ def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
     else:
         origin, steps = _of_affine(labels)
     names = {label_of("a key of names", label): _name(label, name) for label, name in labels.names.items()}
-    return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names)
+    return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names,
+                                  label_of("smallest_island", labels.smallest_island))
 
 
 def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:

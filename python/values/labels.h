@@ -20,6 +20,7 @@ struct LabelLattice {
   std::array<std::array<double, 3>, 3> steps;  ///< from a voxel to the next, along each axis of the array
   int32_t background = 0;
   std::map<int32_t, std::string> names;
+  int64_t smallest_island_vox = 8;
 };
 
 /// Throws: usage, as labels_of() does.

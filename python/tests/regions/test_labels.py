@@ -202,6 +202,16 @@ def test_labels_are_meshed_in_contexts_and_side_by_side_and_estimated(polycrysta
     assert [result.digest for result in many] == [polycrystal.digest] * 2
 
 
+def test_islands_of_few_voxels_are_absorbed_unless_all_shall_stay():
+    speckled = np.ones((14, 14, 14), np.int32)
+    speckled[3, 3, 3] = speckled[9:12, 9:12, 9:12] = 2
+    with pytest.warns(isoshell.RunWarning, match="1 island of fewer than 8 voxels, 1 in all"):
+        absorbed = isoshell.remesh(Labels(speckled), stats=True, **QUICK)
+    kept = isoshell.remesh(Labels(speckled, smallest_island=0), stats=True, **QUICK)
+    components = [[region["components"] for region in result.report["regions"]["regions"]] for result in (absorbed, kept)]
+    assert components[0][1] == 1 and components[1][1] == 2
+
+
 def test_labels_can_be_pickled(polycrystal):
     assert digest(pickle.loads(pickle.dumps(Labels(grains())))) == polycrystal.digest
 
