@@ -1,6 +1,7 @@
 // Which boxes on the lattice meet a box.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -21,7 +22,24 @@ class BoxTree {
     return list_.empty() || for_all_below({0, 0, list_.size()}, box, visit);
   }
 
+  /// Calls visit(i, j) for every two boxes that meet, once in all groups together: neighbours are looked for by a few
+  /// boxes at a time, which are near one another. In any order.
+  size_t groups() const { return (list_.size() + kGroup - 1) / kGroup; }
+  template <class Visit>
+  void for_pairs_of(size_t group, Visit visit) const {
+    const size_t begin = group * kGroup, end = std::min(list_.size(), begin + kGroup);
+    BoxQ8 around = list_[begin].box;
+    for (size_t i = begin + 1; i < end; ++i) around = joined(around, list_[i].box);
+    const auto look = [&](size_t i) {
+      for (size_t j = begin; j < std::min(i, end); ++j)
+        if (boxes_meet(list_[j].box, list_[i].box)) visit(list_[j].number, list_[i].number);
+    };
+    look_behind({0, 0, list_.size()}, begin, around, look);
+  }
+
  private:
+  static constexpr size_t kGroup = 8;
+
   struct Numbered {
     BoxQ8 box;
     uint32_t number;
@@ -41,6 +59,18 @@ class BoxTree {
     for (size_t i = node.begin; i < node.end; ++i)
       if (boxes_meet(list_[i].box, box) && !visit(list_[i].number)) return false;
     return true;
+  }
+  /// Calls look(i) for the places i of list_, none before `begin`, whose boxes meet this one.
+  template <class Look>
+  void look_behind(const Node& node, size_t begin, const BoxQ8& box, const Look& look) const {
+    if (node.end <= begin || !boxes_meet(around_[node.number], box)) return;
+    if (!node.is_leaf()) {
+      look_behind(node.lower(), begin, box, look);
+      look_behind(node.upper(), begin, box, look);
+      return;
+    }
+    for (size_t i = std::max(node.begin, begin); i < node.end; ++i)
+      if (boxes_meet(list_[i].box, box)) look(i);
   }
   void arrange(const Node& node);
 

@@ -9,7 +9,28 @@
 namespace isoshell {
 namespace {
 
-constexpr size_t kChunk = 1024;
+constexpr size_t kGroupsOfTask = 128;
+
+/// Whether the corners of a triangle that are not another one's lie on one side of that one's plane, and not in it:
+/// they meet in shared corners at most. Most neighbours in a mesh do.
+bool is_beside_plane(const CornersOfTriangle& t, const CornersOfTriangle& of) {
+  const Vec64 normal = cross(difference(of.at[1], of.at[0]), difference(of.at[2], of.at[0]));
+  int low = 1, high = -1;
+  for (int j = 0; j < 3; ++j) {
+    const uint32_t id = t.id[j];
+    if (id == of.id[0] || id == of.id[1] || id == of.id[2]) continue;
+    const Vec64 r = difference(t.at[j], of.at[0]);
+    const Int128 volume = Int128(normal.x) * r.x + Int128(normal.y) * r.y + Int128(normal.z) * r.z;
+    const int side = (volume > 0) - (volume < 0);
+    low = std::min(low, side);
+    high = std::max(high, side);
+  }
+  return low == high && low != 0;
+}
+
+bool do_intersect(const CornersOfTriangle& s, const CornersOfTriangle& t) {
+  return !is_beside_plane(t, s) && !is_beside_plane(s, t) && triangles_intersect(s, t);
+}
 
 }  // namespace
 
@@ -37,20 +58,18 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
     boxes[t] = box_of(position[i.a], position[i.b], position[i.c]);
   }
   const BoxTree tree(boxes);
-  std::vector<std::vector<std::array<uint32_t, 2>>> parts((boxes.size() + kChunk - 1) / kChunk);
-  for_each_index(size_t(0), parts.size(), [&](size_t c) {
-    for (size_t t = c * kChunk; t < std::min(boxes.size(), (c + 1) * kChunk); ++t) {
+  std::vector<std::vector<std::array<uint32_t, 2>>> parts((tree.groups() + kGroupsOfTask - 1) / kGroupsOfTask);
+  for_each_index(size_t(0), parts.size(), [&](size_t p) {
+    for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g) {
       if (stop.load(std::memory_order_relaxed)) return;
-      const CornersOfTriangle here = corners(uint32_t(t));
-      tree.for_all_meeting(boxes[t], [&](uint32_t other) {
-        if (other > t && triangles_intersect(here, corners(other))) parts[c].push_back({uint32_t(t), other});
-        return true;
+      tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) {
+        if (do_intersect(corners(s), corners(t))) parts[p].push_back({std::min(s, t), std::max(s, t)});
       });
     }
-    std::sort(parts[c].begin(), parts[c].end());
   });
   std::vector<std::array<uint32_t, 2>> found;
   for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+  std::sort(found.begin(), found.end());
   return found;
 }
 

@@ -13,7 +13,7 @@ namespace isoshell {
 
 /// The pairs of triangles that meet outside of the corners that they share, exactly tested; ascending, the smaller one
 /// first. `joined`: of the first vertices the one that each is a copy of (see FixedSeeds). Some are missing once `stop`
-/// is set. Cost: a tree of boxes, and for each triangle a look at all whose boxes meet its own.
+/// is set. Cost: a tree of boxes, for every few triangles a walk down it, and a look at all pairs whose boxes meet.
 std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position, View<const TriangleIndices> triangles,
                                                     View<const uint32_t> joined, const std::atomic<bool>& stop);
 

@@ -33,8 +33,8 @@ TEST_CASE("grains become one mesh of closed regions with the vertices that were 
   for (const auto& [label, world] : volumes_of_regions(mesh.vertices, mesh.triangles, mesh.regions)) {
     const auto voxels = double(std::count(volume.labels.begin(), volume.labels.end(), label));
     INFO("region " << label << " of " << voxels << " voxels");
-    CHECK(world > 0.85 * voxels);
-    CHECK(world < 1.15 * voxels);
+    CHECK(world > 0.95 * voxels);
+    CHECK(world < 1.05 * voxels);
   }
 }
 

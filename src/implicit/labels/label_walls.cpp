@@ -15,24 +15,22 @@ namespace {
 /// Labels at any place.
 class Labels {
  public:
-  explicit Labels(const LabelVolume& volume) : volume_(volume) {}
+  explicit Labels(const LabelVolume& volume)
+      : volume_(volume), outside_(size_t(volume.size_vox[0]), volume.background) {}
 
   int32_t size(int axis) const { return volume_.size_vox[size_t(axis)]; }
   int32_t background() const { return volume_.background; }
-  int32_t at(Voxel v) const {
-    const bool is_inside = v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size(0) && v.y < size(1) && v.z < size(2);
-    return is_inside ? volume_.labels[(size_t(v.z) * size_t(size(1)) + size_t(v.y)) * size_t(size(0)) + size_t(v.x)]
-                     : volume_.background;
+  /// As many labels as there are along x.
+  const int32_t* row(int32_t y, int32_t z) const {
+    const bool is_inside = y >= 0 && z >= 0 && y < size(1) && z < size(2);
+    return is_inside ? volume_.labels.data() + (size_t(z) * size_t(size(1)) + size_t(y)) * size_t(size(0))
+                     : outside_.data();
   }
-  std::array<int32_t, 8> around(Voxel corner) const {
-    std::array<int32_t, 8> label;
-    for (int o = 0; o < 8; ++o)
-      label[size_t(o)] = at({corner.x - 1 + (o & 1), corner.y - 1 + (o >> 1 & 1), corner.z - 1 + (o >> 2 & 1)});
-    return label;
-  }
+  int32_t at(Voxel v) const { return v.x >= 0 && v.x < size(0) ? row(v.y, v.z)[v.x] : background(); }
 
  private:
   const LabelVolume& volume_;
+  std::vector<int32_t> outside_;
 };
 
 Voxel stepped(Voxel v, int axis, int32_t by) {
@@ -48,25 +46,42 @@ struct UsedCorner {
 };
 
 /// The corners of one z.
-struct CornerLayer {
+class CornerLayer {
+ public:
   std::vector<UsedCorner> used;  ///< ascending by place
   uint32_t vertices = 0;
 
   CornerLayer() = default;
   CornerLayer(const Labels& labels, int32_t z) {
-    const int32_t width = labels.size(0) + 1;
-    for (int32_t y = 0; y <= labels.size(1); ++y)
+    const int32_t width = labels.size(0) + 1, background = labels.background();
+    for (int32_t y = 0; y <= labels.size(1); ++y) {
+      first_of_row_.push_back(uint32_t(used.size()));
+      const int32_t* const rows[4] = {labels.row(y - 1, z - 1), labels.row(y, z - 1), labels.row(y - 1, z),
+                                      labels.row(y, z)};
+      std::array<int32_t, 4> near{background, background, background, background}, far = near;
       for (int32_t x = 0; x < width; ++x) {
-        const std::array<int32_t, 8> label = labels.around({x, y, z});
-        if (std::all_of(label.begin(), label.end(), [&](int32_t l) { return l == label[0]; })) continue;
-        used.push_back({uint32_t(y) * uint32_t(width) + uint32_t(x), vertices, WallCorner(label)});
-        vertices += uint32_t(used.back().walls.sheets);
+        bool is_inside_one = true;
+        for (size_t k = 0; k < 4; ++k) {
+          far[k] = x + 1 < width ? rows[k][x] : background;
+          is_inside_one &= far[k] == near[0] && near[k] == near[0];
+        }
+        if (!is_inside_one) {
+          used.push_back({uint32_t(y) * uint32_t(width) + uint32_t(x), vertices,
+                          WallCorner({near[0], far[0], near[1], far[1], near[2], far[2], near[3], far[3]})});
+          vertices += uint32_t(used.back().walls.sheets);
+        }
+        near = far;
       }
+    }
+    first_of_row_.push_back(uint32_t(used.size()));
   }
-  const UsedCorner& at(uint32_t place) const {
-    return *std::lower_bound(used.begin(), used.end(), place,
-                             [](const UsedCorner& c, uint32_t p) { return c.place < p; });
+  const UsedCorner& at(int32_t y, uint32_t place) const {
+    const auto row = used.begin() + first_of_row_[size_t(y)], end = used.begin() + first_of_row_[size_t(y) + 1];
+    return *std::lower_bound(row, end, place, [](const UsedCorner& c, uint32_t p) { return c.place < p; });
   }
+
+ private:
+  std::vector<uint32_t> first_of_row_;  ///< into `used`, and one more
 };
 
 /// A pair of parted walls along a lattice edge: the vertex in its middle is of the layer of the edge's first corner.
@@ -174,7 +189,7 @@ class WallMaker {
 
   /// The vertex of a face at its corner that lies so on it: `octant` is that of the face's nearer voxel there.
   uint32_t vertex_at(Voxel corner, int octant, int axis) const {
-    const UsedCorner& used = corners_[size_t(corner.z)].at(place_of(corner));
+    const UsedCorner& used = corners_[size_t(corner.z)].at(corner.y, place_of(corner));
     return uint32_t(first_vertex_[size_t(corner.z)]) + used.first +
            used.walls.sheet_of_arc[size_t(arc_of(octant, axis))];
   }
@@ -198,6 +213,7 @@ class WallMaker {
                  {3, u, wall_beside(axis, u, false)},
                  {0, v, wall_beside(axis, v, true)}};
     std::vector<uint32_t> polygon;
+    polygon.reserve(8);
     for (int i = 0; i < 4; ++i) {
       polygon.push_back(vertex_at(corner[i], octant[i], axis));
       const Voxel from = corner[edge[i].from];
@@ -218,7 +234,6 @@ class WallMaker {
   void add_face(Voxel voxel, int axis, LabelWalls& out) const {
     const int32_t near = labels_.at(stepped(voxel, axis, -1)), far = labels_.at(voxel),
                   background = labels_.background();
-    if (near == far) return;
     std::vector<uint32_t> polygon = polygon_of(voxel, axis);  // as seen from the far side
     std::array<int32_t, 2> label{near, far};
     if (near == background || (far != background && far < near)) {
@@ -248,12 +263,20 @@ class WallMaker {
   /// Of the voxels of one z, and of those beyond the array.
   LabelWalls faces_of(int32_t z) const {
     LabelWalls out;
-    for (int32_t y = 0; y <= labels_.size(1); ++y)
-      for (int32_t x = 0; x <= labels_.size(0); ++x)
-        for (int axis = 0; axis < 3; ++axis) {
-          const bool is_beyond[3] = {x == labels_.size(0), y == labels_.size(1), z == labels_.size(2)};
-          if (!is_beyond[(axis + 1) % 3] && !is_beyond[(axis + 2) % 3]) add_face({x, y, z}, axis, out);
-        }
+    for (int32_t y = 0; y <= labels_.size(1); ++y) {
+      const int32_t* const row = labels_.row(y, z);
+      const int32_t* const beside[2] = {labels_.row(y - 1, z), labels_.row(y, z - 1)};
+      const bool is_beyond[2] = {y == labels_.size(1), z == labels_.size(2)};
+      int32_t near = labels_.background();
+      for (int32_t x = 0; x < labels_.size(0); ++x) {
+        const int32_t far = row[x];
+        if (near != far) add_face({x, y, z}, 0, out);
+        if (beside[0][x] != far && !is_beyond[1]) add_face({x, y, z}, 1, out);
+        if (beside[1][x] != far && !is_beyond[0]) add_face({x, y, z}, 2, out);
+        near = far;
+      }
+      if (near != labels_.background()) add_face({labels_.size(0), y, z}, 0, out);
+    }
     return out;
   }
 
