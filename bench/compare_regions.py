@@ -154,7 +154,7 @@ def run_isoshell(volume, vertices):
     import isoshell
 
     made = isoshell.remesh(isoshell.Labels(volume), vertices=vertices)
-    return made.vertices, made.faces, made.regions
+    return made.vertices, made.faces, made.regions["labels"]
 
 
 def faces_in(meshes):
