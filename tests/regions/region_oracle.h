@@ -64,7 +64,7 @@ inline std::set<std::array<int32_t, 2>> pairs_of(const FaceRegions& regions) {
 
 /// The same of voxels that share a face, with the background around the array.
 inline std::set<std::array<int32_t, 2>> pairs_of(const LabelVolume& volume) {
-  const auto& [nx, ny, nz] = volume.size_vox;
+  const int nx = volume.size_vox[0], ny = volume.size_vox[1], nz = volume.size_vox[2];
   const auto at = [&](int x, int y, int z) {
     if (x < 0 || y < 0 || z < 0 || x >= nx || y >= ny || z >= nz) return volume.background;
     return volume.labels[(size_t(z) * size_t(ny) + size_t(y)) * size_t(nx) + size_t(x)];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace isoshell {
@@ -28,7 +29,7 @@ struct WallEdge {
   int walls = 0;
 
   explicit WallEdge(const std::array<int32_t, 4>& label) {
-    for (size_t i = 0; i < 4; ++i) walls += is_wall[i] = label[i] != label[(i + 1) % 4];
+    for (std::size_t i = 0; i < 4; ++i) walls += is_wall[i] = label[i] != label[(i + 1) % 4];
     const bool is_even_pair = label[0] == label[2], is_odd_pair = label[1] == label[3];
     is_parted = walls == 4 && (is_even_pair || is_odd_pair);
     is_odd_alone = is_even_pair && (!is_odd_pair || label[0] < label[1]);

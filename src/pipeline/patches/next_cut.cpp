@@ -21,7 +21,7 @@ std::optional<NextCut> with_shorter_edges(const CutSurface& cut, const std::vect
   const double reach_q8 = cut.longest_edge_q8 / 2, least = cut.longest_edge_q8 / kMostLengthRatio;
   std::optional<Paths> paths = halve_segments(fine, wrong, reach_q8);
   bool has_changed = paths.has_value();
-  NextCut next{paths ? std::move(*paths) : fine.paths, fine.edge_length};
+  NextCut next{paths.value_or(fine.paths), fine.edge_length};
   const NearPoints near(wrong, reach_q8);
   for (size_t v = 0; v < fine.position.size(); ++v) {
     double& length = next.edge_length[v];
