@@ -61,6 +61,9 @@ void check_surface(const TriangleSoup& soup, const std::string& name) {
       }
       refuse(text.str());
     }
+  if (!soup.regions.empty() && soup.regions.labels.size() != soup.triangles.size())
+    refuse(name + ": there are regions of " + std::to_string(soup.regions.labels.size()) + " faces for " +
+           std::to_string(soup.triangles.size()) + " triangles; give two labels a triangle");
   for (const Attribute& a : soup.attributes)
     if (const std::string misfit = misfit_of(a, soup.vertices.size(), soup.triangles.size()); !misfit.empty())
       refuse(name + ": " + misfit);

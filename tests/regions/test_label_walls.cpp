@@ -38,7 +38,9 @@ TEST_CASE("the walls of any labels bound closed regions that do not cross, and p
     if (voxels_of(volume).empty()) continue;
     const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
     REQUIRE(soup.regions.labels.size() == soup.triangles.size());
-    CHECK(fault_of_regions(soup.triangles, soup.regions).empty());
+    const std::string fault = fault_of_regions(soup.triangles, soup.regions);
+    INFO(fault);
+    CHECK(fault.empty());
     CHECK(pairs_of(soup.regions) == pairs_of(volume));
     CHECK(take_census(mesh_of(soup), context).intersecting_pairs == 0);
     for (const auto& [label, world] : volumes_of_regions(soup.vertices, soup.triangles, soup.regions)) {
@@ -132,7 +134,9 @@ TEST_CASE("walls do not depend on the number of threads") {
 TEST_CASE("walls that touch in a lattice edge are parted there, and each of both pairs has a vertex of its own") {
   const LabelVolume volume = label_volume(2, 2, 1, [](int i, int j, int) { return i == j ? 1 : 0; });
   const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
-  CHECK(fault_of_regions(soup.triangles, soup.regions).empty());
+  const std::string fault = fault_of_regions(soup.triangles, soup.regions);
+  INFO(fault);
+  CHECK(fault.empty());
   const WallEdge edge({1, 0, 1, 0});
   CHECK(edge.is_parted);
   CHECK_FALSE(edge.is_odd_alone);  // the smaller label stays connected: the background

@@ -25,7 +25,9 @@ TEST_CASE("grains become one mesh of closed regions with the vertices that were 
   const RemeshResult result = meshed(volume, 4000, context);
   const TriangleMesh& mesh = result.mesh;
   CHECK(mesh.vertices.size() == 4000);
-  CHECK(fault_of_regions(mesh.triangles, mesh.regions).empty());
+  const std::string fault = fault_of_regions(mesh.triangles, mesh.regions);
+  INFO(fault);
+  CHECK(fault.empty());
   CHECK(pairs_of(mesh.regions) == pairs_of(volume));
   const MeshCensus census = take_census(mesh, context);
   CHECK(census.intersecting_pairs == 0);
@@ -55,7 +57,9 @@ TEST_CASE("ugly labels give valid regions, and the walls as they came in where n
     if (pairs_of(volume).empty()) continue;
     INFO("random volume " << number);
     const TriangleMesh mesh = meshed(volume, 400, context).mesh;
-    CHECK(fault_of_regions(mesh.triangles, mesh.regions).empty());
+    const std::string fault = fault_of_regions(mesh.triangles, mesh.regions);
+    INFO(fault);
+    CHECK(fault.empty());
     CHECK(pairs_of(mesh.regions) == pairs_of(volume));
     CHECK(take_census(mesh, context).intersecting_pairs == 0);
   }

@@ -21,7 +21,7 @@ struct FinePoint {
 Buckets<uint32_t> faces_at_vertices(const LabelWalls& walls);
 
 /// A vertex follows its neighbours, and one on curves, where edges have other than two faces, those along the curves.
-/// It stays within half a voxel of its rest along each axis, and within a quarter where walls are thin. Sums are of
+/// It stays within half a voxel of its rest along each axis, and within three eighths where walls are thin. Sums are of
 /// integers, and every product is rounded alone: no order shows.
 class ElasticNet {
  public:

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "features/cutting/cut_piece.h"
+#include "pipeline/defects/added_seeds.h"
 
 namespace isoshell {
 namespace {
 
 constexpr int64_t kMostFree = 2;  ///< free seeds that a patch may lose so
 constexpr size_t kMostOnBorder = 16;
-
-int64_t distance_sq(PointQ8 a, PointQ8 b) {
-  const int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return x * x + y * y + z * z;
-}
 
 /// What becomes of a patch.
 struct Fan {
@@ -54,42 +49,25 @@ std::vector<Fan> fans_of(const CutSurface& cut, const std::vector<char>& is_chos
   return fans;
 }
 
-template <class T>
-Buffer<T> with_more(const Buffer<T>& old, const std::vector<T>& more) {
-  Buffer<T> out(old.size() + int64_t(more.size()));
-  std::copy(more.begin(), more.end(), std::copy(old.begin(), old.end(), out.begin()));
-  return out;
-}
-
 }  // namespace
 
 std::vector<char> triangulate_as_fans(const CutSurface& cut, const std::vector<char>& is_chosen, SeededMesh& made) {
   const std::vector<Fan> fans = fans_of(cut, is_chosen, made.seeds);
   std::vector<char> is_done(is_chosen.size(), 0);
   std::vector<TriangleIndices> triangles;
-  std::vector<PointQ8> position;
-  std::vector<Normal8> normal;
-  std::vector<uint32_t> home;
+  AddedSeeds added(cut, made.seeds);
   for (size_t patch = 0; patch < fans.size(); ++patch) {
     const Fan& fan = fans[patch];
     if (!is_chosen[patch] || !fan.is_possible()) continue;
     is_done[patch] = 1;
-    const auto middle = uint32_t(made.seeds.size() + int64_t(home.size()));
+    const uint32_t middle = added.add(fan.middle);
     for (size_t i = 0; i < fan.border.size(); ++i)
       triangles.push_back({fan.border[i], fan.border[(i + 1) % fan.border.size()], middle});
-    position.push_back(cut.surface.position[fan.middle]);
-    normal.push_back(cut.surface.normal[fan.middle]);
-    home.push_back(fan.middle);
   }
-  if (home.empty()) return is_done;
+  if (added.empty()) return is_done;
   for (const TriangleIndices& t : made.mesh.triangles)
     if (!is_done[cut.surface.patch[made.seeds.home[t.a]]]) triangles.push_back(t);
-  made.mesh.triangles = with_more<TriangleIndices>({}, triangles);
-  made.mesh.position = with_more(made.mesh.position, position);
-  made.seeds.position = with_more(made.seeds.position, position);
-  made.seeds.normal = with_more(made.seeds.normal, normal);
-  made.seeds.home = with_more(made.seeds.home, home);
-  made = gather_patches(cut, {{made, vertices_after(cut, cut, std::vector<char>(is_chosen.size(), 1))}});
+  added.give_to(made, triangles);
   return is_done;
 }
 

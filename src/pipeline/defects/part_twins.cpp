@@ -6,42 +6,24 @@
 #include <limits>
 #include <unordered_map>
 
-#include "features/cutting/cut_piece.h"
 #include "isoshell/advanced/voxel_set.h"
+#include "pipeline/defects/added_seeds.h"
 
 namespace isoshell {
 namespace {
 
-int64_t distance_sq(const PointQ8& a, const PointQ8& b) {
-  const int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return x * x + y * y + z * z;
-}
-
 uint64_t directed(uint32_t u, uint32_t v) { return uint64_t(u) << 32 | v; }
-
-template <class T>
-Buffer<T> buffer_of(const std::vector<T>& values) {
-  Buffer<T> out(int64_t(values.size()));
-  std::copy(values.begin(), values.end(), out.begin());
-  return out;
-}
-template <class T>
-std::vector<T> vector_of(const Buffer<T>& values) {
-  return {values.begin(), values.end()};
-}
 
 /// The mesh of patches while vertices are put in.
 class Twins {
  public:
   Twins(const CutSurface& cut, const SeededMesh& made)
       : cut_(cut),
+        made_(made),
         fixed_(made.seeds.fixed),
-        position_(vector_of(made.mesh.position)),
-        seed_position_(vector_of(made.seeds.position)),
-        normal_(vector_of(made.seeds.normal)),
-        home_(vector_of(made.seeds.home)),
+        added_(cut, made.seeds),
         is_home_(size_t(cut.surface.vertex_count()), 0) {
-    for (const uint32_t v : home_) is_home_[v] = 1;
+    for (const uint32_t v : made.seeds.home) is_home_[v] = 1;
     for (const TriangleIndices& t : made.mesh.triangles) add({t.a, t.b, t.c});
   }
 
@@ -51,16 +33,11 @@ class Twins {
       if (!part_face(second)) part_face(first);
   }
 
-  bool has_changed() const { return home_.size() > size_t(seed_position_.size()); }
-  void give_to(SeededMesh& made) {
-    for (size_t i = seed_position_.size(); i < home_.size(); ++i) seed_position_.push_back(position_[i]);
+  bool has_changed() const { return !added_.empty(); }
+  void give_to(SeededMesh& made) const {
     std::vector<TriangleIndices> triangles;
     for (const auto& [a, b, c] : triangles_) triangles.push_back({a, b, c});
-    made.mesh.triangles = buffer_of(triangles);
-    made.mesh.position = buffer_of(position_);
-    made.seeds.position = buffer_of(seed_position_);
-    made.seeds.normal = buffer_of(normal_);
-    made.seeds.home = buffer_of(home_);
+    added_.give_to(made, triangles);
   }
 
  private:
@@ -134,17 +111,19 @@ class Twins {
     }
     if (nearest == kNone) return kNone;
     is_home_[nearest] = 1;
-    home_.push_back(nearest);
-    position_.push_back(cut_.surface.position[nearest]);
-    normal_.push_back(cut_.surface.normal[nearest]);
-    return uint32_t(home_.size() - 1);
+    return added_.add(nearest);
   }
-  uint32_t patch_of(uint32_t vertex) const { return cut_.surface.patch[home_[vertex]]; }
+  uint32_t patch_of(uint32_t vertex) const {
+    return cut_.surface.patch[added_.holds(vertex) ? added_.home(vertex) : made_.seeds.home[vertex]];
+  }
+  const PointQ8& position_of(uint32_t vertex) const {
+    return added_.holds(vertex) ? added_.position(vertex) : made_.mesh.position[vertex];
+  }
 
   void part_edge(uint32_t u, uint32_t v) {
     const auto there = side_.find(directed(u, v)), back = side_.find(directed(v, u));
     if (there == side_.end() || back == side_.end()) return;
-    const PointQ8 &p = position_[u], &q = position_[v];
+    const PointQ8 &p = position_of(u), &q = position_of(v);
     const uint32_t m = vertex_near(patch_of(u), {(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2});
     if (m == kNone) return;
     const uint32_t one = there->second, other = back->second;
@@ -163,7 +142,7 @@ class Twins {
   }
   bool part_face(uint32_t triangle) {
     const auto [a, b, c] = triangles_[triangle];
-    const PointQ8 &p = position_[a], &q = position_[b], &r = position_[c];
+    const PointQ8 &p = position_of(a), &q = position_of(b), &r = position_of(c);
     const uint32_t m = vertex_near(patch_of(a), {(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3, (p.z + q.z + r.z) / 3});
     if (m == kNone) return false;
     replace(triangle, {a, b, m});
@@ -173,10 +152,9 @@ class Twins {
   }
 
   const CutSurface& cut_;
+  const SeededMesh& made_;
   const FixedSeeds& fixed_;
-  std::vector<PointQ8> position_, seed_position_;
-  std::vector<Normal8> normal_;
-  std::vector<uint32_t> home_;
+  AddedSeeds added_;
   std::vector<char> is_home_;  ///< per vertex of the surface
   std::vector<Face> triangles_;
   std::unordered_map<uint64_t, uint32_t> side_;  ///< per directed edge its triangle
@@ -189,7 +167,6 @@ void part_twins(const CutSurface& cut, SeededMesh& made) {
   twins.part();
   if (!twins.has_changed()) return;
   twins.give_to(made);
-  made = gather_patches(cut, {{made, vertices_after(cut, cut, std::vector<char>(patch_count(cut), 1))}});
 }
 
 }  // namespace isoshell

@@ -33,8 +33,8 @@ namespace {
 
 constexpr int kMostRounds = 10;
 constexpr size_t kMostWork = 2;           ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostWorkOfRegions = 3;  ///< the same between regions, where every curve must stay
 constexpr size_t kMostHelpless = 1;       ///< the same of rounds that did not help, where there is another way
-constexpr size_t kMostWorkOfRegions = 3;  ///< the same where every curve must stay
 constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
@@ -99,16 +99,15 @@ class PatchRounds {
         report_(report),
         context_(context),
         crossings_(p, cut, context),
-        all_may_cross_(cut.parts_regions),
         count_(options.seeds.count) {}
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
     report_.dual = {};
     report_.optimize = {};
     Wrong wrong = left_of(*cut, made, mesh_patches(*cut, made));
-    if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
+    if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(*cut, wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
-      if (options_.previous || is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
+      if (options_.previous || is_hopeless(*cut, wrong) || is_helpless(*cut)) return wrong.said();
       const size_t most_work = cut->parts_regions ? kMostWorkOfRegions : kMostWork;
       if (round == kMostRounds || work_ > most_work * cut->fine->triangles.size()) return wrong.said();
       std::optional<NextCut> change = next_cut(*cut, wrong.places());
@@ -180,8 +179,8 @@ class PatchRounds {
   }
 
   /// Of so many vertices the whole mesh has twice as many triangles.
-  bool is_hopeless(const Wrong& wrong) const {
-    if (all_may_cross_) return false;
+  bool is_hopeless(const CutSurface& cut, const Wrong& wrong) const {
+    if (cut.parts_regions) return false;  // specks and sheets cross everywhere to begin with
     return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
   }
 
@@ -215,7 +214,7 @@ class PatchRounds {
     bring_to_host(made);
     Wrong wrong(cut);
     add_crossing(cut, made, crossings_.wrong_of(made.mesh, all_crossing(made)), wrong);
-    if (wrong.is_nowhere() || is_hopeless(wrong)) return;
+    if (wrong.is_nowhere() || is_hopeless(cut, wrong)) return;
     timed(report_, "untangle", context_, [&] {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
         RemeshReport here;
@@ -355,7 +354,6 @@ class PatchRounds {
   RemeshReport& report_;
   Context& context_;
   NewCrossings crossings_;
-  bool all_may_cross_;        ///< no number of crossings is too large to begin with
   int64_t count_;             ///< of seeds, as many as the lengths around what was wrong ask for
   size_t work_ = 0;           ///< triangles of the fine mesh on which patches were made again
   size_t helpless_work_ = 0;  ///< of these the last ones, after which no less was wrong
