@@ -11,27 +11,6 @@ namespace {
 
 constexpr size_t kGroupsOfTask = 128;
 
-/// Whether the corners of a triangle that are not another one's lie on one side of that one's plane, and not in it:
-/// they meet in shared corners at most. Most neighbours in a mesh do.
-bool is_beside_plane(const CornersOfTriangle& t, const CornersOfTriangle& of) {
-  const Vec64 normal = cross(difference(of.at[1], of.at[0]), difference(of.at[2], of.at[0]));
-  int low = 1, high = -1;
-  for (int j = 0; j < 3; ++j) {
-    const uint32_t id = t.id[j];
-    if (id == of.id[0] || id == of.id[1] || id == of.id[2]) continue;
-    const Vec64 r = difference(t.at[j], of.at[0]);
-    const Int128 volume = Int128(normal.x) * r.x + Int128(normal.y) * r.y + Int128(normal.z) * r.z;
-    const int side = (volume > 0) - (volume < 0);
-    low = std::min(low, side);
-    high = std::max(high, side);
-  }
-  return low == high && low != 0;
-}
-
-bool do_intersect(const CornersOfTriangle& s, const CornersOfTriangle& t) {
-  return !is_beside_plane(t, s) && !is_beside_plane(s, t) && triangles_intersect(s, t);
-}
-
 }  // namespace
 
 BoxQ8 common_box(View<const PointQ8> position, View<const TriangleIndices> triangles,
@@ -63,7 +42,7 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
     for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g) {
       if (stop.load(std::memory_order_relaxed)) return;
       tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) {
-        if (do_intersect(corners(s), corners(t))) parts[p].push_back({std::min(s, t), std::max(s, t)});
+        if (triangles_intersect_apart(corners(s), corners(t))) parts[p].push_back({std::min(s, t), std::max(s, t)});
       });
     }
   });

@@ -123,4 +123,26 @@ ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const Co
   return false;
 }
 
+/// Whether the corners of a triangle that are not another one's lie on one side of that one's plane, and not in it:
+/// they meet in shared corners at most. Most neighbours in a mesh do.
+inline bool is_beside_plane(const CornersOfTriangle& t, const CornersOfTriangle& of) {
+  const Vec64 normal = cross(difference(of.at[1], of.at[0]), difference(of.at[2], of.at[0]));
+  int low = 1, high = -1;
+  for (int j = 0; j < 3; ++j) {
+    const uint32_t id = t.id[j];
+    if (id == of.id[0] || id == of.id[1] || id == of.id[2]) continue;
+    const Vec64 r = difference(t.at[j], of.at[0]);
+    const Int128 volume = Int128(normal.x) * r.x + Int128(normal.y) * r.y + Int128(normal.z) * r.z;
+    const int side = (volume > 0) - (volume < 0);
+    low = side < low ? side : low;
+    high = side > high ? side : high;
+  }
+  return low == high && low != 0;
+}
+
+/// As triangles_intersect, sooner where most triangles lie beside each other, as neighbours do.
+inline bool triangles_intersect_apart(const CornersOfTriangle& s, const CornersOfTriangle& t) {
+  return !is_beside_plane(t, s) && !is_beside_plane(s, t) && triangles_intersect(s, t);
+}
+
 }  // namespace isoshell

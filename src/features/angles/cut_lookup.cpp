@@ -59,6 +59,23 @@ double CutLookup::cosine(uint32_t home, uint32_t patch, const WorldPoint& unit) 
   return best;
 }
 
+uint32_t CutLookup::nearest_from(uint32_t start, const WorldPoint& near) const {
+  const SurfaceMesh& surface = cut_->surface;
+  uint32_t at = start;
+  for (uint32_t from = kNone; from != at;) {
+    from = at;
+    double nearest = distance_sq(position(at), near);
+    for (int64_t n = surface.vertex_first[from]; n < surface.vertex_first[from + 1]; ++n) {
+      const TriangleIndices t = surface.triangles[surface.vertex_triangles[n]];
+      for (const uint32_t w : {t.a, t.b, t.c}) {
+        const double d = distance_sq(position(w), near);
+        if (d < nearest || (d == nearest && w < at)) nearest = d, at = w;
+      }
+    }
+  }
+  return at;
+}
+
 double CutLookup::off_chord(uint32_t curve, size_t begin, size_t end) const {
   const std::vector<size_t>& bends = bends_[curve];
   const WorldPoint a = position(home_on(curve, begin)), b = position(home_on(curve, end));

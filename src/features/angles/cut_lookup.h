@@ -23,6 +23,8 @@ class CutLookup {
   uint32_t copy_in(uint32_t home, uint32_t patch) const;
   /// Between a unit vector and the normal of the surface of a patch; of several fans there the one that fits best.
   double cosine(uint32_t home, uint32_t patch, const WorldPoint& unit) const;
+  /// Goes from a vertex to neighbours on the surface as long as these are nearer to a point.
+  uint32_t nearest_from(uint32_t start, const WorldPoint& near) const;
   /// How far a curve leaves the chord between two of its places, to within a small part of an edge. Cost: a look at the
   /// bends between them, of which a straight curve has none however many places it has.
   double off_chord(uint32_t curve, size_t begin, size_t end) const;

@@ -139,21 +139,9 @@ RegionVertex MeshRegion::vertex_between(uint32_t u, uint32_t v, uint32_t curve, 
   return start == kNone ? none : vertex_near(start, near);
 }
 
-/// Goes to neighbours on the surface as long as these are nearer to a point. A corner where that ends on a border.
+/// The vertex of the surface there. A corner where that is on a border.
 RegionVertex MeshRegion::vertex_near(uint32_t start, const WorldPoint& near) const {
-  const SurfaceMesh& surface = surface_->cut().surface;
-  uint32_t at = start;
-  for (uint32_t from = kNone; from != at;) {
-    from = at;
-    double nearest = distance_sq(surface_->position(at), near);
-    for (int64_t n = surface.vertex_first[from]; n < surface.vertex_first[from + 1]; ++n) {
-      const TriangleIndices t = surface.triangles[surface.vertex_triangles[n]];
-      for (const uint32_t w : {t.a, t.b, t.c}) {
-        const double d = distance_sq(surface_->position(w), near);
-        if (d < nearest || (d == nearest && w < at)) nearest = d, at = w;
-      }
-    }
-  }
+  const uint32_t at = surface_->nearest_from(start, near);
   RegionVertex out;
   out.kind = surface_->cut().place[at] == kNone ? RegionVertex::Kind::free : RegionVertex::Kind::corner;
   out.home = at;

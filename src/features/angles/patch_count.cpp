@@ -54,6 +54,7 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
 }
 
 void PatchMesh::meet_count(const Context& context) {
+  if (surplus() != 0) fill_space();
   for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
     check_cancel(context, "features");
     const int64_t before = surplus();

@@ -8,7 +8,6 @@
 #include "core/copy_product.h"
 #include "core/parallel_ranges.h"
 #include "features/mesh/mesh_fans.h"
-#include "geometry/near_points.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
@@ -22,7 +21,6 @@ constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triang
 constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
 constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor
 constexpr double kHopeless = 1.5;  ///< of the least cost so far: a change that is above after a round is given up
-constexpr double kKept = 1;        ///< edges around a point near which nothing is to change
 
 /// Along strips narrower than edges all triangles are poor. Where one hardly counts beside the others, changes at its
 /// corners do not save what they must, and the others have their own turn.
@@ -39,10 +37,7 @@ void sort_unique(std::vector<T>& values) {
 }  // namespace
 
 PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
-    : cut_(&cut),
-      lookup_(std::make_shared<CutLookup>(cut)),
-      hopeless_(std::make_shared<std::unordered_set<uint64_t>>()),
-      options_(options) {
+    : cut_(&cut), lookup_(std::make_shared<CutLookup>(cut)), options_(options) {
   const OnHost<SeedSet> seeds(made.seeds);
   const OnHost<DualMesh> open(made.mesh);
   const JoinedMesh joined = join_patches(*open, seeds->fixed);
@@ -56,6 +51,23 @@ PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOp
   list_triangles(*open, *seeds, joined);
   is_hopeless_.assign(triangles_.size(), 0);
   count_ = int64_t(vertices_.size());
+}
+
+PatchMesh::PatchMesh(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles,
+                     const JoinOptions& options)
+    : cut_(&cut),
+      lookup_(std::make_shared<CutLookup>(cut)),
+      vertices_(std::move(vertices)),
+      triangles_(std::move(triangles)),
+      is_hopeless_(triangles_.size(), 0),
+      around_(vertices_.size()),
+      options_(options) {
+  for (uint32_t t = 0; t < triangles_.size(); ++t)
+    if (!triangles_[t].is_gone())
+      for (const uint32_t v : triangles_[t].corner) around_[v].push_back(t);
+  for (uint32_t v = 0; v < vertices_.size(); ++v) vertices_[v].number = v;
+  count_ =
+      std::count_if(around_.begin(), around_.end(), [](const auto& triangles_at) { return !triangles_at.empty(); });
 }
 
 void PatchMesh::list_vertices(const SeedSet& seeds, const JoinedMesh& joined) {
@@ -160,7 +172,7 @@ PatchMesh::Cutout PatchMesh::cut_out(const std::vector<uint32_t>& vertices,
     region_vertices.push_back(vertices_[v]);
     region_vertices.back().number = v;
     region_vertices.back().is_inner =
-        !is_kept(v) && std::includes(triangles.begin(), triangles.end(), around_[v].begin(), around_[v].end());
+        std::includes(triangles.begin(), triangles.end(), around_[v].begin(), around_[v].end());
   }
   std::vector<RegionTriangle> region_triangles;
   for (const uint32_t t : triangles) {
@@ -252,6 +264,7 @@ std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) co
 }
 
 bool PatchMesh::improve(std::vector<uint32_t> triangles) {
+  fill_space();
   bool has_changed = false;
   while (!triangles.empty()) {
     const auto is_done = [&](uint32_t t) { return sine_of(t) >= kPoorSine || is_hopeless_[t]; };
@@ -263,28 +276,54 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
       const auto& corner = triangles_[apart[i]].corner;
       const std::vector<uint32_t> corners(corner.begin(), corner.end());
       cutouts[i] = cut_out(corners, triangles_around(corners));
-      if (!hopeless_->count(cutouts[i]->region.digest())) better[i] = improved(cutouts[i]->region);
+      if (!hopeless_.count(cutouts[i]->region.digest())) better[i] = improved(cutouts[i]->region);
     });
     for (size_t i = 0; i < apart.size(); ++i) {
-      has_changed = has_changed || better[i];
-      if (better[i]) {
-        put_back(*cutouts[i], *better[i]);
+      if (better[i] && put_back(*cutouts[i], *better[i])) {
+        has_changed = true;
         continue;
       }
       is_hopeless_[apart[i]] = 1;
-      hopeless_->insert(cutouts[i]->region.digest());
+      hopeless_.insert(cutouts[i]->region.digest());
     }
   }
   return has_changed;
 }
 
-void PatchMesh::keep_near(const std::vector<PointQ8>& points) {
-  const NearPoints near(points, kKept * cut_->longest_edge_q8);
-  is_kept_.assign(vertices_.size(), 0);
-  for (size_t v = 0; v < vertices_.size(); ++v) {
-    const WorldPoint& p = vertices_[v].position;
-    is_kept_[v] = near.holds({int32_t(p.x), int32_t(p.y), int32_t(p.z)});
+CornersOfTriangle PatchMesh::corners(const RegionTriangle& t) const {
+  CornersOfTriangle out;
+  for (size_t i = 0; i < 3; ++i) {
+    const WorldPoint& p = vertices_[t.corner[i]].position;
+    out.id[i] = t.corner[i];
+    out.at[i] = {int32_t(p.x), int32_t(p.y), int32_t(p.z)};
   }
+  return out;
+}
+
+void PatchMesh::fill_space() {
+  if (space_) return;
+  space_.emplace(cut_->longest_edge_q8, triangles_.size());
+  for (uint32_t t = 0; t < triangles_.size(); ++t)
+    if (!triangles_[t].is_gone()) space_->put(t, corners(triangles_[t]));
+}
+
+/// Whether what has changed of a region meets nothing.
+bool PatchMesh::is_free(const Cutout& cutout, const MeshRegion& region) const {
+  std::vector<CornersOfTriangle> made;
+  std::vector<uint32_t> replaced;
+  for (size_t i = 0; i < region.triangles().size(); ++i) {
+    if (!region.has_changed(i)) continue;
+    if (i < cutout.triangles.size()) replaced.push_back(cutout.triangles[i]);
+    const RegionTriangle& t = region.triangles()[i];
+    if (t.is_gone()) continue;
+    CornersOfTriangle& corner = made.emplace_back();
+    for (size_t k = 0; k < 3; ++k) {
+      const RegionVertex& v = region.vertices()[t.corner[k]];
+      corner.id[k] = v.number != RegionVertex::kNoOne ? v.number : uint32_t(vertices_.size() + t.corner[k]);
+      corner.at[k] = {int32_t(v.position.x), int32_t(v.position.y), int32_t(v.position.z)};
+    }
+  }
+  return space_->are_free(made, replaced);
 }
 
 /// A triangle without corners where there is none before, or is none any more.
@@ -293,14 +332,18 @@ void PatchMesh::replace(uint32_t triangle, const RegionTriangle& by) {
   if (!t.is_gone())
     for (const uint32_t v : t.corner)
       around_[v].erase(std::lower_bound(around_[v].begin(), around_[v].end(), triangle));
+  space_->take(triangle);
   t = by;
-  if (!t.is_gone())
-    for (const uint32_t v : t.corner)
-      around_[v].insert(std::lower_bound(around_[v].begin(), around_[v].end(), triangle), triangle);
+  if (t.is_gone()) return;
+  for (const uint32_t v : t.corner)
+    around_[v].insert(std::lower_bound(around_[v].begin(), around_[v].end(), triangle), triangle);
+  space_->put(triangle, corners(t));
   is_hopeless_[triangle] = 0;
 }
 
-void PatchMesh::put_back(const Cutout& cutout, const MeshRegion& region) {
+/// Whether that was done.
+bool PatchMesh::put_back(const Cutout& cutout, const MeshRegion& region) {
+  if (!is_free(cutout, region)) return false;
   std::vector<uint32_t> number;
   for (const RegionVertex& v : region.vertices()) {
     const bool is_new = v.number == RegionVertex::kNoOne;
@@ -319,6 +362,7 @@ void PatchMesh::put_back(const Cutout& cutout, const MeshRegion& region) {
   }
   count_ += int64_t(region.vertices().size()) - int64_t(cutout.region.vertices().size());
   count_ -= std::count_if(number.begin(), number.end(), [&](uint32_t v) { return around_[v].empty(); });
+  return true;
 }
 
 JoinedPatches PatchMesh::joined() const {

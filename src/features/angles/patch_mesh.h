@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "features/angles/mesh_region.h"
+#include "features/angles/triangle_space.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {
@@ -27,9 +28,13 @@ struct JoinOptions {
   bool is_steady = false;
 };
 
+/// Changes are made only where no triangle comes to meet another one outside of corners that they share.
 class PatchMesh {
  public:
   PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options);
+  /// Of the mesh that these are; vertices without triangles are none of it.
+  PatchMesh(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles,
+            const JoinOptions& options);
 
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
@@ -39,9 +44,6 @@ class PatchMesh {
   int64_t surplus() const { return count_ - options_.vertices; }
   /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
   void meet_count(const Context& context);
-
-  /// From now on, vertices within an edge of these points stay.
-  void keep_near(const std::vector<PointQ8>& points);
 
   JoinedPatches joined() const;
 
@@ -63,7 +65,6 @@ class PatchMesh {
   uint32_t curve_between(uint32_t u, uint32_t v) const;
   uint32_t whole_curve(uint32_t from, uint32_t to) const;
 
-  bool is_kept(uint32_t vertex) const { return vertex < is_kept_.size() && is_kept_[vertex]; }
   double sine_of(uint32_t triangle) const;
   bool is_edge(uint32_t u, uint32_t v) const;
   std::vector<std::pair<double, uint64_t>> edges_by_length() const;
@@ -72,7 +73,10 @@ class PatchMesh {
   Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;
   std::vector<uint32_t> take_apart(std::vector<uint32_t>& triangles) const;
   void replace(uint32_t triangle, const RegionTriangle& by);
-  void put_back(const Cutout& cutout, const MeshRegion& region);
+  bool put_back(const Cutout& cutout, const MeshRegion& region);
+  bool is_free(const Cutout& cutout, const MeshRegion& region) const;
+  CornersOfTriangle corners(const RegionTriangle& t) const;
+  void fill_space();
 
   static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
   static bool make(MeshRegion& region, const Change& change);
@@ -82,13 +86,13 @@ class PatchMesh {
 
   const CutSurface* cut_;
   std::shared_ptr<const CutLookup> lookup_;
-  std::shared_ptr<std::unordered_set<uint64_t>> hopeless_;  ///< digests of regions, of all copies of this mesh
+  std::unordered_set<uint64_t> hopeless_;  ///< digests of regions
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
-  std::vector<char> is_kept_;                        ///< per vertex that was there at first; empty: none
   std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried
   std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
   std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
+  std::optional<TriangleSpace> space_;               ///< once something is to change
   int64_t count_ = 0;
   JoinOptions options_;
 };

@@ -38,6 +38,9 @@ constexpr size_t kMostHelpless = 1;       ///< the same of rounds that did not h
 constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
+constexpr int64_t kMostCrossingOfRegions = 400;  ///< vertices for one pair between regions, where there is another way
+constexpr int64_t kFewVertices = 10000;
+
 using PerPatch = std::vector<char>;
 
 PerPatch inverse(const PerPatch& flags) {
@@ -180,7 +183,8 @@ class PatchRounds {
 
   /// Of so many vertices the whole mesh has twice as many triangles.
   bool is_hopeless(const CutSurface& cut, const Wrong& wrong) const {
-    if (cut.parts_regions) return false;  // specks and sheets cross everywhere to begin with
+    if (cut.parts_regions)
+      return kMostCrossingOfRegions * wrong.crossing > std::max(options_.seeds.count, kFewVertices);
     return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
   }
 

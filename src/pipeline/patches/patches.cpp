@@ -7,6 +7,7 @@
 #include "core/copy_product.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "features/angles/widen_angles.h"
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/edge_subdivision.h"
@@ -27,7 +28,6 @@
 #include "pipeline/patches/part_fans.h"
 #include "pipeline/patches/patch_rounds.h"
 #include "pipeline/patches/sheet_when_needed.h"
-#include "pipeline/patches/wide_angles.h"
 #include "pipeline/sheet/crease_search.h"
 #include "pipeline/sheet/flag_gaps.h"
 #include "pipeline/sheet/relax_meanwhile.h"
@@ -149,7 +149,7 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
   out.why_not = failure_reason([&]() -> std::string {
     if (std::string why = mesh_in_rounds(p, cut, made, options, report, context); !why.empty()) return why;
     out.joined =
-        timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, options, report, context); });
+        timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(options), context); });
     out.mesh = to_world(out.joined.mesh, p.surface.frame);
     out.mesh.features = std::move(out.joined.features);
     part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "features/angles/patch_mesh.h"
 #include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
@@ -32,6 +33,11 @@ struct PatchOptions {
   OptimizeOptions optimize;
   std::shared_ptr<const PreviousFrame> previous = nullptr;  ///< that seeds begin with
 };
+
+/// How the patches are put together.
+inline JoinOptions join_options(const PatchOptions& options) {
+  return {options.seeds.count, options.previous != nullptr};
+}
 
 /// Fixes seeds on the curves, one for each patch there, and relaxes the others between them: coarse to fine, or from
 /// where the vertices of the frame before are.

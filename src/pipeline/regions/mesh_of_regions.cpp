@@ -1,21 +1,27 @@
 // See mesh_of_regions.h.
 #include "pipeline/regions/mesh_of_regions.h"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "features/angles/widen_angles.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
+#include "features/walls/coarsen_walls.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
+#include "pipeline/patches/new_crossings.h"
 #include "pipeline/patches/patch_rounds.h"
-#include "pipeline/patches/wide_angles.h"
 #include "pipeline/regions/region_walls.h"
 
 namespace isoshell {
 namespace {
+
+constexpr int64_t kManyVertices = 2;  ///< of walls, for one that is asked for
+constexpr const char* kCoarsened =
+    "the edges between regions were collapsed and flipped, not relaxed, and triangles are less even: ";
 
 /// Per patch of a cut surface the regions that it parts.
 std::vector<std::array<int32_t, 2>> labels_of_patches(const CutSurface& cut, const FaceRegions& regions) {
@@ -43,6 +49,41 @@ TriangleMesh walls_themselves(const RegionWalls& walls) {
   return mesh;
 }
 
+/// Voxels make far more triangles than are asked for, and those of the fine mesh are more again.
+WallTriangles few_triangles_of(const PreparedSurface& p, int64_t vertices) {
+  const FeatureMesh& walls = p.walls->mesh;
+  if (p.walls->regions.are_of_voxels && int64_t(walls.vertices.size()) > kManyVertices * vertices)
+    return {walls.triangles, walls.source_face};
+  return {p.cut->fine->triangles, p.cut->fine->source_face};
+}
+
+/// None where walls intersect as they came in.
+std::optional<JoinedPatches> coarsened(const PreparedSurface& p, int64_t vertices, RemeshReport& report,
+                                       Context& context) {
+  return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
+    JoinedPatches made = coarsen_walls(*p.cut, few_triangles_of(p, vertices), vertices, context);
+    if (!NewCrossings(p, *p.cut, context).all(made.mesh, {}).empty()) return {};
+    return made;
+  });
+}
+
+TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatches joined, RemeshReport& report) {
+  TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
+  mesh.features = std::move(joined.features);
+  mesh.regions = without_labels(p.walls->regions);
+  const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut, p.walls->regions);
+  for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);
+  if (const auto vertices = int64_t(mesh.vertices.size());
+      vertices != p.target.vertices && !p.options.edge_length_world)
+    report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
+                              std::to_string(p.target.vertices) + ": the curves between its regions need them");
+  measure_edges(cut, joined, report.sizing);
+  report.features.vertices = joined.on_curves;
+  report.features.segments = int64_t(mesh.features.curve_edges.size());
+  report.features.kept = report.is_optimized = true;
+  return mesh;
+}
+
 }  // namespace
 
 TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
@@ -52,29 +93,19 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
   const std::string why_not = failure_reason([&]() -> std::string {
     if (std::string why = mesh_in_rounds(p, cut, made, in_patches, report, context); !why.empty()) return why;
     joined =
-        timed(report, "angles", context, [&] { return with_wide_angles(p, *cut, made, in_patches, report, context); });
+        timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(in_patches), context); });
     return "";
   });
   if (!why_not.empty()) {
-    report.warnings.push_back("the walls of regions are as they came in, " +
-                              std::to_string(p.walls->mesh.vertices.size()) + " vertices: " + why_not);
+    cut = p.cut;
     report.optimize = {};
-    return walls_themselves(*p.walls);
+    std::optional<JoinedPatches> coarse = coarsened(p, in_patches.seeds.count, report, context);
+    report.warnings.push_back(std::string(coarse ? kCoarsened : "the walls of regions are as they came in: ") +
+                              why_not);
+    if (!coarse) return walls_themselves(*p.walls);
+    joined = std::move(*coarse);
   }
-  TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
-  mesh.features = std::move(joined.features);
-  mesh.regions = without_labels(p.walls->regions);
-  const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(*cut, p.walls->regions);
-  for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);
-  if (const auto vertices = int64_t(mesh.vertices.size());
-      vertices != p.target.vertices && !p.options.edge_length_world)
-    report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
-                              std::to_string(p.target.vertices) + ": the curves between its regions need them");
-  measure_edges(*cut, joined, report.sizing);
-  report.features.vertices = joined.on_curves;
-  report.features.segments = int64_t(mesh.features.curve_edges.size());
-  report.features.kept = report.is_optimized = true;
-  return mesh;
+  return mesh_of(p, *cut, std::move(joined), report);
 }
 
 }  // namespace isoshell

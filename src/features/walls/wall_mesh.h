@@ -1,0 +1,93 @@
+// All walls of a cut surface as one mesh, changed edge by edge so that no triangles come to meet.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "features/angles/cut_lookup.h"
+#include "features/angles/mesh_region.h"
+#include "features/angles/triangle_space.h"
+#include "features/mesh/refine_mesh.h"
+
+namespace isoshell {
+
+/// Triangles on vertices of a fine mesh: its own, or those that it was refined from, on its first vertices.
+struct WallTriangles {
+  const MeshTriangles& triangles;
+  const std::vector<uint32_t>& source_face;  ///< per triangle, as in FineMesh
+};
+
+/// A change keeps the topology of every region, the patches and the curves. One that would not, that would turn a
+/// triangle over or make a needle of it, or after which a triangle met another one outside of corners that they share,
+/// is not made. Vertices and triangles keep their numbers; those that are gone have no triangles, and one corner twice.
+/// Cost of each: the triangles around its vertices, and a look at those whose boxes meet them.
+class WallMesh {
+ public:
+  /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.
+  WallMesh(const CutSurface& cut, const WallTriangles& walls);
+
+  const CutLookup& lookup() const { return *lookup_; }
+  int64_t vertex_count() const { return count_; }
+  const std::vector<RegionVertex>& vertices() const { return vertices_; }
+  const std::vector<RegionTriangle>& triangles() const { return triangles_; }
+  const RegionVertex& vertex(uint32_t v) const { return vertices_[v]; }
+  const WorldPoint& at(uint32_t v) const { return vertices_[v].position; }
+  const std::vector<uint32_t>& around(uint32_t v) const { return around_[v]; }
+
+  /// The length of edges that is aimed at, where lengths were asked for; 1 where edges are to be as long as each other.
+  double aimed_at(uint32_t v) const;
+  void list_neighbours(uint32_t v, std::vector<uint32_t>& out) const;
+  /// Those that a vertex may be taken into, as far as its curve tells: of a corner none.
+  void list_targets(uint32_t v, std::vector<uint32_t>& out) const;
+  /// The curve of the edge between two vertices, kNone off curves; no value where there is no edge.
+  std::optional<uint32_t> curve_between(uint32_t u, uint32_t v) const;
+
+  /// Whether the change was made, here and below.
+  bool collapse(uint32_t gone, uint32_t into);
+  /// Puts a vertex, the last one then, into an edge.
+  bool split(uint32_t u, uint32_t v, const RegionVertex& middle);
+  /// Where that costs less.
+  bool flip(uint32_t triangle, size_t edge);
+  /// Along its curve, or in its patch, where that costs less.
+  bool move(uint32_t v, const RegionVertex& to);
+
+ private:
+  struct Side {
+    uint32_t triangle;
+    size_t edge;
+  };
+  using Edges = std::vector<std::pair<uint64_t, uint32_t>>;  ///< keys, and what they are on
+
+  void list_vertices(uint32_t last);
+  void list_curve(uint32_t number, const CurvePath& path, Edges& edges);
+  void list_triangles(const WallTriangles& walls, const Edges& on_curve);
+  std::vector<Side> sides_of(uint32_t u, uint32_t v) const;
+
+  /// 0 for an equilateral triangle that lies as the surface does, and more for others.
+  double cost(const RegionTriangle& t) const;
+  double cost_around(uint32_t v) const;
+  WorldPoint normal(const RegionTriangle& t) const;
+  double sine(const RegionTriangle& t) const;
+  bool may_replace(const RegionTriangle& made, const RegionTriangle& before) const;
+  bool may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides);
+  CornersOfTriangle corners(const RegionTriangle& t) const;
+  bool are_free(const std::vector<RegionTriangle>& made, const std::vector<uint32_t>& replaced);
+  void replace(uint32_t triangle, const RegionTriangle& by);
+
+  std::shared_ptr<const CutLookup> lookup_;
+  std::vector<RegionVertex> vertices_;
+  std::vector<RegionTriangle> triangles_;
+  std::vector<std::vector<uint32_t>> around_;  ///< per vertex its triangles
+  TriangleSpace space_;
+  int64_t count_ = 0;
+  // Of the change that is being made: kept, so that it takes no memory each time.
+  std::vector<uint32_t> here_, there_, replaced_, number_;
+  std::vector<RegionTriangle> made_;
+  std::vector<CornersOfTriangle> corners_;
+  std::vector<std::pair<uint32_t, uint32_t>> fused_;  ///< ends of edges of which one was on a curve, and that
+};
+
+}  // namespace isoshell
