@@ -6,7 +6,8 @@
 
 namespace isoshell {
 
-JoinedPatches coarsen_walls(const CutSurface& cut, const WallTriangles& walls, int64_t vertices, const Context& context) {
+JoinedPatches coarsen_walls(const CutSurface& cut, const WallTriangles& walls, int64_t vertices,
+                            const Context& context) {
   WallMesh mesh(cut, walls);
   coarsen(mesh, vertices, context);
   even_out(mesh, vertices, context);

@@ -1,0 +1,82 @@
+// Walls with fewer vertices, whatever they are like.
+#include "features/walls/coarsen_walls.h"
+#include "isoshell/io/memory_input.h"
+#include "measure/crossings.h"
+#include "pipeline/regions/region_walls.h"
+#include "regions/label_volumes.h"
+#include "regions/region_oracle.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+struct Coarse {
+  JoinedPatches joined;
+  FaceRegions regions;
+  int64_t before = 0;  ///< vertices
+};
+
+Coarse coarsened(const LabelVolume& volume, int64_t vertices, Context& context) {
+  RemeshOptions options;
+  options.vertices = vertices;
+  RemeshReport report;
+  const PreparedSurface p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
+  const FeatureMesh& walls = p.walls->mesh;
+  Coarse out{coarsen_walls(*p.cut, {walls.triangles, walls.source_face}, vertices, context), {}, 0};
+  out.before = int64_t(walls.vertices.size());
+  out.regions.background = volume.background;
+  std::vector<std::array<int32_t, 2>> labels(patch_count(*p.cut));
+  for (size_t t = 0; t < p.cut->fine->triangles.size(); ++t)
+    labels[p.cut->surface.patch[p.cut->corner[3 * t]]] = p.walls->regions.labels[p.cut->fine->source_face[t]];
+  for (const uint32_t patch : out.joined.features.patch) out.regions.labels.push_back(labels[patch]);
+  return out;
+}
+
+std::string fault_of(const Coarse& coarse) {
+  std::vector<std::array<uint32_t, 3>> triangles;
+  for (const TriangleIndices& t : coarse.joined.mesh.triangles) triangles.push_back({t.a, t.b, t.c});
+  return fault_of_regions(triangles, coarse.regions);
+}
+
+size_t crossings_of(const Coarse& coarse, const Context& context) {
+  const DualMesh& mesh = coarse.joined.mesh;
+  return crossing_pairs(mesh.position.view(), mesh.triangles.view(), {}, context.cancel).size();
+}
+
+}  // namespace
+
+TEST_CASE("coarsened walls have the vertices that were asked for, and good triangles") {
+  TestContext context;
+  const LabelVolume volume = voronoi_grains(32, 12);
+  const Coarse coarse = coarsened(volume, 1500, context);
+  CHECK(coarse.before > 6000);
+  CHECK(coarse.joined.mesh.position.size() == 1500);
+  CHECK(fault_of(coarse).empty());
+  CHECK(pairs_of(coarse.regions) == pairs_of(volume));
+  CHECK(crossings_of(coarse, context) == 0);
+  double sum = 0;
+  const DualMesh& mesh = coarse.joined.mesh;
+  const auto at = [&](uint32_t v) {
+    const PointQ8 p = mesh.position[v];
+    return WorldPoint{double(p.x), double(p.y), double(p.z)};
+  };
+  for (const TriangleIndices& t : mesh.triangles) sum += smallest_sine(at(t.a), at(t.b), at(t.c));
+  CHECK(sum / double(mesh.triangles.size()) > 0.68);  // 43 degrees
+}
+
+TEST_CASE("coarsened walls of ugly labels stay closed, keep all pairs of regions and never meet") {
+  TestContext context;
+  for (uint32_t number = 0; number < 200; number += 3) {
+    const LabelVolume volume = random_labels(number);
+    if (pairs_of(volume).empty()) continue;
+    INFO("random volume " << number);
+    const Coarse coarse = coarsened(volume, 50, context);
+    const std::string fault = fault_of(coarse);
+    INFO(fault);
+    CHECK(fault.empty());
+    CHECK(pairs_of(coarse.regions) == pairs_of(volume));
+    CHECK(crossings_of(coarse, context) == 0);
+    CHECK(coarse.joined.mesh.position.size() <= std::max<int64_t>(50, coarse.before));
+  }
+}
