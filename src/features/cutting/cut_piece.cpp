@@ -129,7 +129,7 @@ CutPiece piece_of(const CutSurface& whole, const std::vector<char>& is_chosen, C
     for (uint32_t& v : fine->paths.back().vertex) v = used(v, *fine);
   }
   CutPiece piece{cut_fine_mesh(std::move(fine), whole.frame, context), {}};
-  piece.cut.parts_regions = whole.parts_regions;
+  piece.cut.regions = whole.regions;
   piece.in_whole.resize(size_t(piece.cut.surface.vertex_count()));
   for (size_t t = 0; t < source.size(); ++t)
     for (size_t i = 0; i < 3; ++i) piece.in_whole[piece.cut.corner[3 * t + i]] = whole.corner[3 * source[t] + i];

@@ -95,6 +95,13 @@ CutSurface cut_surface(const FeatureMesh& mesh, const CurveNetwork& network, con
   return cut;
 }
 
+std::vector<std::array<int32_t, 2>> labels_of_patches(const CutSurface& cut) {
+  std::vector<std::array<int32_t, 2>> labels(patch_count(cut), {0, 0});
+  for (size_t t = 0; t < cut.fine->triangles.size(); ++t)
+    labels[cut.surface.patch[cut.corner[3 * t]]] = cut.regions->labels[cut.fine->source_face[t]];
+  return labels;
+}
+
 double edge_length_for(const FeatureMesh& mesh, const CurveNetwork& network, int64_t vertices) {
   if (vertices < 1)
     throw Error(ErrorCode::usage, "features", std::to_string(vertices) + " vertices are too few; it takes at least 1");

@@ -1,6 +1,7 @@
 // The surface of a clean input: its own triangles on the lattice, refined, and cut open along its curves.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "features/mesh/feature_mesh.h"
@@ -9,6 +10,7 @@
 #include "isoshell/advanced/seed_set.h"
 #include "isoshell/advanced/surface_mesh.h"
 #include "isoshell/backend.h"
+#include "isoshell/regions.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
@@ -36,9 +38,9 @@ struct FineMesh;
 struct CutSurface {
   SurfaceMesh surface;  ///< cut into patches, with triangles that may have no area: they were thinner than a step
   LatticeFrame frame;
-  double longest_edge_q8 = 0;  ///< aimed at
-  bool is_requested = false;   ///< lengths vary as was asked for
-  bool parts_regions = false;  ///< patches are walls between regions, and every curve must stay
+  double longest_edge_q8 = 0;                            ///< aimed at
+  bool is_requested = false;                             ///< lengths vary as was asked for
+  std::shared_ptr<const FaceRegions> regions = nullptr;  ///< that patches part, by fine->source_face: every curve stays
   std::vector<CutCurve> curves;
   int64_t corner_count = 0;
   std::vector<uint32_t> place;              ///< per vertex of the surface; kNone off borders
@@ -53,6 +55,9 @@ struct CutSurface {
 inline size_t patch_count(const CutSurface& cut) {
   return size_t(cut.surface.patch[cut.surface.vertex_count() - 1]) + 1;  // vertices are in order of their patches
 }
+
+/// Per patch the regions that it parts: the one behind it, and the one in front. Only where there are some.
+std::vector<std::array<int32_t, 2>> labels_of_patches(const CutSurface& cut);
 
 struct CutOptions {
   double edge_length_world = 0;         ///< aimed at, everywhere the same

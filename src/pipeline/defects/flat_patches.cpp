@@ -98,7 +98,7 @@ class FlatPatch {
   WorldPoint position(uint32_t seed) const { return point(made_.mesh.position[seed]); }
 
   /// Whether no two parts of walls lie on top of each other, as seen along the normal of the plane.
-  bool is_seen_once() const { return cut_.parts_regions && parts_.least_cosine[patch_] > kLeastCosine; }
+  bool is_seen_once() const { return cut_.regions && parts_.least_cosine[patch_] > kLeastCosine; }
 
   bool is_flat(const Plane& plane) const {
     const auto& patch = cut_.surface.patch;

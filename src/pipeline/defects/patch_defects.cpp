@@ -26,7 +26,8 @@ class Defects {
         seeds_(made.seeds),
         triangles_(list_of(mesh_->triangles.view())),
         vertices_(size_t(mesh_->position.size())),
-        is_wrong_(vertices_, 0) {}
+        is_wrong_(vertices_, 0),
+        is_on_border_(vertices_, 0) {}
 
   std::vector<uint32_t> find() {
     look_at_edges();
@@ -45,7 +46,10 @@ class Defects {
     for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
       const bool is_inside = on_edge.size == 2 && start_of(on_edge[0]) != start_of(on_edge[1]);
       if (on_edge.size > 1 && !is_inside) is_wrong_[u] = is_wrong_[v] = 1;
-      if (!is_inside) not_inside_.push_back(edge_key(u, v));
+      if (!is_inside) {
+        not_inside_.push_back(edge_key(u, v));
+        is_on_border_[u] = is_on_border_[v] = 1;
+      }
       joined_.push_back({edge_key(joined(u), joined(v)), is_inside, {u, v}});
     });
   }
@@ -55,7 +59,7 @@ class Defects {
     std::vector<uint32_t> count(vertices_, 0);
     for (const uint32_t v : fans.vertex) ++count[v];
     for (size_t v = 0; v < vertices_; ++v)
-      if (count[v] != 1) is_wrong_[v] = 1;
+      if (count[v] != 1 || bool(is_on_border_[v]) != (int64_t(v) < seeds_->fixed.count)) is_wrong_[v] = 1;
   }
 
   /// An edge inside of a patch must be the only one between its ends.
@@ -95,7 +99,7 @@ class Defects {
   OnHost<SeedSet> seeds_;
   MeshTriangles triangles_;
   size_t vertices_;
-  std::vector<char> is_wrong_;
+  std::vector<char> is_wrong_, is_on_border_;
   std::vector<uint64_t> not_inside_;  ///< ascending
   std::vector<JoinedEdge> joined_;
 };

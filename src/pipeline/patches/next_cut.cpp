@@ -36,7 +36,7 @@ std::optional<NextCut> with_shorter_edges(const CutSurface& cut, const std::vect
 }  // namespace
 
 std::optional<NextCut> next_cut(const CutSurface& cut, const std::vector<PointQ8>& wrong) {
-  return cut.parts_regions ? with_shorter_edges(cut, wrong) : with_fewer_creases(cut, wrong);
+  return cut.regions ? with_shorter_edges(cut, wrong) : with_fewer_creases(cut, wrong);
 }
 
 }  // namespace isoshell

@@ -17,6 +17,7 @@
 #include "measure/crossing_corners.h"
 #include "pipeline/defects/fan_patches.h"
 #include "pipeline/defects/flat_patches.h"
+#include "pipeline/defects/inverted_regions.h"
 #include "pipeline/defects/part_twins.h"
 #include "pipeline/defects/patch_defects.h"
 #include "pipeline/grid/attempt.h"
@@ -111,7 +112,7 @@ class PatchRounds {
     if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(*cut, wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
       if (options_.previous || is_hopeless(*cut, wrong) || is_helpless(*cut)) return wrong.said();
-      const size_t most_work = cut->parts_regions ? kMostWorkOfRegions : kMostWork;
+      const size_t most_work = cut->regions ? kMostWorkOfRegions : kMostWork;
       if (round == kMostRounds || work_ > most_work * cut->fine->triangles.size()) return wrong.said();
       std::optional<NextCut> change = next_cut(*cut, wrong.places());
       if (!change) return wrong.said();
@@ -158,14 +159,16 @@ class PatchRounds {
   Wrong mesh_patches(const CutSurface& cut, SeededMesh& made) {
     Wrong failed(cut);
     const bool are_disks = make_dual(cut, made);
-    if (cut.parts_regions) {
+    if (cut.regions) {
       bring_to_host(made);
       part_twins(cut, made);
     }
-    if (!are_disks) {
+    if (!are_disks || cut.regions) {
       bring_to_host(made);
       add_defects(cut, made, find_patch_defects(made), failed);
-      failed.forget(triangulate_flat(cut, failed.patch, made));
+      const PerPatch is_flat = triangulate_flat(cut, failed.patch, made);
+      failed.forget(is_flat);
+      if (cut.regions && any(is_flat)) add_defects(cut, made, find_patch_defects(made), failed);
     }
     int64_t crossing = 0;
     on_patches(cut, inverse(failed.patch), false, made, [&](const CutSurface& part, SeededMesh& mesh) {
@@ -183,15 +186,14 @@ class PatchRounds {
 
   /// Of so many vertices the whole mesh has twice as many triangles.
   bool is_hopeless(const CutSurface& cut, const Wrong& wrong) const {
-    if (cut.parts_regions)
-      return kMostCrossingOfRegions * wrong.crossing > std::max(options_.seeds.count, kFewVertices);
+    if (cut.regions) return kMostCrossingOfRegions * wrong.crossing > std::max(options_.seeds.count, kFewVertices);
     return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
   }
 
   /// Whether rounds took long and did not help, where there is another way: curves are laid on the sheet, and walls
   /// stay as they came in.
   bool is_helpless(const CutSurface& cut) const {
-    return (cut.source->input || cut.parts_regions) && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
+    return (cut.source->input || cut.regions) && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
   }
 
   /// Result: whether all cells are disks.
@@ -247,6 +249,7 @@ class PatchRounds {
     const auto is_known = [&](uint32_t v) { return failed.patch[cut.surface.patch[made.seeds.home[v]]]; };
     defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
     add_defects(cut, made, defects, wrong);
+    if (cut.regions) add_defects(cut, made, find_inverted_regions(cut, made), wrong);
     const auto pairs = all_crossing(made);
     report_.optimize.self_intersections = int64_t(pairs.size());
     add_crossing(cut, made, crossings_.wrong_of(made.mesh, pairs), wrong);
@@ -258,7 +261,7 @@ class PatchRounds {
     const Wrong wrong = find_wrong(cut, made, failed);
     if (wrong.is_nowhere()) return wrong;
     failed.forget(triangulate_flat(cut, wrong.patch, made));
-    if (!cut.parts_regions) return find_wrong(cut, made, failed);
+    if (!cut.regions) return find_wrong(cut, made, failed);
     const Wrong still = find_wrong(cut, made, failed);
     failed.forget(triangulate_as_fans(cut, still.patch, made));
     return find_wrong(cut, made, failed);
@@ -287,7 +290,7 @@ class PatchRounds {
       fine->paths = std::move(paths);
       auto after = std::make_shared<CutSurface>(cut_fine_mesh(std::move(fine), before.frame, context_));
       after->is_requested = before.is_requested;
-      after->parts_regions = before.parts_regions;
+      after->regions = before.regions;
       after->seeds = before.seeds;
       after->source = before.source;
       std::optional<Paths> fewer = drop_creases_at_tight_borders(*after);

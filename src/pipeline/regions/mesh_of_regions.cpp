@@ -23,14 +23,6 @@ constexpr int64_t kManyVertices = 2;  ///< of walls, for one that is asked for
 constexpr const char* kCoarsened =
     "the edges between regions were collapsed and flipped, not relaxed, and triangles are less even: ";
 
-/// Per patch of a cut surface the regions that it parts.
-std::vector<std::array<int32_t, 2>> labels_of_patches(const CutSurface& cut, const FaceRegions& regions) {
-  std::vector<std::array<int32_t, 2>> labels(patch_count(cut), {0, 0});
-  for (size_t t = 0; t < cut.fine->triangles.size(); ++t)
-    labels[cut.surface.patch[cut.corner[3 * t]]] = regions.labels[cut.fine->source_face[t]];
-  return labels;
-}
-
 FaceRegions without_labels(const FaceRegions& regions) {
   FaceRegions out;
   out.background = regions.background;
@@ -71,7 +63,7 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);
   mesh.regions = without_labels(p.walls->regions);
-  const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut, p.walls->regions);
+  const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut);
   for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);
   if (const auto vertices = int64_t(mesh.vertices.size());
       vertices != p.target.vertices && !p.options.edge_length_world)

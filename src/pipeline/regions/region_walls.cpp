@@ -46,7 +46,7 @@ SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, Conte
   const SeedSet fixed = seeds_on_curves(*cut, 0);
   const int64_t wanted = cut->seeds > 0 ? cut->seeds : p.target.vertices;
   cut->seeds = std::max(wanted, FreeSeeds(*cut).fewest(fixed));
-  cut->parts_regions = true;
+  cut->regions = std::shared_ptr<const FaceRegions>(p.walls, &p.walls->regions);
   cut->source = std::make_shared<const CutSource>();
   return cut;
 }

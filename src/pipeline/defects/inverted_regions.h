@@ -1,0 +1,14 @@
+// Regions as small as their edges may come out inside out.
+#pragma once
+
+#include <vector>
+
+#include "features/cutting/cut_surface.h"
+#include "isoshell/advanced/stages.h"
+
+namespace isoshell {
+
+/// The vertices of the walls of regions whose volume is not above 0; ascending. In host memory. Cost: O(triangles).
+std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const SeededMesh& made);
+
+}  // namespace isoshell
