@@ -50,6 +50,9 @@ class Options(TypedDict, total=False):
 
     Files:
         iso: isovalue of a volume; required for a fog volume [0 in a level set and in unsigned distances].
+        background: of a volume of labels: the label of what is no region [that around the labels, mostly 0].
+        smallest_island: of a volume of labels: islands of fewer voxels get the label around them, but the largest one
+            of each region; 0: none do [8].
         input_format: format of INPUT: ply, obj, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
@@ -101,6 +104,8 @@ class Options(TypedDict, total=False):
     color_features: bool
     uniform_area: bool
     iso: Optional[float]
+    background: Optional[int]
+    smallest_island: Optional[int]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

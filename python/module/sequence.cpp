@@ -90,7 +90,7 @@ std::vector<int64_t> check_frames(const Keywords& keywords, const std::string& s
                                   const std::string& frames, bool keep_going, bool resume) {
   SequenceRequest request;
   request.frame = arguments_of(keywords, output).run;
-  if (!source.empty()) request.frame.input = named_input(source, request.frame.input.format);
+  if (!source.empty()) request.frame.input = named_input(source, std::move(request.frame.input));
   request.frames = parse_frames(frames);
   request.keep_going = keep_going;
   request.resume = resume;

@@ -2,6 +2,8 @@
 
 #include <nanobind/stl/string.h>
 
+#include <utility>
+
 #include "isoshell/error.h"
 #include "values/errors.h"
 
@@ -30,9 +32,7 @@ RequestFromPython request_from_python(const Source& source, const Keywords& keyw
       throw Error(ErrorCode::usage, "arguments", "--input-format is for files; leave it out");
     return requested;
   }
-  const std::optional<double> iso = request.input.iso;
-  request.input = named_input(source.path, request.input.format);
-  request.input.iso = iso;
+  request.input = named_input(source.path, std::move(request.input));
   return requested;
 }
 

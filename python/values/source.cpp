@@ -29,8 +29,17 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-void refuse_iso(const RunRequest& request) {
-  if (request.input.iso) throw Error(ErrorCode::usage, "arguments", "--iso is for volumes; leave it out");
+[[noreturn]] void refuse(const char* message) { throw Error(ErrorCode::usage, "arguments", message); }
+
+/// Of what is in memory and no volume of labels.
+void refuse_label_options(const RunRequest& request) {
+  if (request.input.labels.background) refuse("--background is for volumes of labels; leave it out");
+  if (request.input.labels.smallest_island_vox) refuse("--smallest-island is for volumes of labels; leave it out");
+}
+/// Of what is no volume.
+void refuse_volume_options(const RunRequest& request) {
+  if (request.input.iso) refuse("--iso is for volumes; leave it out");
+  refuse_label_options(request);
 }
 
 Source file(const std::string& path) { return {path, {}, {}, {}}; }
@@ -39,7 +48,7 @@ Source surface(const std::string& name, TriangleSoup soup) {
   const auto given = std::make_shared<TriangleSoup>(std::move(soup));
   return {"",
           [name, given](const RunRequest& request, const Context&) {
-            refuse_iso(request);
+            refuse_volume_options(request);
             return input_of(std::move(*given), name, request.tell);
           },
           {},
@@ -86,7 +95,7 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
   const auto given = std::make_shared<PointCloud>(std::move(cloud));
   return {"",
           [given](const RunRequest& request, const Context& context) {
-            refuse_iso(request);
+            refuse_volume_options(request);
             return input_of(*given, "points", context.memory_limit_bytes, request.tell,
                             volume_creases(request.options.values.features));
           },
@@ -115,6 +124,7 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
   const DenseVolume v = dense_volume("volume", values, spacing, origin);
   return {"",
           [v](const RunRequest& request, const Context& context) {
+            refuse_label_options(request);
             const VolumeReadOptions options{"", request.input.iso, context.memory_limit_bytes,
                                             volume_creases(request.options.values.features)};
             return input_of(v, "volume", options, request.tell);
@@ -127,7 +137,9 @@ Source labels(const AnyArray& values, const LabelLattice& lattice) {
   const auto given = std::make_shared<LabelVolume>(label_volume_of(values, lattice));
   return {"",
           [given](const RunRequest& request, const Context& context) {
-            refuse_iso(request);
+            if (request.input.iso) refuse("--iso is for volumes; leave it out");
+            if (request.input.labels.given())
+              refuse("--background and --smallest-island are for files; give them to isoshell.Labels");
             const LabelVolume volume = std::move(*given);  // freed when its walls are there
             return input_of(volume, "labels", context.memory_limit_bytes, request.tell);
           },

@@ -87,6 +87,12 @@ void check_points(const PointCloud& cloud, const std::string& name) {
 
 [[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
 
+void check_no_labels(const LabelReading& labels) {
+  if (labels.given())
+    refuse_use(std::string(labels.background ? "--background" : "--smallest-island") +
+               " is for volumes of labels; leave it out");
+}
+
 class Reader {
  public:
   Reader(const std::string& path, int64_t memory_limit_bytes, const Tell& tell)
@@ -113,6 +119,7 @@ class Reader {
     else
       read_volume_file(request);
     if (request.iso && input_.facts.kind != InputKind::volume) refuse_iso();
+    if (input_.facts.kind != InputKind::labels) check_no_labels(request.labels);
   }
 
   void hold(TriangleSoup soup) {
@@ -192,7 +199,8 @@ class Reader {
 
   void read_label_file(const MeshSource& source, const InputRequest& request) {
     if (request.iso) refuse_iso();  // before the labels are read
-    const LabelGrid grid = read_label_grid(source, {request.grid, memory_limit_bytes_});
+    LabelGrid grid = read_label_grid(source, {request.grid, memory_limit_bytes_, request.labels.background});
+    if (request.labels.smallest_island_vox) grid.volume.smallest_island_vox = *request.labels.smallest_island_vox;
     hold(grid.volume, "grid " + grid.name + ", ");
   }
 
@@ -233,7 +241,15 @@ const char* kind_name(InputKind kind) {
 }
 
 InputRequest named_input(const std::string& name, const std::string& format) {
-  InputRequest request{name, format_name(format), "", {}};
+  InputRequest request;
+  request.format = format;
+  return named_input(name, std::move(request));
+}
+
+InputRequest named_input(const std::string& name, InputRequest request) {
+  request.path = name;
+  request.format = format_name(request.format);
+  request.grid.clear();
   const size_t slash = name.find_last_of('/'), start = slash == std::string::npos ? 0 : slash;
   const size_t colon = name.find(".vdb:", start), nano_colon = name.find(".nvdb:", start);
   const size_t at = std::min(colon == std::string::npos ? colon : colon + 4,

@@ -182,6 +182,11 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
   CHECK(a.run.options.values.features.creases == Features::Creases::off);
   CHECK(a.run.options.given == std::vector<std::string>{"vertices", "outer-only", "features", "iso"});
   CHECK(a.run.input.iso == -2.);
+  const LabelReading labels =
+      parse({"a.vdb:seg", "b.ply", "--background=-3", "--smallest-island", "0"}).run->run.input.labels;
+  CHECK(labels.background == -3);
+  CHECK(labels.smallest_island_vox == 0);
+  CHECK(contains(refusal({"a.vdb", "b.ply", "--smallest-island=-1"}), "--smallest-island is -1; it must be 0 to"));
   CHECK(a.run.output.path.empty());
   CHECK(parse_given_options({}, "out.ply").run.output.format == "ply");
 }

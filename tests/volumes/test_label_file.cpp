@@ -1,6 +1,7 @@
 // Volumes of labels as files: read as they were written, by whatever program, and refused with what is wrong.
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -204,6 +205,50 @@ TEST_CASE("labels: a grid of labels is an input, where it is named or the file h
   write(file.path, {fog, seg});
   CHECK(read_input(request, 0).facts.kind == InputKind::volume);
   CHECK(read_input(named_input(file.path + ":seg"), 0).facts.kind == InputKind::labels);
+}
+
+TEST_CASE("labels: the background may be another label than the grid's", "[labels][unit]") {
+  const TemporaryFile file("background.vdb");
+  const auto grid = new_grid<openvdb::Int64Grid>("seg", int64_t(1) << 40);
+  grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9, 4, 4)), 9);
+  grid->fill(openvdb::CoordBBox(openvdb::Coord(2, 1, 1), openvdb::Coord(4, 3, 3)), 3);
+  grid->tree().setValueOff(openvdb::Coord(7, 2, 2), int64_t(1) << 40);
+  write(file.path, {grid});
+  CHECK(says(refusal(file.path), "say by --background which label is no region"));
+  LabelReadOptions options;
+  options.background = 9;
+  const LabelVolume volume = read_labels(file.path, options);
+  CHECK(volume.background == 9);
+  CHECK(std::count(volume.labels.begin(), volume.labels.end(), 3) == 27);
+  CHECK(std::count(volume.labels.begin(), volume.labels.end(), 9) == 250 - 27);
+}
+
+TEST_CASE("labels: an input says how labels are read, and what is no volume of labels refuses it", "[labels][unit]") {
+  const TemporaryFile file("islands.vdb");
+  const auto seg = new_grid<openvdb::Int32Grid>("seg", 0);
+  seg->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9)), 3);
+  seg->fill(openvdb::CoordBBox(openvdb::Coord(4), openvdb::Coord(5)), 0);
+  seg->fill(openvdb::CoordBBox(openvdb::Coord(0, 0, 20), openvdb::Coord(9, 9, 29)), 7);
+  seg->fill(openvdb::CoordBBox(openvdb::Coord(0, 0, 25), openvdb::Coord(0, 0, 25)), 3);
+  write(file.path, {seg});
+  InputRequest request = named_input(file.path);
+  const size_t walls = read_input(request, 0).soup.triangles.size();
+  request.labels.smallest_island_vox = 0;
+  const size_t all_walls = read_input(request, 0).soup.triangles.size();
+  request.labels.smallest_island_vox = 9;
+  const size_t large_walls = read_input(request, 0).soup.triangles.size();
+  CHECK(all_walls > walls);
+  CHECK(walls > large_walls);
+  request.labels.background = 3;
+  CHECK(read_input(request, 0).soup.regions.background == 3);
+  CHECK(named_input("other.vdb:seg", request).labels.background == 3);
+  const auto fog = new_grid<openvdb::FloatGrid>("fog", 0);
+  fog->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(4)), 1);
+  write(file.path, {fog});
+  request.iso = .5;
+  CHECK(says(error_of([&] { read_input(request, 0); }), "--background is for volumes of labels"));
+  request.labels.background.reset();
+  CHECK(says(error_of([&] { read_input(request, 0); }), "--smallest-island is for volumes of labels"));
 }
 
 TEST_CASE("labels: transforms that are frustums are refused", "[labels][unit]") {

@@ -101,12 +101,6 @@ Arguments checked_arguments(const Parser& parser, const std::string& output) {
   return a;
 }
 
-void set_input(RunRequest& run, const std::string& name) {
-  const std::optional<double> iso = run.input.iso;
-  run.input = named_input(name, run.input.format);
-  run.input.iso = iso;
-}
-
 void refuse_leftovers(const CLI::App& app) {
   for (const std::string& left : app.remaining()) {
     if (left.size() < 2 || left[0] != '-') continue;
@@ -135,7 +129,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   Arguments a = checked_arguments(parser, parser.output());
   if (parser.input().empty()) refuse("INPUT is missing; see --help");
   if (parser.output().empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
-  set_input(a.run, parser.input());
+  a.run.input = named_input(parser.input(), std::move(a.run.input));
   return {std::move(a), ""};
 }
 

@@ -43,7 +43,7 @@ struct GivenOption {
   std::optional<std::string> value;
 };
 /// The same from a front that has names and values, and perhaps no file: `output` may be empty, and of the input only
-/// its format and isovalue are set. Throws: usage.
+/// its format and how it is read are set. Throws: usage.
 Arguments parse_given_options(const std::vector<GivenOption>& given, const std::string& output);
 
 /// A row of the table that the guide, --help and the Python module's keywords are made from.

@@ -1,6 +1,8 @@
 #include "vdb_isomesh/options.h"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
@@ -16,6 +18,21 @@ void set_iso(const std::string& text, Arguments& a) {
   const double value = parse_real("--iso", text);
   if (!std::isfinite(value)) throw Error(ErrorCode::usage, "command line", "--iso must be a finite number");
   a.run.input.iso = value;
+}
+
+constexpr OptionRange kLabels{double(std::numeric_limits<int32_t>::min()), double(std::numeric_limits<int32_t>::max())};
+constexpr OptionRange kIslands{0, kLabels.high};
+
+void set_background(const std::string& text, Arguments& a) {
+  const int64_t label = parse_whole("--background", text);
+  check_range("--background", double(label), kLabels);
+  a.run.input.labels.background = int32_t(label);
+}
+
+void set_smallest_island(const std::string& text, Arguments& a) {
+  const int64_t voxels = parse_whole("--smallest-island", text);
+  check_range("--smallest-island", double(voxels), kIslands);
+  a.run.input.labels.smallest_island_vox = voxels;
 }
 
 void set_threads(const std::string& text, Arguments& a) {
@@ -92,6 +109,14 @@ std::vector<CommandOption> file_options() {
       {{group, "iso", "V", "isovalue of a volume; required for a fog volume",
         "0 in a level set and in unsigned distances", true},
        set_iso},
+      {{group, "background", "LABEL", "of a volume of labels: the label of what is no region",
+        "that around the labels, mostly 0", false, false, kLabels},
+       set_background},
+      {{group, "smallest-island", "N",
+        "of a volume of labels: islands of fewer voxels get the label around them, but the largest one of each "
+        "region; 0: none do",
+        "8", false, false, kIslands},
+       set_smallest_island},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
       {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",

@@ -18,18 +18,29 @@ enum class InputKind { mesh, points, volume, labels, stage };
 /// "mesh", "points", "volume", "labels" or "stage".
 const char* kind_name(InputKind kind);
 
+/// How a file of labels is read. What has no value is as in read_labels() and LabelVolume.
+struct LabelReading {
+  std::optional<int32_t> background;           ///< the label of what is no region
+  std::optional<int64_t> smallest_island_vox;  ///< islands of fewer voxels get the label around them
+
+  bool given() const { return background || smallest_island_vox; }
+};
+
 /// A file and what is needed to read it.
 struct InputRequest {
   std::string path;                             ///< "-" is standard input
   std::string format;                           ///< lower case, without a dot; empty: by the path
   std::string grid;                             ///< of a volume, as in VolumeReadOptions; empty: the only one
   std::optional<double> iso;                    ///< of a volume
+  LabelReading labels = {};                     ///< of a volume of labels
   VolumeCreases creases = VolumeCreases::none;  ///< of a volume or points; a run sets it by its features
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or
 /// with a dot is the same. Throws: usage when nothing says the format of standard input, or a colon names no grid.
 InputRequest named_input(const std::string& name, const std::string& format = "");
+/// The same with what `request` says of how it is read. Throws: as the other does.
+InputRequest named_input(const std::string& name, InputRequest request);
 
 /// What is known of an input before the first stage.
 struct InputFacts {
@@ -51,8 +62,8 @@ struct Input {
 
 /// Reads a file of any kind, and makes a surface of points and volumes. Tells what was read, and warns of what of it
 /// could not be used. Throws: unreadable_input when the file is missing or of no known kind, usage for an isovalue of
-/// what is no volume, and as the readers of each kind do (mesh_file.h, point_file.h, volume_file.h, vdb_file.h);
-/// out_of_memory over `memory_limit_bytes`, if above 0.
+/// what is no volume and for LabelReading of what holds no labels, and as the readers of each kind do (mesh_file.h,
+/// point_file.h, volume_file.h, vdb_file.h); out_of_memory over `memory_limit_bytes`, if above 0.
 Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell = {});
 
 /// A surface and points that are in memory already, under the name that messages and statistics call them by. A surface

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "isoshell/regions.h"
@@ -11,13 +12,15 @@ namespace isoshell {
 struct LabelReadOptions {
   std::string grid = {};           ///< as in VolumeReadOptions; empty takes the only grid of labels
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
+  std::optional<int32_t> background = {};  ///< the label of what is no region; without a value the grid's background
 };
 
 /// Reads an Int32Grid or Int64Grid. The array is the box of all voxels that are active or differ from the grid's
-/// background, which is the background of the result. The transform may be any affine one. A name is metadata of type
-/// string of the grid: "label:7" with the value "femur" calls the region 7 so. Throws: unreadable_input for a damaged
-/// file, labels beyond 32 bits, and transforms that are frustums or have no inverse; nothing_to_mesh where no grid
-/// holds labels or all voxels are background; usage when the grid must be named; out_of_memory over the limit.
+/// background. The result's background is that of the options, which inactive voxels of the grid's have, too. The
+/// transform may be any affine one. A name is metadata of type string of the grid: "label:7" with the value "femur"
+/// calls the region 7 so. Throws: unreadable_input for a damaged file, labels beyond 32 bits, and transforms that are
+/// frustums or have no inverse; nothing_to_mesh where no grid holds labels or all voxels are background; usage when the
+/// grid must be named; out_of_memory over the limit.
 LabelVolume read_labels(const std::string& path, const LabelReadOptions& options = {});
 
 struct LabelWriteOptions {

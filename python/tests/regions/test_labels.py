@@ -212,6 +212,19 @@ def test_islands_of_few_voxels_are_absorbed_unless_all_shall_stay():
     assert components[0][1] == 1 and components[1][1] == 2
 
 
+def test_files_of_labels_are_read_as_labels_say_it(tmp_path):
+    speckled = np.ones((14, 14, 14), np.int32)
+    speckled[3, 3, 3] = speckled[9:12, 9:12, 9:12] = 2
+    path = tmp_path / "speckled.vdb"
+    Labels(speckled).save(path)
+    for how in ({"smallest_island": 0}, {"background": 1, "smallest_island": 0}):
+        assert isoshell.remesh(path, **how, **QUICK).digest == isoshell.remesh(Labels(speckled, **how), **QUICK).digest
+    with pytest.raises(isoshell.Error, match="give them to isoshell.Labels"):
+        isoshell.remesh(Labels(speckled), background=1, **QUICK)
+    with pytest.raises(isoshell.Error, match="smallest_island is for volumes of labels"):
+        isoshell.remesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), smallest_island=1, **QUICK)
+
+
 def test_labels_can_be_pickled(polycrystal):
     assert digest(pickle.loads(pickle.dumps(Labels(grains())))) == polycrystal.digest
 

@@ -56,8 +56,9 @@ class LabelTree {
   using Grid = VdbGrid<Value>;
   using Leaf = VdbLeaf<Grid>;
 
-  LabelTree(std::string title, const Grid& grid) : title_(std::move(title)), background_(grid.background()) {
-    require_label(background_, "its background");
+  /// Inactive voxels of the grid's background get the label `outside`.
+  LabelTree(std::string title, const Grid& grid, int32_t outside)
+      : title_(std::move(title)), background_(grid.background()), outside_(outside) {
     grid.tree().getNodes(leaves_);
     auto value = grid.tree().cbeginValueAll();
     value.setMaxDepth(Grid::TreeType::ValueAllCIter::LEAF_DEPTH - 1);
@@ -72,7 +73,7 @@ class LabelTree {
   /// Of all voxels of the box.
   std::vector<int32_t> labels() const {
     for (const Tile& tile : tiles_) require_label(tile.value, "a tile");
-    std::vector<int32_t> labels(size_t(box_.size(0) * box_.size(1) * box_.size(2)), int32_t(background_));
+    std::vector<int32_t> labels(size_t(box_.size(0) * box_.size(1) * box_.size(2)), outside_);
     for (const Tile& tile : tiles_) fill(tile, labels);
     constexpr int64_t kNone = std::numeric_limits<int64_t>::max();
     std::atomic<int64_t> first_bad{kNone};
@@ -121,9 +122,10 @@ class LabelTree {
     for (int64_t z = from[2]; z <= to[2]; ++z)
       for (int64_t y = from[1]; y <= to[1]; ++y)
         for (int64_t x = from[0]; x <= to[0]; ++x) {
-          const Value value = values[((x - origin.x()) << 6) + ((y - origin.y()) << 3) + (z - origin.z())];
-          if (!is_label(value)) return false;
-          labels[place(x, y, z)] = int32_t(value);
+          const auto n = openvdb::Index(((x - origin.x()) << 6) + ((y - origin.y()) << 3) + (z - origin.z()));
+          if (values[n] == background_ && !leaf.isValueOn(n)) continue;
+          if (!is_label(values[n])) return false;
+          labels[place(x, y, z)] = int32_t(values[n]);
         }
     return true;
   }
@@ -145,6 +147,7 @@ class LabelTree {
 
   const std::string title_;
   const Value background_;
+  const int32_t outside_;
   std::vector<const Leaf*> leaves_;  ///< in the order of the tree
   std::vector<Tile> tiles_;
   VoxelBox box_;
@@ -156,6 +159,7 @@ struct Request {
   const VolumeGrid& grid;
   int64_t tree_bytes;
   VolumeReadOptions options;
+  std::optional<int32_t> background;  ///< of the result
 
   std::string title() const { return path + ": grid \"" + grid.name + "\""; }
 };
@@ -170,15 +174,26 @@ void check_box(const Request& request, const VoxelBox& box) {
   if (box.label_bytes() == kMostBytes) throw std::bad_alloc();
 }
 
+/// The label of what is no region.
+template <class Value>
+int32_t background_of(const Request& request, const VdbGrid<Value>& grid) {
+  if (request.background) return *request.background;
+  if (!is_label(grid.background()))
+    throw Error(ErrorCode::unreadable_input, "read",
+                request.title() + ": its background has the value " + std::to_string(grid.background()) +
+                    "; labels must fit 32 bits, number them anew or say by --background which label is no region");
+  return int32_t(grid.background());
+}
+
 template <class Value>
 LabelVolume volume_of(const Request& request, const openvdb::GridBase& any_grid) {
   const auto& grid = static_cast<const VdbGrid<Value>&>(any_grid);
-  const LabelTree<Value> tree(request.title(), grid);
+  LabelVolume volume;
+  volume.background = background_of<Value>(request, grid);
+  const LabelTree<Value> tree(request.title(), grid, volume.background);
   const VoxelBox& box = tree.box();
   check_box(request, box);
   const AffineMap map = affine_map_of(grid);
-  LabelVolume volume;
-  volume.background = int32_t(grid.background());
   double origin[3];
   for (int i = 0; i < 3; ++i) {
     volume.size_vox[size_t(i)] = int32_t(box.size(i));
@@ -207,7 +222,7 @@ LabelGrid read_label_grid(const MeshSource& source, const LabelReadOptions& opti
   const VolumeReadOptions as_options{options.grid, {}, options.memory_limit_bytes};
   const size_t chosen = choose_grid(path, grids, as_options, "of labels");
   const VdbGridSpan& span = layout.grids[chosen];
-  const Request request{path, grids[chosen], check_vdb_tree(path, bytes, span), as_options};
+  const Request request{path, grids[chosen], check_vdb_tree(path, bytes, span), as_options, options.background};
   check_volume_memory(path, request.grid, request.tree_bytes, as_options);
   try {
     const openvdb::GridBase::ConstPtr grid = read_vdb_grid(path, bytes, span);
