@@ -16,7 +16,7 @@ HEAD = '''"""Keywords of isoshell.remesh. Made by scripts/python_options.py from
 from __future__ import annotations
 
 import os
-from typing import Callable, Literal, Optional, Sequence, TypedDict, Union
+from typing import Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
 from ._sources import Volume
 
@@ -37,6 +37,7 @@ SPECIAL = {
     "input-format": "str",
     "output-format": "str",
     "sizing": "Union[Path, Volume]",
+    "region-edge-length": "Mapping[Union[int, str], float]",
     "stats": "Union[bool, Path]",
 }
 

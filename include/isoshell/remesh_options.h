@@ -40,13 +40,22 @@ enum class Boundary {
   keep,   ///< borders wider than the gaps to close are borders of the result
 };
 
+/// How long edges are on the walls of a region.
+struct RegionEdgeLength {
+  std::string region;  ///< its label in decimal digits, or its name
+  double edge_length_world = 0;
+};
+
 /// How many vertices, and where.
 struct SizeOptions {
   std::optional<int64_t> vertices = 10000;    ///< target count; without it as `sizing` asks for, or 10000
   std::optional<double> edge_length_world;    ///< target edge length, instead of `vertices`
   std::shared_ptr<const SizingField> sizing;  ///< edge lengths to aim at; null: the same everywhere
-  double adaptivity = 0;                      ///< part of the vertices that goes by curvature, 0 to 1
-  double gradation = 1.2;                     ///< most that an edge may be longer than its neighbours, above 1
+  /// Before those of `sizing`, each of a region once; where two have a wall, the shorter one holds. Others have what
+  /// they would have without.
+  std::vector<RegionEdgeLength> region_edge_lengths = {};
+  double adaptivity = 0;   ///< part of the vertices that goes by curvature, 0 to 1
+  double gradation = 1.2;  ///< most that an edge may be longer than its neighbours, above 1
 };
 
 /// The solid, and the voxels that it is found with.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any, List, NamedTuple, Optional, Tuple
 
 from . import _isoshell
@@ -76,6 +77,15 @@ def _text(name: str, value: Any) -> str:
         return repr(value)
     if isinstance(value, (str, os.PathLike)):
         return os.fsdecode(value)
+    if isinstance(value, Mapping):  # an option of the command that may be given more than once
+        return "\n".join(f"{_key(name, key)}={_plain(part)!r}" for key, part in value.items())
     if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):
         return "none" if name == "attributes" and not value else ",".join(value)
     raise Error(f"{name} is {value!r}; it must be a number, text or a list of texts", stage="options")
+
+
+def _key(name: str, key: Any) -> str:
+    plain = _plain(key)
+    if isinstance(plain, (str, int)) and not isinstance(plain, bool) and "\n" not in str(plain):
+        return str(plain)
+    raise Error(f"a key of {name} is {key!r}; it must be a label or a name", stage="options")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Callable, Literal, Optional, Sequence, TypedDict, Union
+from typing import Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
 from ._sources import Volume
 
@@ -19,6 +19,8 @@ class Options(TypedDict, total=False):
         edge_length: target edge length in world units, instead of vertices.
         sizing: float grid of target edge lengths in world units; without vertices it also decides the number of
             vertices.
+        region_edge_length: edge length in world units on the walls of a region, a label or a name; may be given for
+            each region; without vertices it also decides the number of vertices.
         adaptivity: fraction of the vertices, 0 to 1, distributed by curvature instead of area [0].
         gradation: maximum ratio of neighbouring edge lengths, above 1 and at most 10 [1.2].
 
@@ -85,6 +87,7 @@ class Options(TypedDict, total=False):
     vertices: Optional[int]
     edge_length: Optional[float]
     sizing: Optional[Union[Path, Volume]]
+    region_edge_length: Optional[Mapping[Union[int, str], float]]
     adaptivity: Optional[float]
     gradation: Optional[float]
     resolution: Optional[int]

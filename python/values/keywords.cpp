@@ -35,6 +35,7 @@ void bind_keywords(nb::module_& m) {
       .def_ro("fallback", &tool::OptionEntry::fallback, "What holds without it.")
       .def_ro("real", &tool::OptionEntry::real, "Takes any number, not only whole ones.")
       .def_ro("of_command", &tool::OptionEntry::of_command, "No keyword: only the command has it.")
+      .def_ro("repeats", &tool::OptionEntry::repeats, "Its text has a line for each time that it is given.")
       .def_prop_ro(
           "low", [](const tool::OptionEntry& o) { return o.range.low; }, "The least number that it takes.")
       .def_prop_ro(

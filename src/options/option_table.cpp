@@ -7,7 +7,6 @@
 namespace isoshell {
 namespace {
 
-constexpr OptionRange kLength{0, std::numeric_limits<double>::max(), true};
 constexpr double kMostVertices = std::numeric_limits<int32_t>::max();
 
 /// Names of the values of a member of RemeshOptions, which one function reads and another writes.
@@ -48,6 +47,16 @@ TextOption sizing_option() {
           }};
 }
 
+TextOption region_edge_length_option() {
+  TextOption option = named<&RemeshOptions::region_edge_lengths, parse_region_edge_lengths, region_edge_lengths_text>(
+      TextOption::Number::refused, [](RemeshOptions& o) {
+        for (const RegionEdgeLength& l : o.region_edge_lengths)
+          check_range("region_edge_lengths of region " + l.region, l.edge_length_world, kLengths);
+      });
+  option.repeats = true;
+  return option;
+}
+
 std::vector<OptionRow> size_rows() {
   const char* group = "Size of the result";
   return {
@@ -61,10 +70,14 @@ std::vector<OptionRow> size_rows() {
        OnResume::of_seeds,
        {4, kMostVertices}},
       {group, "edge-length", "L", "target edge length in world units, instead of --vertices", "", "edge_length_world",
-       &RemeshOptions::edge_length_world, OnResume::of_seeds, kLength, 0, "vertices"},
+       &RemeshOptions::edge_length_world, OnResume::of_seeds, kLengths, 0, "vertices"},
       {group, "sizing", "F.vdb[:GRID]",
        "float grid of target edge lengths in world units; without --vertices it also decides the number of vertices",
        "", "sizing", sizing_option(), OnResume::of_seeds},
+      {group, "region-edge-length", "REGION=L",
+       "edge length in world units on the walls of a region, a label or a name; may be given for each region; without "
+       "--vertices it also decides the number of vertices",
+       "", "region_edge_lengths", region_edge_length_option(), OnResume::of_seeds},
       {group,
        "adaptivity",
        "A",
@@ -99,7 +112,7 @@ std::vector<OptionRow> grid_rows() {
        OnResume::of_shell,
        {8, kMaxResolution}},
       {group, "voxel-size", "S", "voxel size in world units, instead of --resolution", "", "voxel_size_world",
-       &RemeshOptions::voxel_size_world, OnResume::of_shell, kLength, 0, "resolution"},
+       &RemeshOptions::voxel_size_world, OnResume::of_shell, kLengths, 0, "resolution"},
       {group,
        "band",
        "D",

@@ -126,6 +126,27 @@ std::string features_text(const Features& features) {
   return features.line_file.empty() ? creases : creases + "," + features.line_file;
 }
 
+std::vector<RegionEdgeLength> parse_region_edge_lengths(const std::string& option, const std::string& text) {
+  std::vector<RegionEdgeLength> lengths;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t equals = line.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+      refuse(option + " is '" + line + "'; it must be a label or a name of a region, = and a length, as 7=0.5");
+    const std::string region = line.substr(0, equals);
+    lengths.push_back({region, parse_real(option + " of region " + region, line.substr(equals + 1))});
+    check_range(option + " of region " + region, lengths.back().edge_length_world, kLengths);
+  }
+  return lengths;
+}
+
+std::string region_edge_lengths_text(const std::vector<RegionEdgeLength>& lengths) {
+  std::string text;
+  for (const RegionEdgeLength& l : lengths)
+    text += (text.empty() ? "" : "\n") + l.region + "=" + number_text(l.edge_length_world);
+  return text;
+}
+
 std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text) {
   if (text == "all") return std::nullopt;
   std::vector<std::string> names;

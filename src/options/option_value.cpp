@@ -55,6 +55,11 @@ bool OptionRow::is_real() const {
          std::holds_alternative<std::optional<double> RemeshOptions::*>(member);
 }
 
+bool OptionRow::repeats() const {
+  return visit_member(
+      *this, [](const TextOption& option) { return option.repeats; }, [](auto) { return false; });
+}
+
 bool OptionRow::may_be_open() const {
   return visit_member(
       *this, [](const TextOption&) { return false; },

@@ -214,9 +214,16 @@ class GridSearch {
   Context& context_;
 };
 
+void refuse_region_lengths(const RemeshOptions& options) {
+  if (!options.region_edge_lengths.empty())
+    throw Error(ErrorCode::usage, "regions",
+                "--region-edge-length is for volumes of labels, and meshes with regions; leave it out");
+}
+
 }  // namespace
 
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context) {
+  refuse_region_lengths(options);
   RemeshReport report;
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
@@ -234,6 +241,7 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& requested, Conte
     p.report = std::move(report);
     return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
   }
+  refuse_region_lengths(options);
   const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
   report.input.dirt = measured.dirt;
   check_area(measured.topology);

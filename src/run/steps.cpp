@@ -40,7 +40,7 @@ class RunSteps::Run {
  public:
   explicit Run(RunRequest request) : request_(std::move(request)), options_(request_.options) {
     check_request(request_);
-    if (!options_.sizing.empty() && !options_.was_given("vertices")) options_.values.vertices.reset();
+    if (options_.lengths_decide()) options_.values.vertices.reset();
     record_.options = options_.values;
     record_.output = named_output(request_.output.path, request_.output.format, request_.stop_after);
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();

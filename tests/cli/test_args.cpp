@@ -186,6 +186,15 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
       parse({"a.vdb:seg", "b.ply", "--background=-3", "--smallest-island", "0"}).run->run.input.labels;
   CHECK(labels.background == -3);
   CHECK(labels.smallest_island_vox == 0);
+  const RequestedOptions sized =
+      parse({"a.vdb", "b.ply", "--region-edge-length", "7=.5", "--region-edge-length", "a=b=2"}).run->run.options;
+  REQUIRE(sized.values.region_edge_lengths.size() == 2);
+  CHECK(sized.values.region_edge_lengths[1].region == "a=b");
+  CHECK(sized.values.region_edge_lengths[1].edge_length_world == 2);
+  CHECK(sized.lengths_decide());
+  CHECK(contains(refusal({"a.vdb", "b.ply", "--region-edge-length", "7"}), "as 7=0.5"));
+  CHECK(
+      contains(refusal({"a.vdb", "b.ply", "--region-edge-length", "7=0"}), "of region 7 is 0; it must be more than 0"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--smallest-island=-1"}), "--smallest-island is -1; it must be 0 to"));
   CHECK(a.run.output.path.empty());
   CHECK(parse_given_options({}, "out.ply").run.output.format == "ply");

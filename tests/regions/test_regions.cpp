@@ -1,4 +1,7 @@
 // Meshes of regions: closed, conforming, with the count that was asked for.
+#include <set>
+
+#include "geometry/world_vector.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/mesh_census.h"
 #include "isoshell/remesh.h"
@@ -63,6 +66,89 @@ TEST_CASE("ugly labels give valid regions, and the walls as they came in where n
     CHECK(pairs_of(mesh.regions) == pairs_of(volume));
     CHECK(take_census(mesh, context).intersecting_pairs == 0);
   }
+}
+
+namespace {
+
+/// Mean length of the edges of walls that are chosen by their labels, each edge once.
+template <class Takes>
+double mean_edge(const TriangleMesh& mesh, Takes takes) {
+  std::set<std::array<uint32_t, 2>> edges;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!takes(mesh.regions.labels[t])) continue;
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+      edges.insert({std::min(a, b), std::max(a, b)});
+    }
+  }
+  double sum = 0;
+  for (const auto& [a, b] : edges) sum += length(mesh.vertices[a] - mesh.vertices[b]);
+  return sum / double(edges.size());
+}
+
+bool is_of(const std::array<int32_t, 2>& pair, int32_t label) { return pair[0] == label || pair[1] == label; }
+
+}  // namespace
+
+TEST_CASE("the walls of a region have the edge length that is asked for, and others what they had") {
+  TestContext context;
+  LabelVolume volume = voronoi_grains(40, 9);
+  volume.names = {{7, "femur"}, {3, "tibia"}};
+  const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+  RemeshOptions options;
+  options.edge_length_world = 1.6;
+  const TriangleMesh even = remesh(soup, options, context).mesh;
+  options.vertices.reset();
+  options.region_edge_lengths = {{"7", .8}};
+  const RemeshResult result = remesh(soup, options, context);
+  const TriangleMesh& mesh = result.mesh;
+  const auto of_seven = [](const auto& pair) { return is_of(pair, 7); };
+  CHECK(std::abs(mean_edge(mesh, of_seven) / .8 - 1) < .1);
+  std::set<int32_t> beside;
+  for (const auto& pair : pairs_of(soup.regions))
+    if (is_of(pair, 7)) beside.insert(pair.begin(), pair.end());
+  beside.erase(0);  // the background is beside all
+  const auto far = [&](const auto& pair) { return beside.count(pair[0]) == 0 && beside.count(pair[1]) == 0; };
+  CHECK(std::abs(mean_edge(mesh, far) / mean_edge(even, far) - 1) < .1);
+  CHECK(fault_of_regions(mesh.triangles, mesh.regions).empty());
+  CHECK(take_census(mesh, context).intersecting_pairs == 0);
+  CHECK(result.report.sizing.varies);
+}
+
+TEST_CASE("a wall between two regions has the shorter of their edge lengths, and a count is met") {
+  TestContext context;
+  LabelVolume volume = voronoi_grains(32, 5);
+  volume.names = {{2, "femur"}};
+  const TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+  RemeshOptions options;
+  options.vertices.reset();
+  options.region_edge_lengths = {{"1", 2}, {"femur", 1}};
+  const TriangleMesh mesh = remesh(soup, options, context).mesh;
+  const auto between = [](const auto& pair) { return pair == std::array<int32_t, 2>{1, 2}; };
+  if (pairs_of(soup.regions).count({1, 2}) > 0) CHECK(std::abs(mean_edge(mesh, between) - 1) < .1);
+  CHECK(std::abs(mean_edge(mesh, [](const auto& pair) { return is_of(pair, 2); }) - 1) < .1);
+  options.vertices = 3000;
+  const TriangleMesh counted = remesh(soup, options, context).mesh;
+  CHECK(counted.vertices.size() == 3000);
+  CHECK(fault_of_regions(counted.triangles, counted.regions).empty());
+}
+
+TEST_CASE("edge lengths of regions that are not there, and of no region, are refused with those that are") {
+  TestContext context;
+  LabelVolume volume = voronoi_grains(8, 3);
+  volume.names = {{2, "femur"}};
+  TriangleSoup soup = surface_of_labels(volume, "labels", 0);
+  RemeshOptions options;
+  const auto refusal = [&](std::vector<RegionEdgeLength> lengths) {
+    options.region_edge_lengths = std::move(lengths);
+    return message_of(ErrorCode::usage, [&] { remesh(soup, options, context); });
+  };
+  CHECK(contains(refusal({{"9", 1}}), "names region '9', which is not there; regions are 1, 2 (femur), 3"));
+  CHECK(contains(refusal({{"0", 1}}), "names region '0', which is not there"));
+  CHECK(contains(refusal({{"2", 1}, {"femur", 2}}), "gives region 2 a length twice"));
+  CHECK(contains(refusal({{"2", 0}}), "region 2 is 0; it must be more than 0"));
+  soup.regions = {};
+  CHECK(contains(refusal({{"2", 1}}), "is for volumes of labels, and meshes with regions"));
 }
 
 TEST_CASE("the shell method refuses regions") {

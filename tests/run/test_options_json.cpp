@@ -32,11 +32,12 @@ class NamedField final : public SizingField {
 }  // namespace
 
 TEST_CASE("options json: what is not given is the number that always stood for it", "[options]") {
-  CHECK(options_json(RemeshOptions{}) ==
-        R"({"vertices":10000,"edge-length":0.0,"sizing":"","adaptivity":0.0,"gradation":1.2,"resolution":0,)"
-        R"("voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,"method":"sheet","iterations":0,)"
-        R"("tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close",)"
-        R"("attributes":"all","color-features":false,"uniform-area":false})");
+  CHECK(
+      options_json(RemeshOptions{}) ==
+      R"({"vertices":10000,"edge-length":0.0,"sizing":"","region-edge-length":"","adaptivity":0.0,)"
+      R"("gradation":1.2,"resolution":0,"voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,)"
+      R"("method":"sheet","iterations":0,"tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close",)"
+      R"("attributes":"all","color-features":false,"uniform-area":false})");
   const RequestedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
   CHECK_FALSE(back.values.edge_length_world);
@@ -62,6 +63,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.max_step_vox = 1.5;
   o.seed = 18446744073709551615ull;
   o.sizing = std::make_shared<NamedField>("field.vdb:edge");
+  o.region_edge_lengths = {{"7", 0.1}, {"left = right", 1e-9}};
   o.adaptivity = 0.25;
   o.gradation = 1.5;
   o.fit = Fit::surface;
@@ -84,6 +86,9 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.tolerance == o.tolerance);
   CHECK(b.max_step_vox == o.max_step_vox);
   CHECK(b.seed == o.seed);
+  REQUIRE(b.region_edge_lengths.size() == 2);
+  CHECK(b.region_edge_lengths[1].region == "left = right");
+  CHECK(b.region_edge_lengths[1].edge_length_world == 1e-9);
   CHECK(b.adaptivity == o.adaptivity);
   CHECK(b.gradation == o.gradation);
   CHECK(b.fit == o.fit);

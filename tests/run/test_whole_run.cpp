@@ -74,7 +74,7 @@ TEST_CASE("whole run: statistics have the keys of schema 1, whether written or a
   CHECK(keys(j["options"]) == std::set<std::string>{"vertices", "edge-length", "band", "outer-only", "method",
                                                     "iterations", "tolerance", "step", "seed", "fit", "uniform-area",
                                                     "features", "boundary", "attributes", "color-features",
-                                                    "adaptivity", "gradation", "sizing"});
+                                                    "adaptivity", "gradation", "sizing", "region-edge-length"});
   CHECK(keys(j["grid"]) == std::set<std::string>{"resolution", "voxel_size", "band", "closing", "grown"});
   CHECK(j["input"]["path"] == "ball");
   CHECK(j["output"]["format"] == "ply");

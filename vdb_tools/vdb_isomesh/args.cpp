@@ -71,6 +71,7 @@ class Parser {
     CLI::Option* added =
         entry.value.empty() ? app_.add_flag(names, flags_[entry.name]) : app_.add_option(names, texts_[entry.name]);
     added->description(entry.text)->group(entry.group)->type_name(entry.value)->default_str(entry.fallback);
+    if (entry.repeats) added->join();
     if (!option.instead_of.empty()) added->excludes(app_.get_option("--" + option.instead_of));
   }
 

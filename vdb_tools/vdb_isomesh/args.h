@@ -55,6 +55,7 @@ struct OptionEntry {
   bool real = false;          ///< takes any number, not only whole ones
   bool of_command = false;    ///< means nothing to a front that calls the library
   OptionRange range = {};     ///< of a number
+  bool repeats = false;       ///< its text has a line for each time that it is given
 };
 std::vector<OptionEntry> option_table();
 

@@ -94,7 +94,7 @@ Set unless_empty(Set set) {
 }
 
 CommandOption of_run(const OptionRow& row) {
-  return {{row.group, row.name, row.value_name, row.text, row.fallback, row.is_real(), false, row.range},
+  return {{row.group, row.name, row.value_name, row.text, row.fallback, row.is_real(), false, row.range, row.repeats()},
           [&row](const std::string& text, Arguments& a) {
             if (row.is_text() && text.empty()) return;  // as if it were not given
             set_from_text(row, std::string("--") + row.name, text, a.run.options);

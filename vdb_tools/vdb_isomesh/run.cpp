@@ -33,13 +33,14 @@ void write_undisturbed(const std::string& path, const std::function<void()>& wri
 
 void tell_estimate(const RunRequest& request, const RunEstimate& e, int64_t limit_bytes, Console& console) {
   const RequestedOptions& requested = request.options;
-  const bool sized = !requested.sizing.empty(), by_sizing = sized && !requested.was_given("vertices");
   std::ostringstream text;
   text << "estimate: resolution " << e.resolution << ", voxel size " << e.voxel_size_world << ", "
        << counted(e.sites, "site voxel") << ", " << counted(e.sheet_vertices, "sheet vertex", "sheet vertices") << ", "
-       << (by_sizing ? "as many vertices as the sizing asks for" : counted(e.vertices, "vertex", "vertices"))
+       << (requested.lengths_decide() ? "as many vertices as the sizing asks for"
+                                      : counted(e.vertices, "vertex", "vertices"))
        << " in the result, about " << readable_bytes(e.bytes) << " of " << readable_bytes(limit_bytes) << " allowed";
-  if (sized || requested.values.adaptivity > 0) text << "; edges that vary may take a finer grid, and more";
+  if (!requested.sizing.empty() || !requested.values.region_edge_lengths.empty() || requested.values.adaptivity > 0)
+    text << "; edges that vary may take a finer grid, and more";
   console.result(text.str());
   if (limit_bytes > 0 && e.bytes > limit_bytes)
     throw Error(ErrorCode::out_of_memory, "memory",

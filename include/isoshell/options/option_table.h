@@ -28,6 +28,7 @@ struct TextOption {
   std::string (*text)(const RequestedOptions& from);  ///< which parse() makes the same value of
   Number number = Number::refused;
   void (*check)(RemeshOptions& values) = nullptr;  ///< of what was set in C++; throws usage
+  bool repeats = false;                            ///< its text has a line for each time that it is given
 };
 
 /// What of RemeshOptions holds the value; flags are bool.
@@ -57,6 +58,7 @@ struct OptionRow {
   const char* instead_of = "";  ///< the option that cannot be given beside it
 
   bool is_flag() const { return *value_name == '\0'; }
+  bool repeats() const;  ///< it may be given more than once
   bool is_text() const { return std::holds_alternative<TextOption>(member); }
   bool is_seed() const { return std::holds_alternative<uint64_t RemeshOptions::*>(member); }  ///< of all 64 bits
   bool is_real() const;      ///< any number, not only whole ones

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,7 +33,8 @@ int64_t parse_count(const std::string& option, const std::string& text);
 /// Throws: usage when the value is outside of the range.
 void check_range(const std::string& option, double value, const OptionRange& range);
 
-constexpr OptionRange kCreaseDegrees{1, 179};  ///< by which faces at a crease may turn
+constexpr OptionRange kCreaseDegrees{1, 179};                                 ///< by which faces at a crease may turn
+constexpr OptionRange kLengths{0, std::numeric_limits<double>::max(), true};  ///< of edges and voxels
 
 /// The value beside `text` among the choices. Throws: usage, which lists them.
 template <class Value>
@@ -62,6 +64,10 @@ const char* boundary_name(Boundary boundary);
 /// kept, too, which a run reads. Throws: usage.
 Features parse_features(const std::string& option, const std::string& text);
 std::string features_text(const Features& features);
+
+/// Lines of REGION=L; a name may have an equals sign in it. Throws: usage.
+std::vector<RegionEdgeLength> parse_region_edge_lengths(const std::string& option, const std::string& text);
+std::string region_edge_lengths_text(const std::vector<RegionEdgeLength>& lengths);
 
 /// "all", "none", or names separated by commas. Throws: usage.
 std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text);

@@ -16,6 +16,10 @@ struct RequestedOptions {
                                    ///< from a stage file or with a sizing field drops values that are not named here
 
   bool was_given(const std::string& name) const;
+  /// Whether edge lengths by place or region say how many vertices there are.
+  bool lengths_decide() const {
+    return (!sizing.empty() || !values.region_edge_lengths.empty()) && !was_given("vertices");
+  }
 };
 
 /// Options that were set in C++: given is what differs from the defaults. What a run should hold to though it is a

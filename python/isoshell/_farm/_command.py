@@ -73,6 +73,15 @@ def parser() -> argparse.ArgumentParser:
     return whole
 
 
+class Lines(argparse.Action):
+    """An option that may be given more than once: a line for each time."""
+
+    def __call__(self, parser: argparse.ArgumentParser, given: argparse.Namespace, value: Any,
+                 option_string: Any = None) -> None:
+        before = getattr(given, self.dest)
+        setattr(given, self.dest, value if before is None else f"{before}\n{value}")
+
+
 def _add_options(run: argparse.ArgumentParser) -> None:
     """Every option of the command that an asset can have."""
     groups: Dict[str, Any] = {}
@@ -84,7 +93,8 @@ def _add_options(run: argparse.ArgumentParser) -> None:
             groups[option.group] = run.add_argument_group(option.group.lower())
         text = option.text.replace("%", "%%") + (f" [{option.fallback}]".replace("%", "%%") if option.fallback else "")
         if option.value:
-            groups[option.group].add_argument(f"--{option.name}", metavar=option.value, help=text)
+            action = Lines if option.repeats else "store"
+            groups[option.group].add_argument(f"--{option.name}", metavar=option.value, help=text, action=action)
         else:
             groups[option.group].add_argument(f"--{option.name}", action="store_true", default=None, help=text)
 

@@ -225,6 +225,23 @@ def test_files_of_labels_are_read_as_labels_say_it(tmp_path):
         isoshell.remesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), smallest_island=1, **QUICK)
 
 
+def test_regions_have_edge_lengths_of_their_own_by_label_and_name():
+    labels = Labels(grains(), names={2: "femur"})
+    result = isoshell.remesh(labels, edge_length=1.2, region_edge_length={np.int32(1): 0.8, "femur": np.float64(0.7)},
+                             device="cpu")
+    pairs = result.regions["labels"]
+    for label, length in ((1, 0.8), (2, 0.7)):
+        faces = result.faces[(pairs == label).any(axis=1) & ((label == 2) | (pairs != 2).all(axis=1))]
+        edges = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+        mean = np.linalg.norm(np.diff(result.vertices[edges], axis=1)[:, 0], axis=1).mean()
+        assert abs(mean / length - 1) < 0.1
+    assert len(isoshell.remesh(labels, region_edge_length={1: 2.0}, **QUICK).vertices) == 3000
+    for lengths, said in (({"tibia": 1}, r"region_edge_length names region 'tibia'.*regions are 1, 2 \(femur\)"),
+                          ({1: -1}, "it must be more than 0"), ({1.5: 1}, "a key of region_edge_length is 1.5")):
+        with pytest.raises(isoshell.Error, match=said):
+            isoshell.remesh(labels, region_edge_length=lengths, **QUICK)
+
+
 def test_labels_can_be_pickled(polycrystal):
     assert digest(pickle.loads(pickle.dumps(Labels(grains())))) == polycrystal.digest
 

@@ -62,9 +62,8 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   const double widest = *std::max_element(fine.edge_length.begin(), fine.edge_length.end());
   const std::vector<FacingVertices> facing = find_facing_vertices(fine, graph, kFacingReach * widest);
   if (options.vertices > 0 || options.requested.vary())
-    vary_edge_lengths(
-        fine, graph, facing,
-        {options.vertices, options.requested.growth, options.requested.field != nullptr, options.is_rough});
+    vary_edge_lengths(fine, graph, facing,
+                      {options.vertices, options.requested.growth, options.requested.are_places(), options.is_rough});
   check_cancel(context, "features");
   std::vector<WorldPoint> before;
   for (const WorldPoint& p : options.before) before.push_back(on_lattice(frame, p));

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "core/parallel_ranges.h"
 #include "features/seeds/edge_lengths.h"
@@ -68,6 +70,20 @@ void shorten_where_curved(FineMesh& mesh, const VertexGraph& graph, double adapt
 
 }  // namespace
 
+namespace {
+
+/// A vertex has the shortest length of the faces around it; those that have none have what they had.
+void set_lengths_of_faces(const std::vector<double>& of_face, FineMesh& mesh) {
+  std::vector<double> least(mesh.position.size(), std::numeric_limits<double>::infinity());
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const double length = of_face[mesh.source_face[t]];
+    for (const uint32_t v : mesh.triangles[t]) least[v] = std::min(least[v], length > 0 ? length : mesh.edge_length[v]);
+  }
+  mesh.edge_length = std::move(least);
+}
+
+}  // namespace
+
 void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame,
                      const RequestedLengths& requested, int64_t vertices, double e) {
   const double of_world = kOneVoxelQ8 / frame.voxel_size;
@@ -79,6 +95,11 @@ void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFram
     const std::vector<double> length = requested.field->lengths_at(points);
     for (size_t v = 0; v < length.size(); ++v)
       if (length[v] > 0) mesh.edge_length[v] = length[v] * of_world;
+  }
+  if (!requested.of_face_world.empty()) {
+    std::vector<double> of_face = requested.of_face_world;
+    for (double& l : of_face) l *= of_world;
+    set_lengths_of_faces(of_face, mesh);
   }
   if (requested.adaptivity > 0) shorten_where_curved(mesh, graph, requested.adaptivity, e);
   double factor = 1;

@@ -10,19 +10,22 @@ namespace isoshell {
 /// What is asked for beside a number of vertices. World units.
 struct RequestedLengths {
   const SizingField* field = nullptr;
-  double usual_world = 0;     ///< where the field says nothing
-  double shortest_world = 0;  ///< none is shorter
-  double adaptivity = 0;      ///< part of the vertices that goes by curvature
-  double growth = 0.2;        ///< most that a length grows, over the way
+  std::vector<double> of_face_world = {};  ///< per face of the source what holds there before all else, 0: nothing does
+  double usual_world = 0;                  ///< where the field says nothing
+  double shortest_world = 0;               ///< none is shorter
+  double adaptivity = 0;                   ///< part of the vertices that goes by curvature
+  double growth = 0.2;                     ///< most that a length grows, over the way
 
-  bool vary() const { return field || adaptivity > 0; }
+  bool vary() const { return are_places() || adaptivity > 0; }
+  bool are_places() const { return field || !of_face_world.empty(); }  ///< each has its length, whatever is there
 };
 
 /// Most that lengths differ by: what EdgeLengthsView::mass has room for.
 constexpr double kMostLengthRatio = 16;
 
-/// Gives the vertices the lengths asked for: those of the field, by curvature off the paths, and at most sixteen times
-/// the shortest; above 0 vertices in proportion, so that about so many have them. `e`: the length the mesh was cut at.
+/// Gives the vertices the lengths asked for: those of the field, on faces that have lengths the shortest around, by
+/// curvature off the paths, and at most sixteen times the shortest; above 0 vertices in proportion, so that about so
+/// many have them. `e`: the length the mesh was cut at.
 void ask_for_lengths(FineMesh& mesh, const VertexGraph& graph, const LatticeFrame& frame,
                      const RequestedLengths& requested, int64_t vertices, double e);
 

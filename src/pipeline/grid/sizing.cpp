@@ -8,8 +8,6 @@
 namespace isoshell {
 namespace {
 
-constexpr double kCellOfEdge =
-    0.9306048591020996;                 // width of a cell, the root of its area, over the edges: root of sqrt(3) / 2
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
 constexpr int64_t kMostSmoothing = 32;  // of normals
 constexpr int64_t kMostLengthSmoothing = 128;
@@ -34,11 +32,6 @@ void shorten_where_curved(const RemeshOptions& options, const Sheet& sheet, doub
     const double density = 1 - options.adaptivity + options.adaptivity * double(turn[int64_t(v)]) / mean;
     length[v] = length[v] / std::sqrt(std::max(density, kLeastDensity));
   }
-}
-
-/// The shortest edges that a grid carries, where cells are so wide.
-double shortest_edge_world(double voxel_size, double cell_of_length) {
-  return kFewestCellVox * voxel_size / cell_of_length;
 }
 
 std::vector<double> wanted_lengths(const PreparedSurface& p, Context& context) {
@@ -155,7 +148,13 @@ double even_length_world(const SizingField& field, const TriangleSoup& soup) {
 
 }  // namespace
 
-bool field_decides(const RemeshOptions& options) { return options.sizing && !options.vertices; }
+double shortest_edge_world(double voxel_size, double cell_of_length) {
+  return kFewestCellVox * voxel_size / cell_of_length;
+}
+
+bool field_decides(const RemeshOptions& options) {
+  return (options.sizing || !options.region_edge_lengths.empty()) && !options.vertices;
+}
 
 RequestedLengths requested_lengths(const PreparedSurface& p) {
   const RemeshOptions& options = p.options;
@@ -169,7 +168,9 @@ RequestedLengths requested_lengths(const PreparedSurface& p) {
   return requested;
 }
 
-bool wants_lengths(const RemeshOptions& options) { return options.sizing || options.adaptivity > 0; }
+bool wants_lengths(const RemeshOptions& options) {
+  return options.sizing || options.adaptivity > 0 || !options.region_edge_lengths.empty();
+}
 
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
   if (options.sizing && !options.vertices && options.adaptivity <= 0)

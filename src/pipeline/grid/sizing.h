@@ -12,7 +12,13 @@ constexpr double kFewestCellVox = 3.5;  ///< width of a cell: narrower ones are 
 /// Whether lengths may vary.
 bool wants_lengths(const RemeshOptions& options);
 
-/// Whether the field says how many vertices there are.
+constexpr double kCellOfEdge =
+    0.9306048591020996;  ///< width of a cell, the root of its area, over the edges: root of sqrt(3) / 2
+
+/// The shortest edges that a grid carries, where cells are so wide.
+double shortest_edge_world(double voxel_size, double cell_of_length);
+
+/// Whether lengths by place or region say how many vertices there are.
 bool field_decides(const RemeshOptions& options);
 
 /// What is asked for of a surface that is cut; nothing where lengths are all equal.

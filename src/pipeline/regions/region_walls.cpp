@@ -15,6 +15,7 @@
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/patches.h"
+#include "pipeline/regions/region_lengths.h"
 #include "pipeline/sheet/crease_search.h"
 
 namespace isoshell {
@@ -36,10 +37,29 @@ CurveOptions curves_between_regions(const PreparedSurface& p) {
   return curves;
 }
 
-SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, Context& context) {
+/// Where nothing is asked for edges are as long as they all would be.
+RequestedLengths lengths_on_walls(const PreparedSurface& p, double usual_world,
+                                  const std::vector<double>& of_face_world) {
+  const RemeshOptions& options = p.options;
+  RequestedLengths requested;
+  requested.growth = options.gradation - 1;
+  if (!wants_lengths(options)) return requested;
+  requested.field = options.sizing.get();
+  requested.of_face_world = of_face_world;
+  requested.adaptivity = options.adaptivity;
+  requested.usual_world = usual_world;
+  requested.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
+  return requested;
+}
+
+SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, const std::vector<double>& of_face_world,
+                    RemeshReport& report, Context& context) {
   const FeatureMesh& mesh = p.walls->mesh;
-  CutOptions how{edge_length_for(mesh, network, p.target.vertices), 0, requested_lengths(p)};
+  CutOptions how;
+  how.edge_length_world = edge_length_for(mesh, network, p.target.vertices);
+  how.requested = lengths_on_walls(p, how.edge_length_world, of_face_world);
   how.is_rough = p.walls->regions.are_of_voxels;
+  for (std::string& text : warnings_of_bounds(how.requested)) report.warnings.push_back(std::move(text));
   if (!p.options.edge_length_world && !(how.requested.vary() && field_decides(p.options)))
     how.vertices = p.target.vertices;
   auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
@@ -60,7 +80,8 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
   report.input.dirt = measured.dirt;
   const Plan plan = plan_of(options, measured.topology, bounding_box(soup));
   LatticeSurface surface;
-  surface.frame = LatticeFrame::around(plan.box.min, plan.box.max, plan.first_resolution());
+  const std::vector<double> of_face_world = lengths_of_faces_world(soup.regions, options.region_edge_lengths);
+  surface.frame = LatticeFrame::around(plan.box.min, plan.box.max, resolution_for_walls(soup, plan, of_face_world));
   surface.topology = measured.topology;
   surface.topology.closed = surface.topology.oriented = true;  // as each region's own surface is
   PreparedSurface p = begin_with(std::move(surface), options);
@@ -72,7 +93,11 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     const CurveNetwork network =
         run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
     report_found(p.walls->mesh, network, false, report.features);
-    const SharedCut cut = cut_walls(p, network, context);
+    const SharedCut cut = cut_walls(p, network, of_face_world, report, context);
+    if (cut->is_requested && field_decides(p.options)) {
+      p.vertices_of_lengths = cut->seeds;
+      set_target(p);
+    }
     report.features.patches = int64_t(patch_count(*cut));
     p.cut = cut;
   });

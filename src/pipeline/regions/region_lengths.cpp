@@ -1,0 +1,129 @@
+// See region_lengths.h.
+#include "pipeline/regions/region_lengths.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "geometry/world_vector.h"
+#include "isoshell/error.h"
+#include "pipeline/grid/sizing.h"
+
+namespace isoshell {
+namespace {
+
+constexpr size_t kMostNamed = 20;  ///< regions that a message lists
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorCode::usage, "regions", "--region-edge-length " + what);
+}
+
+std::set<int32_t> labels_of(const FaceRegions& regions) {
+  std::set<int32_t> labels;
+  for (const auto& pair : regions.labels) labels.insert(pair.begin(), pair.end());
+  labels.erase(regions.background);
+  return labels;
+}
+
+std::string listed(const std::set<int32_t>& labels, const std::vector<RegionName>& names) {
+  std::string list;
+  size_t count = 0;
+  for (const int32_t label : labels) {
+    if (++count > kMostNamed) return list + " and " + std::to_string(labels.size() - kMostNamed) + " more";
+    list += (count > 1 ? ", " : "") + std::to_string(label);
+    for (const RegionName& name : names)
+      if (name.label == label) list += " (" + name.name + ")";
+  }
+  return list;
+}
+
+/// The region of that label, or else those of that name.
+std::vector<int32_t> labels_called(const std::string& region, const std::set<int32_t>& labels,
+                                   const std::vector<RegionName>& names) {
+  int32_t label = 0;
+  const char* const end = region.data() + region.size();
+  const auto [stop, failed] = std::from_chars(region.data(), end, label);
+  if (failed == std::errc() && stop == end && labels.count(label) > 0) return {label};
+  std::vector<int32_t> called;
+  for (const RegionName& name : names)
+    if (name.name == region && labels.count(name.label) > 0) called.push_back(name.label);
+  if (called.empty()) refuse("names region '" + region + "', which is not there; regions are " + listed(labels, names));
+  return called;
+}
+
+double shorter(double a, double b) { return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b); }
+
+/// What the field says at a triangle, the shortest of it, or 0.
+double shortest_at(const std::vector<double>& field, const std::array<uint32_t, 3>& triangle) {
+  double shortest = 0;
+  for (const uint32_t v : triangle) shortest = shorter(shortest, field[v]);
+  return shortest;
+}
+
+}  // namespace
+
+std::vector<double> lengths_of_faces_world(const FaceRegions& regions, const std::vector<RegionEdgeLength>& lengths) {
+  if (lengths.empty()) return {};
+  const std::set<int32_t> labels = labels_of(regions);
+  std::map<int32_t, double> length_of;
+  for (const RegionEdgeLength& l : lengths)
+    for (const int32_t label : labels_called(l.region, labels, regions.names))
+      if (!length_of.try_emplace(label, l.edge_length_world).second)
+        refuse("gives region " + std::to_string(label) + " a length twice, the second time as '" + l.region +
+               "'; give it once");
+  std::vector<double> of_face;
+  of_face.reserve(regions.labels.size());
+  for (const auto& [behind, front] : regions.labels) {
+    const auto a = length_of.find(behind), b = length_of.find(front);
+    of_face.push_back(shorter(a != length_of.end() ? a->second : 0, b != length_of.end() ? b->second : 0));
+  }
+  return of_face;
+}
+
+int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world) {
+  const RemeshOptions& options = plan.options;
+  const int32_t usual = plan.first_resolution();
+  if (!plan.chooses_grid() || !wants_lengths(options)) return usual;
+  std::vector<double> field(soup.vertices.size(), 0);
+  if (options.sizing) field = options.sizing->lengths_at(soup.vertices);
+  double least = plan.target.edge_length_world, vertices = 0;
+  for (size_t t = 0; t < soup.triangles.size(); ++t) {
+    double length = of_face_world.empty() ? 0 : of_face_world[t];
+    if (length <= 0) length = shortest_at(field, soup.triangles[t]);
+    if (length <= 0) length = plan.target.edge_length_world;
+    least = std::min(least, length);
+    const auto& [a, b, c] = soup.triangles[t];
+    vertices += triangle_area(soup.vertices[a], soup.vertices[b], soup.vertices[c]) /
+                (kCellOfEdge * kCellOfEdge * length * length);
+  }
+  if (!field_decides(options)) least *= std::sqrt(vertices / double(plan.target.vertices));
+  const double longest =
+      std::max({plan.box.max.x - plan.box.min.x, plan.box.max.y - plan.box.min.y, plan.box.max.z - plan.box.min.z});
+  return std::max(usual, resolution_for_cell(longest, kCellOfEdge * least, plan.target.vertices));
+}
+
+std::vector<std::string> warnings_of_bounds(const RequestedLengths& requested) {
+  std::vector<std::string> warnings;
+  if (requested.of_face_world.empty()) return warnings;
+  double least = requested.usual_world, most = 0;
+  for (const double length : requested.of_face_world) {
+    const double here = length > 0 ? length : requested.usual_world;
+    least = std::min(least, here);
+    most = std::max(most, here);
+  }
+  const double shortest = std::max(least, requested.shortest_world);
+  const auto warn = [&](double asked, const char* bound, double allowed, const std::string& why) {
+    std::ostringstream text;
+    text << "edges of " << asked << " are asked for; they are at " << bound << ' ' << allowed << ", " << why;
+    warnings.push_back(text.str());
+  };
+  if (least < shortest) warn(least, "least", shortest, "the shortest that the grid carries: raise --resolution");
+  if (most > kMostLengthRatio * shortest)
+    warn(most, "most", kMostLengthRatio * shortest, std::to_string(int(kMostLengthRatio)) + " times the shortest");
+  return warnings;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,25 @@
+// Edge lengths that a run asks for on the walls of regions.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "features/seeds/requested_lengths.h"
+#include "isoshell/surface_source.h"
+#include "pipeline/grid/plan.h"
+
+namespace isoshell {
+
+/// Per face the length that the options ask for on the walls of its regions, the shorter one of two, and 0 where they
+/// ask for none; empty where they ask for none anywhere. Throws: usage for a region that no face has, or that has two
+/// lengths.
+std::vector<double> lengths_of_faces_world(const FaceRegions& regions, const std::vector<RegionEdgeLength>& lengths);
+
+/// Voxels along the longest side that carry the shortest edges asked for, where the run chooses them.
+int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world);
+
+/// What is said where the lengths of faces, or the usual one, are shorter than the grid carries, or longer than others
+/// by more than lengths may be; nothing otherwise.
+std::vector<std::string> warnings_of_bounds(const RequestedLengths& requested);
+
+}  // namespace isoshell
