@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "isoshell/backend.h"
+#include "isoshell/surface_source.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {
@@ -37,6 +38,9 @@ struct RegionWall {
   double area_world = 0;
 };
 
+/// The walls of a surface, ascending. Result: the same for every number of threads. Cost: a sort of the faces.
+std::vector<RegionWall> find_region_walls(const TriangleSoup& surface);
+
 struct RegionCensus {
   int32_t background = 0;             ///< is no region
   std::vector<RegionCounts> regions;  ///< of all labels that faces have but the background, ascending
@@ -63,6 +67,19 @@ struct RegionCensus {
 /// and a triangle that names a vertex that is not there or not finite; interrupted.
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context,
                                 std::optional<int64_t> intersecting_pairs = {});
+
+/// What of the regions of a surface a mesh of it has not, or has beyond. Names are empty where there is none.
+struct RegionChanges {
+  std::vector<RegionName> lost;                       ///< regions, ascending
+  std::vector<std::array<RegionName, 2>> lost_walls;  ///< pairs that share none any more, ascending
+  std::vector<std::array<RegionName, 2>> new_walls;   ///< pairs that shared none before
+
+  bool any() const { return !lost.empty() || !lost_walls.empty() || !new_walls.empty(); }
+};
+
+/// Of walls without area none counts. `names`: ascending by label; the background is called so.
+RegionChanges find_region_changes(const std::vector<RegionWall>& before, const std::vector<RegionName>& names,
+                                  const RegionCensus& after);
 
 /// A region by itself: its faces, in their order, turned outward, and their vertices, in theirs. Where it touches
 /// itself in a vertex, each fan of faces has one of its own, one behind the other: the result is a closed 2-manifold

@@ -70,10 +70,11 @@ class Options(TypedDict, total=False):
     Run:
         require: exit with status 6 unless the result meets every requirement of this comma-separated list: closed,
             manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, regions (each is closed, walls are
-            shared, no triangles intersect), min-angle=DEG (smallest angle in degrees), max-deviation=W (distance
-            between result and input in world units), normal-deviation=DEG (mean angle between normals of result and
-            input), features (no curve of the input is lost), kept-edges=PERCENT (of a frame that follows another: edges
-            that it keeps, at least), born=N (of a frame that follows another: vertices that are new, at most).
+            shared, no triangles intersect), adjacency (regions that touch in the input share a wall, and no others do),
+            min-angle=DEG (smallest angle in degrees), max-deviation=W (distance between result and input in world
+            units), normal-deviation=DEG (mean angle between normals of result and input), features (no curve of the
+            input is lost), kept-edges=PERCENT (of a frame that follows another: edges that it keeps, at least), born=N
+            (of a frame that follows another: vertices that are new, at most).
         allow_intersections: exit with status 0, not 6, where the result intersects itself.
         device: device to run on [auto].
         threads: number of CPU threads [all].

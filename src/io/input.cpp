@@ -129,6 +129,10 @@ class Reader {
     const WorldBox box = bounding_box(soup);
     facts.box_min = box.min;
     facts.box_max = box.max;
+    if (!soup.regions.empty()) {
+      facts.walls = find_region_walls(soup);
+      facts.region_names = soup.regions.names;
+    }
     note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
     input_.soup = std::move(soup);
   }

@@ -22,9 +22,10 @@
 namespace isoshell {
 namespace {
 
-double area_of(const TriangleMesh& mesh, uint32_t face) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  return shape_of(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).area;
+template <class Surface>
+double area_of(const Surface& surface, uint32_t face) {
+  const auto& [a, b, c] = surface.triangles[face];
+  return shape_of(surface.vertices[a], surface.vertices[b], surface.vertices[c]).area;
 }
 
 /// Intersections are asked of positions.
@@ -82,7 +83,8 @@ RegionCounts count_region(const TriangleMesh& mesh, int32_t label, std::vector<u
   return counts;
 }
 
-std::vector<RegionWall> count_walls(const TriangleMesh& mesh) {
+template <class Surface>
+std::vector<RegionWall> count_walls(const Surface& mesh) {
   std::vector<std::pair<std::array<int32_t, 2>, uint32_t>> faces(mesh.triangles.size());
   for_each_index(size_t(0), faces.size(), [&](size_t f) {
     const auto& [behind, front] = mesh.regions.labels[f];
@@ -118,6 +120,8 @@ int64_t count_duplicate_faces(const TriangleMesh& mesh, const std::vector<uint32
 }
 
 }  // namespace
+
+std::vector<RegionWall> find_region_walls(const TriangleSoup& surface) { return count_walls(surface); }
 
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context, std::optional<int64_t> intersecting_pairs) {
   require_regions(mesh);

@@ -7,13 +7,14 @@
 #include "isoshell/error.h"
 #include "isoshell/options/option_text.h"
 #include "isoshell/readable.h"
+#include "run/warnings.h"
 
 namespace isoshell {
 namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "gates", message); }
 
-enum class GateOf { mesh, distance, curves, frame };
+enum class GateOf { mesh, distance, curves, frame, input };
 
 /// A gate. Flags hold or not, others have a limit, or the number that must be.
 struct GateRow {
@@ -67,6 +68,10 @@ std::string miss_regions(const Gates&, const Measured& m) {
   add(census.inside_out_regions, "region is inside out", "regions are inside out");
   add(census.intersecting_pairs, "pair of triangles intersects", "pairs of triangles intersect");
   return what;
+}
+
+std::string miss_adjacency(const Gates&, const Measured& m) {
+  return m.region_changes ? words_of(*m.region_changes) : "the input has no regions";
 }
 
 std::string miss_closed(const Gates&, const Measured& m) {
@@ -163,6 +168,13 @@ const std::vector<GateRow>& rows() {
        {},
        GateOf::mesh,
        miss_regions},
+      {"adjacency",
+       "",
+       "regions that touch in the input share a wall, and no others do",
+       &Gates::adjacency,
+       {},
+       GateOf::input,
+       miss_adjacency},
       {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
       {"max-deviation",
        "W",
@@ -291,6 +303,7 @@ void check_gates_of_mesh(const Gates& gates, bool has_reference) {
     if (!is_requested(row, gates)) continue;
     const std::string requested = std::string("--require ") + row.name;
     if (row.of == GateOf::curves) refuse(requested + " is for a run that keeps curves; leave it out");
+    if (row.of == GateOf::input) refuse(requested + " is for a run, which knows the input's regions; leave it out");
     if (row.of == GateOf::frame) refuse(requested + " is for the frames of a sequence; leave it out");
     if (row.of == GateOf::distance && !has_reference)
       refuse(requested + " compares with a reference; give one by --ref");
@@ -315,6 +328,8 @@ std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& recor
   Measured m{record.topology, record.quality, record.distance};
   if (report.is_optimized || has_regions) m.self_intersections = pairs;
   if (has_regions) m.regions = &*record.regions;
+  const std::optional<RegionChanges> changes = region_changes_of(record);
+  if (changes) m.region_changes = &*changes;
   m.features = &report.features;
   if (record.options.previous) m.coherence = &report.coherence;
   std::vector<std::string> missed = missed_gates(gates, m);

@@ -20,6 +20,11 @@ std::string flaw_of(const RunRecord& record) {
 
 }  // namespace
 
+std::optional<RegionChanges> region_changes_of(const RunRecord& record) {
+  if (!record.regions || record.input.walls.empty()) return std::nullopt;
+  return find_region_changes(record.input.walls, record.input.region_names, *record.regions);
+}
+
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context) {
   record.topology = check_mesh(mesh);
   record.quality = measure_quality(mesh);
@@ -28,6 +33,8 @@ std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& recor
   const std::string flaw = flaw_of(record);
   if (!flaw.empty() && record.report.dual.failed_cells == 0)
     warnings.push_back(flaw + ", which should not be: please report the input");
+  if (const std::optional<RegionChanges> changes = region_changes_of(record); changes && changes->any())
+    warnings.push_back(words_of(*changes));
   for (std::string& text : warnings_of_quality(*record.quality)) warnings.push_back(std::move(text));
   return warnings;
 }

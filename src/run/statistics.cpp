@@ -273,6 +273,29 @@ Json coherence_json(const RunRecord& r) {
           {"excess", c.excess}};
 }
 
+Json region_json(const RegionName& region) {
+  return {{"label", region.label}, {"name", region.name.empty() ? Json() : Json(region.name)}};
+}
+
+Json pairs_json(const std::vector<std::array<RegionName, 2>>& pairs) {
+  Json list = Json::array();
+  for (const auto& [a, b] : pairs) list.push_back({region_json(a), region_json(b)});
+  return list;
+}
+
+/// The census, and what of the input's regions it has not; null of a result without regions.
+Json regions_of_run_json(const RunRecord& r) {
+  Json j = regions_json(r.regions);
+  const std::optional<RegionChanges> changes = region_changes_of(r);
+  if (!changes) return j;
+  Json lost = Json::array();
+  for (const RegionName& region : changes->lost) lost.push_back(region_json(region));
+  j["regions_lost"] = lost;
+  j["walls_lost"] = pairs_json(changes->lost_walls);
+  j["walls_new"] = pairs_json(changes->new_walls);
+  return j;
+}
+
 }  // namespace
 
 std::string statistics_json(const RunRecord& r) {
@@ -287,7 +310,7 @@ std::string statistics_json(const RunRecord& r) {
   j["gaps"] = gaps_json(r);
   j["attributes"] = attributes_json(r.attributes);
   j["topology"] = topology_json(r);
-  j["regions"] = regions_json(r.regions);
+  j["regions"] = regions_of_run_json(r);
   j["quality"] = quality_json(r);
   j["features"] = features_json(r.report.features);
   j["coherence"] = coherence_json(r);

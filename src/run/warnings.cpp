@@ -1,10 +1,32 @@
 #include "run/warnings.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <sstream>
 
 #include "isoshell/readable.h"
 
 namespace isoshell {
+namespace {
+
+constexpr size_t kMostNamed = 10;  ///< regions of a sentence
+
+std::string shown(const RegionName& region) {
+  return std::to_string(region.label) + (region.name.empty() ? "" : " (" + region.name + ")");
+}
+std::string shown(const std::array<RegionName, 2>& pair) { return shown(pair[0]) + " and " + shown(pair[1]); }
+
+/// Adds "; regions of the input are lost: 3, 4 (femur)".
+template <class Of>
+void list(const char* what, const std::vector<Of>& all, std::string& text) {
+  if (all.empty()) return;
+  text += (text.empty() ? "" : "; ") + std::string(what);
+  for (size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) text += (i > 0 ? ", " : " ") + shown(all[i]);
+  if (all.size() > kMostNamed) text += " and " + std::to_string(all.size() - kMostNamed) + " more";
+}
+
+}  // namespace
 
 std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input, bool has_regions) {
   std::vector<std::string> warnings;
@@ -52,6 +74,14 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   if (report.features.border_loops == 0)
     note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
   return warnings;
+}
+
+std::string words_of(const RegionChanges& changes) {
+  std::string text;
+  list("regions of the input are lost:", changes.lost, text);
+  list("regions that touch in the input touch no more:", changes.lost_walls, text);
+  list("regions touch that do not in the input:", changes.new_walls, text);
+  return text;
 }
 
 std::vector<std::string> warnings_of_quality(const MeshQuality& quality) {

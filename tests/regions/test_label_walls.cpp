@@ -166,11 +166,12 @@ TEST_CASE("regions that touched in an island alone are named") {
     if (i == 6 && j == 3 && k == 3) return 1;
     return i < 5 ? 1 : i < 7 ? 2 : 3;
   });
+  volume.names = {{3, "skin"}};
   volume.smallest_island_vox = 8;
   std::vector<std::string> told;
   surface_of_labels(volume, "labels", 0, [&](MessageKind, const std::string& text) { told.push_back(text); });
   REQUIRE(told.size() == 2);
-  CHECK(told[1] == "regions that touched in such islands alone touch no more: 1 and 3");
+  CHECK(told[1] == "regions that touched in such islands alone touch no more: 1 and 3 (skin)");
 }
 
 TEST_CASE("a volume of labels that is none is refused with what is wrong") {

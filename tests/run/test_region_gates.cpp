@@ -24,6 +24,23 @@ std::vector<std::string> missed_of(TriangleMesh mesh, const std::string& gates) 
   return info_of(std::move(mesh), gates).missed_gates;
 }
 
+/// A run on boxes whose result is those of others.
+RunRecord record_of(const LabelledCubes& before, const LabelledCubes& after) {
+  TriangleMesh given = mesh_of(before);
+  TriangleSoup soup;
+  soup.vertices = std::move(given.vertices);
+  soup.triangles = std::move(given.triangles);
+  soup.regions = std::move(given.regions);
+  soup.regions.names = {{2, "bone"}, {3, "skin"}};
+  RunRecord record;
+  record.topology.emplace();
+  record.quality.emplace();
+  record.input = input_of(std::move(soup), "cubes").facts;
+  Context context;
+  record.regions = take_region_census(mesh_of(after), context);
+  return record;
+}
+
 TriangleMesh folded_cubes() {
   TriangleMesh mesh = two_cubes();
   for (WorldPoint& p : mesh.vertices)
@@ -93,4 +110,23 @@ TEST_CASE("region gates: the certificate has each region and wall", "[mesh_info]
   CHECK(contains(json, "\"label\": 2"));
   CHECK(contains(json, "\"walls\""));
   CHECK(contains(json, "\"every_region_closed\": true"));
+}
+
+TEST_CASE("region gates: regions and walls that a run lost or made are named", "[gates][regions]") {
+  const LabelledCubes row{{3, 1, 1}, {1, 2, 3}};
+  const Gates adjacency = parse_gates("adjacency");
+  CHECK(missed_gates(adjacency, record_of(row, row)).empty());
+  CHECK(contains(statistics_json(record_of(row, row)), "\"walls_lost\": []"));
+  const RunRecord lost = record_of(row, {{3, 1, 1}, {1, 2, 2}});
+  CHECK(missed_gates(adjacency, lost) ==
+        std::vector<std::string>{"adjacency: regions of the input are lost: 3 (skin); regions that touch in the input "
+                                 "touch no more: 0 (background) and 3 (skin), 2 (bone) and 3 (skin)"});
+  CHECK(contains(statistics_json(lost), "\"regions_lost\": [\n      {\n        \"label\": 3"));
+  const std::vector<std::string> other = missed_gates(adjacency, record_of(row, {{3, 1, 1}, {1, 3, 2}}));
+  REQUIRE(other.size() == 1);
+  CHECK(contains(other[0], "touch no more: 1 and 2 (bone); regions touch that do not in the input: 1 and 3 (skin)"));
+  RunRecord without = record_of(row, row);
+  without.input.walls.clear();
+  CHECK(missed_gates(adjacency, without) == std::vector<std::string>{"adjacency: the input has no regions"});
+  CHECK(contains(message_of(ErrorCode::usage, [&] { info_of(two_cubes(), "adjacency"); }), "is for a run"));
 }

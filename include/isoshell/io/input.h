@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/message.h"
+#include "isoshell/region_census.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {
@@ -48,6 +50,8 @@ struct InputFacts {
   InputKind kind = InputKind::mesh;
   int64_t vertices = -1, faces = -1;  ///< as in the file, of points the different ones; -1: of a stage file not known
   std::optional<WorldPoint> box_min, box_max;  ///< of the surface, world units; of a stage file not known
+  std::vector<RegionWall> walls;         ///< of a surface that parts regions, once islands are absorbed; ascending
+  std::vector<RegionName> region_names;  ///< ascending by label
 
   /// As messages call it.
   std::string name() const { return path == "-" ? "standard input" : path; }

@@ -16,8 +16,9 @@ struct Gates {
   bool closed = false, manifold = false, no_self_intersections = false;
   bool allow_intersections = false;  ///< of a run that asks for nothing else: it misses that without this
   std::optional<int64_t> genus, components, boundary_loops;
-  bool features = false;  ///< no curve was lost
-  bool regions = false;   ///< RegionCensus::is_sound()
+  bool features = false;   ///< no curve was lost
+  bool regions = false;    ///< RegionCensus::is_sound()
+  bool adjacency = false;  ///< no region and no wall between two is lost, and none is new
   std::optional<double> min_angle_deg, max_deviation_world, normal_deviation_deg;
   std::optional<double> kept_edges_pct;  ///< of a frame that follows another; others meet them
   std::optional<int64_t> born;
@@ -34,6 +35,7 @@ struct Measured {
   const std::optional<MeshDistance>& distance;
   std::optional<int64_t> self_intersections = {};  ///< pairs of triangles; none where the mesh was not tested
   const RegionCensus* regions = nullptr;           ///< of a mesh that has any
+  const RegionChanges* region_changes = nullptr;   ///< of a run whose input has any
   const FeatureReport* features = nullptr;         ///< of a run
   const CoherenceReport* coherence = nullptr;      ///< of a frame that follows another
 

@@ -49,6 +49,9 @@ struct RunRecord {
   std::vector<std::string> warnings;                   ///< all of them, in the order in which they came
 };
 
+/// What regions and walls of the input the result has not, or has beyond; nothing for one without regions.
+std::optional<RegionChanges> region_changes_of(const RunRecord& record);
+
 /// The statistics of a run as JSON, schema 1; what was not measured is null.
 std::string statistics_json(const RunRecord& record);
 

@@ -225,6 +225,20 @@ def test_files_of_labels_are_read_as_labels_say_it(tmp_path):
         isoshell.remesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), smallest_island=1, **QUICK)
 
 
+def test_walls_between_regions_are_those_of_the_voxels(polycrystal):
+    regions = polycrystal.report["regions"]
+    assert regions["regions_lost"] == regions["walls_lost"] == regions["walls_new"] == []
+    padded = np.pad(grains(), 1)
+    touching = {(0, 0)}
+    for axis in range(3):
+        one, other = np.delete(padded, 0, axis), np.delete(padded, -1, axis)
+        touching |= set(map(tuple, np.unique(np.sort(np.stack([one.ravel(), other.ravel()], 1), axis=1), axis=0)))
+    assert {tuple(wall["labels"]) for wall in regions["walls"]} == {pair for pair in touching if pair[0] != pair[1]}
+    isoshell.remesh(Labels(grains()), require="regions,adjacency", **QUICK)
+    with pytest.raises(isoshell.Error, match="adjacency: the input has no regions"):
+        isoshell.remesh(polycrystal.region(1), require="adjacency", vertices=500, device="cpu")
+
+
 def test_regions_have_edge_lengths_of_their_own_by_label_and_name():
     labels = Labels(grains(), names={2: "femur"})
     result = isoshell.remesh(labels, edge_length=1.2, region_edge_length={np.int32(1): 0.8, "femur": np.float64(0.7)},

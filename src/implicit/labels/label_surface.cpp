@@ -74,6 +74,13 @@ WorldPoint to_world(const LabelVolume& volume, const PointQ8& p) {
          vox(p.z) * volume.step_world[2];
 }
 
+/// A region by its label and name.
+std::string shown(int32_t label, const LabelVolume& volume) {
+  for (const RegionName& region : volume.names)
+    if (region.label == label) return std::to_string(label) + " (" + region.name + ")";
+  return std::to_string(label);
+}
+
 /// Says which islands were absorbed, and which regions no longer touch.
 void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const Tell& tell) {
   if (absorbed.islands == 0 || !tell) return;
@@ -83,8 +90,8 @@ void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const T
   if (absorbed.lost_pairs.empty()) return;
   std::string text = "regions that touched in such islands alone touch no more:";
   for (size_t i = 0; i < std::min(absorbed.lost_pairs.size(), kMostNamed); ++i)
-    text += (i > 0 ? ", " : " ") + std::to_string(absorbed.lost_pairs[i][0]) + " and " +
-            std::to_string(absorbed.lost_pairs[i][1]);
+    text += (i > 0 ? ", " : " ") + shown(absorbed.lost_pairs[i][0], volume) + " and " +
+            shown(absorbed.lost_pairs[i][1], volume);
   if (absorbed.lost_pairs.size() > kMostNamed)
     text += " and " + std::to_string(absorbed.lost_pairs.size() - kMostNamed) + " more pairs";
   tell(MessageKind::warning, text);
