@@ -14,6 +14,7 @@
 #include "isoshell/error.h"
 #include "module/watched.h"
 #include "values/arrays.h"
+#include "values/attributes.h"
 #include "vdb_isomesh/command.h"
 
 namespace nb = nanobind;
@@ -36,10 +37,12 @@ TriangleMesh surface_of(Input input) {
   TriangleMesh mesh;
   mesh.vertices = std::move(input.soup.vertices);
   mesh.triangles = std::move(input.soup.triangles);
+  mesh.regions = std::move(input.soup.regions);
   return mesh;
 }
 
-/// The surface that a run starts from, as it is read, with what is known of it.
+/// The surface that a run starts from, as it is read: vertices, triangles, and of each the regions that it parts, if
+/// any.
 nb::tuple read_surface(Place& place, const Source& source, const Keywords& keywords, nb::object tell) {
   const RequestFromPython requested = request_from_python(source, keywords, "", nb::none(), std::move(tell));
   TriangleMesh mesh =
@@ -48,7 +51,8 @@ nb::tuple read_surface(Place& place, const Source& source, const Keywords& keywo
       });
   const nb::object owner = nb::cast(std::move(mesh));
   const auto& kept = nb::cast<const TriangleMesh&>(owner);
-  return nb::make_tuple(rows_of(kept.vertices, owner), rows_of(kept.triangles, owner));
+  return nb::make_tuple(rows_of(kept.vertices, owner), rows_of(kept.triangles, owner),
+                        nb::object(regions_of(kept)["labels"]));
 }
 
 using Numbers = nb::ndarray<nb::numpy, double, nb::shape<-1>, nb::c_contig>;
@@ -89,7 +93,7 @@ int command(const std::vector<std::string>& arguments, const nb::object& write_r
 void bind_report(nb::module_& m) {
   m.def("read_surface", read_surface, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("tell"),
         nb::sig("def read_surface(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | "
-                "None]], tell: typing.Any) -> tuple[typing.Any, typing.Any]"));
+                "None]], tell: typing.Any) -> tuple[typing.Any, typing.Any, typing.Any]"));
   m.def("distances", distances_to, nb::arg("points"), nb::arg("vertices"), nb::arg("faces"),
         nb::sig("def distances(points: typing.Any, vertices: typing.Any, faces: typing.Any) -> typing.Any"),
         "Of each point to the nearest one of the mesh.");

@@ -141,3 +141,58 @@ def test_without_webgl_or_scripts_the_numbers_remain(browsers, page_file, settin
     assert plain.page.locator("#unseen").is_visible() and not plain.page.locator("#look").is_visible()
     assert plain.page.locator("svg").count() == 4 and "Closed 2-manifold" in plain.page.inner_text("body")
     assert plain.errors == [] and len(plain.asked) == 1
+
+
+@pytest.fixture(scope="module")
+def page_of_regions(tmp_path_factory):
+    """Of three layers; the middle one has a name with marks in it."""
+    layers = np.zeros((12, 12, 12), np.uint8)
+    layers[1:11, 1:11, 1:4], layers[1:11, 1:11, 4:8], layers[1:11, 1:11, 8:11] = 1, 2, 7
+    labels = isoshell.Labels(layers, names={2: "<b>bone & skin</b>"})
+    path = tmp_path_factory.mktemp("report") / "layers.html"
+    isoshell.report(isoshell.remesh(labels, vertices=500), path, source=labels)
+    return path
+
+
+def hues_in(picture):
+    """Different colours that are no grey."""
+    return {tuple(color[:3]) for color in np.array(picture).reshape(-1, 4).tolist() if max(color[:3]) - min(color[:3]) > 40}
+
+
+def becomes(opened, fits):
+    """The picture of the result once it is as it should be: drawing takes a while."""
+    for _ in range(60):
+        picture = opened.picture("after")
+        if fits(picture):
+            return picture
+    raise AssertionError("the picture did not become what it should be")
+
+
+def test_regions_have_colours_hide_by_a_click_and_are_pulled_apart(browsers, page_of_regions):
+    opened = Opened(browsers(DRAWS), page_of_regions).wait_until_drawn()
+    buttons = opened.page.locator("[data-region]")
+    assert buttons.all_inner_texts() == ["1", "<b>bone & skin</b> (2)", "7"]
+    words = opened.page.inner_text("body")
+    assert "3 regions, each is closed" in words and "Edges of three faces or more in the input" not in words
+    assert hues_in(opened.picture("before"))
+    together = becomes(opened, hues_in)
+    opened.page.locator("#apart").fill("60")
+    becomes(opened, lambda picture: picture != together)
+    opened.page.locator("#apart").fill("0")
+    becomes(opened, lambda picture: picture == together)
+    buttons.nth(1).click()
+    assert buttons.nth(1).get_attribute("aria-pressed") == "false"
+    becomes(opened, lambda picture: picture != together)
+    for number in (0, 2):
+        buttons.nth(number).click()
+    becomes(opened, lambda picture: not hues_in(picture))
+    for number in range(3):
+        buttons.nth(number).click()
+    becomes(opened, lambda picture: picture == together)
+    opened.page.locator("label:has(input[value=quality])").click()
+    assert not opened.page.locator("#pull").is_visible() and buttons.count() == 0
+    assert opened.errors == [] and len(opened.asked) == 1
+
+
+def test_a_page_without_regions_offers_none(opened):
+    assert not opened.page.locator("#pull").is_visible() and opened.page.locator("input[value=regions]").count() == 0

@@ -87,13 +87,13 @@ def write_of_command(made: _isoshell.RunResult, source: _isoshell.Source, path: 
     return ""
 
 
-def _surface_of(source: _isoshell.Source, reading: Keywords) -> tuple[Floats, Ints]:
+def _surface_of(source: _isoshell.Source, reading: Keywords) -> tuple[Floats, Ints, Ints]:
     def silent(is_warning: bool, text: str) -> None:
         """The run has told it."""
 
     place: Any = Context()._place
-    vertices, faces = _isoshell.read_surface(place, source, reading, silent)
-    return vertices, faces
+    vertices, faces, regions = _isoshell.read_surface(place, source, reading, silent)
+    return vertices, faces, regions
 
 
 def _refuse_existing(path: Path, overwrite: bool) -> None:

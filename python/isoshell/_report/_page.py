@@ -17,6 +17,7 @@ from .. import _isoshell
 from .._result import Result
 from . import _charts as charts
 from . import _tables as tables
+from . import _regions as regions
 from ._places import Kind, Place, kinds_of, number
 from ._sight import clear_sight
 from ._surface import Array, Edges, Surface, angles_deg, edge_lengths, face_quality, joined, thinned
@@ -29,7 +30,7 @@ MODES = (("shape", "Shape"), ("deviation", "Deviation"), ("quality", "Quality"),
 Z_IS_UP = (".stl", ".xyz", ".pcd")  # parts and surveys; all others come with y up more often
 
 
-def page(result: Result, source: Optional[tuple[Array, Array]], k3d: Path) -> str:
+def page(result: Result, source: Optional[tuple[Array, Array, Array]], k3d: Path) -> str:
     """The whole file; `k3d` is the folder of the library's scripts."""
     report = result.report
     after, of_after = _after(result)
@@ -41,14 +42,16 @@ def page(result: Result, source: Optional[tuple[Array, Array]], k3d: Path) -> st
     name = Path(report["input"]["path"]).name or "surface"
     drawn = [(side, surface) for side, surface in (("before", before), ("after", after)) if surface is not None]
     shown = {side: thinned(surface, MOST_FACES) for side, surface in drawn}
+    parts = regions.numbered(result, after, before)
     counts = report["counts"]
+    modes, first = ((("regions", "Regions"), *MODES), "regions") if parts else (MODES, "shape")
     blanks = {
         "title": html.escape(f"{name} – isoshell report"),
         "heading": html.escape(name),
         "subtitle": f"Remeshed to {tables.text(counts['vertices'])} vertices and "
                     f"{tables.text(counts['triangles'])} triangles",
         "chips": tables.chips(report, result._made.missed_gates),
-        "modes": "".join(_radio("mode", key, words, i == 0) for i, (key, words) in enumerate(MODES)),
+        "modes": "".join(_radio("mode", key, words, key == first) for key, words in modes),
         "ups": "".join(_radio("up", axis, axis.upper(), axis == _up_axis(name)) for axis in "xyz"),
         "panes": "".join(_pane(side, name, surface, report) for side, surface in drawn),
         "thinned": " ".join(_how_many(side, surface, shown[side]) for side, surface in drawn).strip(),
@@ -56,13 +59,13 @@ def page(result: Result, source: Optional[tuple[Array, Array]], k3d: Path) -> st
         "key": _key(before is not None),
         "charts": _charts(report, of_before, of_after),
         "certificate": tables.gates(result._made.gates, result._made.missed_gates)
-                       + tables.certificate(report, of_before, of_after),
+                       + tables.regions(report) + tables.certificate(report, of_before, of_after),
         "changes": tables.changes(report),
         "warnings": tables.warnings(report),
         "json": html.escape(json.dumps(report, indent=1, ensure_ascii=False)),
         "version": html.escape(str(report["version"])),
         "k3d": html.escape(version("k3d")),
-        "data": _data(shown, kinds, drawn) + _script("k3d", _packed(_without_fonts_of_files(k3d / "standalone.js"))),
+        "data": _data(shown, kinds, drawn, parts) + _script("k3d", _packed(_without_fonts_of_files(k3d / "standalone.js"))),
         "fflate": (k3d / "fflate.js").read_text(),
         "css": text_of(str(__package__), "page.css"),
         "js": text_of(str(__package__), "page.js"),
@@ -81,6 +84,8 @@ def _after(result: Result) -> tuple[Surface, tables.Measures]:
     gap = result.attributes.get("gap")
     if gap is not None:
         surface.of_vertices["gap"] = (gap != 0).astype(np.uint8)
+    if len(result.regions["labels"]):
+        surface.regions = result.regions["labels"]
     features = result.features
     surface.lines["border"] = edges.ends[edges.faces == 1]
     surface.lines["curve"] = features["curve_edges"].astype(np.int64)
@@ -102,13 +107,14 @@ def _colors_of(patch: Array, surface: Surface, edges: Edges) -> Array:
     return np.array([color[name] for name in patch.tolist()], np.uint8)
 
 
-def _before(source: Optional[tuple[Array, Array]]) -> tuple[Optional[Surface], Optional[tables.Measures]]:
+def _before(source: Optional[tuple[Array, Array, Array]]) -> tuple[Optional[Surface], Optional[tables.Measures]]:
     surface = joined(*source) if source is not None else None
     if surface is None or not len(surface.faces):
         return None, None
     edges, measures = _measure(surface)
     surface.lines["border"] = edges.ends[edges.faces == 1]
-    surface.lines["nonmanifold"] = edges.ends[edges.faces > 2]
+    if surface.regions is None:  # else walls meet there, and that is no flaw
+        surface.lines["nonmanifold"] = edges.ends[edges.faces > 2]
     return surface, measures
 
 
@@ -128,7 +134,8 @@ def _measure_distances(before: Surface, after: Surface) -> None:
         one.of_vertices["deviation"] = _isoshell.distances(one.vertices, other.vertices, other.faces)
 
 
-def _data(shown: Dict[str, Surface], kinds: List[Kind], drawn: list[tuple[str, Surface]]) -> str:
+def _data(shown: Dict[str, Surface], kinds: List[Kind], drawn: list[tuple[str, Surface]],
+          parts: List[regions.Region]) -> str:
     """Positions are counted in 65535ths of the box around everything that is drawn."""
     all_points = np.concatenate([surface.vertices[np.unique(surface.faces)] for surface in shown.values()])
     low, high = all_points.min(axis=0), all_points.max(axis=0)
@@ -140,6 +147,8 @@ def _data(shown: Dict[str, Surface], kinds: List[Kind], drawn: list[tuple[str, S
         "top": number(top),
         "largest": number(max((float(values.max()) for values in away), default=0.0)),
         "sides": {side: _encoded(surface, low, size, top) for side, surface in shown.items()},
+        "regions": [{"words": region.words, "color": region.color, "away": (region.away / size).tolist()}
+                    for region in parts],
         "places": [_view(place, shown, low, size) for kind in kinds for place in kind.places],
     }
     return _script("data", json.dumps(data), "application/json")
@@ -159,6 +168,8 @@ def _encoded(surface: Surface, low: Array, size: float, top: float) -> dict[str,
         made["deviation"] = _packed((255 * part).round().astype(np.uint8))
     if surface.color is not None:
         made["patch"] = _packed(surface.color)
+    if surface.regions is not None:
+        made["regions"] = _packed(surface.regions.astype(np.uint16))
     for name, ends in surface.lines.items():
         if len(ends):
             made[name] = _packed(ends.astype(np.uint32))

@@ -94,9 +94,10 @@ def _of_input(before: Surface, after: Surface, edge: float) -> Iterable[Kind]:
         (borders if is_kept else closed).append(place)
     yield _kind("Open borders of the input that were closed", closed)
     yield _kind("Borders that were kept", borders)
-    yield _kind("Edges of three faces or more in the input", [
-        Place(f"{number(length)} long", _middle(before.vertices[line]), _extent(before.vertices[line], edge))
-        for line, length in _chains(before, edges.ends[edges.faces > 2])])
+    if before.regions is None:  # else walls meet there
+        yield _kind("Edges of three faces or more in the input", [
+            Place(f"{number(length)} long", _middle(before.vertices[line]), _extent(before.vertices[line], edge))
+            for line, length in _chains(before, edges.ends[edges.faces > 2])])
     yield _kind("Pieces of the input that are not in the result", list(_left_out(before, edges, edge)))
     yield _kind("Farthest from the result", list(_farthest(before, edge)))
     yield _kind("Farthest from the input", list(_farthest(after, edge)))

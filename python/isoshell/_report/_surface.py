@@ -22,16 +22,21 @@ class Surface:
     of_faces: Dict[str, Array] = field(default_factory=dict)
     lines: Dict[str, Array] = field(default_factory=dict)  # by name (E, 2) vertices
     color: Optional[Array] = None  # of each face the number of a colour
+    regions: Optional[Array] = None  # (M, 2) of each face the labels of the regions behind it and in front
 
 
-def joined(vertices: Array, faces: Array) -> Surface:
+def joined(vertices: Array, faces: Array, regions: Optional[Array] = None) -> Surface:
     """A surface as files have it, without faces that are no triangles then, and without vertices of no face."""
     finite = np.logical_and.reduce(np.isfinite(vertices), axis=1)
     _, first, number = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    corners = first[number.reshape(-1)][faces[finite[faces].all(axis=1)]]
+    drawn = finite[faces].all(axis=1)
+    corners = first[number.reshape(-1)][faces[drawn]]
     whole = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
     used, numbers = np.unique(corners[whole], return_inverse=True)  # in the order of the file: neighbours are near
-    return Surface(np.ascontiguousarray(vertices[used]), numbers.reshape(-1, 3).astype(np.int64))
+    surface = Surface(np.ascontiguousarray(vertices[used]), numbers.reshape(-1, 3).astype(np.int64))
+    if regions is not None and len(regions):
+        surface.regions = regions[drawn][whole]
+    return surface
 
 
 @dataclass
@@ -149,7 +154,8 @@ def _on_lattice(surface: Surface, low: Array, size: float) -> Surface:
     of_vertices = {name: _largest(values, cell, len(first)) for name, values in surface.of_vertices.items()}
     lines = {name: _lines_between(cell, ends) for name, ends in surface.lines.items()}
     color = None if surface.color is None else surface.color[numbers]
-    return Surface(vertices, turned[numbers], of_vertices, of_faces, lines, color)
+    regions = None if surface.regions is None else surface.regions[numbers]
+    return Surface(vertices, turned[numbers], of_vertices, of_faces, lines, color, regions)
 
 
 def _largest(values: Array, group: Array, count: int) -> Array:

@@ -41,6 +41,9 @@ TREATED = {"cut_handles": "handles cut", "failed_cells": "cells that failed", "i
            "seeds_against_intersections": "seeds inserted against intersections"}
 
 
+MOST_REGIONS = 40  # of the table
+
+
 def text(value: Cell) -> str:
     """As people read it; a dash for what is not known."""
     if value is None:
@@ -71,7 +74,9 @@ def chips(report: dict[str, Any], missed: Sequence[str]) -> str:
     topology, quality, distance = report["topology"], report["quality"], report["distance"]
     borders = topology["boundary_loops"] or 0
     found: List[Tuple[bool, str]] = []
-    if topology["manifold"] is not None:
+    if report["regions"]:
+        found += _regions_found(report["regions"])
+    elif topology["manifold"] is not None:
         kind = f"2-manifold with {counted(borders, 'border')}" if borders else "Closed 2-manifold"
         found.append((topology["manifold"], kind if topology["manifold"] else "Not a 2-manifold"))
     pairs = topology["self_intersections"]
@@ -89,6 +94,28 @@ def chips(report: dict[str, Any], missed: Sequence[str]) -> str:
     if distance:
         made += f"<li>Within {number(distance['pct_of_diagonal']['hausdorff'])} % of the diagonal</li>"
     return made
+
+
+def _regions_found(regions: dict[str, Any]) -> List[Tuple[bool, str]]:
+    """Whether each region is closed, and whether any or any wall was lost."""
+    found = [(regions["every_region_closed"], f"{counted(len(regions['regions']), 'region')}, "
+              + ("each is closed" if regions["every_region_closed"] else "not all closed"))]
+    lost = len(regions.get("regions_lost", ())), len(regions.get("walls_lost", ()))
+    if any(lost):
+        found.append((False, f"{counted(lost[0], 'region')} and {counted(lost[1], 'wall')} lost"))
+    return found
+
+
+def regions(report: dict[str, Any]) -> str:
+    """What each region measures, the largest first."""
+    if not report["regions"]:
+        return ""
+    parts = sorted(report["regions"]["regions"], key=lambda region: -region["volume"])
+    rows: List[Row] = [(f"{region['name']} ({region['label']})" if region["name"] else str(region["label"]),
+                        [region["volume"], region["area"], region["triangles"]]) for region in parts[:MOST_REGIONS]]
+    if len(parts) > MOST_REGIONS:
+        rows.append((f"and {counted(len(parts) - MOST_REGIONS, 'smaller one')}", []))
+    return card("Regions", rows, ("volume", "area", "triangles"))
 
 
 def gates(asked: Sequence[str], missed: Sequence[str]) -> str:

@@ -37,6 +37,7 @@
       gap: unpacked(packed.gap, Uint8Array),
       deviation: unpacked(packed.deviation, Uint8Array),
       patch: unpacked(packed.patch, Uint8Array),
+      regions: unpacked(packed.regions, Uint16Array),
       border: unpacked(packed.border, Uint32Array),
       nonmanifold: unpacked(packed.nonmanifold, Uint32Array),
       curve: unpacked(packed.curve, Uint32Array),
@@ -54,10 +55,42 @@
   });
   const valenceColor = (side, i) => number(side.fewer[i] ? FEWER[side.fewer[i]] : MORE[side.more[i]]);
 
+  const hidden = new Set();  // regions, by number
+  const apart = () => Number(document.getElementById('apart').value) / 50;  // 1: twice as far from the middle
+
+  // The closed surface of each region that is shown, moved away from the middle: the faces behind which it lies, and
+  // those in front of which it does, turned. Faces are drawn from outside alone, so that of two in one place one shows.
+  function pulled(side) {
+    const of = data.regions.map(() => []);
+    for (let f = 0; 3 * f < side.faces.length; f++) {
+      const [a, b, c] = side.faces.subarray(3 * f, 3 * f + 3), [behind, front] = side.regions.subarray(2 * f, 2 * f + 2);
+      if (behind && !hidden.has(behind)) of[behind - 1].push(a, b, c);
+      if (front && !hidden.has(front)) of[front - 1].push(a, c, b);
+    }
+    const positions = [], faces = [], colors = [], way = apart();
+    of.forEach((corners, region) => {
+      const place = new Map(), {away, color} = data.regions[region], painted = number(color);
+      for (const v of corners) {
+        if (!place.has(v)) {
+          place.set(v, positions.length / 3);
+          for (let axis = 0; axis < 3; axis++) positions.push(side.positions[3 * v + axis] + way * away[axis]);
+          colors.push(painted);
+        }
+        faces.push(place.get(v));
+      }
+    });
+    return {positions: new Float32Array(positions), faces: new Uint32Array(faces), colors: new Uint32Array(colors)};
+  }
+
   // Edges of a dense mesh would hide its colours.
   const wireOpacity = (side) => 0.3 * Math.min(1, Math.sqrt(30000 / side.faces.length));
 
   const MODES = {
+    regions: {
+      has: (side) => side.regions,
+      paint: (side) => ({...colored(side.colors), side: 'front'}),
+      legend: () => '',  // buttons, by listRegions
+    },
     shape: {has: () => true, paint: () => ({}), legend: () => ''},
     deviation: {
       has: (side) => side.deviation,
@@ -139,14 +172,16 @@
 
     async paint(mode, edges) {
       const kind = MODES[mode];
-      const objects = [mesh(this.side, {id: 1, ...(kind.has(this.side) ? kind.paint(this.side) : {})})];
+      const side = mode === 'regions' && this.side.regions ? pulled(this.side) : this.side;
+      const isEmpty = side.faces.length === 0;  // all regions are hidden
+      const objects = isEmpty ? [] : [mesh(side, {id: 1, ...(kind.has(this.side) ? kind.paint(side) : {})})];
       const wires = {id: 2, wireframe: true, color: 0x0b1116, opacity: wireOpacity(this.side)};
-      if (edges) objects.push(mesh(this.side, wires));
+      if (edges && !isEmpty) objects.push(mesh(side, wires));
       if (mode === 'gaps' && this.side.border) objects.push(tubes(3, this.side, this.side.border, BORDER));
       if (mode === 'gaps' && this.side.nonmanifold) objects.push(tubes(4, this.side, this.side.nonmanifold, MANY));
       if (mode === 'creases' && this.curves) objects.push(tubes(5, this.curves, this.curves.curve, CURVE));
       const kept = new Set(objects.map((object) => object.id));
-      for (const id of [2, 3, 4, 5]) {
+      for (const id of [1, 2, 3, 4, 5]) {
         if (this.shown.has(id) && !kept.has(id)) { this.shown.delete(id); await this.plot.removeObject(id); }
       }
       await this.load(objects);
@@ -199,6 +234,39 @@
     return found;
   }
 
+  // A button for each region, which hides and shows it.
+  function listRegions(change) {
+    const list = document.createElement('div');
+    list.className = 'regions';
+    data.regions.forEach(({words, color}, i) => {
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.dataset.region = i;
+      button.innerHTML = swatch(color, '');
+      button.append(words);
+      button.setAttribute('aria-pressed', !hidden.has(i + 1));
+      button.addEventListener('click', () => {
+        if (!hidden.delete(i + 1)) hidden.add(i + 1);
+        button.setAttribute('aria-pressed', !hidden.has(i + 1));
+        change();
+      });
+      list.append(button);
+    });
+    document.getElementById('legend').replaceChildren(list);
+  }
+
+  // Calls it again where it was called while it ran, once: a slider moves faster than meshes are drawn.
+  function oneAtATime(work) {
+    let running = false, again = false;
+    return async () => {
+      again = true;
+      if (running) return;
+      running = true;
+      while (again) { again = false; await work(); }
+      running = false;
+    };
+  }
+
   function start(library) {
     const sides = Object.fromEntries(Object.entries(data.sides).map(([name, packed]) => [name, readSide(packed)]));
     const curves = sides.after.curve ? sides.after : null;  // the result's lie on the input, too
@@ -221,13 +289,22 @@
     }
     const wide = () => {
       const {clientWidth, clientHeight} = document.querySelector('.view');
-      look(camera(middle, axes().front, distanceThatShows(points, axes(), clientWidth / clientHeight)));
+      const reach = checked('mode') === 'regions' ? 1 + apart() : 1;
+      look(camera(middle, axes().front, reach * distanceThatShows(points, axes(), clientWidth / clientHeight)));
     };
     const paint = () => {
       const mode = checked('mode');
-      document.getElementById('legend').innerHTML = MODES[mode].legend();
+      if (mode === 'regions') listRegions(redraw);
+      else document.getElementById('legend').innerHTML = MODES[mode].legend();
+      document.getElementById('pull').hidden = mode !== 'regions';
+      return draw();
+    };
+    const draw = () => {
+      const mode = checked('mode');
       return Promise.all(views.map((view) => view.paint(mode, document.getElementById('edges').checked)));
     };
+    const redraw = oneAtATime(draw);
+    document.getElementById('apart').addEventListener('input', redraw);
     const press = (pressed) => {
       for (const button of document.querySelectorAll('[data-place]')) {
         button.setAttribute('aria-pressed', button === pressed);
