@@ -24,10 +24,19 @@ uint32_t largest_vertex(const MeshTriangles& triangles) {
   return last;
 }
 
+/// Between the edges that there are, on average, and those that there will be: a triangle meets few cells of that size,
+/// and few triangles meet a cell.
+double cell_between(const FineMesh& fine, const MeshTriangles& triangles, double edge_q8) {
+  double sum = 0;
+  for (const auto& t : triangles) sum += length(fine.position[t[1]] - fine.position[t[0]]);
+  return std::sqrt(sum / double(triangles.size()) * edge_q8);
+}
+
 }  // namespace
 
 WallMesh::WallMesh(const CutSurface& cut, const WallTriangles& walls)
-    : lookup_(std::make_shared<CutLookup>(cut)), space_(cut.longest_edge_q8 / 2, walls.triangles.size()) {
+    : lookup_(std::make_shared<CutLookup>(cut)),
+      space_(cell_between(*cut.fine, walls.triangles, cut.longest_edge_q8), walls.triangles.size()) {
   list_vertices(largest_vertex(walls.triangles));
   Edges on_curve;
   for (uint32_t c = 0; c < cut.fine->paths.size(); ++c) list_curve(c, cut.fine->paths[c], on_curve);
@@ -161,15 +170,20 @@ double WallMesh::sine(const RegionTriangle& t) const {
   return smallest_sine(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
 }
 
+/// Between the normal of a triangle and those of the surface at its corners, the least.
+double WallMesh::cosine_to_surface(const RegionTriangle& t) const {
+  const WorldPoint unit = normalised(normal(t));
+  double least = 1;
+  for (const uint32_t v : t.corner) least = std::min(least, lookup_->cosine(vertices_[v].home, t.patch, unit));
+  return least;
+}
+
 double WallMesh::cost(const RegionTriangle& t) const {
   const WorldPoint &a = at(t.corner[0]), &b = at(t.corner[1]), &c = at(t.corner[2]), n = normal(t);
   const double doubled = length(n);
   if (!(doubled > 0)) return kMostCostOfWall;
   const double shape = (distance_sq(a, b) + distance_sq(b, c) + distance_sq(c, a)) / (kTwoRootThree * doubled);
-  double least = 1;
-  for (const uint32_t v : t.corner)
-    least = std::min(least, lookup_->cosine(vertices_[v].home, t.patch, (1 / doubled) * n));
-  const double turned = std::max(0., kFollows - least);
+  const double turned = std::max(0., kFollows - cosine_to_surface(t));
   return std::min(kMostCostOfWall, shape - 1 + kCostOfTurn * turned * turned);
 }
 

@@ -69,6 +69,7 @@ class WallMesh {
   /// 0 for an equilateral triangle that lies as the surface does, and more for others.
   double cost(const RegionTriangle& t) const;
   double cost_around(uint32_t v) const;
+  double cosine_to_surface(const RegionTriangle& t) const;
   WorldPoint normal(const RegionTriangle& t) const;
   double sine(const RegionTriangle& t) const;
   bool may_replace(const RegionTriangle& made, const RegionTriangle& before) const;

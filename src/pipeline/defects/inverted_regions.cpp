@@ -8,11 +8,11 @@
 
 namespace isoshell {
 
-std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const SeededMesh& made) {
+std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const DualMesh& mesh,
+                                            const std::vector<uint32_t>& patch) {
   const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut);
-  const auto labels_at = [&](const TriangleIndices& t) { return labels[cut.surface.patch[made.seeds.home[t.a]]]; };
   const auto at = [&](uint32_t v) {
-    const PointQ8 p = made.mesh.position[v];
+    const PointQ8 p = mesh.position[v];
     return WorldPoint{double(p.x), double(p.y), double(p.z)};
   };
   struct Region {
@@ -20,20 +20,22 @@ std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const SeededM
     double volume = 0;
   };
   std::map<int32_t, Region> regions;
-  for (const TriangleIndices& t : made.mesh.triangles) {
+  for (size_t i = 0; i < patch.size(); ++i) {
+    const TriangleIndices t = mesh.triangles[int64_t(i)];
     double side = 1;
-    for (const int32_t label : labels_at(t)) {
+    for (const int32_t label : labels[patch[i]]) {
       Region& region = regions.emplace(label, Region{at(t.a), 0}).first->second;
-      const WorldPoint &o = region.from, a = at(t.a) - o, b = at(t.b) - o, c = at(t.c) - o;
+      const WorldPoint a = at(t.a) - region.from, b = at(t.b) - region.from, c = at(t.c) - region.from;
       region.volume += side * dot(a, cross(b, c));
       side = -1;
     }
   }
   regions.erase(cut.regions->background);
   std::vector<uint32_t> found;
-  for (const TriangleIndices& t : made.mesh.triangles)
-    for (const int32_t label : labels_at(t)) {
+  for (size_t i = 0; i < patch.size(); ++i)
+    for (const int32_t label : labels[patch[i]]) {
       const auto region = regions.find(label);
+      const TriangleIndices t = mesh.triangles[int64_t(i)];
       if (region != regions.end() && region->second.volume <= 0) found.insert(found.end(), {t.a, t.b, t.c});
     }
   std::sort(found.begin(), found.end());

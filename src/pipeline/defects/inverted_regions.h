@@ -8,7 +8,9 @@
 
 namespace isoshell {
 
-/// The vertices of the walls of regions whose volume is not above 0; ascending. In host memory. Cost: O(triangles).
-std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const SeededMesh& made);
+/// The vertices of the walls of regions whose volume is not above 0, ascending. `patch`: per triangle. In host memory.
+/// Cost: O(triangles).
+std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const DualMesh& mesh,
+                                            const std::vector<uint32_t>& patch);
 
 }  // namespace isoshell

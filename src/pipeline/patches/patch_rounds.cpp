@@ -212,6 +212,12 @@ class PatchRounds {
     for (const uint32_t v : vertices) wrong.add(cut.surface.patch[made.seeds.home[v]], made.mesh.position[v]);
   }
 
+  static std::vector<uint32_t> patches_of(const CutSurface& cut, const SeededMesh& made) {
+    std::vector<uint32_t> patch;
+    for (const TriangleIndices& t : made.mesh.triangles) patch.push_back(cut.surface.patch[made.seeds.home[t.a]]);
+    return patch;
+  }
+
   TrianglePairs all_crossing(const SeededMesh& made) const {
     return crossings_.all(made.mesh, made.seeds.fixed.joined.view());
   }
@@ -249,7 +255,7 @@ class PatchRounds {
     const auto is_known = [&](uint32_t v) { return failed.patch[cut.surface.patch[made.seeds.home[v]]]; };
     defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
     add_defects(cut, made, defects, wrong);
-    if (cut.regions) add_defects(cut, made, find_inverted_regions(cut, made), wrong);
+    if (cut.regions) add_defects(cut, made, find_inverted_regions(cut, made.mesh, patches_of(cut, made)), wrong);
     const auto pairs = all_crossing(made);
     report_.optimize.self_intersections = int64_t(pairs.size());
     add_crossing(cut, made, crossings_.wrong_of(made.mesh, pairs), wrong);

@@ -8,6 +8,7 @@
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
 #include "features/walls/coarsen_walls.h"
+#include "pipeline/defects/inverted_regions.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
@@ -49,12 +50,16 @@ WallTriangles few_triangles_of(const PreparedSurface& p, int64_t vertices) {
   return {p.cut->fine->triangles, p.cut->fine->source_face};
 }
 
-/// None where walls intersect as they came in.
+bool has_inverted(const CutSurface& cut, const JoinedPatches& joined) {
+  return !find_inverted_regions(cut, joined.mesh, joined.features.patch).empty();
+}
+
+/// None where walls intersect as they came in, or a region is too small for fewer vertices.
 std::optional<JoinedPatches> coarsened(const PreparedSurface& p, int64_t vertices, RemeshReport& report,
                                        Context& context) {
   return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
     JoinedPatches made = coarsen_walls(*p.cut, few_triangles_of(p, vertices), vertices, context);
-    if (!NewCrossings(p, *p.cut, context).all(made.mesh, {}).empty()) return {};
+    if (has_inverted(*p.cut, made) || !NewCrossings(p, *p.cut, context).all(made.mesh, {}).empty()) return {};
     return made;
   });
 }
@@ -86,7 +91,7 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
     if (std::string why = mesh_in_rounds(p, cut, made, in_patches, report, context); !why.empty()) return why;
     joined =
         timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(in_patches), context); });
-    return "";
+    return has_inverted(*cut, joined) ? "a region would be inside out" : "";
   });
   if (!why_not.empty()) {
     cut = p.cut;
