@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
 constexpr double kFirstCut = 1.5;     ///< lengths of the mesh on which they are found, over the one that is asked for
-constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
+constexpr double kPartsOfRoughEdge = 2;  ///< walls of voxels are finer than edges anyway
+constexpr int kMostCuts = 3;             ///< until the fine mesh shows the lengths that are asked for
 
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
@@ -54,6 +55,7 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   fine.edge_length.assign(fine.position.size(), kFirstCut * e);
   fine.triangles = mesh.triangles;
   fine.source_face = mesh.source_face;
+  if (options.is_rough) fine.parts_of_edge = kPartsOfRoughEdge;
   fine.paths = curve_paths(fine.position, fine.triangles, network);
   find_jagged_paths(fine.position, e, fine.paths);
   fine = refine_mesh(std::move(fine), context);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLongestOnPath = .75;  ///< over that elsewhere: vertices of curves can only move between these points
 
 double longest_between(const FineMesh& mesh, uint32_t u, uint32_t v) {
-  return longest_fine_edge((mesh.edge_length[u] + mesh.edge_length[v]) / 2);
+  return longest_fine_edge(mesh, (mesh.edge_length[u] + mesh.edge_length[v]) / 2);
 }
 
 /// Far more than well-shaped triangles of the same area take, and no more than can be numbered or held.
@@ -28,7 +28,7 @@ double most_points(const FineMesh& mesh, int64_t memory_bytes) {
   for_each_index(size_t(0), needs.size(), [&](size_t i) {
     const auto& t = mesh.triangles[i];
     const double longest =
-        longest_fine_edge((mesh.edge_length[t[0]] + mesh.edge_length[t[1]] + mesh.edge_length[t[2]]) / 3);
+        longest_fine_edge(mesh, (mesh.edge_length[t[0]] + mesh.edge_length[t[1]] + mesh.edge_length[t[2]]) / 3);
     needs[i] = triangle_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]) / (longest * longest);
   });
   const double need = std::accumulate(needs.begin(), needs.end(), double(needs.size()));
@@ -77,9 +77,9 @@ WorldPoint point_between(const WorldPoint& a, const WorldPoint& b, int64_t i, in
   return i == 0 ? a : a + double(i) / double(parts) * (b - a);
 }
 
-double longest_fine_edge(double edge_length) {
-  constexpr double kPartsOfEdge = 3, kLongestQ8 = 16 * kOneVoxelQ8;
-  return std::min(edge_length / kPartsOfEdge, kLongestQ8);
+double longest_fine_edge(const FineMesh& mesh, double edge_length) {
+  constexpr double kLongestQ8 = 16 * kOneVoxelQ8;
+  return std::min(edge_length / mesh.parts_of_edge, kLongestQ8);
 }
 
 EdgeSubdivision::EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours)

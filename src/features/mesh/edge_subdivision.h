@@ -6,8 +6,9 @@
 
 namespace isoshell {
 
-/// The longest that a fine edge may be where the result has edges of such a length: well within the reach of blocks.
-double longest_fine_edge(double edge_length);
+/// The longest that an edge of a fine mesh may be where the result has edges of such a length: well within the reach of
+/// blocks.
+double longest_fine_edge(const FineMesh& mesh, double edge_length);
 /// How many equal parts of at most `longest` a line takes, and where part i of so many begins. The same from both ends.
 int64_t parts_of(const WorldPoint& a, const WorldPoint& b, double longest);
 WorldPoint point_between(const WorldPoint& a, const WorldPoint& b, int64_t i, int64_t parts);

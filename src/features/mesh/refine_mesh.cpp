@@ -94,7 +94,7 @@ class Filling {
   std::vector<uint32_t> straight(uint32_t u, uint32_t v) {
     const WorldPoint p = at(u), q = at(v);
     const double length_u = length_at(u), length_v = length_at(v);
-    const int64_t parts = parts_of(p, q, longest_fine_edge((length_u + length_v) / 2));
+    const int64_t parts = parts_of(p, q, longest_fine_edge(mesh_, (length_u + length_v) / 2));
     std::vector<uint32_t> chain{u};
     for (int64_t i = 1; i < parts; ++i) {
       chain.push_back(first_new_ + uint32_t(inside.size()));

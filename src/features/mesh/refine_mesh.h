@@ -17,6 +17,7 @@ struct FineMesh {
   MeshTriangles triangles;
   std::vector<uint32_t> source_face;  ///< per triangle, as in FeatureMesh; empty: not known
   std::vector<CurvePath> paths;
+  double parts_of_edge = 3;  ///< edges that one of the result is as long as, at least
 };
 
 /// To the nearest whole steps.
@@ -25,12 +26,13 @@ inline PointQ8 rounded(const WorldPoint& p) {
   return {nearest(p.x), nearest(p.y), nearest(p.z)};
 }
 
-/// Cuts every edge into equal parts of at most a third of the edge length there, the mean of that at its ends; that of
-/// a path at its seeds first, and into parts of at most a quarter. Then fills each triangle between the parts of its
-/// edges. Result: edges are at most half of the length; seeds of paths are at vertices. What becomes of a triangle
-/// depends on its corners only. Cost: a sort of the edges, then O(fine triangles); of a long thin triangle these are as
-/// many as its edges have parts. Throws: usage when that is far more than the area needs, or than the memory limit
-/// allows. `neighbours`: those of its vertices, ascending, where they are known; the edges then need no sort.
+/// Cuts every edge into equal parts of at most a third of the edge length there, or as mesh.parts_of_edge says, the
+/// mean of that at its ends; that of a path at its seeds first, and into parts of at most three quarters of that. Then
+/// fills each triangle between the parts of its edges. Result: edges are at most half again as long as these parts;
+/// seeds of paths are at vertices. What becomes of a triangle depends on its corners only. Cost: a sort of the edges,
+/// then O(fine triangles); of a long thin triangle these are as many as its edges have parts. Throws: usage when that
+/// is far more than the area needs, or than the memory limit allows. `neighbours`: those of its vertices, ascending,
+/// where they are known; the edges then need no sort.
 FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* neighbours = nullptr);
 
 }  // namespace isoshell
