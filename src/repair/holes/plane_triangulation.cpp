@@ -273,12 +273,14 @@ class PlaneTriangulation {
 }  // namespace
 
 std::optional<std::vector<std::array<uint32_t, 3>>> triangulate_plane(
-    const std::vector<PlanePoint>& points, const std::vector<std::array<uint32_t, 2>>& lines) {
+    const std::vector<PlanePoint>& points, const std::vector<std::array<uint32_t, 2>>& lines,
+    const std::vector<std::array<uint32_t, 2>>& wishes) {
   PlaneTriangulation plane(points);
   for (uint32_t p = 0; p < points.size(); ++p)
     if (!plane.insert(p)) return {};
   for (const auto& [a, b] : lines)
     if (!plane.insert_line(a, b)) return {};
+  for (const auto& [a, b] : wishes) plane.insert_line(a, b);
   plane.flip_rest();
   return plane.inside();
 }

@@ -1,0 +1,153 @@
+// See arrange_faces.h.
+#include "repair/arrangement/arrange_faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/watched.h"
+#include "geometry/box.h"
+#include "geometry/weld.h"
+#include "geometry/world_vector.h"
+#include "measure/crossings.h"
+#include "repair/arrangement/find_contacts.h"
+#include "repair/arrangement/insert_contacts.h"
+
+namespace isoshell::repair {
+namespace {
+
+// What is bent through points within reach may come into reach of others, and again, where many surfaces are nearly
+// one. After some rounds only what meets is cut, and less is bent. Where that does not end either, all is tried again
+// with a smaller reach.
+constexpr double kReaches[] = {128, 96, 64, 32, 16}, kLateReach = 3;
+constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
+constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
+
+/// From the world to steps and back. Around the faces is room for what moves them.
+class StepFrame {
+ public:
+  explicit StepFrame(const WorldBox& box) : least_(box.min) {
+    const double longest = longest_side(box);
+    a_step_ = longest > 0 ? longest / (kSteps - 2 * kMarginSteps) : 1;
+  }
+  StepPoint from(const WorldPoint& p) const {
+    const WorldPoint s = (1 / a_step_) * (p - least_);
+    const auto rounded = [](double x) { return int32_t(std::floor(x + kMarginSteps + .5)); };
+    return {rounded(s.x), rounded(s.y), rounded(s.z)};
+  }
+  WorldPoint to_world(StepPoint s) const {
+    return least_ + a_step_ * WorldPoint{s.x - kMarginSteps, s.y - kMarginSteps, s.z - kMarginSteps};
+  }
+
+ private:
+  static constexpr double kSteps = double(int64_t(1) << 28), kMarginSteps = 1 << 12;
+  WorldPoint least_;
+  double a_step_;
+};
+
+LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, const StepFrame& frame) {
+  LatticeFaces faces;
+  faces.point.reserve(welded.position.size());
+  for (const WorldPoint& p : welded.position) faces.point.push_back(frame.from(p));
+  for (uint32_t t = 0; t < soup.triangles.size(); ++t) {
+    Corners corner = soup.triangles[t];
+    for (uint32_t& v : corner) v = welded.place[v];
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    faces.face.push_back(corner);
+    faces.source.push_back(t);
+  }
+  faces.is_unsettled.assign(faces.face.size(), 1);
+  return faces;
+}
+
+/// Faces that meet outside of what they share are unsettled then. One place of them.
+std::optional<StepPoint> find_crossing(LatticeFaces& faces, const Context& context) {
+  std::vector<TriangleIndices> triangles;
+  triangles.reserve(faces.face.size());
+  for (const Corners& c : faces.face) triangles.push_back({c[0], c[1], c[2]});
+  const View<const StepPoint> points{faces.point.data(), int64_t(faces.point.size())};
+  const View<const TriangleIndices> view{triangles.data(), int64_t(triangles.size())};
+  const auto pairs = crossing_pairs(points, view, {}, context.cancel);
+  check_cancel(context, "regions");
+  if (pairs.empty()) return {};
+  for (const auto& pair : pairs)
+    for (const uint32_t f : pair) faces.is_unsettled[f] = 1;
+  return common_box(points, view, pairs.front()).min;
+}
+
+ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const WeldedVertices& welded,
+                        const StepFrame& frame) {
+  ArrangedFaces result;
+  std::vector<uint32_t> number(faces.point.size(), kNoFace);
+  for (const Corners& c : faces.face)
+    for (const uint32_t v : c) number[v] = 0;
+  for (size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == kNoFace) continue;
+    number[v] = uint32_t(result.point.size());
+    result.point.push_back(v < welded.position.size() ? welded.position[v] : frame.to_world(faces.point[v]));
+  }
+  std::vector<uint8_t> is_whole(soup.triangles.size(), 0);
+  for (size_t f = 0; f < faces.face.size(); ++f) {
+    const auto& corner = soup.triangles[faces.source[f]];
+    bool is_same = true;
+    for (size_t i = 0; i < 3; ++i) is_same = is_same && faces.face[f][i] == welded.place[corner[i]];
+    if (is_same) is_whole[faces.source[f]] = 1;
+  }
+  result.cut_faces = std::count(is_whole.begin(), is_whole.end(), 0);
+  for (Corners& c : faces.face)
+    for (uint32_t& v : c) v = number[v];
+  result.face = std::move(faces.face);
+  result.source = std::move(faces.source);
+  return result;
+}
+
+/// None, and a place where faces cross, when rounds do not come to an end.
+std::optional<LatticeFaces> cut_all(LatticeFaces faces, StepPoint& failed_at, const Context& context) {
+  size_t most_faces = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (round == kNearEdgeRounds) faces.leaves_near_edges = true;
+    if (round == kFullRounds) {
+      faces.reach_steps = kLateReach;
+      faces.leaves_near = true;
+      most_faces = kFewFaces + kMostGrowth * faces.face.size();
+    }
+    Contacts contacts = find_contacts(faces, context);
+    if (!contacts.found.empty()) failed_at = faces.point[faces.face[contacts.found.front().pair[0]][0]];
+    const bool is_growing = (round > kFullRounds && faces.face.size() > most_faces) ||
+                            contacts.found.size() > kFewFaces + kMostContactsOfFace * faces.face.size();
+    if (is_growing) return {};
+    if (!contacts.close.empty()) {
+      weld_close(faces, contacts);
+    } else if (!contacts.found.empty()) {
+      cut_at_contacts(faces, std::move(contacts.found), context);
+    } else {
+      std::fill(faces.is_unsettled.begin(), faces.is_unsettled.end(), uint8_t(0));
+      const std::optional<StepPoint> crossing = find_crossing(faces, context);
+      if (!crossing) return faces;
+      failed_at = *crossing;
+    }
+  }
+  return {};
+}
+
+std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context) {
+  const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
+  const StepFrame frame(box_of(welded.position));
+  const LatticeFaces whole = snapped(soup, welded, frame);
+  for (const double reach : kReaches) {
+    LatticeFaces faces = whole;
+    faces.reach_steps = reach;
+    StepPoint at{0, 0, 0};
+    std::optional<LatticeFaces> cut = cut_all(std::move(faces), at, context);
+    if (cut) return result_of(std::move(*cut), soup, welded, frame);
+    failed_at = frame.to_world(at);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context) {
+  return run_with_threads(context, [&] { return arrange(soup, failed_at, context); });
+}
+
+}  // namespace isoshell::repair

@@ -1,0 +1,33 @@
+// The triangles of a soup cut along each other, so that they meet in corners and whole edges only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "isoshell/backend.h"
+#include "isoshell/surface_source.h"
+
+namespace isoshell::repair {
+
+struct ArrangedFaces {
+  std::vector<WorldPoint> point;
+  std::vector<std::array<uint32_t, 3>> face;
+  std::vector<uint32_t> source;  ///< per face the triangle of the soup that it is a part of, and turns like; ascending
+  int64_t cut_faces = 0;         ///< triangles of the soup that are not one face with their own corners
+};
+
+/// Two of these faces have corners and whole edges in common and nothing else, or all three corners, as where parts lie
+/// on each other: each keeps its own copy. That is decided exactly on a lattice of 2^28 steps along the longest side.
+/// Corners that are kept have the position of a corner of the soup to the last bit, which is within half a step of that
+/// on the lattice; new points lie on the lattice. What is nearer than 2^-20 of the longest side is made one: corners
+/// (the smaller position stays, by x, y, z), corners and edges or faces (these are bent through the corner), edges
+/// (both are bent through one point). Triangles lower than half of that vanish. What two faces have in common is an
+/// edge of both, also where a face ends within another. Faces that lie on each other have the same parts. Where
+/// cuts that are rounded do not come to an end, less is made one, down to an eighth of that. None where they do not
+/// then either; then `failed_at` is a place where they cross. Throws: interrupted. Result: independent of threads.
+/// Cost: a tree of the boxes of all triangles, pairs whose boxes meet, and rounds over those that were cut.
+std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context);
+
+}  // namespace isoshell::repair

@@ -1,0 +1,14 @@
+// All contacts of faces with those that are near to them.
+#pragma once
+
+#include "isoshell/backend.h"
+#include "repair/arrangement/lattice_faces.h"
+
+namespace isoshell::repair {
+
+/// Of the pairs of faces of which one is unsettled, and of these with themselves; in an order that is independent of
+/// threads. Throws: interrupted. Cost: a tree of the unsettled faces, for every other one a look at its root, and the
+/// pairs whose boxes meet.
+Contacts find_contacts(const LatticeFaces& faces, const Context& context);
+
+}  // namespace isoshell::repair

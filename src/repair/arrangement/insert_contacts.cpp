@@ -1,0 +1,87 @@
+// cut_at_contacts (see insert_contacts.h).
+#include "repair/arrangement/insert_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/parallel_ranges.h"
+#include "core/watched.h"
+#include "repair/arrangement/cut_face.h"
+#include "repair/arrangement/new_points.h"
+#include "repair/arrangement/shared_lines.h"
+
+namespace isoshell::repair {
+namespace {
+
+class Cutter {
+ public:
+  Cutter(LatticeFaces& faces, std::vector<Contact> contacts, const Context& context)
+      : faces_(faces), contacts_(std::move(contacts)), context_(context) {}
+
+  void cut() {
+    number_new_points(faces_, contacts_);
+    spread_over_low_faces(faces_, contacts_);
+    ContactPoints points(faces_, contacts_);
+    const std::vector<FaceLine> lines = shared_lines(faces_, contacts_, points);
+    const std::vector<uint32_t> touched = points.touched_faces();
+    std::vector<std::vector<Corners>> pieces(touched.size());
+    for_each_index(size_t(0), touched.size(), [&](size_t i) {
+      check_cancel(context_, "regions");
+      pieces[i] = cut_face(faces_.point, cut_of(touched[i], points, lines));
+    });
+    // What is not cut though it has a contact is looked at again.
+    std::fill(faces_.is_unsettled.begin(), faces_.is_unsettled.end(), uint8_t(0));
+    for (const Contact& c : contacts_)
+      for (const uint32_t f : c.pair) faces_.is_unsettled[f] = 1;
+    replace(touched, pieces);
+  }
+
+ private:
+  FaceCut cut_of(uint32_t f, const ContactPoints& points, const std::vector<FaceLine>& lines) const {
+    FaceCut cut;
+    cut.corner = faces_.face[f];
+    cut.jitter_steps = int(faces_.reach_steps / 16);
+    for (size_t i = 0; i < 3; ++i) cut.border[i] = points.on_edge(cut.corner[i], cut.corner[(i + 1) % 3]);
+    cut.inside = points.inside(f);
+    auto line = std::lower_bound(lines.begin(), lines.end(), FaceLine{f, {0, 0}});
+    for (; line != lines.end() && line->face == f; ++line) cut.lines.push_back(line->ends);
+    return cut;
+  }
+
+  void replace(const std::vector<uint32_t>& touched, const std::vector<std::vector<Corners>>& pieces) {
+    LatticeFaces next;
+    next.point = std::move(faces_.point);
+    next.reach_steps = faces_.reach_steps;
+    next.leaves_near_edges = faces_.leaves_near_edges;
+    next.leaves_near = faces_.leaves_near;
+    next.face.reserve(faces_.face.size() + touched.size());
+    next.source.reserve(faces_.face.size() + touched.size());
+    size_t i = 0;
+    for (uint32_t f = 0; f < faces_.face.size(); ++f) {
+      if (i == touched.size() || touched[i] != f) {
+        next.face.push_back(faces_.face[f]);
+        next.source.push_back(faces_.source[f]);
+        next.is_unsettled.push_back(faces_.is_unsettled[f]);
+        continue;
+      }
+      next.face.insert(next.face.end(), pieces[i].begin(), pieces[i].end());
+      next.source.resize(next.face.size(), faces_.source[f]);
+      next.is_unsettled.resize(next.face.size(), 1);
+      ++i;
+    }
+    faces_ = std::move(next);
+  }
+
+  LatticeFaces& faces_;
+  std::vector<Contact> contacts_;
+  const Context& context_;
+};
+
+}  // namespace
+
+void cut_at_contacts(LatticeFaces& faces, std::vector<Contact> contacts, const Context& context) {
+  Cutter(faces, std::move(contacts), context).cut();
+}
+
+}  // namespace isoshell::repair

@@ -1,0 +1,52 @@
+// Faces on a lattice of whole steps, and where they come near to each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "isoshell/advanced/lattice.h"
+#include "repair/holes/repair_mesh.h"
+
+namespace isoshell::repair {
+
+/// Coordinates are from 0 to 2^28. On these voxel/intersect.h is exact, too: differences are at most 2^28, cross
+/// products below 2^58, and volumes have 128 bits.
+using StepPoint = PointQ8;
+
+/// Ends of an edge, smaller one first.
+using Ends = std::array<uint32_t, 2>;
+constexpr Ends kNoEnds = {kNoFace, kNoFace};
+inline Ends ends_of(uint32_t a, uint32_t b) { return a < b ? Ends{a, b} : Ends{b, a}; }
+/// Edge i of a face runs from corner i to the next one.
+inline Ends edge_of(const Corners& f, size_t i) { return ends_of(f[i], f[(i + 1) % 3]); }
+inline bool has_corner(const Corners& f, uint32_t v) { return f[0] == v || f[1] == v || f[2] == v; }
+
+struct LatticeFaces {
+  std::vector<StepPoint> point;
+  std::vector<Corners> face;
+  std::vector<uint32_t> source;       ///< per face
+  std::vector<uint8_t> is_unsettled;  ///< per face: what it meets is still to be found
+  double reach_steps = 128;           ///< a point is on an edge or a face, and edges meet, within that
+  bool leaves_near_edges = false;     ///< edges within reach stay as they are where their faces do not meet
+  bool leaves_near = false;           ///< what is within reach without meeting stays as it is
+
+  double weld_steps() const { return 2 * reach_steps; }  ///< points are one within that
+};
+
+/// A point that belongs in the edges and the inside of a face that are named, since two faces meet there.
+struct Contact {
+  std::array<uint32_t, 2> pair;                   ///< the faces; twice one that is too low to be a triangle
+  std::array<Ends, 2> edge = {kNoEnds, kNoEnds};  ///< in order
+  uint32_t face = kNoFace;                        ///< in whose inside it is
+  uint32_t point = kNoFace;                       ///< a corner; kNoFace: a new one
+  StepPoint at{0, 0, 0};                          ///< of a new one
+};
+
+struct Contacts {
+  std::vector<Contact> found;
+  std::vector<Ends> close;           ///< points that are to be one
+  std::vector<uint32_t> near_close;  ///< faces at those
+};
+
+}  // namespace isoshell::repair

@@ -1,0 +1,255 @@
+// See meet_faces.h. Whether an edge passes through a face is decided in integers; how far points and edges are from
+// each other in doubles, which are right to a millionth of a step.
+#include "repair/arrangement/meet_faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/segment.h"
+#include "voxel/intersect.h"
+
+namespace isoshell::repair {
+namespace {
+
+double square(double x) { return x * x; }
+WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
+WorldPoint as_world(Vec64 v) { return {double(v.x), double(v.y), double(v.z)}; }
+Vec64 normal_of(StepPoint a, StepPoint b, StepPoint c) { return cross(difference(b, a), difference(c, a)); }
+Int128 product(Vec64 a, Vec64 b) { return Int128(a.x) * b.x + Int128(a.y) * b.y + Int128(a.z) * b.z; }
+StepPoint rounded(const WorldPoint& p) {
+  return {int32_t(std::floor(p.x + .5)), int32_t(std::floor(p.y + .5)), int32_t(std::floor(p.z + .5))};
+}
+
+/// Where a corner lies on a face.
+enum Place : int { kEdge0, kEdge1, kEdge2, kInside, kApart, kShared };
+
+enum class Meeting { apart, at_end, inside };
+
+class FacePair {
+ public:
+  FacePair(const LatticeFaces& faces, uint32_t f, uint32_t g, Contacts& to)
+      : faces_(faces),
+        to_(to),
+        reach_sq_(square(faces.reach_steps)),
+        weld_sq_(square(faces.weld_steps())),
+        number_{f, g},
+        corner_{faces.face[f], faces.face[g]} {
+    for (size_t s = 0; s < 2; ++s) normal_[s] = normal_of(at(corner_[s][0]), at(corner_[s][1]), at(corner_[s][2]));
+  }
+
+  void meet() {
+    if (has_all_shared() || is_beside(0) || is_beside(1) || is_beyond_edge(0) || is_beyond_edge(1)) return;
+    if (faces_.leaves_near && !triangles_intersect(corners_of(0), corners_of(1))) return;
+    if (find_close_corners()) return;
+    for (size_t s = 0; s < 2; ++s)
+      for (size_t i = 0; i < 3; ++i) place_[s][i] = place_of(s, i);
+    add_corners();
+    add_edges();
+    for (size_t s = 0; s < 2; ++s)
+      for (size_t i = 0; i < 3; ++i) add_pass(s, i);
+  }
+
+ private:
+  StepPoint at(uint32_t v) const { return faces_.point[v]; }
+
+  CornersOfTriangle corners_of(size_t s) const {
+    const auto& [a, b, c] = corner_[s];
+    return {{a, b, c}, {at(a), at(b), at(c)}};
+  }
+
+  bool has_all_shared() const {
+    return has_corner(corner_[1], corner_[0][0]) && has_corner(corner_[1], corner_[0][1]) &&
+           has_corner(corner_[1], corner_[0][2]);
+  }
+
+  double height(size_t of, uint32_t v) const {
+    const Vec64& n = normal_[of];
+    const WorldPoint normal = as_world(n);
+    const double size = length(normal);
+    return size > 0 ? dot(normal, as_world(difference(at(v), at(corner_[of][0])))) / size : 0;
+  }
+  /// Whether the corners of s that are not shared are on one side of the other's plane and out of reach.
+  bool is_beside(size_t s) const {
+    int side = 0;
+    for (const uint32_t v : corner_[s]) {
+      if (has_corner(corner_[1 - s], v)) continue;
+      const double h = height(1 - s, v);
+      if (std::abs(h) <= faces_.reach_steps || (h > 0 ? side < 0 : side > 0)) return false;
+      side = h > 0 ? 1 : -1;
+    }
+    return true;
+  }
+
+  /// Whether the corners of s are beyond an edge of the other and out of reach, or its ends.
+  bool is_beyond_edge(size_t s) const {
+    const Corners& other = corner_[1 - s];
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t a = other[i], b = other[(i + 1) % 3];
+      const WorldPoint out = cross(as_world(difference(at(b), at(a))), as_world(normal_[1 - s]));
+      const double reach = faces_.reach_steps * length(out);
+      const bool is_beyond = std::all_of(corner_[s].begin(), corner_[s].end(), [&](uint32_t v) {
+        return v == a || v == b || dot(out, as_world(difference(at(v), at(a)))) > reach;
+      });
+      if (is_beyond) return true;
+    }
+    return false;
+  }
+
+  bool find_close_corners() {
+    bool is_found = false;
+    for (const uint32_t u : corner_[0])
+      for (const uint32_t v : corner_[1]) {
+        if (u == v || distance_sq(as_world(at(u)), as_world(at(v))) > weld_sq_) continue;
+        to_.close.push_back(ends_of(u, v));
+        is_found = true;
+      }
+    if (is_found) to_.near_close.insert(to_.near_close.end(), number_.begin(), number_.end());
+    return is_found;
+  }
+
+  bool is_on(uint32_t v, const Ends& e) const {
+    return segment_distance_sq(as_world(at(v)), as_world(at(e[0])), as_world(at(e[1]))) <= reach_sq_;
+  }
+
+  /// Of a corner of s on the other face.
+  int place_of(size_t s, size_t i) const {
+    const uint32_t v = corner_[s][i];
+    const Corners& other = corner_[1 - s];
+    if (has_corner(other, v)) return kShared;
+    if (std::abs(height(1 - s, v)) > faces_.reach_steps) return kApart;
+    const WorldPoint p = as_world(at(v)), n = as_world(normal_[1 - s]);
+    int nearest = kApart;
+    double nearest_sq = reach_sq_;
+    bool is_inside = true;
+    for (size_t k = 0; k < 3; ++k) {
+      // In the order of the ends, so that all faces at the edge say the same.
+      const Ends e = edge_of(other, k);
+      const WorldPoint a = as_world(at(e[0])), b = as_world(at(e[1]));
+      const double sq = segment_distance_sq(p, a, b);
+      if (sq <= nearest_sq) nearest = int(k), nearest_sq = sq;
+      const double turn = dot(cross(b - a, p - a), n);
+      is_inside = is_inside && (e[0] == other[k] ? turn > 0 : turn < 0);
+    }
+    return nearest != kApart ? nearest : is_inside ? kInside : kApart;
+  }
+
+  void add(Contact c) {
+    c.pair = number_;
+    to_.found.push_back(c);
+  }
+
+  void add_corners() {
+    for (size_t s = 0; s < 2; ++s)
+      for (size_t i = 0; i < 3; ++i) {
+        const int place = place_[s][i];
+        if (place > kInside) continue;
+        Contact c;
+        c.point = corner_[s][i];
+        if (place == kInside)
+          c.face = number_[1 - s];
+        else
+          c.edge[0] = edge_of(corner_[1 - s], size_t(place));
+        add(c);
+      }
+  }
+
+  /// Whether two edges without a common end meet, and where; `at_end` when an end of one is on the other.
+  Meeting meeting_of(const Ends& d, const Ends& e, StepPoint& where) const {
+    if (is_on(d[0], e) || is_on(d[1], e) || is_on(e[0], d) || is_on(e[1], d)) return Meeting::at_end;
+    const Vec64 u = difference(at(d[1]), at(d[0])), w = difference(at(e[1]), at(e[0])),
+                r = difference(at(e[0]), at(d[0])), normal = cross(u, w);
+    const WorldPoint n = as_world(normal);
+    const double sq = length_sq(n);
+    if (!(sq > 0) || std::abs(dot(n, as_world(r))) > faces_.reach_steps * std::sqrt(sq)) return Meeting::apart;
+    const double along_d = dot(as_world(cross(r, w)), n) / sq, along_e = dot(as_world(cross(r, u)), n) / sq;
+    if (!(along_d > 0 && along_d < 1 && along_e > 0 && along_e < 1)) return Meeting::apart;
+    const WorldPoint p = as_world(at(d[0])) + along_d * as_world(u), q = as_world(at(e[0])) + along_e * as_world(w);
+    where = rounded(.5 * (p + q));
+    return Meeting::inside;
+  }
+
+  void add_edges() {
+    const bool do_meet = !faces_.leaves_near_edges || triangles_intersect(corners_of(0), corners_of(1));
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t k = 0; k < 3; ++k) {
+        Ends d = edge_of(corner_[0], i), e = edge_of(corner_[1], k);
+        if (d[0] == e[0] || d[0] == e[1] || d[1] == e[0] || d[1] == e[1]) continue;
+        if (e < d) std::swap(d, e);
+        Contact c;
+        const Meeting meeting = meeting_of(d, e, c.at);
+        if (meeting == Meeting::apart) continue;
+        if (meeting == Meeting::inside && faces_.leaves_near_edges && !do_meet) continue;
+        is_met_[0][i] = is_met_[1][k] = true;
+        if (meeting == Meeting::at_end) continue;
+        c.edge = {d, e};
+        add(c);
+      }
+  }
+
+  /// Of an edge of s through the inside of the other, far from its edges.
+  void add_pass(size_t s, size_t i) {
+    if (is_met_[s][i] || place_[s][i] != kApart || place_[s][(i + 1) % 3] != kApart) return;
+    const Corners& other = corner_[1 - s];
+    const Ends d = edge_of(corner_[s], i);
+    const Vec64& n = normal_[1 - s];
+    const StepPoint a = at(other[0]), b = at(other[1]), c = at(other[2]), p = at(d[0]), q = at(d[1]);
+    const Int128 from = product(n, difference(p, a)), to = product(n, difference(q, a));
+    if (from == to || (from > 0 && to > 0) || (from < 0 && to < 0)) return;
+    const int first = side_of_plane(p, q, a, b), second = side_of_plane(p, q, b, c), third = side_of_plane(p, q, c, a);
+    if (first == 0 || first != second || second != third) return;
+    const double along = double(from) / double(from - to);
+    Contact pass;
+    pass.edge[0] = d;
+    pass.face = number_[1 - s];
+    pass.at = rounded(as_world(p) + along * as_world(difference(q, p)));
+    add(pass);
+  }
+
+  const LatticeFaces& faces_;
+  Contacts& to_;
+  double reach_sq_, weld_sq_;
+  std::array<uint32_t, 2> number_;
+  std::array<Corners, 2> corner_;
+  std::array<Vec64, 2> normal_;
+  std::array<std::array<int, 3>, 2> place_{};
+  std::array<std::array<bool, 3>, 2> is_met_{};
+};
+
+}  // namespace
+
+void meet_faces(const LatticeFaces& faces, uint32_t f, uint32_t g, Contacts& to) {
+  FacePair(faces, std::min(f, g), std::max(f, g), to).meet();
+}
+
+bool meet_itself(const LatticeFaces& faces, uint32_t f, Contacts& to) {
+  const Corners& corner = faces.face[f];
+  const Vec64 n = normal_of(faces.point[corner[0]], faces.point[corner[1]], faces.point[corner[2]]);
+  if (faces.leaves_near && (n.x != 0 || n.y != 0 || n.z != 0)) return false;
+  size_t longest = 0;
+  double longest_sq = -1;
+  bool is_short = false;
+  for (size_t i = 0; i < 3; ++i) {
+    const Ends e = edge_of(corner, i);
+    const double sq = distance_sq(as_world(faces.point[e[0]]), as_world(faces.point[e[1]]));
+    if (sq <= square(faces.weld_steps())) {
+      to.close.push_back(e);
+      to.near_close.push_back(f);
+      is_short = true;
+    }
+    if (sq > longest_sq) longest = i, longest_sq = sq;
+  }
+  if (is_short) return true;
+  const Ends e = edge_of(corner, longest);
+  const uint32_t apex = corner[(longest + 2) % 3];
+  if (segment_distance_sq(as_world(faces.point[apex]), as_world(faces.point[e[0]]), as_world(faces.point[e[1]])) >
+      square(faces.reach_steps))
+    return false;
+  Contact c;
+  c.pair = {f, f};
+  c.edge[0] = e;
+  c.point = apex;
+  to.found.push_back(c);
+  return true;
+}
+
+}  // namespace isoshell::repair
