@@ -33,6 +33,7 @@ SPECIAL = {
     "attributes": "Union[str, Sequence[str]]",
     "require": "Union[str, Sequence[str]]",
     "max-memory": "Union[int, str]",
+    "regions": "str",
     "device": "str",
     "input-format": "str",
     "output-format": "str",

@@ -26,6 +26,7 @@
 #include "isoshell/mesh_topology.h"
 #include "isoshell/options/option_table.h"
 #include "isoshell/options/option_text.h"
+#include "isoshell/part_regions.h"
 #include "isoshell/quality.h"
 #include "isoshell/readable.h"
 #include "isoshell/region_census.h"

@@ -21,19 +21,20 @@ struct RegionCounts {
   int64_t faces = 0, vertices = 0;
   int64_t components = 0;          ///< of its faces, connected through edges; hollows are some
   int64_t genus = -1;              ///< sum over the components; -1 unless closed
-  int64_t open_edges = 0;          ///< with another number of its faces than two
+  int64_t open_edges = 0;          ///< with another number of its faces than two, but where it touches itself
   int64_t inconsistent_edges = 0;  ///< with two of its faces that pass it in the same direction
   int64_t touching_vertices = 0;   ///< fans of its faces around vertices, beyond the first one of each
-  bool closed = false;             ///< every edge has two of its faces, which pass it in opposite directions
-  double volume_world = 0;         ///< signed, about the middle of the bounding box
+  bool closed = false;      ///< every edge has two of its faces, which pass it in opposite directions, or pairs of
+                            ///< such faces, each with a piece of the region between them
+  double volume_world = 0;  ///< signed, about the middle of the bounding box
   double area_world = 0;
 
   bool is_inside_out() const { return closed && volume_world < 0; }
 };
 
-/// The faces between two regions, or one and the background.
+/// The faces between two regions, or one and the background; or of the sheets in one of them.
 struct RegionWall {
-  std::array<int32_t, 2> labels;  ///< the smaller one first
+  std::array<int32_t, 2> labels;  ///< the smaller one first; the same twice of sheets
   int64_t faces = 0;
   double area_world = 0;
 };
@@ -43,7 +44,7 @@ std::vector<RegionWall> find_region_walls(const TriangleSoup& surface);
 
 struct RegionCensus {
   int32_t background = 0;             ///< is no region
-  std::vector<RegionCounts> regions;  ///< of all labels that faces have but the background, ascending
+  std::vector<RegionCounts> regions;  ///< that faces bound, ascending; sheets bound none
   std::vector<RegionWall> walls;      ///< ascending
   int64_t curve_edges = 0;            ///< with three faces or more: regions meet there
   int64_t corners = 0;                ///< vertices of these where one of them ends, or more than two meet
@@ -52,7 +53,7 @@ struct RegionCensus {
   int64_t coincident_vertices = 0;    ///< at the position of another one, beyond the first
   int64_t intersecting_pairs = 0;     ///< of triangles, as in MeshCensus
   int64_t inside_out_regions = 0;     ///< closed ones of negative volume
-  bool every_region_closed = false;   ///< and there is one
+  bool every_region_closed = false;   ///< or all faces are of sheets
 
   /// Whether each region lies in a closed surface that it shares with those beside it, and no two faces meet but where
   /// they share corners.
@@ -63,7 +64,7 @@ struct RegionCensus {
 
 /// `intersecting_pairs`: where they were counted already. Result: the same for every number of threads; sums run in the
 /// order of faces. Cost: sorts of corners, edges and faces, region by region side by side; a search for intersections.
-/// Throws: usage for a mesh without regions, labels that are not one pair a face, a face with one region on both sides,
+/// Throws: usage for a mesh without regions, labels that are not one pair a face,
 /// and a triangle that names a vertex that is not there or not finite; interrupted.
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context,
                                 std::optional<int64_t> intersecting_pairs = {});
@@ -81,12 +82,12 @@ struct RegionChanges {
 RegionChanges find_region_changes(const std::vector<RegionWall>& before, const std::vector<RegionName>& names,
                                   const RegionCensus& after);
 
-/// A region by itself: its faces, in their order, turned outward, and their vertices, in theirs. Where it touches
-/// itself in a vertex, each fan of faces has one of its own, one behind the other: the result is a closed 2-manifold
-/// where the region is closed. Positions are the same bytes. Attributes go along, normals turned with their faces;
-/// patches, curves and regions do not. Cost: a look at all faces, a sort of the region's corners and edges. Throws:
-/// usage as take_region_census does, but for positions that are not finite, and for a label that no face has, or the
-/// background's.
+/// A region by itself: its faces without its sheets, in their order, turned outward, and their vertices, in theirs.
+/// Where it touches itself in a vertex or along an edge, each fan of faces has a vertex of its own, one behind the
+/// other: the result is a closed 2-manifold where the region is closed. Positions are the same bytes. Attributes go
+/// along, normals turned with their faces; patches, curves and regions do not. Cost: a look at all faces, a sort of the
+/// region's corners and edges. Throws: usage as take_region_census does, but for positions that are not finite, and for
+/// a label of no region that faces bound.
 TriangleMesh region_of(const TriangleMesh& mesh, int32_t label);
 
 }  // namespace isoshell

@@ -19,7 +19,8 @@ struct RegionName {
 /// The regions that the faces of a mesh part from one another. Faces of a mesh without regions bound one solid.
 struct FaceRegions {
   /// Per triangle the label of the region behind it and of the one in front, that its normal points into. The first one
-  /// is never the background; of two that are not it is the smaller one. Empty: no regions.
+  /// of two is never the background; of two that are not it is the smaller one. Of a sheet both are the label of what
+  /// it lies in, or the background. Empty: no regions.
   std::vector<std::array<int32_t, 2>> labels;
   int32_t background = 0;              ///< the label of what is no region
   bool are_of_voxels = false;          ///< walls between voxels, which have no creases that are more than their steps
@@ -27,6 +28,9 @@ struct FaceRegions {
 
   bool empty() const { return labels.empty(); }
 };
+
+/// Whether a face with these labels lies in one region, or in the background, and so bounds none: it is of a sheet.
+inline bool is_of_sheet(const std::array<int32_t, 2>& labels) { return labels[0] == labels[1]; }
 
 /// Labels of voxels on a regular lattice. The centre of voxel (i, j, k) is at origin + i * step[0] + j * step[1] +
 /// k * step[2]; what lies outside of the array is background.

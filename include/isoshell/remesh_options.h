@@ -83,6 +83,9 @@ struct ShapeOptions {
   bool uniform_area = false;            ///< triangles of even size rather than of the best shape
   Features features;                    ///< a threshold needs the method sheet
   Boundary boundary = Boundary::close;  ///< keep needs the method sheet
+  /// What the regions of a mesh are, as find_part_regions() takes it: its walls become one mesh; empty: it is one
+  /// solid.
+  std::string regions = {};
   /// Names of the attributes that a run keeps; without a value all. Where texture coordinates, materials or groups that
   /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;

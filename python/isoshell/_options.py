@@ -45,6 +45,8 @@ class Options(TypedDict, total=False):
             degrees or more; off: none; and the lines of FILE, OBJ (l) or PLY (edges), as auto,curves.obj [auto].
         boundary: borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps
             of close_gaps are borders of the result [close].
+        regions: one mesh of all regions of a mesh, with shared walls: its connected components, its groups or objects,
+            whatever its faces enclose, or what has the same value of an attribute of faces.
         attributes: what a mesh has beside its positions and the result keeps: names separated by commas, such as color,
             uv, normal, material, group [all].
         color_features: colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY.
@@ -104,6 +106,7 @@ class Options(TypedDict, total=False):
     fit: Optional[Literal["balanced", "surface"]]
     features: Optional[Union[float, str]]
     boundary: Optional[Literal["close", "keep"]]
+    regions: Optional[str]
     attributes: Optional[Union[str, Sequence[str]]]
     color_features: bool
     uniform_area: bool

@@ -92,8 +92,9 @@ class Result:
     def regions(self) -> dict[str, Any]:
         """The regions of the source that faces part, where it has any.
 
-        labels (M, 2), int32: of each face the region behind it and the one that its normal points into; (0, 2) where
-        there are no regions. background: the label of what is no region. names: a dict from labels to names.
+        labels (M, 2), int32: of each face the region behind it and the one that its normal points into, twice the same
+        where that is what it lies in; (0, 2) where there are no regions. background: the label of what is no region.
+        names: a dict from labels to names.
         """
         return self._made.regions
 
@@ -106,8 +107,9 @@ class Result:
     def region(self, label: int) -> Mesh:
         """One region by itself, a closed mesh that faces outward, with the attributes of its vertices and faces.
 
-        Its vertices are where the result has them; a vertex in which the region touches itself is there once for each
-        sheet of faces. What is counted and measured of regions, and whether each is closed, is report["regions"].
+        Sheets that lie in it are left out. Its vertices are where the result has them; a vertex in which the region
+        touches itself is there once for each sheet of faces. What is counted and measured of regions, and whether each
+        is closed, is report["regions"].
 
         Raises:
             Error: of code USAGE for the background and for a label that no face has.

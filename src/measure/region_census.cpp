@@ -37,12 +37,12 @@ void require_finite(const TriangleMesh& mesh) {
                     "vertex " + std::to_string(v) + " is not finite; leave its triangles out");
 }
 
-/// Per label the faces that have it, ascending.
+/// Per label the faces that bound it, ascending.
 std::vector<std::vector<uint32_t>> faces_of(const TriangleMesh& mesh, const std::vector<int32_t>& labels) {
   std::vector<std::vector<uint32_t>> faces(labels.size());
   for (uint32_t f = 0; f < mesh.triangles.size(); ++f)
     for (const int32_t label : mesh.regions.labels[f])
-      if (label != mesh.regions.background)
+      if (label != mesh.regions.background && !is_of_sheet(mesh.regions.labels[f]))
         faces[size_t(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin())].push_back(f);
   return faces;
 }
@@ -66,7 +66,7 @@ void sum_triangles(const TriangleMesh& mesh, const RegionSurface& surface, const
 RegionCounts count_region(const TriangleMesh& mesh, int32_t label, std::vector<uint32_t> faces,
                           const WorldPoint& middle) {
   const RegionSurface surface = surface_of_region(mesh, label, std::move(faces));
-  RegionComplex complex = complex_of(surface);
+  RegionComplex complex = complex_of(surface, mesh.vertices);
   RegionCounts counts;
   counts.label = label;
   counts.name = region_name(mesh.regions, label);
@@ -137,8 +137,9 @@ RegionCensus take_region_census(const TriangleMesh& mesh, Context& context, std:
       check_cancel(context, "regions");
       census.regions[r] = count_region(mesh, labels[r], std::move(faces[r]), .5 * (box.min + box.max));
     });
-    census.every_region_closed = std::all_of(census.regions.begin(), census.regions.end(),
-                                             [](const RegionCounts& region) { return region.closed; });
+    census.every_region_closed =
+        !mesh.triangles.empty() && std::all_of(census.regions.begin(), census.regions.end(),
+                                               [](const RegionCounts& region) { return region.closed; });
     census.inside_out_regions = std::count_if(census.regions.begin(), census.regions.end(),
                                               [](const RegionCounts& region) { return region.is_inside_out(); });
     census.walls = count_walls(mesh);

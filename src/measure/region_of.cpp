@@ -27,7 +27,8 @@ std::vector<uint32_t> faces_with(const TriangleMesh& mesh, int32_t label) {
   std::vector<uint32_t> faces;
   const auto& labels = mesh.regions.labels;
   for (uint32_t f = 0; f < labels.size(); ++f)
-    if (label != mesh.regions.background && (labels[f][0] == label || labels[f][1] == label)) faces.push_back(f);
+    if (label != mesh.regions.background && !is_of_sheet(labels[f]) && (labels[f][0] == label || labels[f][1] == label))
+      faces.push_back(f);
   if (faces.empty())
     throw Error(ErrorCode::usage, "regions",
                 "the mesh has no region " + std::to_string(label) + "; its regions are " + listed_labels(mesh));
@@ -35,8 +36,8 @@ std::vector<uint32_t> faces_with(const TriangleMesh& mesh, int32_t label) {
 }
 
 /// Gives every fan of faces a vertex of its own: `surface.vertex` then has those that were parted several times.
-void part_fans_of(RegionSurface& surface) {
-  RegionComplex complex = complex_of(surface);
+void part_fans_of(const std::vector<WorldPoint>& points, RegionSurface& surface) {
+  RegionComplex complex = complex_of(surface, points);
   std::vector<std::pair<uint32_t, uint32_t>> fans;  // a vertex and the first corner
   for (uint32_t c = 0; c < 3 * surface.triangles.size(); ++c)
     if (complex.fans.root(c) == c) fans.push_back({surface.triangles[c / 3][c % 3], c});
@@ -100,7 +101,7 @@ Attribute taken_along(const Attribute& attribute, const RegionSurface& surface) 
 TriangleMesh region_of(const TriangleMesh& mesh, int32_t label) {
   require_regions(mesh);
   RegionSurface surface = surface_of_region(mesh, label, faces_with(mesh, label));
-  part_fans_of(surface);
+  part_fans_of(mesh.vertices, surface);
   TriangleMesh region;
   region.vertices.reserve(surface.vertex.size());
   for (const uint32_t v : surface.vertex) region.vertices.push_back(mesh.vertices[v]);

@@ -4,17 +4,40 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "core/parallel_ranges.h"
 #include "geometry/half_edges.h"
 #include "geometry/triangle_list.h"
 #include "isoshell/error.h"
+#include "measure/around_edge.h"
 
 namespace isoshell {
 namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "regions", message); }
+
+/// Pairs of triangles around an edge that have a piece of the region between them, where it touches itself there. None
+/// where they do not come in such pairs, or lie on each other.
+std::vector<std::array<uint32_t, 2>> wedges_at(const RegionSurface& surface, const std::vector<WorldPoint>& points,
+                                               uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+  std::vector<TriangleAtEdge> around;
+  for (const EdgeSide& s : on_edge) {
+    const auto& corner = surface.triangles[s.half_edge / 3];
+    around.push_back(
+        {s.half_edge / 3, surface.vertex[corner[(s.half_edge % 3 + 2) % 3]], corner[s.half_edge % 3] == u});
+  }
+  sort_around_edge(points, surface.vertex[u], surface.vertex[v], around);
+  std::vector<std::array<uint32_t, 2>> wedges;
+  for (size_t i = 0; i < around.size(); ++i) {
+    const TriangleAtEdge &here = around[i], &next = around[(i + 1) % around.size()];
+    if (here.apex == next.apex) return {};
+    if (!here.rises && next.rises) wedges.push_back({here.triangle, next.triangle});
+  }
+  if (2 * wedges.size() != around.size()) wedges.clear();
+  return wedges;
+}
 
 }  // namespace
 
@@ -24,10 +47,6 @@ void require_regions(const TriangleMesh& mesh) {
   if (labels.size() != mesh.triangles.size())
     refuse("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, and labels of " +
            std::to_string(labels.size()) + "; give a pair a triangle");
-  for (size_t t = 0; t < labels.size(); ++t)
-    if (labels[t][0] == labels[t][1])
-      refuse("face " + std::to_string(t) + " has region " + std::to_string(labels[t][0]) +
-             " on both sides; leave out faces that part nothing");
   require_indices(mesh.triangles, mesh.vertices.size(), "regions");
 }
 
@@ -36,7 +55,7 @@ std::vector<int32_t> region_labels(const TriangleMesh& mesh) {
   labels.reserve(2 * mesh.regions.labels.size());
   for (const auto& sides : mesh.regions.labels)
     for (const int32_t label : sides)
-      if (label != mesh.regions.background) labels.push_back(label);
+      if (label != mesh.regions.background && !is_of_sheet(sides)) labels.push_back(label);
   tbb::parallel_sort(labels.begin(), labels.end());
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   return labels;
@@ -72,25 +91,33 @@ RegionSurface surface_of_region(const TriangleMesh& mesh, int32_t label, std::ve
   return surface;
 }
 
-RegionComplex complex_of(const RegionSurface& surface) {
+RegionComplex complex_of(const RegionSurface& surface, const std::vector<WorldPoint>& points) {
   const auto& triangles = surface.triangles;
   RegionComplex complex{IndexSets(int64_t(3 * triangles.size())), IndexSets(int64_t(triangles.size()))};
-  const auto corner = [&](uint32_t half_edge) { return triangles[half_edge / 3][half_edge % 3]; };
-  const auto corner_at = [&](uint32_t half_edge, uint32_t vertex) {
-    return corner(half_edge) == vertex ? half_edge : next_in_triangle(half_edge);
+  const auto corner_at = [&](uint32_t triangle, uint32_t vertex) {
+    const auto& t = triangles[triangle];
+    return 3 * triangle + (t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2);
   };
   const EdgeSides sides = find_edge_sides(triangles, surface.vertex.size());
   for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
-    const uint32_t first = on_edge[0].half_edge;
+    const auto unite = [&](uint32_t t, uint32_t s) {
+      for (const uint32_t end : {u, v}) complex.fans.unite(corner_at(t, end), corner_at(s, end));
+      complex.parts.unite(t, s);
+    };
+    if (on_edge.size > 2)
+      if (const auto wedges = wedges_at(surface, points, u, v, on_edge); !wedges.empty()) {
+        for (const auto& [t, s] : wedges) unite(t, s);
+        complex.edges += int64_t(wedges.size());
+        return;
+      }
     ++complex.edges;
-    for (int64_t i = 1; i < on_edge.size; ++i) {
-      const uint32_t other = on_edge[i].half_edge;
-      for (const uint32_t end : {u, v}) complex.fans.unite(corner_at(first, end), corner_at(other, end));
-      complex.parts.unite(first / 3, other / 3);
-    }
+    for (int64_t i = 1; i < on_edge.size; ++i) unite(on_edge[0].half_edge / 3, on_edge[i].half_edge / 3);
+    const auto passes_from_u = [&](int64_t i) {
+      return triangles[on_edge[i].half_edge / 3][on_edge[i].half_edge % 3] == u;
+    };
     if (on_edge.size != 2)
       ++complex.open_edges;
-    else if (corner(first) == corner(on_edge[1].half_edge))
+    else if (passes_from_u(0) == passes_from_u(1))
       ++complex.inconsistent_edges;
   });
   return complex;

@@ -11,10 +11,10 @@
 
 namespace isoshell {
 
-/// Throws: usage unless the mesh has regions, and of each face two different ones; for a triangle that names no vertex.
+/// Throws: usage unless the mesh has regions, a pair of labels a face; for a triangle that names no vertex.
 void require_regions(const TriangleMesh& mesh);
 
-/// Of all labels that faces have but the background, ascending.
+/// Of the regions that faces bound, ascending; sheets bound none.
 std::vector<int32_t> region_labels(const TriangleMesh& mesh);
 
 /// Empty: it has none.
@@ -30,10 +30,11 @@ struct RegionSurface {
 /// Corner `i` of a triangle is that corner of the triangle that it was.
 inline size_t corner_before_turn(size_t i, bool is_turned) { return is_turned ? (3 - i) % 3 : i; }
 
-/// `faces`: all that have the label, ascending.
+/// `faces`: all that bound the region, ascending.
 RegionSurface surface_of_region(const TriangleMesh& mesh, int32_t label, std::vector<uint32_t> faces);
 
-/// How the faces of such a surface hang together.
+/// How the faces of such a surface hang together. Where the region touches itself along an edge, which then has four of
+/// its faces or more, those with a piece of it between them do: it is as if the edge were there once for each piece.
 struct RegionComplex {
   IndexSets fans;                                             ///< of corners 3 t + i, around their vertex through edges
   IndexSets parts;                                            ///< of faces, through edges
@@ -42,6 +43,7 @@ struct RegionComplex {
   bool closed() const { return edges > 0 && open_edges == 0 && inconsistent_edges == 0; }
 };
 
-RegionComplex complex_of(const RegionSurface& surface);
+/// `points`: of the whole mesh.
+RegionComplex complex_of(const RegionSurface& surface, const std::vector<WorldPoint>& points);
 
 }  // namespace isoshell

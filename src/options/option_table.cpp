@@ -57,6 +57,11 @@ TextOption region_edge_length_option() {
   return option;
 }
 
+TextOption regions_option() {
+  return {[](const std::string&, const std::string& text, RequestedOptions& to) { to.values.regions = text; },
+          [](const RequestedOptions& from) { return from.values.regions; }};
+}
+
 std::vector<OptionRow> size_rows() {
   const char* group = "Size of the result";
   return {
@@ -182,6 +187,11 @@ std::vector<OptionRow> shape_rows() {
        "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
        "--close-gaps are borders of the result",
        "close", "boundary", named<&RemeshOptions::boundary, parse_boundary, boundary_name>(), OnResume::of_shell},
+      {group, "regions", "components|groups|cells|NAME",
+       "one mesh of all regions of a mesh, with shared walls: its connected components, its groups or objects, "
+       "whatever "
+       "its faces enclose, or what has the same value of an attribute of faces",
+       "", "regions", regions_option(), OnResume::of_run},
       {group, "attributes", "all|none|LIST",
        "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
        "normal, material, group",

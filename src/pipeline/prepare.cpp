@@ -6,6 +6,7 @@
 
 #include "core/copy_product.h"
 #include "isoshell/error.h"
+#include "isoshell/part_regions.h"
 #include "isoshell/remesh.h"
 #include "options/check_options.h"
 #include "pipeline/grid/memory_estimate.h"
@@ -220,6 +221,12 @@ void refuse_region_lengths(const RemeshOptions& options) {
                 "--region-edge-length is for volumes of labels, and meshes with regions; leave it out");
 }
 
+Prepared prepare_walls(const TriangleSoup& walls, const RemeshOptions& options, RemeshReport report, Context& context) {
+  PreparedSurface p = prepare_regions(walls, with_even_length(options, walls), report, context);
+  p.report = std::move(report);
+  return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
+}
+
 }  // namespace
 
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context) {
@@ -235,12 +242,14 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
 
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {
   RemeshReport report;
-  const RemeshOptions options = with_even_length(checked(requested), soup);
-  if (!soup.regions.empty()) {
-    PreparedSurface p = prepare_regions(soup, options, report, context);
-    p.report = std::move(report);
-    return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
+  if (!requested.regions.empty()) {
+    PartRegions found =
+        timed(report, "regions", context, [&] { return find_part_regions(soup, requested.regions, context); });
+    report.warnings = std::move(found.warnings);
+    return prepare_walls(found.walls, checked(requested), std::move(report), context);
   }
+  if (!soup.regions.empty()) return prepare_walls(soup, checked(requested), std::move(report), context);
+  const RemeshOptions options = with_even_length(checked(requested), soup);
   refuse_region_lengths(options);
   const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
   report.input.dirt = measured.dirt;

@@ -51,7 +51,7 @@ void check_names(const InputFacts& facts, const TriangleSoup& soup, const Names&
 /// Regions are no attribute: walls between them stay, but which of them a face parts is lost.
 void warn_of_lost_regions(const Input& input, const std::string& format, const Tell& tell) {
   const FileFormat* const file = find_format(format);
-  if (!tell || input.soup.regions.empty() || !file || !file->writes_mesh || file->holds_regions) return;
+  if (!tell || !file || !file->writes_mesh || file->holds_regions) return;
   tell(MessageKind::warning, input.facts.name() + ": " + format +
                                  " files do not say which regions a face parts; those of " +
                                  listed_formats([](const FileFormat& f) { return f.holds_regions; }) + " do");
@@ -59,7 +59,7 @@ void warn_of_lost_regions(const Input& input, const std::string& format, const T
 
 }  // namespace
 
-void choose_attributes(Input& input, const std::optional<Names>& names, const std::string& format,
+void choose_attributes(Input& input, const std::optional<Names>& names, const std::string& format, bool has_regions,
                        AttributeReport& report, const Tell& tell) {
   TriangleSoup& soup = input.soup;
   if (names && input.facts.kind == InputKind::mesh)
@@ -85,7 +85,7 @@ void choose_attributes(Input& input, const std::optional<Names>& names, const st
     if (tell)
       tell(names && has(*names, d.name) ? MessageKind::warning : MessageKind::note,
            input.facts.name() + ": " + d.name + " dropped: " + d.reason);
-  warn_of_lost_regions(input, format, tell);
+  if (has_regions) warn_of_lost_regions(input, format, tell);
 }
 
 }  // namespace isoshell

@@ -13,9 +13,9 @@ namespace isoshell {
 /// Leaves the input those attributes that were asked for (all without a list) and that files of `format` hold (all when
 /// it is empty), and the names of the files that they speak of. The others are dropped in the report, with a note each,
 /// or a warning when they were asked for by name; a warning, too, when an input that is no mesh has nothing of that
-/// name, and when the input has regions that files of `format` do not hold. Throws: usage for a name that a mesh does
-/// not have, which lists what it has.
+/// name, and when the result `has_regions` that files of `format` do not hold. Throws: usage for a name that a mesh
+/// does not have, which lists what it has.
 void choose_attributes(Input& input, const std::optional<std::vector<std::string>>& names, const std::string& format,
-                       AttributeReport& report, const Tell& tell);
+                       bool has_regions, AttributeReport& report, const Tell& tell);
 
 }  // namespace isoshell

@@ -18,6 +18,13 @@ std::string left_out_of_stage_files(const Input& input, const std::optional<std:
   return names.empty() ? "" : names + " of " + input.facts.name();
 }
 
+std::vector<std::string> stage_files(const RunRequest& request, const std::string& saved, StopAfter stage) {
+  std::vector<std::string> files;
+  if (!saved.empty()) files.push_back(saved);
+  if (request.stop_after == stage && !request.output.path.empty()) files.push_back(request.output.path);
+  return files;
+}
+
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite) {
   StageWriteOptions options;

@@ -8,12 +8,16 @@
 #include "isoshell/io/input.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/remesh.h"
+#include "isoshell/run/run.h"
 
 namespace isoshell {
 
 /// The attributes of an input, among those that are asked for, which stage files of its run do not hold; of a stage
 /// file what that has left out. Empty: none.
 std::string left_out_of_stage_files(const Input& input, const std::optional<std::vector<std::string>>& requested);
+
+/// Files that keep this stage: one on the way, and the output of a run that stops there.
+std::vector<std::string> stage_files(const RunRequest& request, const std::string& saved, StopAfter stage);
 
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite);

@@ -17,6 +17,7 @@
 #include "run/measures.h"
 #include "run/motion_attributes.h"
 #include "run/outputs.h"
+#include "run/part_walls.h"
 #include "run/process_memory.h"
 #include "run/resume.h"
 #include "run/stage_files.h"
@@ -74,10 +75,7 @@ class RunSteps::Run {
 
   void read() {
     if (input_) return;
-    take(timed("read", [&] {
-      return read_input_of(request_, context_->memory_limit_bytes,
-                           [&](MessageKind kind, const std::string& text) { tell(kind, text); });
-    }));
+    take(timed("read", [&] { return read_input_of(request_, context_->memory_limit_bytes, teller()); }));
   }
 
   void take(Input input) {
@@ -108,13 +106,16 @@ class RunSteps::Run {
     if (prepared_) return *prepared_;
     check_files();
     read();
-    region_files_ = checked_region_files(request_, input_->soup.regions);
+    if (const std::string& parts = options_.values.regions; !parts.empty())
+      walls_ = timed("regions", [&] { return walls_of_parts(*input_, parts, teller(), *context_); });
+    const bool has_regions = !surface().regions.empty();  // then distances are from the walls as they came
+    region_files_ = checked_region_files(request_, surface().regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
     if (input_->stage && !left_out_.empty())
       warn(input_->facts.name() + ": the result is without " + left_out_ +
            ", and not cut along their seams: a stage file does not hold them; remesh the input itself to keep them");
-    choose_attributes(*input_, options_.values.attributes, stops_early() ? "vdb" : record_.output.format,
-                      record_.attributes, [&](MessageKind kind, const std::string& text) { tell(kind, text); });
+    choose_attributes(*input_, options_.values.attributes, stops_early() ? "vdb" : record_.output.format, has_regions,
+                      record_.attributes, teller());
     // A Voronoi stage file does not hold the seeds of patches: then nothing is cut along seams.
     std::vector<Attribute> attributes;
     if (!request_.save_voronoi.empty()) attributes.swap(input_->soup.attributes);
@@ -122,7 +123,6 @@ class RunSteps::Run {
     read_lines();
     prepared_ = timed("prepare", [&] { return prepared_from(*input_); });
     if (!attributes.empty()) input_->soup.attributes = std::move(attributes);
-    const bool has_regions = !input_->soup.regions.empty();  // then distances are from the walls as they came
     if (input_->soup.attributes.empty() && !(has_regions && measures_distance())) free_soup();
     record_.report = prepared_->report();
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name(), has_regions)) warn(text);
@@ -154,7 +154,7 @@ class RunSteps::Run {
     TriangleMesh mesh = timed("triangulate", [&] { return triangulated(keeps_seeds); });
     timed("measure", [&] { measure(mesh); });
     if (measures_distance())
-      timed("distance", [&] { measure_distances(*prepared_, input_->soup, mesh, record_, *context_); });
+      timed("distance", [&] { measure_distances(*prepared_, surface(), mesh, record_, *context_); });
     TriangleSoup& soup = input_->soup;
     if (!soup.attributes.empty())
       mesh.attributes =
@@ -203,6 +203,7 @@ class RunSteps::Run {
     if (!options_.values.want_shell) refuse_use("a stage file has the shell, and want_shell did not ask for it");
   }
 
+  const TriangleSoup& surface() const { return walls_ ? *walls_ : input_->soup; }
   bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
   bool measures_all() const {
     return request_.measures == Measures::all || !request_.statistics.empty() || !request_.report.empty();
@@ -257,7 +258,8 @@ class RunSteps::Run {
     RemeshOptions options = options_.values;
     options.features = possible_features(options, request_);
     options.want_samples = measures_all();  // by find_risks
-    if (!input.stage) return isoshell::prepare(input.soup, options, *context_);
+    options.regions.clear();                // surface() has them
+    if (!input.stage) return isoshell::prepare(surface(), options, *context_);
     if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
     return isoshell::prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, *context_);
   }
@@ -281,23 +283,15 @@ class RunSteps::Run {
     return stage_write_options(prepared, options_json(options_.values), left_out_, overwrite);
   }
 
-  /// Files that keep this stage: one on the way, and the output of a run that stops there.
-  std::vector<std::string> stage_files(const std::string& saved, StopAfter stage) const {
-    std::vector<std::string> files;
-    if (!saved.empty()) files.push_back(saved);
-    if (request_.stop_after == stage && !request_.output.path.empty()) files.push_back(request_.output.path);
-    return files;
-  }
-
   void save_shell_if_requested() {
     prepare();
-    for (const std::string& path : stage_files(request_.save_shell, StopAfter::shell))
+    for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
       save_shell(path, request_.overwrite);
   }
 
   void save_voronoi_if_requested() {
     relax();
-    const std::vector<std::string> files = stage_files(request_.save_voronoi, StopAfter::voronoi);
+    const std::vector<std::string> files = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
     if (!files.empty()) save_voronoi(files, request_.overwrite);
   }
 
@@ -313,6 +307,9 @@ class RunSteps::Run {
     color_features(mesh, record_.attributes);
   }
 
+  Tell teller() {
+    return [this](MessageKind kind, const std::string& text) { tell(kind, text); };
+  }
   void warn(const std::string& text) { tell(MessageKind::warning, text); }
   void tell(MessageKind kind, const std::string& text) {
     if (kind == MessageKind::warning) record_.warnings.push_back(text);
@@ -340,6 +337,7 @@ class RunSteps::Run {
   Context* context_ = nullptr;
   bool has_checked_files_ = false, is_over_ = false;
   std::optional<Input> input_;
+  std::optional<TriangleSoup> walls_;  ///< that are meshed in place of the input's faces
   std::optional<Prepared> prepared_;
   std::optional<Relaxed> relaxed_;
   RunRecord record_;

@@ -74,11 +74,17 @@ TEST_CASE("regions: faces of a PLY file that have the background or the larger l
   }
 }
 
-TEST_CASE("regions: numbers of faces that part nothing stay attributes", "[mesh_file][unit]") {
+TEST_CASE("regions: faces of sheets have one label on both sides and stay as they are turned", "[mesh_file][unit]") {
+  const TriangleSoup soup = ascii("int", "int", "3 0 1 2 1 1 0\n3 0 2 1 0 0 0\n");
+  CHECK(soup.regions.labels == Labels{{1, 1}, {0, 0}});
+  CHECK(soup.triangles == std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {0, 2, 1}});
+}
+
+TEST_CASE("regions: numbers of faces that are no labels stay attributes", "[mesh_file][unit]") {
   const std::string rows = "3 0 1 2 1 2 0\n3 0 2 1 2 1 0\n";
   CHECK(ascii("int", "int", rows).regions.labels == Labels{{1, 2}, {1, 2}});
-  for (const TriangleSoup& soup : {ascii("float", "int", rows), ascii("int", "int", "3 0 1 2 1 1 0\n3 0 2 1 2 1 0\n"),
-                                   ascii("uint", "uint", "3 0 1 2 1 2 0\n3 0 2 1 2147483648 1 0\n")}) {
+  for (const TriangleSoup& soup :
+       {ascii("float", "int", rows), ascii("uint", "uint", "3 0 1 2 1 2 0\n3 0 2 1 2147483648 1 0\n")}) {
     CHECK(soup.regions.empty());
     CHECK(named(soup.attributes, "region_inside").values.size() == 2);
     CHECK(named(soup.attributes, "region_outside").values.size() == 2);
@@ -142,7 +148,7 @@ TEST_CASE("regions: a run whose format does not hold them warns", "[mesh_file][u
     input.soup.regions = two_tetrahedra().regions;
     AttributeReport report;
     std::string warnings;
-    choose_attributes(input, {}, format.name, report, [&](MessageKind kind, const std::string& text) {
+    choose_attributes(input, {}, format.name, true, report, [&](MessageKind kind, const std::string& text) {
       if (kind == MessageKind::warning) warnings += text;
     });
     INFO(format.name);

@@ -33,7 +33,7 @@ TEST_CASE("patch defects: closed meshes and patches that share a border have non
 TEST_CASE("patch defects: an edge of three triangles, a vertex of two fans and one of none", "[features][unit]") {
   auto with_fin = kTetrahedron;
   with_fin.push_back({0, 1, 4});
-  CHECK(find_patch_defects(made_of(5, with_fin)) == Wrong{0, 1});
+  CHECK(find_patch_defects(made_of(5, with_fin)) == Wrong{0, 1, 4});  // and one on a border that is not fixed
   auto touching = kTetrahedron;
   for (const TriangleIndices& t : std::vector<TriangleIndices>{{0, 5, 4}, {0, 4, 6}, {4, 5, 6}, {0, 6, 5}})
     touching.push_back(t);

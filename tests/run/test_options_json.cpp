@@ -36,7 +36,7 @@ TEST_CASE("options json: what is not given is the number that always stood for i
       options_json(RemeshOptions{}) ==
       R"({"vertices":10000,"edge-length":0.0,"sizing":"","region-edge-length":"","adaptivity":0.0,)"
       R"("gradation":1.2,"resolution":0,"voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,)"
-      R"("method":"sheet","iterations":0,"tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close",)"
+      R"("method":"sheet","iterations":0,"tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close","regions":"",)"
       R"("attributes":"all","color-features":false,"uniform-area":false})");
   const RequestedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);

@@ -166,7 +166,7 @@ TEST_CASE("region census: a doubled wall is found on the same vertices and on co
   CHECK_FALSE(copied.is_sound());
 }
 
-TEST_CASE("region census: boxes of one region may touch in a vertex, not in an edge", "[regions][unit]") {
+TEST_CASE("region census: boxes of one region may touch in a vertex or along an edge", "[regions][unit]") {
   const RegionCensus vertex = census_of(cubes_that_touch_in_a_vertex());
   REQUIRE(vertex.regions.size() == 1);
   CHECK(vertex.regions[0].closed);
@@ -178,8 +178,11 @@ TEST_CASE("region census: boxes of one region may touch in a vertex, not in an e
   CHECK(vertex.is_sound());
 
   const RegionCensus edge = census_of(mesh_of(LabelledCubes{{2, 2, 1}, {1, 0, 0, 1}}));
-  CHECK(edge.regions[0].open_edges == 1);
-  CHECK_FALSE(edge.regions[0].closed);
+  CHECK(edge.regions[0].open_edges == 0);
+  CHECK(edge.regions[0].closed);
+  CHECK(edge.regions[0].components == 2);
+  CHECK(edge.regions[0].genus == 0);
+  CHECK(edge.regions[0].touching_vertices == 2);
   CHECK(edge.curve_edges == 1);
   CHECK(edge.corners == 2);
 }
@@ -236,14 +239,34 @@ TEST_CASE("region census: what is no complex of regions is refused", "[regions][
   mesh.regions.labels.pop_back();
   CHECK(contains(refusal(mesh), "22 triangles, and labels of 21"));
   mesh = two_cubes();
-  mesh.regions.labels[3] = {2, 2};
-  CHECK(contains(refusal(mesh), "face 3 has region 2 on both sides"));
-  mesh = two_cubes();
   mesh.triangles[0][0] = 12;
   CHECK(contains(refusal(mesh), "vertex 12"));
   mesh = two_cubes();
   mesh.vertices[5].y = NAN;
   CHECK(contains(refusal(mesh), "vertex 5 is not finite"));
+}
+
+TEST_CASE("region census: sheets bound no region, whether they lie in one or outside", "[regions][unit]") {
+  TriangleMesh mesh = two_cubes();
+  const RegionCensus before = census_of(mesh);
+  for (const int32_t label : {1, 0}) {
+    const auto first = uint32_t(mesh.vertices.size());
+    const double x = label == 1 ? .25 : 9;
+    mesh.vertices.insert(mesh.vertices.end(), {{x, .25, .25}, {x, .75, .25}, {x, .25, .75}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.regions.labels.push_back({label, label});
+  }
+  const RegionCensus census = census_of(mesh);
+  CHECK(census.is_sound());
+  CHECK(census.regions.size() == before.regions.size());
+  CHECK(census.regions[0].faces == before.regions[0].faces);
+  CHECK(census.regions[0].volume_world == Approx(before.regions[0].volume_world));
+  CHECK(census.walls.size() == before.walls.size() + 2);
+  CHECK(region_of(mesh, 1).triangles.size() == size_t(before.regions[0].faces));
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.end() - 2);
+  mesh.regions.labels.erase(mesh.regions.labels.begin(), mesh.regions.labels.end() - 2);
+  CHECK(census_of(mesh).is_sound());
+  CHECK(census_of(mesh).regions.empty());
 }
 
 TEST_CASE("region of: each of two boxes is a closed mesh with its vertices in order", "[regions][unit]") {
@@ -281,6 +304,13 @@ TEST_CASE("region of: where a region touches itself each fan has a vertex of its
   const auto first = std::find_if(region.vertices.begin(), region.vertices.end(), at_middle);
   CHECK(std::count_if(region.vertices.begin(), region.vertices.end(), at_middle) == 2);
   CHECK(at_middle(*(first + 1)));
+}
+
+TEST_CASE("region of: boxes that touch along an edge are parted there", "[regions][unit]") {
+  const TriangleMesh region = region_of(mesh_of(LabelledCubes{{2, 2, 1}, {1, 0, 0, 1}}), 1);
+  CHECK(region.vertices.size() == 16);
+  CHECK(check_mesh(region).is_closed_manifold());
+  CHECK(check_mesh(region).components == 2);
 }
 
 TEST_CASE("region of: the outer of two boxes keeps its hollow", "[regions][unit]") {

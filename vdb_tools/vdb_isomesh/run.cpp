@@ -66,7 +66,10 @@ void tell_result(const RunRecord& record, Console& console) {
     text << counted(record.vertices, "vertex", "vertices") << ", " << counted(record.triangles, "triangle") << ", ";
   else
     text << counted(record.report.grid.active_voxels, "active voxel") << ", ";
-  if (record.topology) {
+  if (record.regions) {
+    text << counted(int64_t(record.regions->regions.size()), "region")
+         << (record.regions->every_region_closed ? ", " : ", not all of them closed, ");
+  } else if (record.topology) {
     const MeshTopology& t = *record.topology;
     text << counted(t.components, "component") << ", "
          << (t.is_closed_manifold() ? "closed 2-manifold of genus " + std::to_string(t.genus)

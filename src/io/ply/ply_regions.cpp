@@ -26,7 +26,7 @@ Attribute* find_labels(std::vector<Attribute>& attributes, const char* name) {
 bool part_labels(const Attribute& inside, const Attribute& outside) {
   constexpr double kMost = std::numeric_limits<int32_t>::max();  // of unsigned ones; all types fit below
   for (size_t f = 0; f < inside.values.size(); ++f)
-    if (inside.values[f] > kMost || outside.values[f] > kMost || inside.values[f] == outside.values[f]) return false;
+    if (inside.values[f] > kMost || outside.values[f] > kMost) return false;
   return true;
 }
 
@@ -72,7 +72,7 @@ void take_regions(const PlyHeader& header, TriangleSoup& soup) {
                         soup.attributes.end());
   for (size_t f = 0; f < regions.labels.size(); ++f) {
     auto& [behind, front] = regions.labels[f];
-    if (front == regions.background || (behind != regions.background && behind < front)) continue;
+    if (behind == front || front == regions.background || (behind != regions.background && behind < front)) continue;
     std::swap(behind, front);
     turn(soup, f);
   }

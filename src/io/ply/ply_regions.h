@@ -9,8 +9,8 @@ namespace isoshell {
 constexpr const char* kRegionInside = "region_inside";
 constexpr const char* kRegionOutside = "region_outside";
 
-/// Makes regions of the attributes of faces that have these names, if both are there, are integers that fit 32 bits and
-/// differ on every face; else they stay attributes. Faces that have the background behind them, or the larger of two
+/// Makes regions of the attributes of faces that have these names, if both are there, are integers that fit 32
+/// bits; else they stay attributes. Faces that have the background behind them, or the larger of two
 /// labels, are turned.
 void take_regions(const PlyHeader& header, TriangleSoup& soup);
 

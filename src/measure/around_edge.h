@@ -1,0 +1,24 @@
+// Triangles around an edge that they share, in the order of their angles, exactly.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "isoshell/advanced/lattice.h"
+
+namespace isoshell {
+
+/// A triangle that has an edge, seen along it from its first end.
+struct TriangleAtEdge {
+  uint32_t triangle;
+  uint32_t apex;  ///< the corner that is no end of the edge
+  bool rises;     ///< passes the edge from its first end to the second, so that it faces to larger angles
+};
+
+/// Counter-clockwise about the edge, from the apex of the first one on. Of triangles that lie on one another those that
+/// face to larger angles come first: backs of solids that touch then look away from each other. Decides by signs of
+/// determinants without error. Cost: a sort.
+void sort_around_edge(const std::vector<WorldPoint>& points, uint32_t from, uint32_t to,
+                      std::vector<TriangleAtEdge>& triangles);
+
+}  // namespace isoshell

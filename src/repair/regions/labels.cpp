@@ -1,0 +1,117 @@
+// See labels.h.
+#include "repair/regions/labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+namespace isoshell::repair {
+namespace {
+
+/// Parts that a cell is inside of, ascending, with how often they wind around it.
+using Winding = std::vector<std::pair<uint32_t, int32_t>>;
+
+class CellWalk {
+ public:
+  CellWalk(const Walls& walls, const Cells& cells, const Chains& chains)
+      : walls_(walls), cells_(cells), chains_(chains), winding_(cells.count()), parent_(chains.part.size(), kNoPart) {
+    walk();
+  }
+
+  void find_hollows() {
+    std::vector<uint8_t> is_done(chains_.part.size(), 0);
+    for (size_t w = 0; w < walls_.triangle.size(); ++w)
+      for (const PartOnWall& on : chains_.parts_on(w)) {
+        const PartOutline& part = chains_.part[on.part];
+        if (is_done[on.part] || part.closing != Closing::oriented || part.volume_world >= 0 || on.turns == 0) continue;
+        is_done[on.part] = 1;
+        parent_[on.part] = smallest_around(winding_[cells_.of_wall[w][on.turns > 0 ? 1 : 0]]);
+      }
+  }
+
+  CellParts parts() const {
+    CellParts out;
+    out.of_cell.assign(cells_.count(), kNoPart);
+    std::map<std::pair<uint32_t, uint32_t>, double> overlaps;
+    for (size_t cell = 0; cell < cells_.count(); ++cell) {
+      std::map<uint32_t, int32_t> inside;
+      for (const auto& [part, times] : winding_[cell]) inside[parent_[part] == kNoPart ? part : parent_[part]] += times;
+      for (const auto& [part, times] : inside) {
+        if (times == 0) continue;
+        uint32_t& keeper = out.of_cell[cell];
+        if (keeper == kNoPart)
+          keeper = part;
+        else
+          overlaps[{keeper, part}] += cells_.volume_world[cell];
+      }
+    }
+    for (const auto& [parts, volume] : overlaps) out.overlaps.push_back({parts.first, parts.second, volume});
+    return out;
+  }
+
+ private:
+  /// From the outside through all walls.
+  void walk() {
+    std::vector<std::vector<uint32_t>> walls_of(cells_.count());
+    for (uint32_t w = 0; w < cells_.of_wall.size(); ++w) {
+      const auto& [front, back] = cells_.of_wall[w];
+      if (front == back) continue;
+      walls_of[front].push_back(w);
+      walls_of[back].push_back(w);
+    }
+    std::vector<uint8_t> is_seen(cells_.count(), 0);
+    std::vector<uint32_t> open = {0};
+    is_seen[0] = 1;
+    for (size_t next = 0; next < open.size(); ++next)
+      for (const uint32_t w : walls_of[open[next]]) {
+        const auto& [front, back] = cells_.of_wall[w];
+        const bool is_inward = open[next] == front;
+        const uint32_t to = is_inward ? back : front;
+        if (is_seen[to]) continue;
+        is_seen[to] = 1;
+        winding_[to] = beyond(winding_[open[next]], w, is_inward);
+        open.push_back(to);
+      }
+  }
+
+  Winding beyond(const Winding& before, size_t wall, bool is_inward) const {
+    std::map<uint32_t, int32_t> times(before.begin(), before.end());
+    for (const PartOnWall& on : chains_.parts_on(wall)) {
+      const Closing closing = chains_.part[on.part].closing;
+      int32_t& t = times[on.part];
+      if (closing == Closing::oriented) t += is_inward ? on.turns : -on.turns;
+      if (closing == Closing::even && on.turns != 0) t ^= 1;
+      if (closing == Closing::present) t ^= 1;
+    }
+    Winding after;
+    for (const auto& [part, t] : times)
+      if (t != 0) after.push_back({part, t});
+    return after;
+  }
+
+  uint32_t smallest_around(const Winding& winding) const {
+    uint32_t smallest = kNoPart;
+    const auto volume = [&](uint32_t part) { return std::abs(chains_.part[part].volume_world); };
+    for (const auto& [part, times] : winding)
+      if (times > 0 && (smallest == kNoPart || volume(part) < volume(smallest))) smallest = part;
+    return smallest;
+  }
+
+  const Walls& walls_;
+  const Cells& cells_;
+  const Chains& chains_;
+  std::vector<Winding> winding_;  ///< per cell
+  std::vector<uint32_t> parent_;  ///< per part the one whose hollow it is
+};
+
+}  // namespace
+
+CellParts find_parts_of_cells(const Walls& walls, const Cells& cells, const Chains& chains, bool have_hollows) {
+  CellWalk walk(walls, cells, chains);
+  if (have_hollows) walk.find_hollows();
+  return walk.parts();
+}
+
+}  // namespace isoshell::repair

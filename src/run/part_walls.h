@@ -1,0 +1,27 @@
+// The walls between the parts of an input, which a run meshes in place of its faces.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "isoshell/error.h"
+#include "isoshell/io/input.h"
+#include "isoshell/message.h"
+#include "isoshell/part_regions.h"
+
+namespace isoshell {
+
+/// As find_part_regions() makes them; tells its warnings. Throws: as that, and usage for an input that is no mesh.
+inline TriangleSoup walls_of_parts(const Input& input, const std::string& parts, const Tell& tell, Context& context) {
+  const std::string asked = "--regions " + parts, name = input.facts.name();
+  if (input.facts.kind != InputKind::mesh)
+    throw Error(ErrorCode::usage, "options", asked + " is for meshes, and " + name + " is none; leave it out");
+  if (!input.soup.regions.empty())
+    throw Error(ErrorCode::usage, "options", asked + ": the faces of " + name + " part regions already; leave it out");
+  PartRegions found = find_part_regions(input.soup, parts, context);
+  if (tell)
+    for (const std::string& text : found.warnings) tell(MessageKind::warning, name + ": " + text);
+  return std::move(found.walls);
+}
+
+}  // namespace isoshell
