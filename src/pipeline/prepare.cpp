@@ -242,14 +242,15 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
 
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {
   RemeshReport report;
-  if (!requested.regions.empty()) {
+  const RemeshOptions given_options = checked(requested);
+  if (!given_options.regions.empty()) {
     PartRegions found =
-        timed(report, "regions", context, [&] { return find_part_regions(soup, requested.regions, context); });
+        timed(report, "regions", context, [&] { return find_part_regions(soup, given_options.regions, context); });
     report.warnings = std::move(found.warnings);
-    return prepare_walls(found.walls, checked(requested), std::move(report), context);
+    return prepare_walls(found.walls, given_options, std::move(report), context);
   }
-  if (!soup.regions.empty()) return prepare_walls(soup, checked(requested), std::move(report), context);
-  const RemeshOptions options = with_even_length(checked(requested), soup);
+  if (!soup.regions.empty()) return prepare_walls(soup, given_options, std::move(report), context);
+  const RemeshOptions options = with_even_length(given_options, soup);
   refuse_region_lengths(options);
   const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
   report.input.dirt = measured.dirt;

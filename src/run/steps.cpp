@@ -106,8 +106,11 @@ class RunSteps::Run {
     if (prepared_) return *prepared_;
     check_files();
     read();
-    if (const std::string& parts = options_.values.regions; !parts.empty())
+    if (const std::string& parts = options_.values.regions; !parts.empty()) {
       walls_ = timed("regions", [&] { return walls_of_parts(*input_, parts, teller(), *context_); });
+      record_.input.walls = find_region_walls(*walls_);
+      record_.input.region_names = walls_->regions.names;
+    }
     const bool has_regions = !surface().regions.empty();  // then distances are from the walls as they came
     region_files_ = checked_region_files(request_, surface().regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);

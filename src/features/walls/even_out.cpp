@@ -15,26 +15,25 @@
 namespace isoshell {
 namespace {
 
+constexpr uint32_t kStepsBetweenLooks = 1024;
 constexpr int kRounds = 16;
 constexpr int kRoundsToSplit = 4;    ///< edges are split in every one of so many
 constexpr double kLong = 1.35;       ///< mean edges: longer ones are split
 constexpr int64_t kMostSplits = 16;  ///< one vertex in so many, at once
 
-PointQ8 to_steps(const WorldPoint& p) {
-  const auto nearest = [](double x) { return int32_t(std::floor(x + 0.5)); };
-  return {nearest(p.x), nearest(p.y), nearest(p.z)};
-}
-
 class Evening {
  public:
-  explicit Evening(WallMesh& mesh) : mesh_(mesh), cut_(mesh.lookup().cut()) {}
+  Evening(WallMesh& mesh, const Context& context) : mesh_(mesh), cut_(mesh.lookup().cut()), context_(context) {}
 
   void flip_edges() {
-    for (uint32_t t = 0; t < mesh_.triangles().size(); ++t)
+    for (uint32_t t = 0; t < mesh_.triangles().size(); ++t) {
+      look_at_cancel(t);
       for (size_t i = 0; i < 3; ++i) mesh_.flip(t, i);
+    }
   }
   void move_vertices() {
     for (uint32_t v = 0; v < mesh_.vertices().size(); ++v) {
+      look_at_cancel(v);
       if (mesh_.around(v).empty()) continue;
       if (mesh_.vertex(v).kind == RegionVertex::Kind::free) move_free(v);
       if (mesh_.vertex(v).kind == RegionVertex::Kind::on_curve) move_along(v);
@@ -48,6 +47,10 @@ class Evening {
   }
 
  private:
+  void look_at_cancel(uint32_t step) const {
+    if (step % kStepsBetweenLooks == 0) check_cancel(context_, "features");
+  }
+
   /// The longest first, in terms of the length aimed at.
   std::vector<uint64_t> long_edges() const {
     std::vector<std::pair<double, uint64_t>> edges;
@@ -108,8 +111,8 @@ class Evening {
     double nearest = std::numeric_limits<double>::infinity();
     for (int64_t n = surface.vertex_first[out.home]; n < surface.vertex_first[out.home + 1]; ++n) {
       const TriangleIndices t = surface.triangles[surface.vertex_triangles[n]];
-      const PointQ8 at = closest_point_on_triangle(to_steps(near), surface.position[t.a], surface.position[t.b],
-                                                   surface.position[t.c]);
+      const PointQ8 at =
+          closest_point_on_triangle(rounded(near), surface.position[t.a], surface.position[t.b], surface.position[t.c]);
       const WorldPoint there{double(at.x), double(at.y), double(at.z)};
       if (const double d = distance_sq(there, near); d < nearest) nearest = d, out.position = there;
     }
@@ -159,18 +162,18 @@ class Evening {
 
   WallMesh& mesh_;
   const CutSurface& cut_;
+  const Context& context_;
   std::vector<uint32_t> ends_;
 };
 
 }  // namespace
 
 void even_out(WallMesh& mesh, int64_t vertices, const Context& context) {
-  Evening evening(mesh);
+  Evening evening(mesh, context);
   for (int round = 0; round < kRounds; ++round) {
-    check_cancel(context, "features");
     evening.flip_edges();
     evening.move_vertices();
-    if (round % kRoundsToSplit != 0) continue;
+    if (round % kRoundsToSplit != 0 || mesh.vertex_count() > vertices) continue;
     evening.split_long_edges(vertices / kMostSplits);
     coarsen(mesh, vertices, context);
   }

@@ -20,10 +20,11 @@ struct WallTriangles {
   const std::vector<uint32_t>& source_face;  ///< per triangle, as in FineMesh
 };
 
-/// A change keeps the topology of every region, the patches and the curves. One that would not, that would turn a
-/// triangle over or make a needle of it, or after which a triangle met another one outside of corners that they share,
-/// is not made. Vertices and triangles keep their numbers; those that are gone have no triangles, and one corner twice.
-/// Cost of each: the triangles around its vertices, and a look at those whose boxes meet them.
+/// A change keeps the topology of every region, the patches and the curves. One that would not, or after
+/// which a triangle met another one outside of corners that they share, is not made; no collapse or split turns a
+/// triangle over or makes a needle of it. Vertices and triangles keep their numbers; those that are gone have no
+/// triangles, and one corner twice. Cost of each: the triangles around its vertices, and a look at those whose boxes
+/// meet them.
 class WallMesh {
  public:
   /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.

@@ -8,8 +8,8 @@
 
 namespace isoshell {
 
-/// The vertices of the walls of regions whose volume is not above 0, ascending. `patch`: per triangle. In host memory.
-/// Cost: O(triangles).
+/// The vertices of the walls of regions whose volume is not above 0, though the surface's is; ascending. `patch`: per
+/// triangle. In host memory. Cost: O(triangles), and where there are any O(fine triangles).
 std::vector<uint32_t> find_inverted_regions(const CutSurface& cut, const DualMesh& mesh,
                                             const std::vector<uint32_t>& patch);
 

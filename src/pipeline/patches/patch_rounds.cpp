@@ -168,7 +168,7 @@ class PatchRounds {
       add_defects(cut, made, find_patch_defects(made), failed);
       const PerPatch is_flat = triangulate_flat(cut, failed.patch, made);
       failed.forget(is_flat);
-      if (cut.regions && any(is_flat)) add_defects(cut, made, find_patch_defects(made), failed);
+      if (cut.regions && any(is_flat)) add_new_defects(cut, made, failed);
     }
     int64_t crossing = 0;
     on_patches(cut, inverse(failed.patch), false, made, [&](const CutSurface& part, SeededMesh& mesh) {
@@ -212,6 +212,14 @@ class PatchRounds {
     for (const uint32_t v : vertices) wrong.add(cut.surface.patch[made.seeds.home[v]], made.mesh.position[v]);
   }
 
+  /// Beside the patches that are known to be wrong.
+  static void add_new_defects(const CutSurface& cut, const SeededMesh& made, Wrong& wrong) {
+    std::vector<uint32_t> defects = find_patch_defects(made);
+    const auto is_known = [&](uint32_t v) { return wrong.patch[cut.surface.patch[made.seeds.home[v]]]; };
+    defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
+    add_defects(cut, made, defects, wrong);
+  }
+
   static std::vector<uint32_t> patches_of(const CutSurface& cut, const SeededMesh& made) {
     std::vector<uint32_t> patch;
     for (const TriangleIndices& t : made.mesh.triangles) patch.push_back(cut.surface.patch[made.seeds.home[t.a]]);
@@ -251,10 +259,7 @@ class PatchRounds {
   Wrong find_wrong(const CutSurface& cut, SeededMesh& made, const Wrong& failed) {
     bring_to_host(made);
     Wrong wrong = failed;
-    std::vector<uint32_t> defects = find_patch_defects(made);
-    const auto is_known = [&](uint32_t v) { return failed.patch[cut.surface.patch[made.seeds.home[v]]]; };
-    defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
-    add_defects(cut, made, defects, wrong);
+    add_new_defects(cut, made, wrong);
     if (cut.regions) add_defects(cut, made, find_inverted_regions(cut, made.mesh, patches_of(cut, made)), wrong);
     const auto pairs = all_crossing(made);
     report_.optimize.self_intersections = int64_t(pairs.size());

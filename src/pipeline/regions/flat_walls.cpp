@@ -13,9 +13,9 @@
 namespace isoshell {
 namespace {
 
-constexpr double kFlat = 1e-7;         // of a patch's own size: by how far its vertices may be off its plane
-constexpr double kFarthestVox = .125;  // that a vertex is moved
-constexpr double kLeastSine = 1e-3;    // between planes that give a line or a point
+constexpr double kFlat = 1e-7;             // of a patch's own size: by how far its vertices may be off its plane
+constexpr double kFarthestVox = 8. / 256;  // that a vertex is moved: some steps, which no check has to look at again
+constexpr double kLeastSine = 1e-3;        // between planes that give a line or a point
 
 struct Plane {
   WorldPoint at{0, 0, 0}, normal{0, 0, 0};  ///< of no length: the patch is not flat

@@ -8,9 +8,8 @@
 namespace isoshell {
 
 /// Moves vertices of flat patches back onto their planes, which the lattice moved them off by its steps: those of two
-/// onto the line that they share, those of three onto their point. `cut` is what the mesh was made of, and
-/// `walls` what that was cut from. Cost: a look at
-/// all triangles of both.
+/// onto the line that they share, those of three onto their point. `cut` is what the mesh was made of, and `walls` what
+/// that was cut from. Cost: a look at all triangles of both.
 void put_on_planes(const CutSurface& cut, const RegionWalls& walls, TriangleMesh& mesh);
 
 }  // namespace isoshell

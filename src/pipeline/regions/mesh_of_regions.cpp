@@ -74,8 +74,9 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
   for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);
   if (const auto vertices = int64_t(mesh.vertices.size());
       vertices != p.target.vertices && !p.options.edge_length_world)
-    report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
-                              std::to_string(p.target.vertices) + ": the curves between its regions need them");
+    report.warnings.push_back(
+        "the result has " + std::to_string(vertices) + " vertices instead of " + std::to_string(p.target.vertices) +
+        (vertices > p.target.vertices ? ": the curves between its regions, and walls close together, need them" : ""));
   measure_edges(cut, joined, report.sizing);
   report.features.vertices = joined.on_curves;
   report.features.segments = int64_t(mesh.features.curve_edges.size());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -46,10 +47,14 @@ std::vector<int32_t> labels_called(const std::string& region, const std::set<int
   int32_t label = 0;
   const char* const end = region.data() + region.size();
   const auto [stop, failed] = std::from_chars(region.data(), end, label);
-  if (failed == std::errc() && stop == end && labels.count(label) > 0) return {label};
+  const bool is_label = failed == std::errc() && stop == end && labels.count(label) > 0;
   std::vector<int32_t> called;
   for (const RegionName& name : names)
     if (name.name == region && labels.count(name.label) > 0) called.push_back(name.label);
+  if (is_label && !called.empty() && called != std::vector<int32_t>{label})
+    refuse("gives '" + region + "', which is a label and the name of region " + std::to_string(called[0]) +
+           "; give labels: " + listed(labels, names));
+  if (is_label) return {label};
   if (called.empty()) refuse("names region '" + region + "', which is not there; regions are " + listed(labels, names));
   return called;
 }
@@ -89,7 +94,7 @@ int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const s
   if (!plan.chooses_grid() || !wants_lengths(options)) return usual;
   std::vector<double> field(soup.vertices.size(), 0);
   if (options.sizing) field = options.sizing->lengths_at(soup.vertices);
-  double least = plan.target.edge_length_world, vertices = 0;
+  double least = std::numeric_limits<double>::infinity(), vertices = 0;
   for (size_t t = 0; t < soup.triangles.size(); ++t) {
     double length = of_face_world.empty() ? 0 : of_face_world[t];
     if (length <= 0) length = shortest_at(field, soup.triangles[t]);
@@ -108,7 +113,7 @@ int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const s
 std::vector<std::string> warnings_of_bounds(const RequestedLengths& requested) {
   std::vector<std::string> warnings;
   if (requested.of_face_world.empty()) return warnings;
-  double least = requested.usual_world, most = 0;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const double length : requested.of_face_world) {
     const double here = length > 0 ? length : requested.usual_world;
     least = std::min(least, here);
