@@ -21,6 +21,11 @@ def new_geometry(mesh, vertices, faces):
     mesh.update(calc_edges=True)
 
 
+def in_object(vertices, faces, to_object):
+    """Vertices in the space of an object, and faces, which look outward there."""
+    return vertices @ to_object, turned(faces, np.linalg.det(to_object) < 0)
+
+
 def put(obj, taken, result, apply_modifiers):
     """Gives the object the result; its data becomes its own where others share it. Returns notes for the user."""
     notes = list(taken.notes)

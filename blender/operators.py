@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import mesh_result, mesh_source, options, sizing, volume_source
+from . import mesh_result, mesh_source, options, regions, sizing, volume_source
 from .job import Job
 
 PLACE = ("parent", "parent_type", "parent_bone", "matrix_parent_inverse", "location", "rotation_mode", "rotation_euler",
@@ -145,7 +145,8 @@ class OBJECT_OT_isoshell_remesh(Run, options.Remesh, bpy.types.Operator):
 
 
 class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator):
-    """Make a mesh object of a volume: triangles of nearly one size, closed, 2-manifold"""
+    """Make a mesh object of a volume: triangles of nearly one size, closed, 2-manifold. Of labels, the walls of all
+    their regions"""
 
     bl_idname = "object.isoshell_volume_to_mesh"
     bl_label = "Volume to Isotropic Mesh (isoshell)"
@@ -163,28 +164,42 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
         import isoshell
 
         obj = context.active_object
-        words = self.keywords()
-        if self.use_threshold:
-            words["iso"] = self.threshold
         taken = volume_source.TakenVolume(obj, context.evaluated_depsgraph_get(), self.grid)
+        words = self.keywords_of_labels() if taken.is_of_labels else self.keywords()
         self._name = obj.name
         return lambda run: taken.remesh(words | {"allow_intersections": True}, run, isoshell)
 
     def put(self, context, made):
-        result, vertices, faces = made
+        result, to_object = made
         volume = context.scene.objects[self._name]
-        mesh = bpy.data.meshes.new(f"{volume.name} mesh")
-        mesh_result.new_geometry(mesh, vertices, faces)
-        mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
-        obj = bpy.data.objects.new(mesh.name, mesh)
-        for name in PLACE:
-            setattr(obj, name, getattr(volume, name))
-        for collection in volume.users_collection:
-            collection.objects.link(obj)
+        collections = volume.users_collection
+        if self.split_regions and regions.are_in(result):
+            objects = regions.objects_of(result, to_object)
+            whole = bpy.data.collections.new(volume.name)
+            for collection in collections:
+                collection.children.link(whole)
+            collections = [whole]
+        else:
+            objects = [self._object(volume, result, to_object)]
+            whole = objects[0]
         volume.select_set(False)
-        obj.select_set(True)
-        context.view_layer.objects.active = obj
-        return self._tell(obj, result)
+        for obj in objects:
+            for name in PLACE:
+                setattr(obj, name, getattr(volume, name))
+            for collection in collections:
+                collection.objects.link(obj)
+            obj.select_set(True)
+        context.view_layer.objects.active = objects[0]
+        return self._tell(whole, result)
+
+    def _object(self, volume, result, to_object):
+        """All of the result as one mesh."""
+        mesh = bpy.data.meshes.new(f"{volume.name} mesh")
+        mesh_result.new_geometry(mesh, *mesh_result.in_object(result.vertices, result.faces, to_object))
+        mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+        if regions.are_in(result):
+            regions.write(mesh, result)
+        return bpy.data.objects.new(mesh.name, mesh)
 
     def draw(self, _context):
         self.layout.use_property_split = True

@@ -83,6 +83,25 @@ class Extract(Size):
                                             "a fog volume. Otherwise it is where they are 0, as that of distances is")
     threshold: FloatProperty(name="Threshold", default=0.1, description="Value of the grid on the surface")
     grid: StringProperty(name="Grid", description="Name of the grid; empty: the active one")
+    use_background: BoolProperty(name="Use Background", default=False,
+                                 description="Of a grid of labels: what is no region has the label below. Otherwise it "
+                                             "has the background value of the grid")
+    background: IntProperty(name="Background", default=0, description="Label of what is no region")
+    smallest_island: IntProperty(name="Smallest Island", default=8, min=0, soft_max=1000,
+                                 description="Of a grid of labels: islands of fewer voxels get the label around them, "
+                                             "but the largest one of each region")
+    split_regions: BoolProperty(name="Split Regions", default=False,
+                                description="Of a grid of labels: an object for each region, closed, in a collection "
+                                            "with the name of the volume. Otherwise one mesh has all walls once")
+
+    def keywords_of_labels(self):
+        """Of isoshell.remesh, for a grid of labels."""
+        words = {"background": self.background} if self.use_background else {}
+        return super().keywords() | words | {"smallest_island": self.smallest_island}
+
+    def keywords(self):
+        """Of isoshell.remesh, for a grid of values."""
+        return super().keywords() | ({"iso": self.threshold} if self.use_threshold else {})
 
     def draw_extract(self, layout):
         self.draw_size(layout)
@@ -90,6 +109,13 @@ class Extract(Size):
         layout.prop(self, "use_threshold")
         if self.use_threshold:
             layout.prop(self, "threshold")
+        labels = layout.box().column()
+        labels.label(text="Grids of Labels")
+        labels.prop(self, "use_background")
+        if self.use_background:
+            labels.prop(self, "background")
+        labels.prop(self, "smallest_island")
+        labels.prop(self, "split_regions")
         layout.prop(self, "device")
 
 

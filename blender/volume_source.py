@@ -6,8 +6,11 @@ import tempfile
 
 import numpy as np
 
+from .mesh_result import in_object
 from .mesh_source import Refused, linear_of
 
+OF_LABELS = {"INT", "INT64"}
+OF_THE_GRID = {"iso", "background", "smallest_island"}  # options that a mesh of it has no use for
 FINER = 4  # times as many vertices has the mesh that is made first where the object's scale is not even
 
 
@@ -26,6 +29,7 @@ class TakenVolume:
         name = grid_name or names[min(max(grids.active_index, 0), len(names) - 1)]
         if name not in names:
             raise Refused(f"{obj.name} has no grid {name}; its grids are {', '.join(names)}")
+        self.is_of_labels = grids[names.index(name)].data_type in OF_LABELS
         self._folder = tempfile.TemporaryDirectory()
         path = grids.frame_filepath
         if not path or obj.modifiers or not os.path.isfile(path):  # made by modifiers or nodes
@@ -35,20 +39,36 @@ class TakenVolume:
         self.source = f"{path}:{name}"
 
     def remesh(self, options, context, isoshell):
-        """Vertices in the object's space, and faces. The edges are even in the world."""
+        """The result, and what its vertices are multiplied by to be in the object's space. The edges are even in the
+        world."""
         scales = np.linalg.svd(self.to_world, compute_uv=False)
         back = np.linalg.inv(self.to_world).T
         if scales[0] - scales[-1] <= 1e-6 * scales[0]:
             if "edge_length" in options:
                 options = options | {"edge_length": options["edge_length"] / scales[0]}
             result = isoshell.remesh(self.source, context=context, **options)
-            return result, result.vertices, result.faces
+            return result, np.eye(3)
         fine = {name: value for name, value in options.items() if name not in ("vertices", "edge_length")}
         fine |= ({"vertices": FINER * options["vertices"]} if "vertices" in options else
                  {"edge_length": options["edge_length"] / scales[0] / 2})
         first = isoshell.remesh(self.source, context=context, **fine)
-        flips = np.linalg.det(self.to_world) < 0
-        faces = first.faces[:, ::-1] if flips else first.faces
-        options = {name: value for name, value in options.items() if name != "iso"}
-        result = isoshell.remesh((first.vertices @ self.to_world.T, faces), context=context, **options)
-        return result, result.vertices @ back, result.faces[:, ::-1] if flips else result.faces
+        vertices, faces = in_object(first.vertices, first.faces, self.to_world.T)
+        options = {name: value for name, value in options.items() if name not in OF_THE_GRID}
+        source = (vertices, faces)
+        if len(first.regions["labels"]):
+            source = os.path.join(self._folder.name, "walls.ply")
+            _write_walls(source, vertices, faces, first.regions)
+        return isoshell.remesh(source, context=context, **options), back
+
+
+def _write_walls(path, vertices, faces, regions):
+    """As isoshell writes and reads regions. What is in memory has them only where it is a result as it came."""
+    names = [f"comment region {label} {name}" for label, name in regions["names"].items()]
+    header = ["ply", "format binary_little_endian 1.0", *names, f"comment region_background {regions['background']}",
+              f"element vertex {len(vertices)}", *(f"property double {axis}" for axis in "xyz"),
+              f"element face {len(faces)}", "property list uchar int vertex_indices", "property int region_inside",
+              "property int region_outside", "end_header", ""]
+    rows = np.empty(len(faces), [("count", "u1"), ("corners", "<i4", 3), ("regions", "<i4", 2)])
+    rows["count"], rows["corners"], rows["regions"] = 3, faces, regions["labels"]
+    with open(path, "wb") as file:
+        file.write("\n".join(header).encode() + np.ascontiguousarray(vertices, "<f8").tobytes() + rows.tobytes())
