@@ -97,6 +97,7 @@ void number_as_before(const PreviousFrame& previous, TriangleMesh& mesh) {
     place[triangles[t].second] = uint32_t(t);
   }
   reorder(place, mesh.features.patch);
+  reorder(place, mesh.regions.labels);
 }
 
 }  // namespace isoshell

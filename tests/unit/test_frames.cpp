@@ -164,6 +164,8 @@ TEST_CASE("frames: a mesh whose vertices were shuffled gets its numbers back", "
   shuffled.gap.assign(n, 0);
   shuffled.gap[to(5)] = 1;
   shuffled.features.corners = {to(9)};
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    shuffled.regions.labels.push_back({int32_t(mesh.triangles[t][0]), 0});
   number_as_before(previous, shuffled);
   CoherenceReport report;
   measure_coherence(previous, shuffled, report);
@@ -173,6 +175,10 @@ TEST_CASE("frames: a mesh whose vertices were shuffled gets its numbers back", "
   CHECK(shuffled.gap[5] == 1);
   CHECK(shuffled.features.corners == std::vector<uint32_t>{9});
   CHECK(std::is_sorted(shuffled.triangles.begin(), shuffled.triangles.end()));
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& triangle = shuffled.triangles[t];
+    CHECK(std::count(triangle.begin(), triangle.end(), uint32_t(shuffled.regions.labels[t][0])) == 1);
+  }
 }
 
 TEST_CASE("frames: vertices that are elsewhere, or have no number before, are born", "[frames]") {
