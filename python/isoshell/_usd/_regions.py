@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Dict, Tuple
 
 from .._result import Result
 
@@ -12,22 +12,69 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, np.dtype[Any]]
 
 FAMILY = "regions"
+Pair = Tuple[int, int]  # the region behind faces, and the one in front of them
 
 
 def write_regions(pxr: Any, mesh: Any, result: Result) -> None:
     """Defines a subset of faces for each pair of regions that faces part: a partition, by the name of both."""
+    faces_of = _faces_of_pairs(result)
+    for pair, faces in faces_of.items():
+        _define(pxr, mesh, result, pair).GetIndicesAttr().Set(pxr.Vt.IntArray.FromNumpy(faces))
+    if faces_of:
+        pxr.UsdGeom.Subset.SetFamilyType(mesh, FAMILY, pxr.UsdGeom.Tokens.partition)
+
+
+class SampledRegions:
+    """The same, sample by sample: a pair that a frame has not is empty there. The subsets are a partition as long as
+    every frame has regions."""
+
+    def __init__(self, pxr: Any, mesh: Any) -> None:
+        self._pxr = pxr
+        self._mesh = mesh
+        self._subsets: Dict[Pair, Any] = {}
+        self._first: Any = None
+        self._is_partition = True
+
+    def add(self, result: Result, time: Any) -> None:
+        """The regions of a result."""
+        import numpy as np
+
+        faces_of = _faces_of_pairs(result)
+        self._first = self._first or time
+        self._is_partition = self._is_partition and bool(faces_of)
+        for pair in sorted(set(faces_of) - set(self._subsets)):
+            self._subsets[pair] = self._defined(result, pair)
+        for pair, subset in self._subsets.items():
+            faces = faces_of.get(pair, np.zeros(0, np.int32))
+            subset.GetIndicesAttr().Set(self._pxr.Vt.IntArray.FromNumpy(faces), time)
+        if self._subsets:
+            tokens = self._pxr.UsdGeom.Tokens
+            kind = tokens.partition if self._is_partition else tokens.nonOverlapping
+            self._pxr.UsdGeom.Subset.SetFamilyType(self._mesh, FAMILY, kind)
+
+    def _defined(self, result: Result, pair: Pair) -> Any:
+        """Empty from the first frame on: before its first sample an attribute has the value of that sample."""
+        subset = _define(self._pxr, self._mesh, result, pair)
+        subset.GetIndicesAttr().ClearDefault()
+        subset.GetIndicesAttr().Set(self._pxr.Vt.IntArray(), self._first)
+        return subset
+
+
+def _faces_of_pairs(result: Result) -> Dict[Pair, Array]:
+    """The faces between each two regions, ascending; empty without regions."""
     import numpy as np
 
-    regions = result.regions
-    labels: Array = regions["labels"]
-    if len(labels) == 0:
-        return
+    labels: Array = result.regions["labels"]
     pairs, of_face = np.unique(labels, axis=0, return_inverse=True)
-    for number, (inside, outside) in enumerate(pairs.tolist()):
-        words = [regions["names"].get(label, str(label)) for label in (inside, outside)]
-        name = pxr.Tf.MakeValidIdentifier("region_" + "_".join(words))
-        faces = np.flatnonzero(of_face.reshape(-1) == number).astype(np.int32)
-        subset = pxr.UsdGeom.Subset.CreateUniqueGeomSubset(
-            mesh, name, pxr.UsdGeom.Tokens.face, pxr.Vt.IntArray.FromNumpy(faces), FAMILY)
-        subset.GetPrim().SetCustomDataByKey("isoshell:regions", pxr.Vt.IntArray([inside, outside]))
-    pxr.UsdGeom.Subset.SetFamilyType(mesh, FAMILY, pxr.UsdGeom.Tokens.partition)
+    return {(inside, outside): np.flatnonzero(of_face.reshape(-1) == number).astype(np.int32)
+            for number, (inside, outside) in enumerate(pairs.tolist())}
+
+
+def _define(pxr: Any, mesh: Any, result: Result, pair: Pair) -> Any:
+    """A subset without faces yet, by the names of both regions."""
+    words = [result.region_names.get(label, str(label)) for label in pair]
+    name = pxr.Tf.MakeValidIdentifier("region_" + "_".join(words))
+    subset = pxr.UsdGeom.Subset.CreateUniqueGeomSubset(
+        mesh, name, pxr.UsdGeom.Tokens.face, pxr.Vt.IntArray(), FAMILY)
+    subset.GetPrim().SetCustomDataByKey("isoshell:regions", pxr.Vt.IntArray(pair))
+    return subset

@@ -11,6 +11,7 @@ from .._result import Result
 from . import Origin, library
 from ._attributes import PrimvarWriter
 from ._materials import write_materials
+from ._regions import SampledRegions
 from ._write import MATERIALS, begin_stage, define_mesh, offset_of, save_stage, write_shape, writing
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class SampledStage:
         self._mesh: Any = None
         self._primvars: Any = None
         self._materials: Any = None
+        self._regions: Any = None
         self._last: Optional[Union[int, float]] = None
         self._held_bytes = 0
 
@@ -53,6 +55,7 @@ class SampledStage:
         self._add_velocities(result, time)
         self._primvars.write(result, MOTION, result.frame)
         self._materials.add(result, time)
+        self._regions.add(result, time)
         self._stage.SetEndTimeCode(result.frame)
         self._last = result.frame
         self._held_bytes += 2 * (result.vertices.nbytes + result.faces.nbytes)
@@ -67,7 +70,7 @@ class SampledStage:
 
     def discard(self) -> None:
         """Lets go of what was added."""
-        self._stage = self._mesh = self._primvars = self._materials = None
+        self._stage = self._mesh = self._primvars = self._materials = self._regions = None
         if self._folder:
             shutil.rmtree(self._folder, ignore_errors=True)
             self._folder = ""
@@ -89,6 +92,7 @@ class SampledStage:
         self._time_codes_per_second = origin.time_codes_per_second
         self._primvars = PrimvarWriter(pxr, self._mesh, origin, is_sampled=True)
         self._materials = _Materials(pxr, stage, root.GetPath().AppendChild(MATERIALS), self._mesh, folder)
+        self._regions = SampledRegions(pxr, self._mesh)
 
     def _add_velocities(self, result: Result, time: Any) -> None:
         """The motion since the sample before, in units a second; none where a frame follows no other."""

@@ -330,6 +330,28 @@ def test_a_stage_of_usd_of_labels_has_subsets_and_files_of_regions_beside_it(tmp
     assert sorted(path.name for path in (tmp_path / "parts").iterdir()) == [f"{label}.ply" for label in range(1, 6)]
 
 
+@pytest.mark.parametrize("last_has_regions", [True, False])
+def test_a_sequence_as_a_stage_of_usd_has_subsets_at_every_frame(tmp_path, ball, last_has_regions):
+    usd, geom = pytest.importorskip("pxr.Usd"), pytest.importorskip("pxr.UsdGeom")
+    merged = np.where(grains() == 5, 1, grains())  # one region fewer, and fewer walls
+    sources = [Labels(merged, names={2: "iron"}), Labels(grains(), names={2: "iron"}),
+               Labels(merged) if last_has_regions else ball]
+    made = list(isoshell.remesh_sequence(sources, output=tmp_path / "out.usda", vertices=800, device="cpu"))
+    stage = usd.Stage.Open(str(tmp_path / "out.usda"))
+    mesh = next(geom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(geom.Mesh))
+    subsets = {tuple(subset.GetPrim().GetCustomDataByKey("isoshell:regions")): subset
+               for subset in geom.Subset.GetGeomSubsets(mesh, "face", "regions")}
+    assert subsets[2, 0].GetPrim().GetName() == "region_iron_0" and (1, 5) in subsets
+    for result in made:
+        pairs = result.regions["labels"]
+        for pair, subset in subsets.items():
+            faces = np.array(subset.GetIndicesAttr().Get(result.frame), np.int32)
+            assert np.array_equal(faces, np.flatnonzero((pairs == pair).all(axis=1)))
+    assert set(map(tuple, made[1].regions["labels"].tolist())) == set(subsets)
+    assert geom.Subset.GetFamilyType(mesh, "regions") == ("partition" if last_has_regions else "nonOverlapping")
+    assert geom.Subset.ValidateFamily(mesh, "face", "regions")[0]
+
+
 def test_the_certificate_has_distances_from_the_walls(polycrystal):
     distance = polycrystal.report["distance"]
     assert 0 < distance["to_input_max"] < 1 and 0 < distance["from_input_max"] < 1
