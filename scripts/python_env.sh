@@ -24,7 +24,7 @@ environment() { # folder, modules, command that makes it, packages...
 
 packages=(numpy scipy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue manifold3d==3.5.4)
 if command -v chromium google-chrome >/dev/null; then packages+=(playwright); fi
-if [ "${1:-}" = ci ]; then packages+=(pyvista); fi
+if [ "${1:-}" = ci ]; then packages+=(pyvista gmsh); fi
 modules=${packages[*]%%==*}
 modules=${modules/usd-core/pxr}
 modules=${modules//-/_}

@@ -19,7 +19,8 @@ case "${1:-}" in
   "") wished=() ;;
   tests) packages+=("${of_tests[@]}") ;;
   ci)
-    packages+=("${of_tests[@]}" "${wished[@]}" ccache clang-tidy git python3-torch)
+    packages+=("${of_tests[@]}" "${wished[@]}" ccache clang-tidy git python3-torch
+               libglu1-mesa libxcursor1 libxft2 libxinerama1)  # the last four are for gmsh of PyPI
     command -v google-chrome >/dev/null || packages+=(chromium)
     wished=()
     ;;
