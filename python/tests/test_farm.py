@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from conftest import make_ball, write_obj
 from farms import SMALL, Crasher, assert_is_serial, digests_of, farm, files_of, make_assets, rows_of
@@ -110,6 +111,22 @@ def test_a_table_has_options_of_its_rows(assets, tmp_path):
     assert rows[f"{assets.name}/ball0.ply"]["vertices"] == 120
     assert rows[f"{assets.name}/ball1.ply"]["options"] == {"vertices": "150", "resolution": "40", "uniform_area": True}
     assert rows["absent.ply"]["code"] == "UNREADABLE_INPUT" and rows["absent.ply"]["transient"]
+
+
+def test_an_option_that_repeats_holds_each_time(tmp_path):
+    labels = np.zeros((16, 10, 10), np.int32)
+    labels[2:8, 2:8, 2:8], labels[8:14, 2:8, 2:8] = 1, 2
+    labels = isoshell.Labels(labels, names={2: "femur"})
+    (tmp_path / "in").mkdir()
+    labels.save(tmp_path / "in/seg.vdb")
+    done = farm("run", tmp_path / "in/*.vdb", tmp_path / "out", "--workers", 1, "--edge-length", 1.5, "--device", "cpu",
+                "--region-edge-length", "1=0.8", "--region-edge-length", "femur=1.1")
+    assert done.returncode == 0, done.stderr
+    row = rows_of(tmp_path / "out")["seg.ply"]
+    lengths = {1: 0.8, "femur": 1.1}
+    alone = isoshell.remesh(labels, edge_length=1.5, region_edge_length=lengths, stats=True, device="cpu")
+    assert row["digest"] == alone.digest
+    assert row["options"]["region_edge_length"] == "1=0.8\nfemur=1.1"
 
 
 def test_a_mesh_that_misses_a_requirement_is_put_aside(assets, tmp_path):

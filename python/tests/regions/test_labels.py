@@ -256,6 +256,18 @@ def test_regions_have_edge_lengths_of_their_own_by_label_and_name():
             isoshell.remesh(labels, region_edge_length=lengths, **QUICK)
 
 
+def test_a_field_of_edge_lengths_holds_on_all_walls():
+    lengths = np.broadcast_to(np.linspace(0.7, 1.9, N)[:, None, None], (N, N, N))
+    result = isoshell.remesh(Labels(grains()), sizing=isoshell.Volume(lengths), device="cpu")
+    assert result.report["regions"]["every_region_closed"] and result.report["sizing"]["edge_error_mean"] < 0.15
+    pairs = result.regions["labels"]
+    for is_inner in (True, False):
+        faces = result.faces[(pairs != 0).all(axis=1) == is_inner]
+        ends = result.vertices[np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)]
+        length, x = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1), ends[..., 0].mean(axis=1)
+        assert abs(length[x > 20].mean() / length[x < 4].mean() / (1.78 / 0.78) - 1) < 0.2
+
+
 def test_labels_can_be_pickled(polycrystal):
     assert digest(pickle.loads(pickle.dumps(Labels(grains())))) == polycrystal.digest
 
