@@ -55,7 +55,8 @@ def _material(result, label):
         material.use_nodes = True
     color = (*colorsys.hsv_to_rgb(label * GOLDEN % 1, 0.6, 0.8), 1)
     material.diffuse_color = color
-    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = color
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")  # names are translated
+    shader.inputs["Base Color"].default_value = color
     return material
 
 

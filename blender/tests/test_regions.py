@@ -65,6 +65,8 @@ def test_a_grid_of_labels_becomes_one_mesh_with_a_material_for_each_region(bones
     slot = rows(mesh.polygons, "material_index", 1, np.int32)[:, 0]
     assert np.array_equal(slot, inside == 7)
     colors = [tuple(material.diffuse_color) for material in mesh.materials]
+    for material, color in zip(mesh.materials, colors):
+        assert tuple(material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value) == color
     assert np.abs(np.subtract(*colors)).max() > 0.2
     sharp = rows(mesh.edges, "use_edge_sharp", 1, bool)[:, 0]
     assert sharp.any() and not sharp.all()
