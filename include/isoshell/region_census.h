@@ -74,13 +74,17 @@ struct RegionChanges {
   std::vector<RegionName> lost;                       ///< regions, ascending
   std::vector<std::array<RegionName, 2>> lost_walls;  ///< pairs that share none any more, ascending
   std::vector<std::array<RegionName, 2>> new_walls;   ///< pairs that shared none before
+  /// Pairs of a volume of labels that touched in absorbed islands alone: no loss, as that is asked for.
+  std::vector<std::array<RegionName, 2>> absorbed_walls;
 
   bool any() const { return !lost.empty() || !lost_walls.empty() || !new_walls.empty(); }
 };
 
-/// Of walls without area none counts. `names`: ascending by label; the background is called so.
-RegionChanges find_region_changes(const std::vector<RegionWall>& before, const std::vector<RegionName>& names,
-                                  const RegionCensus& after);
+/// Of walls without area none counts. `absorbed`: as in TriangleSoup; `names`: ascending by label; the background is
+/// called so.
+RegionChanges find_region_changes(const std::vector<RegionWall>& before,
+                                  const std::vector<std::array<int32_t, 2>>& absorbed,
+                                  const std::vector<RegionName>& names, const RegionCensus& after);
 
 /// A region by itself: its faces without its sheets, in their order, turned outward, and their vertices, in theirs.
 /// Where it touches itself in a vertex or along an edge, each fan of faces has a vertex of its own, one behind the

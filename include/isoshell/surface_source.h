@@ -42,6 +42,8 @@ struct TriangleSoup {
   AttributeFiles files;                              ///< that attributes speak of
   std::vector<DroppedAttribute> dropped_attributes;  ///< of the file, that no reader takes
   FaceRegions regions;                               ///< that the triangles part; empty: they bound one solid
+  /// Of voxels: pairs of regions that touched in islands alone, which were absorbed; ascending, the smaller first.
+  std::vector<std::array<int32_t, 2>> absorbed_walls = {};
 };
 
 }  // namespace isoshell

@@ -131,6 +131,7 @@ class Reader {
     facts.box_max = box.max;
     if (!soup.regions.empty()) {
       facts.walls = find_region_walls(soup);
+      facts.absorbed_walls = soup.absorbed_walls;
       facts.region_names = soup.regions.names;
     }
     note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));

@@ -50,8 +50,8 @@ std::set<int32_t> labels_of(const std::set<Pair>& pairs) {
 
 }  // namespace
 
-RegionChanges find_region_changes(const std::vector<RegionWall>& before, const std::vector<RegionName>& names,
-                                  const RegionCensus& after) {
+RegionChanges find_region_changes(const std::vector<RegionWall>& before, const std::vector<Pair>& absorbed,
+                                  const std::vector<RegionName>& names, const RegionCensus& after) {
   const Namer named(names, after.background);
   const std::set<Pair> then = pairs_of(before), now = pairs_of(after.walls);
   const std::set<int32_t> left = labels_of(now);
@@ -60,6 +60,7 @@ RegionChanges find_region_changes(const std::vector<RegionWall>& before, const s
     if (left.count(label) == 0 && label != after.background) changes.lost.push_back(named(label));
   changes.lost_walls = named.difference(then, now);
   changes.new_walls = named.difference(now, then);
+  changes.absorbed_walls = named.difference({absorbed.begin(), absorbed.end()}, {});
   return changes;
 }
 

@@ -22,7 +22,8 @@ std::string flaw_of(const RunRecord& record) {
 
 std::optional<RegionChanges> region_changes_of(const RunRecord& record) {
   if (!record.regions || record.input.walls.empty()) return std::nullopt;
-  return find_region_changes(record.input.walls, record.input.region_names, *record.regions);
+  const InputFacts& input = record.input;
+  return find_region_changes(input.walls, input.absorbed_walls, input.region_names, *record.regions);
 }
 
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context) {

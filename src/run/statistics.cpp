@@ -293,6 +293,7 @@ Json regions_of_run_json(const RunRecord& r) {
   j["regions_lost"] = lost;
   j["walls_lost"] = pairs_json(changes->lost_walls);
   j["walls_new"] = pairs_json(changes->new_walls);
+  j["walls_absorbed"] = pairs_json(changes->absorbed_walls);
   return j;
 }
 

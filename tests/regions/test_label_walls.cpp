@@ -169,9 +169,11 @@ TEST_CASE("regions that touched in an island alone are named") {
   volume.names = {{3, "skin"}};
   volume.smallest_island_vox = 8;
   std::vector<std::string> told;
-  surface_of_labels(volume, "labels", 0, [&](MessageKind, const std::string& text) { told.push_back(text); });
+  const TriangleSoup soup =
+      surface_of_labels(volume, "labels", 0, [&](MessageKind, const std::string& text) { told.push_back(text); });
   REQUIRE(told.size() == 2);
   CHECK(told[1] == "regions that touched in such islands alone touch no more: 1 and 3 (skin)");
+  CHECK(soup.absorbed_walls == std::vector<std::array<int32_t, 2>>{{1, 3}});
 }
 
 TEST_CASE("a volume of labels that is none is refused with what is wrong") {

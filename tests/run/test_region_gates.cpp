@@ -125,6 +125,10 @@ TEST_CASE("region gates: regions and walls that a run lost or made are named", "
   const std::vector<std::string> other = missed_gates(adjacency, record_of(row, {{3, 1, 1}, {1, 3, 2}}));
   REQUIRE(other.size() == 1);
   CHECK(contains(other[0], "touch no more: 1 and 2 (bone); regions touch that do not in the input: 1 and 3 (skin)"));
+  RunRecord absorbed = record_of(row, row);
+  absorbed.input.absorbed_walls = {{1, 3}};
+  CHECK(missed_gates(adjacency, absorbed).empty());
+  CHECK(contains(statistics_json(absorbed), "\"walls_absorbed\": [\n      [\n        {\n          \"label\": 1"));
   RunRecord without = record_of(row, row);
   without.input.walls.clear();
   CHECK(missed_gates(adjacency, without) == std::vector<std::string>{"adjacency: the input has no regions"});

@@ -50,8 +50,9 @@ struct InputFacts {
   InputKind kind = InputKind::mesh;
   int64_t vertices = -1, faces = -1;  ///< as in the file, of points the different ones; -1: of a stage file not known
   std::optional<WorldPoint> box_min, box_max;  ///< of the surface, world units; of a stage file not known
-  std::vector<RegionWall> walls;         ///< of a surface that parts regions, once islands are absorbed; ascending
-  std::vector<RegionName> region_names;  ///< ascending by label
+  std::vector<RegionWall> walls;  ///< of a surface that parts regions, once islands are absorbed; ascending
+  std::vector<std::array<int32_t, 2>> absorbed_walls;  ///< as in TriangleSoup
+  std::vector<RegionName> region_names;                ///< ascending by label
 
   /// As messages call it.
   std::string name() const { return path == "-" ? "standard input" : path; }

@@ -210,6 +210,18 @@ def test_islands_of_few_voxels_are_absorbed_unless_all_shall_stay():
     kept = isoshell.remesh(Labels(speckled, smallest_island=0), stats=True, **QUICK)
     components = [[region["components"] for region in result.report["regions"]["regions"]] for result in (absorbed, kept)]
     assert components[0][1] == 1 and components[1][1] == 2
+    absorbed_walls, of_all = (result.report["regions"]["walls_absorbed"] for result in (absorbed, kept))
+    assert absorbed_walls == of_all == []
+
+
+def test_pairs_that_touch_in_absorbed_islands_alone_are_reported():
+    labels = np.zeros((18, 10, 10), np.int32)
+    labels[2:8, 2:8, 2:8], labels[8:10, 2:8, 2:8], labels[10:16, 2:8, 2:8] = 1, 2, 3
+    labels[9, 5, 5] = 1
+    with pytest.warns(isoshell.RunWarning, match="touch no more: 1 and 3"):
+        result = isoshell.remesh(Labels(labels, names={3: "skin"}), **QUICK)
+    assert result.report["regions"]["walls_absorbed"] == [[{"label": 1, "name": None}, {"label": 3, "name": "skin"}]]
+    assert result.report["regions"]["walls_lost"] == []
 
 
 def test_files_of_labels_are_read_as_labels_say_it(tmp_path):

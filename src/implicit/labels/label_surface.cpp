@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "geometry/world_vector.h"
 #include "implicit/labels/absorb_islands.h"
@@ -103,7 +104,8 @@ TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, int6
                                const Tell& tell) {
   check_volume(volume, name);
   check_memory(volume, name, memory_limit_bytes);
-  tell_of(absorb_islands(volume), volume, tell);
+  AbsorbedIslands absorbed = absorb_islands(volume);
+  tell_of(absorbed, volume, tell);
   const LabelWalls walls = find_label_walls(volume);
   if (walls.faces.empty())
     throw Error(
@@ -125,6 +127,7 @@ TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, int6
   soup.regions.background = volume.background;
   soup.regions.are_of_voxels = true;
   soup.regions.names = volume.names;
+  soup.absorbed_walls = std::move(absorbed.lost_pairs);
   soup.faces_in_file = int64_t(walls.faces.size());
   return soup;
 }
