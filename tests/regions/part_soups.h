@@ -33,6 +33,20 @@ inline TriangleSoup cubes_in_a_row(int count) {
   return s;
 }
 
+/// The same triangles, where so many that follow on each other share vertices with each other alone.
+inline TriangleSoup split_vertices(const TriangleSoup& soup, size_t faces) {
+  TriangleSoup s;
+  for (size_t first = 0; first < soup.triangles.size(); first += faces) {
+    const uint32_t base = uint32_t(s.vertices.size());
+    s.vertices.insert(s.vertices.end(), soup.vertices.begin(), soup.vertices.end());
+    for (size_t t = first; t < first + faces; ++t) {
+      const auto& [a, b, c] = soup.triangles[t];
+      shapes::add_triangle(s, base + a, base + b, base + c);
+    }
+  }
+  return s;
+}
+
 /// A cube of side 4 with a hollow of side 2, whose faces look into the hollow.
 inline TriangleSoup hollow_cube() {
   return shapes::together(shapes::box({0, 0, 0}, {4, 4, 4}), shapes::inside_out(shapes::box({1, 1, 1}, {3, 3, 3})));

@@ -82,6 +82,27 @@ TEST_CASE("parts: cubes that touch share their walls, whether or not their verti
   }
 }
 
+TEST_CASE("parts: cubes whose faces have vertices of their own are components", "[regions][unit]") {
+  const TriangleSoup shared = cubes_in_a_row(2);
+  for (const size_t faces : {1, 2}) {  // each triangle, each square
+    const PartRegions found = regions_of(split_vertices(shared, faces), "components");
+    CHECK(found.warnings.empty());
+    CHECK(fault_of_regions(found.walls.triangles, found.walls.regions).empty());
+    CHECK(pairs_of(found.walls.regions) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}, {1, 2}});
+    CHECK(volume_of(found.walls, 1) == Approx(1));
+    CHECK(volume_of(found.walls, 2) == Approx(1));
+  }
+}
+
+TEST_CASE("parts: faces that bound no region are warned of", "[regions][unit]") {
+  const TriangleSoup sheet = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  for (const std::string how : {"components", "cells"}) {
+    const PartRegions found = regions_of(sheet, how);
+    REQUIRE(found.warnings.size() == 1);
+    CHECK(contains(found.warnings[0], "--regions " + how + " finds no region"));
+  }
+}
+
 TEST_CASE("parts: walls that are there once are found as cells, whatever way they look", "[regions][unit]") {
   TriangleSoup soup = cubes_in_a_row(2);
   soup.triangles.erase(soup.triangles.begin() + 2, soup.triangles.begin() + 4);

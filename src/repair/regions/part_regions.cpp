@@ -75,6 +75,20 @@ void warn_of_open_solids(const Parts& parts, const Chains& chains, std::vector<s
   add_warnings(std::move(found), "parts are not closed", warnings);
 }
 
+/// What all faces of which are sheets has walls, so nothing else would say that it has no regions.
+void warn_of_no_region(const TriangleSoup& walls, const std::string& how, std::vector<std::string>& warnings) {
+  const auto& labels = walls.regions.labels;
+  if (std::any_of(labels.begin(), labels.end(), [](const auto& sides) { return sides[0] != 0 || sides[1] != 0; }))
+    return;
+  if (how == "cells")
+    warnings.push_back(
+        "--regions cells finds no region: the faces enclose no space, and all become sheets; close them");
+  else
+    warnings.push_back("--regions " + how +
+                       " finds no region: no part is closed, and all become sheets, which bound "
+                       "none; close their borders, or let --regions cells find what walls enclose");
+}
+
 /// What each cell is labelled with.
 struct CellLabels {
   std::vector<int32_t> of_cell;
@@ -184,6 +198,7 @@ PartRegions part_regions(const TriangleSoup& soup, const std::string& how, Conte
   }
   if (out.walls.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "regions", "the faces lie on one another in pairs, which enclose nothing");
+  warn_of_no_region(out.walls, how, out.warnings);
   turn_sheets(out.walls);
   out.walls.faces_in_file = soup.faces_in_file;
   out.walls.dirt = soup.dirt;

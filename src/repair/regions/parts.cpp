@@ -2,6 +2,7 @@
 #include "repair/regions/parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "core/index_sets.h"
 #include "geometry/half_edges.h"
+#include "geometry/weld.h"
 #include "isoshell/error.h"
 #include "measure/around_edge.h"
 
@@ -51,17 +53,62 @@ std::string name_of_value(const Attribute& attribute, double value) {
 }
 
 /// Of an edge of more than two triangles joins those that have a solid between them, which both of them face away from.
-void join_solids_at(const TriangleSoup& soup, uint32_t u, uint32_t v, View<const EdgeSide> at_edge, IndexSets& sets) {
+void join_solids_at(const std::vector<WorldPoint>& points, const std::vector<std::array<uint32_t, 3>>& triangles,
+                    uint32_t u, uint32_t v, View<const EdgeSide> at_edge, IndexSets& sets) {
   std::vector<TriangleAtEdge> around;
   for (const EdgeSide& s : at_edge) {
-    const auto& corner = soup.triangles[s.half_edge / 3];
+    const auto& corner = triangles[s.half_edge / 3];
     around.push_back({s.half_edge / 3, corner[(s.half_edge % 3 + 2) % 3], corner[s.half_edge % 3] == u});
   }
-  sort_around_edge(soup.vertices, u, v, around);
+  sort_around_edge(points, u, v, around);
   for (size_t i = 0; i < around.size(); ++i) {
     const TriangleAtEdge &here = around[i], &next = around[(i + 1) % around.size()];
     if (!here.rises && next.rises) sets.unite(here.triangle, next.triangle);
   }
+}
+
+void join_at(const std::vector<WorldPoint>& points, const std::vector<std::array<uint32_t, 3>>& triangles, uint32_t u,
+             uint32_t v, View<const EdgeSide> at_edge, IndexSets& sets) {
+  if (at_edge.size == 2) sets.unite(at_edge[0].half_edge / 3, at_edge[1].half_edge / 3);
+  if (at_edge.size > 2) join_solids_at(points, triangles, u, v, at_edge, sets);
+}
+
+/// Joins across edges that lie on one another, of those half-edges that are alone on theirs. The others are left as
+/// they are: which faces of solids that touch belong together is known from their vertices, even where these faces do
+/// not agree about the outside.
+void join_borders(const TriangleSoup& soup, const std::vector<uint8_t>& is_alone, IndexSets& sets) {
+  const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
+  std::vector<std::array<uint32_t, 3>> placed = soup.triangles;
+  for (auto& t : placed)
+    for (uint32_t& v : t) v = welded.place[v];
+  const auto is_kept = [&](const EdgeSide& s) {
+    const auto& [a, b, c] = placed[s.half_edge / 3];
+    return is_alone[s.half_edge] && a != b && b != c && c != a;
+  };
+  std::vector<EdgeSide> kept;
+  for_each_edge(find_edge_sides(placed, welded.position.size()),
+                [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
+                  kept.clear();
+                  for (const EdgeSide& s : at_edge)
+                    if (is_kept(s)) kept.push_back(s);
+                  join_at(welded.position, placed, u, v, {kept.data(), int64_t(kept.size())}, sets);
+                });
+}
+
+/// Faces by the component that they are of.
+IndexSets join_faces(const TriangleSoup& soup) {
+  IndexSets sets(int64_t(soup.triangles.size()));
+  std::vector<uint8_t> is_alone(3 * soup.triangles.size(), 0);
+  bool have_borders = false;
+  for_each_edge(find_edge_sides(soup.triangles, soup.vertices.size()),
+                [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
+                  join_at(soup.vertices, soup.triangles, u, v, at_edge, sets);
+                  if (at_edge.size > 1) return;
+                  is_alone[at_edge[0].half_edge] = 1;
+                  have_borders = true;
+                });
+  if (have_borders) join_borders(soup, is_alone, sets);
+  return sets;
 }
 
 /// Per part the name that all of its faces have.
@@ -83,12 +130,7 @@ std::vector<std::string> common_names(const Attribute& groups, const Parts& part
 }  // namespace
 
 Parts find_components(const TriangleSoup& soup) {
-  IndexSets sets(int64_t(soup.triangles.size()));
-  for_each_edge(find_edge_sides(soup.triangles, soup.vertices.size()),
-                [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
-                  if (at_edge.size == 2) sets.unite(at_edge[0].half_edge / 3, at_edge[1].half_edge / 3);
-                  if (at_edge.size > 2) join_solids_at(soup, u, v, at_edge, sets);
-                });
+  IndexSets sets = join_faces(soup);
   Parts parts;
   std::vector<uint32_t> number(soup.triangles.size(), kNone);
   uint32_t count = 0;

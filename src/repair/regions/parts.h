@@ -18,8 +18,9 @@ struct Parts {
 };
 
 /// Faces that are connected through edges: an edge of more than two connects those that have a solid between them, so
-/// that solids that share vertices stay apart. Their names are those of groups, or else of objects, that have all their
-/// faces. Cost: a sort of the edges.
+/// that solids that share vertices stay apart. Edges that one face alone has, as where each face has its own vertices,
+/// are matched by position. Their names are those of groups, or else of objects, that have all their faces. Cost: a
+/// sort of the edges, and of the vertices where faces have edges alone.
 Parts find_components(const TriangleSoup& soup);
 
 /// Faces that have the same value of an attribute of faces, named by it; "groups" is the attribute "group", or else
