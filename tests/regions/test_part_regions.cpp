@@ -188,6 +188,18 @@ TEST_CASE("parts: sheets stay, in a solid and outside of all", "[regions][unit]"
   CHECK(faces_between(found.walls.regions, 0, 1) == 12);
 }
 
+TEST_CASE("parts: a sheet all of whose faces are there from both sides stays", "[regions][unit]") {
+  const TriangleSoup side = rectangle({1, 1, 2}, {2, 0, 0}, {0, 2, 0});
+  TriangleSoup both = side;
+  for (const auto& [a, b, c] : side.triangles) shapes::add_triangle(both, a, c, b);
+  for (const TriangleSoup& sheet : {both, shapes::together(side, shapes::inside_out(side))}) {
+    const PartRegions found = regions_of(shapes::together(shapes::box({0, 0, 0}, {4, 4, 4}), sheet), "components");
+    CHECK(found.warnings.empty());
+    CHECK(faces_between(found.walls.regions, 1, 1) == 2);
+    CHECK(faces_between(found.walls.regions, 0, 1) == 12);
+  }
+}
+
 TEST_CASE("parts: faces of a sheet are turned to look to one side", "[regions][unit]") {
   TriangleSoup sheet = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3, 3);
   for (const size_t t : {1, 4, 11}) std::swap(sheet.triangles[t][0], sheet.triangles[t][1]);

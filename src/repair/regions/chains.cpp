@@ -22,6 +22,7 @@ class ChainFinder {
   ChainFinder(const Walls& walls, const Parts& parts) : walls_(walls), parts_(parts) {
     out_.part.resize(parts.count());
     flaws_.assign(parts.count(), {0, 0, 0});
+    has_side_.assign(parts.count(), 0);
   }
 
   Chains found() {
@@ -30,7 +31,7 @@ class ChainFinder {
     for_each_edge(find_edge_sides(walls_.triangle, walls_.point.size()),
                   [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) { look_at(u, v, at_edge); });
     for (size_t p = 0; p < flaws_.size(); ++p) {
-      size_t closing = 0;
+      size_t closing = has_side_[p] != 0 ? 0 : 2;
       while (closing < 3 && flaws_[p][closing] > 0) ++closing;
       out_.part[p].closing = Closing(closing);
     }
@@ -51,6 +52,7 @@ class ChainFinder {
       const bool is_both = i + 1 < here.size() && here[i + 1][0] == here[i][0];
       const int8_t turns = is_both ? int8_t(0) : here[i][1] != 0 ? int8_t(-1) : int8_t(1);
       out_.on_wall.push_back({here[i][0], turns});
+      has_side_[here[i][0]] |= uint8_t(!is_both);
       out_.part[here[i][0]].area_world += area;
       out_.part[here[i][0]].volume_world += turns * volume;
       i += is_both ? 1 : 0;
@@ -84,6 +86,7 @@ class ChainFinder {
   const Parts& parts_;
   Chains out_;
   std::vector<std::array<int64_t, 3>> flaws_;  ///< per part and way to count: edges where it is open
+  std::vector<uint8_t> has_side_;              ///< per part: on some wall it looks to one side alone
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ struct PartOnWall {
 enum class Closing : uint8_t {
   oriented,  ///< its faces, which all look to one of the sides: a crossing counts one up or down
   even,      ///< its faces, whichever way they look: a crossing changes sides; those that look both ways count twice
-  present,   ///< the same, where those that look both ways count once
+  present,   ///< the same, where those that look both ways count once; the first to be asked where all do
   open,      ///< nothing: some edge has one of its faces, or three
 };
 
