@@ -177,6 +177,17 @@ TEST_CASE("parts: one in another is left to the first of them, and a warning say
   CHECK(contains(swallowed.warnings.at(0), "100 % of the second"));
 }
 
+TEST_CASE("parts: overlaps are measured where faces disagree about the outside", "[regions][unit]") {
+  TriangleSoup big = shapes::box({0, 0, 0}, {4, 4, 4}), half_in = shapes::box({3, 1, 1}, {5, 2, 2});
+  for (const size_t t : {0, 1, 4, 5, 9}) std::swap(half_in.triangles[t][0], half_in.triangles[t][1]);
+  for (const size_t t : {2, 3, 8}) std::swap(big.triangles[t][0], big.triangles[t][1]);
+  const PartRegions found = regions_of(shapes::together(big, half_in), "components");
+  REQUIRE(found.warnings.size() == 1);
+  CHECK(contains(found.warnings[0], "overlap in a volume of 1, 50 % of the second"));
+  const TriangleSoup hollow = shapes::together(big, shapes::inside_out(shapes::box({1, 1, 1}, {3, 3, 3})));
+  CHECK(volume_of(regions_of(hollow, "components").walls, 1) == Approx(64 - 8));
+}
+
 TEST_CASE("parts: sheets stay, in a solid and outside of all", "[regions][unit]") {
   const TriangleSoup cube = shapes::box({0, 0, 0}, {4, 4, 4});
   const TriangleSoup sheet = rectangle({1, 1, 2}, {2, 0, 0}, {0, 2, 0}),

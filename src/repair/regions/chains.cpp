@@ -46,15 +46,13 @@ class ChainFinder {
     std::sort(here.begin(), here.end());
     here.erase(std::unique(here.begin(), here.end()), here.end());
     const auto& [a, b, c] = walls_.triangle[wall];
-    const WorldPoint &o = walls_.point[0], &p = walls_.point[a], &q = walls_.point[b], &r = walls_.point[c];
-    const double area = triangle_area(p, q, r), volume = dot(p - o, cross(q - o, r - o)) / 6;
+    const double area = triangle_area(walls_.point[a], walls_.point[b], walls_.point[c]);
     for (size_t i = 0; i < here.size(); ++i) {
       const bool is_both = i + 1 < here.size() && here[i + 1][0] == here[i][0];
       const int8_t turns = is_both ? int8_t(0) : here[i][1] != 0 ? int8_t(-1) : int8_t(1);
       out_.on_wall.push_back({here[i][0], turns});
       has_side_[here[i][0]] |= uint8_t(!is_both);
       out_.part[here[i][0]].area_world += area;
-      out_.part[here[i][0]].volume_world += turns * volume;
       i += is_both ? 1 : 0;
     }
   }

@@ -25,7 +25,6 @@ enum class Closing : uint8_t {
 
 struct PartOutline {
   Closing closing = Closing::oriented;
-  double volume_world = 0;  ///< signed
   double area_world = 0;
   int64_t open_edges = 0;       ///< of an open part, with an odd number of its walls
   double open_edges_world = 0;  ///< their length

@@ -2,7 +2,6 @@
 #include "repair/regions/labels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <map>
 #include <utility>
@@ -13,19 +12,36 @@ namespace {
 /// Parts that a cell is inside of, ascending, with how often they wind around it.
 using Winding = std::vector<std::pair<uint32_t, int32_t>>;
 
+/// Of a part, from the cells around which it winds: its faces need not agree about the outside.
+struct PartVolume {
+  double enclosed_world = 0;
+  double signed_world = 0;  ///< each cell as often as the part winds around it: below 0 of one that looks inward
+};
+
 class CellWalk {
  public:
   CellWalk(const Walls& walls, const Cells& cells, const Chains& chains)
-      : walls_(walls), cells_(cells), chains_(chains), winding_(cells.count()), parent_(chains.part.size(), kNoPart) {
+      : walls_(walls),
+        cells_(cells),
+        chains_(chains),
+        winding_(cells.count()),
+        volume_(chains.part.size()),
+        parent_(chains.part.size(), kNoPart) {
     walk();
+    for (size_t cell = 0; cell < cells_.count(); ++cell)
+      for (const auto& [part, times] : winding_[cell]) {
+        volume_[part].enclosed_world += cells_.volume_world[cell];
+        volume_[part].signed_world += times * cells_.volume_world[cell];
+      }
   }
 
   void find_hollows() {
     std::vector<uint8_t> is_done(chains_.part.size(), 0);
     for (size_t w = 0; w < walls_.triangle.size(); ++w)
       for (const PartOnWall& on : chains_.parts_on(w)) {
-        const PartOutline& part = chains_.part[on.part];
-        if (is_done[on.part] || part.closing != Closing::oriented || part.volume_world >= 0 || on.turns == 0) continue;
+        const bool looks_inward =
+            chains_.part[on.part].closing == Closing::oriented && volume_[on.part].signed_world < 0;
+        if (is_done[on.part] || !looks_inward || on.turns == 0) continue;
         is_done[on.part] = 1;
         parent_[on.part] = smallest_around(winding_[cells_.of_wall[w][on.turns > 0 ? 1 : 0]]);
       }
@@ -34,12 +50,14 @@ class CellWalk {
   CellParts parts() const {
     CellParts out;
     out.of_cell.assign(cells_.count(), kNoPart);
+    out.volume_world.assign(chains_.part.size(), 0);
     std::map<std::pair<uint32_t, uint32_t>, double> overlaps;
     for (size_t cell = 0; cell < cells_.count(); ++cell) {
       std::map<uint32_t, int32_t> inside;
       for (const auto& [part, times] : winding_[cell]) inside[parent_[part] == kNoPart ? part : parent_[part]] += times;
       for (const auto& [part, times] : inside) {
         if (times == 0) continue;
+        out.volume_world[part] += cells_.volume_world[cell];
         uint32_t& keeper = out.of_cell[cell];
         if (keeper == kNoPart)
           keeper = part;
@@ -93,9 +111,9 @@ class CellWalk {
 
   uint32_t smallest_around(const Winding& winding) const {
     uint32_t smallest = kNoPart;
-    const auto volume = [&](uint32_t part) { return std::abs(chains_.part[part].volume_world); };
     for (const auto& [part, times] : winding)
-      if (times > 0 && (smallest == kNoPart || volume(part) < volume(smallest))) smallest = part;
+      if (times > 0 && (smallest == kNoPart || volume_[part].enclosed_world < volume_[smallest].enclosed_world))
+        smallest = part;
     return smallest;
   }
 
@@ -103,6 +121,7 @@ class CellWalk {
   const Cells& cells_;
   const Chains& chains_;
   std::vector<Winding> winding_;  ///< per cell
+  std::vector<PartVolume> volume_;
   std::vector<uint32_t> parent_;  ///< per part the one whose hollow it is
 };
 

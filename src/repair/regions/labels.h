@@ -19,6 +19,7 @@ constexpr uint32_t kNoPart = 0xffffffff;
 
 struct CellParts {
   std::vector<uint32_t> of_cell;       ///< kNoPart: none
+  std::vector<double> volume_world;    ///< per part, of all cells that it is inside of, whichever part keeps them
   std::vector<PartsOverlap> overlaps;  ///< ascending by keeper and other
 };
 

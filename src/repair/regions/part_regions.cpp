@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -47,11 +46,10 @@ void add_warnings(std::vector<std::string> found, const char* what, std::vector<
   if (more > 0) warnings.push_back(with_commas(int64_t(more)) + " more " + what);
 }
 
-void warn_of_overlaps(const Parts& parts, const Chains& chains, const std::vector<PartsOverlap>& overlaps,
-                      std::vector<std::string>& warnings) {
+void warn_of_overlaps(const Parts& parts, const CellParts& cells, std::vector<std::string>& warnings) {
   std::vector<std::string> found;
-  for (const PartsOverlap& o : overlaps) {
-    const double whole = std::abs(chains.part[o.other].volume_world);
+  for (const PartsOverlap& o : cells.overlaps) {
+    const double whole = cells.volume_world[o.other];
     if (o.volume_world <= kNoOverlap * whole) continue;
     found.push_back(sentence(shown(parts, o.keeper), " and ", shown(parts, o.other), " overlap in a volume of ",
                              o.volume_world, ", ", 100 * o.volume_world / whole, " % of the second; ",
@@ -194,7 +192,7 @@ PartRegions part_regions(const TriangleSoup& soup, const std::string& how, Conte
     const CellParts found = find_parts_of_cells(walls, cells, chains, how == "components");
     out.walls = kept_walls(walls, cells, labels_of_parts(parts, chains, found), walls_of_sheets(walls, chains));
     warn_of_open_solids(parts, chains, out.warnings);
-    warn_of_overlaps(parts, chains, found.overlaps, out.warnings);
+    warn_of_overlaps(parts, found, out.warnings);
   }
   if (out.walls.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "regions", "the faces lie on one another in pairs, which enclose nothing");
