@@ -26,6 +26,28 @@ bool are_on_one_side(const WorldPoint& a, const WorldPoint& b, const WorldPoint&
 
 }  // namespace
 
+std::vector<TriangleAtEdge> triangles_at_edge(const std::vector<std::array<uint32_t, 3>>& triangles, uint32_t from,
+                                              View<const EdgeSide> sides) {
+  std::vector<TriangleAtEdge> around;
+  around.reserve(size_t(sides.size));
+  for (const EdgeSide& s : sides) {
+    const uint32_t triangle = s.half_edge / 3, i = s.half_edge % 3;
+    const auto& corner = triangles[triangle];
+    around.push_back({triangle, corner[(i + 2) % 3], corner[i] == from});
+  }
+  return around;
+}
+
+void leave_out_flat(const std::vector<WorldPoint>& points, uint32_t from, uint32_t to,
+                    std::vector<TriangleAtEdge>& triangles) {
+  const auto is_flat = [&](const TriangleAtEdge& t) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (turn_in(axis, points[from], points[to], points[t.apex]) != 0) return false;
+    return true;
+  };
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_flat), triangles.end());
+}
+
 void sort_around_edge(const std::vector<WorldPoint>& points, uint32_t from, uint32_t to,
                       std::vector<TriangleAtEdge>& triangles) {
   const WorldPoint &a = points[from], &b = points[to], &first = points[triangles.front().apex];

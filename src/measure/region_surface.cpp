@@ -22,12 +22,8 @@ namespace {
 /// where they do not come in such pairs, or lie on each other.
 std::vector<std::array<uint32_t, 2>> wedges_at(const RegionSurface& surface, const std::vector<WorldPoint>& points,
                                                uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
-  std::vector<TriangleAtEdge> around;
-  for (const EdgeSide& s : on_edge) {
-    const auto& corner = surface.triangles[s.half_edge / 3];
-    around.push_back(
-        {s.half_edge / 3, surface.vertex[corner[(s.half_edge % 3 + 2) % 3]], corner[s.half_edge % 3] == u});
-  }
+  std::vector<TriangleAtEdge> around = triangles_at_edge(surface.triangles, u, on_edge);
+  for (TriangleAtEdge& t : around) t.apex = surface.vertex[t.apex];
   sort_around_edge(points, surface.vertex[u], surface.vertex[v], around);
   std::vector<std::array<uint32_t, 2>> wedges;
   for (size_t i = 0; i < around.size(); ++i) {

@@ -94,6 +94,24 @@ TEST_CASE("parts: cubes whose faces have vertices of their own are components", 
   }
 }
 
+TEST_CASE("parts: triangles without an area at an edge of two solids leave both apart", "[regions][unit]") {
+  const TriangleSoup cubes = shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1, 1, 0}, {2, 2, 1}));
+  for (const std::array<uint32_t, 3> flat : {std::array<uint32_t, 3>{3, 7, 16}, {7, 3, 16}})
+    for (const double z : {.5, 2.}) {  // the apex between the ends of the edge, and beyond them
+      TriangleSoup soup;
+      soup.vertices = cubes.vertices;
+      soup.vertices.push_back({1, 1, z});
+      soup.triangles.push_back(flat);
+      for (auto t : cubes.triangles) {  // both have the vertices of their edge from the first
+        for (uint32_t& v : t) v = v == 8 ? 3 : v == 12 ? 7 : v;
+        soup.triangles.push_back(t);
+      }
+      const PartRegions found = regions_of(soup, "components");
+      CHECK(pairs_of(found.walls.regions).size() == 2);
+      CHECK(found.warnings.empty());
+    }
+}
+
 TEST_CASE("parts: faces that bound no region are warned of", "[regions][unit]") {
   const TriangleSoup sheet = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   for (const std::string how : {"components", "cells"}) {

@@ -39,12 +39,7 @@ class CellFinder {
   void join_around_edges() {
     const EdgeSides edges = find_edge_sides(walls_.triangle, walls_.point.size());
     for_each_edge(edges, [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
-      std::vector<TriangleAtEdge> around;
-      for (const EdgeSide& s : at_edge) {
-        const uint32_t wall = s.half_edge / 3;
-        const auto& corner = walls_.triangle[wall];
-        around.push_back({wall, corner[(s.half_edge % 3 + 2) % 3], corner[s.half_edge % 3] == u});
-      }
+      std::vector<TriangleAtEdge> around = triangles_at_edge(walls_.triangle, u, at_edge);
       if (around.size() > 2) sort_around_edge(walls_.point, u, v, around);
       for (size_t i = 0; i < around.size(); ++i) {
         const TriangleAtEdge &here = around[i], &next = around[(i + 1) % around.size()];

@@ -53,13 +53,13 @@ std::string name_of_value(const Attribute& attribute, double value) {
 }
 
 /// Of an edge of more than two triangles joins those that have a solid between them, which both of them face away from.
+/// Triangles whose corners lie on a line join nothing there.
 void join_solids_at(const std::vector<WorldPoint>& points, const std::vector<std::array<uint32_t, 3>>& triangles,
                     uint32_t u, uint32_t v, View<const EdgeSide> at_edge, IndexSets& sets) {
-  std::vector<TriangleAtEdge> around;
-  for (const EdgeSide& s : at_edge) {
-    const auto& corner = triangles[s.half_edge / 3];
-    around.push_back({s.half_edge / 3, corner[(s.half_edge % 3 + 2) % 3], corner[s.half_edge % 3] == u});
-  }
+  std::vector<TriangleAtEdge> around = triangles_at_edge(triangles, u, at_edge);
+  leave_out_flat(points, u, v, around);
+  if (around.empty()) return;
+  if (around.size() == 2) sets.unite(around[0].triangle, around[1].triangle);
   sort_around_edge(points, u, v, around);
   for (size_t i = 0; i < around.size(); ++i) {
     const TriangleAtEdge &here = around[i], &next = around[(i + 1) % around.size()];
