@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/index_sets.h"
+#include "core/watched.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "measure/around_edge.h"
@@ -15,13 +16,16 @@
 namespace isoshell::repair {
 namespace {
 
+constexpr int64_t kEdgesBetweenLooks = 1024;
+
 /// Side 2 w is the front of wall w, and 2 w + 1 its back.
 uint32_t side(uint32_t wall, bool is_back) { return 2 * wall + (is_back ? 1 : 0); }
 
 class CellFinder {
  public:
-  explicit CellFinder(const Walls& walls)
+  CellFinder(const Walls& walls, const Context& context)
       : walls_(walls),
+        context_(context),
         count_(uint32_t(walls.triangle.size())),
         shells_(2 * int64_t(count_)),
         surfaces_(int64_t(count_)) {}
@@ -38,7 +42,9 @@ class CellFinder {
   /// Between two neighbours around an edge is one cell.
   void join_around_edges() {
     const EdgeSides edges = find_edge_sides(walls_.triangle, walls_.point.size());
+    int64_t step = 0;
     for_each_edge(edges, [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
+      if (step++ % kEdgesBetweenLooks == 0) check_cancel(context_, "regions");
       std::vector<TriangleAtEdge> around = triangles_at_edge(walls_.triangle, u, at_edge);
       if (around.size() > 2) sort_around_edge(walls_.point, u, v, around);
       for (size_t i = 0; i < around.size(); ++i) {
@@ -80,7 +86,10 @@ class CellFinder {
     if (roots.size() < 2) return;
     const RayColumns rays(walls_.point, walls_.triangle);
     std::vector<std::vector<uint32_t>> around(count_);
-    for (const uint32_t r : roots) around[r] = shells_around(rays, r);
+    for (const uint32_t r : roots) {
+      check_cancel(context_, "regions");
+      around[r] = shells_around(rays, r);
+    }
     for (const uint32_t r : roots) {
       uint32_t innermost = kNone;
       size_t most = 0;
@@ -140,6 +149,7 @@ class CellFinder {
   static constexpr uint32_t kNone = 0xffffffff;
 
   const Walls& walls_;
+  const Context& context_;
   uint32_t count_;
   IndexSets shells_;    ///< of sides that walls of one surface look on
   IndexSets surfaces_;  ///< of walls that are connected through edges
@@ -150,6 +160,6 @@ class CellFinder {
 
 }  // namespace
 
-Cells find_cells(const Walls& walls) { return CellFinder(walls).found(); }
+Cells find_cells(const Walls& walls, const Context& context) { return CellFinder(walls, context).found(); }
 
 }  // namespace isoshell::repair

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "repair/regions/walls.h"
 
 namespace isoshell::repair {
@@ -19,7 +20,8 @@ struct Cells {
 };
 
 /// Sides of walls are joined around edges, and surfaces that lie in a cell of another one by rays. Decides where walls
-/// lie around edges without error. Cost: a sort of the edges, and a ray from each connected surface.
-Cells find_cells(const Walls& walls);
+/// lie around edges without error. Throws: interrupted. Cost: a sort of the edges, and a ray from each connected
+/// surface.
+Cells find_cells(const Walls& walls, const Context& context);
 
 }  // namespace isoshell::repair

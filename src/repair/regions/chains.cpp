@@ -5,11 +5,14 @@
 #include <array>
 #include <cstddef>
 
+#include "core/watched.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell::repair {
 namespace {
+
+constexpr int64_t kStepsBetweenLooks = 1024;  // of walls and edges
 
 /// What a part's walls sum up to at an edge, by each way to count them: 0 where the part is closed there.
 struct PartAtEdge {
@@ -19,7 +22,8 @@ struct PartAtEdge {
 
 class ChainFinder {
  public:
-  ChainFinder(const Walls& walls, const Parts& parts) : walls_(walls), parts_(parts) {
+  ChainFinder(const Walls& walls, const Parts& parts, const Context& context)
+      : walls_(walls), parts_(parts), context_(context) {
     out_.part.resize(parts.count());
     flaws_.assign(parts.count(), {0, 0, 0});
     has_side_.assign(parts.count(), 0);
@@ -39,7 +43,12 @@ class ChainFinder {
   }
 
  private:
+  void look_for_cancel() {
+    if (step_++ % kStepsBetweenLooks == 0) check_cancel(context_, "regions");
+  }
+
   void list_parts(size_t wall) {
+    look_for_cancel();
     out_.first.push_back(uint32_t(out_.on_wall.size()));
     std::vector<std::array<uint32_t, 2>> here;  // part, whether it is turned
     for (const FaceOnWall& f : walls_.faces_on(wall)) here.push_back({parts_.of_face[f.source], f.is_turned ? 1u : 0u});
@@ -58,6 +67,7 @@ class ChainFinder {
   }
 
   void look_at(uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
+    look_for_cancel();
     std::vector<PartAtEdge> here;
     for (const EdgeSide& s : at_edge) {
       const int32_t rises = walls_.triangle[s.half_edge / 3][s.half_edge % 3] == u ? 1 : -1;
@@ -82,6 +92,8 @@ class ChainFinder {
 
   const Walls& walls_;
   const Parts& parts_;
+  const Context& context_;
+  int64_t step_ = 0;
   Chains out_;
   std::vector<std::array<int64_t, 3>> flaws_;  ///< per part and way to count: edges where it is open
   std::vector<uint8_t> has_side_;              ///< per part: on some wall it looks to one side alone
@@ -89,6 +101,8 @@ class ChainFinder {
 
 }  // namespace
 
-Chains find_chains(const Walls& walls, const Parts& parts) { return ChainFinder(walls, parts).found(); }
+Chains find_chains(const Walls& walls, const Parts& parts, const Context& context) {
+  return ChainFinder(walls, parts, context).found();
+}
 
 }  // namespace isoshell::repair

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "repair/regions/parts.h"
 #include "repair/regions/walls.h"
 
@@ -41,7 +42,7 @@ struct Chains {
   }
 };
 
-/// Cost: a sort of the edges.
-Chains find_chains(const Walls& walls, const Parts& parts);
+/// Throws: interrupted. Cost: a sort of the edges.
+Chains find_chains(const Walls& walls, const Parts& parts, const Context& context);
 
 }  // namespace isoshell::repair

@@ -178,17 +178,15 @@ ArrangedFaces arranged(const TriangleSoup& soup, Context& context) {
 
 PartRegions part_regions(const TriangleSoup& soup, const std::string& how, Context& context) {
   Parts parts;
-  if (how != "cells") parts = how == "components" ? find_components(soup) : find_parts_by(soup, how);
+  if (how != "cells") parts = how == "components" ? find_components(soup, context) : find_parts_by(soup, how);
   const Walls walls = find_walls(arranged(soup, context));
-  check_cancel(context, "regions");
-  const Cells cells = find_cells(walls);
-  check_cancel(context, "regions");
+  const Cells cells = find_cells(walls, context);
   PartRegions out;
   if (how == "cells") {
     const std::vector<uint8_t> are_sheets(walls.triangle.size(), 1);
     out.walls = kept_walls(walls, cells, labels_of_cells(cells.count()), are_sheets);
   } else {
-    const Chains chains = find_chains(walls, parts);
+    const Chains chains = find_chains(walls, parts, context);
     const CellParts found = find_parts_of_cells(walls, cells, chains, how == "components");
     out.walls = kept_walls(walls, cells, labels_of_parts(parts, chains, found), walls_of_sheets(walls, chains));
     warn_of_open_solids(parts, chains, out.warnings);

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/index_sets.h"
+#include "core/watched.h"
 #include "geometry/half_edges.h"
 #include "geometry/weld.h"
 #include "isoshell/error.h"
@@ -18,6 +19,7 @@ namespace isoshell::repair {
 namespace {
 
 constexpr uint32_t kNone = 0xffffffff;
+constexpr int64_t kEdgesBetweenLooks = 1024;
 
 /// The attribute of one value a face, or null.
 const Attribute* find_of_faces(const TriangleSoup& soup, const std::string& name) {
@@ -76,7 +78,8 @@ void join_at(const std::vector<WorldPoint>& points, const std::vector<std::array
 /// Joins across edges that lie on one another, of those half-edges that are alone on theirs. The others are left as
 /// they are: which faces of solids that touch belong together is known from their vertices, even where these faces do
 /// not agree about the outside.
-void join_borders(const TriangleSoup& soup, const std::vector<uint8_t>& is_alone, IndexSets& sets) {
+void join_borders(const TriangleSoup& soup, const std::vector<uint8_t>& is_alone, const Context& context,
+                  IndexSets& sets) {
   const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
   std::vector<std::array<uint32_t, 3>> placed = soup.triangles;
   for (auto& t : placed)
@@ -86,8 +89,10 @@ void join_borders(const TriangleSoup& soup, const std::vector<uint8_t>& is_alone
     return is_alone[s.half_edge] && a != b && b != c && c != a;
   };
   std::vector<EdgeSide> kept;
+  int64_t step = 0;
   for_each_edge(find_edge_sides(placed, welded.position.size()),
                 [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
+                  if (step++ % kEdgesBetweenLooks == 0) check_cancel(context, "regions");
                   kept.clear();
                   for (const EdgeSide& s : at_edge)
                     if (is_kept(s)) kept.push_back(s);
@@ -96,18 +101,20 @@ void join_borders(const TriangleSoup& soup, const std::vector<uint8_t>& is_alone
 }
 
 /// Faces by the component that they are of.
-IndexSets join_faces(const TriangleSoup& soup) {
+IndexSets join_faces(const TriangleSoup& soup, const Context& context) {
   IndexSets sets(int64_t(soup.triangles.size()));
   std::vector<uint8_t> is_alone(3 * soup.triangles.size(), 0);
   bool have_borders = false;
+  int64_t step = 0;
   for_each_edge(find_edge_sides(soup.triangles, soup.vertices.size()),
                 [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
+                  if (step++ % kEdgesBetweenLooks == 0) check_cancel(context, "regions");
                   join_at(soup.vertices, soup.triangles, u, v, at_edge, sets);
                   if (at_edge.size > 1) return;
                   is_alone[at_edge[0].half_edge] = 1;
                   have_borders = true;
                 });
-  if (have_borders) join_borders(soup, is_alone, sets);
+  if (have_borders) join_borders(soup, is_alone, context, sets);
   return sets;
 }
 
@@ -129,8 +136,8 @@ std::vector<std::string> common_names(const Attribute& groups, const Parts& part
 
 }  // namespace
 
-Parts find_components(const TriangleSoup& soup) {
-  IndexSets sets = join_faces(soup);
+Parts find_components(const TriangleSoup& soup, const Context& context) {
+  IndexSets sets = join_faces(soup, context);
   Parts parts;
   std::vector<uint32_t> number(soup.triangles.size(), kNone);
   uint32_t count = 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell::repair {
@@ -20,8 +21,9 @@ struct Parts {
 /// Faces that are connected through edges: an edge of more than two connects those that have a solid between them, so
 /// that solids that share vertices stay apart. Edges that one face alone has, as where each face has its own vertices,
 /// are matched by position. Their names are those of groups, or else of objects, that have all their faces. Cost: a
-/// sort of the edges, and of the vertices where faces have edges alone.
-Parts find_components(const TriangleSoup& soup);
+/// sort of the edges, and of the vertices where faces have edges alone. Throws:
+/// interrupted.
+Parts find_components(const TriangleSoup& soup, const Context& context);
 
 /// Faces that have the same value of an attribute of faces, named by it; "groups" is the attribute "group", or else
 /// "object". Throws: usage for an attribute that is not there, or not of faces.
