@@ -64,8 +64,8 @@ struct RegionCensus {
 
 /// `intersecting_pairs`: where they were counted already. Result: the same for every number of threads; sums run in the
 /// order of faces. Cost: sorts of corners, edges and faces, region by region side by side; a search for intersections.
-/// Throws: usage for a mesh without regions, labels that are not one pair a face,
-/// and a triangle that names a vertex that is not there or not finite; interrupted.
+/// Throws: usage for a mesh without regions, labels that are not one pair a face, and a triangle that
+/// names a vertex that is not there or not finite; interrupted.
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context,
                                 std::optional<int64_t> intersecting_pairs = {});
 

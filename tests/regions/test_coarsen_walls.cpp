@@ -26,9 +26,7 @@ Coarse coarsened(const LabelVolume& volume, int64_t vertices, Context& context) 
   Coarse out{coarsen_walls(*p.cut, {walls.triangles, walls.source_face}, vertices, context), {}, 0};
   out.before = int64_t(walls.vertices.size());
   out.regions.background = volume.background;
-  std::vector<std::array<int32_t, 2>> labels(patch_count(*p.cut));
-  for (size_t t = 0; t < p.cut->fine->triangles.size(); ++t)
-    labels[p.cut->surface.patch[p.cut->corner[3 * t]]] = p.walls->regions.labels[p.cut->fine->source_face[t]];
+  const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(*p.cut);
   for (const uint32_t patch : out.joined.features.patch) out.regions.labels.push_back(labels[patch]);
   return out;
 }

@@ -49,8 +49,6 @@ class MeshRegion {
   double worst_sine() const;
   /// Whether no angle is smaller than the smallest was, and no more triangles are poor, or all together much better.
   bool is_better_than(const MeshRegion& start) const;
-  /// The same for regions that are the same, of one surface.
-  uint64_t digest() const;
   /// Puts a vertex, the last one then, into an edge, where that is nearest to a point.
   bool split(uint32_t u, uint32_t v, const WorldPoint& near);
   /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.

@@ -276,7 +276,7 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
       const auto& corner = triangles_[apart[i]].corner;
       const std::vector<uint32_t> corners(corner.begin(), corner.end());
       cutouts[i] = cut_out(corners, triangles_around(corners));
-      if (!hopeless_.count(cutouts[i]->region.digest())) better[i] = improved(cutouts[i]->region);
+      better[i] = improved(cutouts[i]->region);
     });
     for (size_t i = 0; i < apart.size(); ++i) {
       if (better[i] && put_back(*cutouts[i], *better[i])) {
@@ -284,7 +284,6 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
         continue;
       }
       is_hopeless_[apart[i]] = 1;
-      hopeless_.insert(cutouts[i]->region.digest());
     }
   }
   return has_changed;

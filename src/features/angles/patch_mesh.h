@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -86,7 +85,6 @@ class PatchMesh {
 
   const CutSurface* cut_;
   std::shared_ptr<const CutLookup> lookup_;
-  std::unordered_set<uint64_t> hopeless_;  ///< digests of regions
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
   std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried

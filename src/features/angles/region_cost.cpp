@@ -1,10 +1,9 @@
-// What a region costs, and what tells it from others (see mesh_region.h).
+// What a region costs (see mesh_region.h).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "features/angles/mesh_region.h"
-#include "voxel/random.h"
 
 namespace isoshell {
 namespace {
@@ -110,20 +109,6 @@ std::array<size_t, 2> MeshRegion::span(uint32_t u, uint32_t v, uint32_t curve) c
 bool MeshRegion::is_better_than(const MeshRegion& start) const {
   const bool is_improved = poor() <= start.poor() || cost() < kMuchLess * start.cost();
   return is_improved && worst_sine() >= start.worst_sine();
-}
-
-uint64_t MeshRegion::digest() const {
-  uint64_t h = vertices_.size();
-  const auto add = [&](uint64_t value) { h = mix64(h ^ value) + value; };
-  for (const RegionVertex& v : vertices_) {
-    for (const double x : {v.position.x, v.position.y, v.position.z}) add(uint64_t(int64_t(x)));
-    for (const uint64_t x : {uint64_t(v.kind), uint64_t(v.is_inner), uint64_t(v.home), uint64_t(v.at)}) add(x);
-  }
-  for (const RegionTriangle& t : triangles_) {
-    for (size_t i = 0; i < 3; ++i) add(uint64_t(t.corner[i]) << 32 | t.curve[i]);
-    add(t.patch);
-  }
-  return h;
 }
 
 }  // namespace isoshell

@@ -68,10 +68,6 @@ void shorten_where_curved(FineMesh& mesh, const VertexGraph& graph, double adapt
     mesh.edge_length[v] /= std::sqrt(std::max(1 - adaptivity + adaptivity * double(turn[v]) / mean, kLeastDensity));
 }
 
-}  // namespace
-
-namespace {
-
 /// A vertex has the shortest length of the faces around it; those that have none have what they had.
 void set_lengths_of_faces(const std::vector<double>& of_face, FineMesh& mesh) {
   std::vector<double> least(mesh.position.size(), std::numeric_limits<double>::infinity());

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kErrorWeight = 2;  ///< of the squared distance from the walls, beside that of a squared edge
 constexpr double kMostNarrow = 30;  ///< sum of the squared edges of a triangle over twice its area
-constexpr double kTwoRootThree = 3.4641016151377544;  ///< the same of an equilateral one
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int64_t kStepsBetweenLooks = 1024;
 

@@ -14,7 +14,6 @@ constexpr double kEnough = 1 - 1. / 1024;  ///< of the cost before, or a change 
 constexpr double kFollows = 0.9;           ///< cosine between a triangle's normal and the surface's at its corners
 constexpr double kCostOfTurn = 4;
 constexpr double kMostCostOfWall = 1e6;
-constexpr double kTwoRootThree = 3.4641016151377544;
 
 PointQ8 steps(const WorldPoint& p) { return {int32_t(p.x), int32_t(p.y), int32_t(p.z)}; }
 

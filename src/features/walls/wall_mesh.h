@@ -14,6 +14,9 @@
 
 namespace isoshell {
 
+constexpr double kTwoRootThree =
+    3.4641016151377544;  ///< sum of the squared edges of an equilateral triangle over twice its area
+
 /// Triangles on vertices of a fine mesh: its own, or those that it was refined from, on its first vertices.
 struct WallTriangles {
   const MeshTriangles& triangles;

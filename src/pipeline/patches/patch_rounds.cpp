@@ -38,7 +38,6 @@ constexpr size_t kMostWorkOfRegions = 3;  ///< the same between regions, where e
 constexpr size_t kMostHelpless = 1;       ///< the same of rounds that did not help, where there is another way
 constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
-
 constexpr int64_t kMostCrossingOfRegions = 400;  ///< vertices for one pair between regions, where there is another way
 constexpr int64_t kFewVertices = 10000;
 
@@ -191,7 +190,7 @@ class PatchRounds {
   }
 
   /// Whether rounds took long and did not help, where there is another way: curves are laid on the sheet, and walls
-  /// stay as they came in.
+  /// are coarsened.
   bool is_helpless(const CutSurface& cut) const {
     return (cut.source->input || cut.regions) && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
   }

@@ -7,12 +7,15 @@
 
 #include "isoshell/advanced/lattice.h"
 #include "repair/holes/repair_mesh.h"
+#include "voxel/exact_int.h"
 
 namespace isoshell::repair {
 
 /// Coordinates are from 0 to 2^28. On these voxel/intersect.h is exact, too: differences are at most 2^28, cross
 /// products below 2^58, and volumes have 128 bits.
 using StepPoint = PointQ8;
+inline WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
+inline WorldPoint as_world(Vec64 v) { return {double(v.x), double(v.y), double(v.z)}; }
 
 /// Ends of an edge, smaller one first.
 using Ends = std::array<uint32_t, 2>;

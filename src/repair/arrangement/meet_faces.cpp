@@ -12,8 +12,6 @@ namespace isoshell::repair {
 namespace {
 
 double square(double x) { return x * x; }
-WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
-WorldPoint as_world(Vec64 v) { return {double(v.x), double(v.y), double(v.z)}; }
 Vec64 normal_of(StepPoint a, StepPoint b, StepPoint c) { return cross(difference(b, a), difference(c, a)); }
 Int128 product(Vec64 a, Vec64 b) { return Int128(a.x) * b.x + Int128(a.y) * b.y + Int128(a.z) * b.z; }
 StepPoint rounded(const WorldPoint& p) {

@@ -11,8 +11,6 @@
 namespace isoshell::repair {
 namespace {
 
-WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
-
 auto key_of(const Contact& c) { return std::tie(c.edge, c.face, c.point, c.pair); }
 bool is_same_place(const Contact& a, const Contact& b) {
   return a.edge == b.edge && a.face == b.face && a.point == b.point;

@@ -8,8 +8,6 @@
 namespace isoshell::repair {
 namespace {
 
-WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
-
 struct PairPoint {
   std::array<uint32_t, 2> pair;
   uint32_t point;
