@@ -18,6 +18,7 @@
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
 #include "pipeline/regions/mesh_of_regions.h"
+#include "pipeline/regions/region_walls.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/flag_gaps.h"
 #include "pipeline/sheet/merge_walls.h"
@@ -50,8 +51,9 @@ RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, RemeshReport& report, Co
   return relaxed;
 }
 
-/// On the patches of a cut surface, or on the sheet.
+/// On the patches of a cut surface, or on the sheet. None where a mesh is to be made without.
 SeedSet relax_seeds(const PreparedSurface& p, Begin begin, bool in_patches, RemeshReport& report, Context& context) {
+  if (p.walls && p.walls->are_too_thin) return {};
   const bool is_warm = report.coherence.began_warm = begin == Begin::as_prepared && p.previous;
   RelaxedSeeds relaxed;
   if (!in_patches && !is_warm && p.options.method == Method::shell)

@@ -1,5 +1,9 @@
 // Walls with fewer vertices, whatever they are like.
+#include <algorithm>
+#include <cmath>
+
 #include "features/walls/coarsen_walls.h"
+#include "features/walls/thin_walls.h"
 #include "isoshell/io/memory_input.h"
 #include "measure/crossings.h"
 #include "pipeline/regions/region_walls.h"
@@ -61,6 +65,48 @@ TEST_CASE("coarsened walls have the vertices that were asked for, and good trian
   };
   for (const TriangleIndices& t : mesh.triangles) sum += smallest_sine(at(t.a), at(t.b), at(t.c));
   CHECK(sum / double(mesh.triangles.size()) > 0.68);  // 43 degrees
+}
+
+TEST_CASE("coarsened walls are the same with any number of threads, and so are those of many blocks") {
+  const LabelVolume volume = voronoi_grains(48, 20);
+  CpuContext one, four;
+  one.threads = 1;
+  four.threads = 4;
+  const Coarse a = coarsened(volume, 1200, one), b = coarsened(volume, 1200, four);
+  const auto is_same = [](const PointQ8& p, const PointQ8& q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
+  const Buffer<PointQ8>&p = a.joined.mesh.position, &q = b.joined.mesh.position;
+  REQUIRE(p.size() == 1200);
+  CHECK(std::equal(p.begin(), p.end(), q.begin(), q.end(), is_same));
+  CHECK(a.regions.labels == b.regions.labels);
+  CHECK(a.before > 12 * p.size());
+}
+
+TEST_CASE("walls that bend nearer to one another than half an edge are coarsened without being relaxed before") {
+  TestContext context;
+  const auto share = [&](const LabelVolume& volume, int64_t vertices) {
+    RemeshOptions options;
+    options.vertices = vertices;
+    RemeshReport report;
+    return share_of_thin_walls(*prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context).cut,
+                               vertices);
+  };
+  const LabelVolume waves = label_volume(40, 40, 40, [](int i, int j, int k) {
+    return 5 + int(std::floor((k + 4 * std::sin(i / 3.) * std::cos(j / 3.)) / 2.6));
+  });
+  const LabelVolume layers = label_volume(40, 40, 40, [](int, int, int k) { return 1 + k / 3; });
+  CHECK(share(waves, 1000) > 0.3);
+  CHECK(share(waves, 100000) < 0.05);
+  CHECK(share(layers, 1000) < 0.05);  // flat triangles never meet, however near
+  CHECK(share(voronoi_grains(40, 20), 500) < 0.05);
+
+  RemeshOptions options;
+  options.vertices = 1000;
+  const RemeshResult result = remesh(surface_of_labels(waves, "labels", 0), options, context);
+  CHECK(result.mesh.vertices.size() == 1000);
+  CHECK(result.report.relax.passes == 0);
+  CHECK(std::any_of(result.report.warnings.begin(), result.report.warnings.end(), [](const std::string& text) {
+    return text.find("nearer to one another than half an edge") != std::string::npos;
+  }));
 }
 
 TEST_CASE("coarsened walls of ugly labels stay closed, keep all pairs of regions and never meet") {

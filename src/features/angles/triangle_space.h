@@ -1,7 +1,10 @@
 // The triangles of a mesh that changes, where they are: whether others would meet them.
 #pragma once
 
+#include <tbb/spin_mutex.h>
+
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,14 +15,15 @@
 
 namespace isoshell {
 
-/// Triangles on the lattice by their numbers, in cells of one size. Cost: put, take and are_free look at the cells that
-/// a triangle's box meets, and at the triangles in them.
+/// Triangles on the lattice by their numbers, in cells of one size. Several threads may put, take and look at once what
+/// does not meet what the others have, as long as none puts a number that is new. Cost: put, take and are_free look at
+/// the cells that a box meets, and at the boxes in them.
 class TriangleSpace {
  public:
   TriangleSpace(double cell_q8, size_t triangles) : cell_q8_(std::max(int64_t(cell_q8), kLeastCellQ8)) {
     size_t places = 1024;
     while (2 * places < triangles) places *= 2;
-    at_.resize(places);
+    at_ = std::vector<Place>(places);
     is_there_.reserve(triangles);
     corners_.reserve(triangles);
   }
@@ -31,8 +35,9 @@ class TriangleSpace {
     }
     corners_[number] = triangle;
     is_there_[number] = 1;
-    for_each_place(box(triangle), [&](size_t place) {
-      at_[place].push_back(number);
+    const BoxQ8 around = box(triangle);
+    for_each_place(around, [&](Place& place, const Cell&) {
+      place.boxed.push_back({around, number});
       return true;
     });
   }
@@ -40,9 +45,9 @@ class TriangleSpace {
   void take(uint32_t number) {
     if (number >= corners_.size() || !is_there_[number]) return;
     is_there_[number] = 0;
-    for_each_place(box(corners_[number]), [&](size_t place) {
-      std::vector<uint32_t>& at = at_[place];
-      *std::find(at.begin(), at.end(), number) = at.back();
+    for_each_place(box(corners_[number]), [&](Place& place, const Cell&) {
+      std::vector<Boxed>& at = place.boxed;
+      *std::find_if(at.begin(), at.end(), [&](const Boxed& t) { return t.number == number; }) = at.back();
       at.pop_back();
       return true;
     });
@@ -50,23 +55,34 @@ class TriangleSpace {
   /// Whether some triangles meet neither each other nor any, but those that they replace, outside of corners that they
   /// share, and none is there twice.
   bool are_free(const std::vector<CornersOfTriangle>& made, const std::vector<uint32_t>& replaced) const {
-    for (size_t i = 0; i < made.size(); ++i) {
+    if (made.empty()) return true;
+    for (size_t i = 0; i < made.size(); ++i)
       for (size_t j = 0; j < i; ++j)
         if (meet(made[i], made[j])) return false;
-      const BoxQ8 around = box(made[i]);
-      const bool is_free = for_each_place(around, [&](size_t place) {
-        for (const uint32_t t : at_[place])
-          if (boxes_meet(box(corners_[t]), around) &&
-              std::find(replaced.begin(), replaced.end(), t) == replaced.end() && meet(made[i], corners_[t]))
-            return false;
-        return true;
-      });
-      if (!is_free) return false;
-    }
-    return true;
+    BoxQ8 whole = box(made[0]);
+    for (const CornersOfTriangle& t : made) whole = joined(whole, box(t));
+    return for_each_place(whole, [&](const Place& place, const Cell& cell) {
+      for (const Boxed& t : place.boxed) {
+        if (!boxes_meet(t.box, whole) || cell != cell_of(largest_of(t.box.min, whole.min)) ||
+            std::find(replaced.begin(), replaced.end(), t.number) != replaced.end())
+          continue;
+        for (const CornersOfTriangle& m : made)
+          if (boxes_meet(t.box, box(m)) && meet(m, corners_[t.number])) return false;
+      }
+      return true;
+    });
   }
 
  private:
+  struct Boxed {
+    BoxQ8 box;
+    uint32_t number;
+  };
+  /// Of some cells that lie apart.
+  struct Place {
+    std::vector<Boxed> boxed;  ///< boxes beside their numbers, as most of them meet nothing
+    tbb::spin_mutex mutex;
+  };
   static constexpr int64_t kLeastCellQ8 = 64;
 
   static BoxQ8 box(const CornersOfTriangle& t) { return box_of(t.at[0], t.at[1], t.at[2]); }
@@ -76,23 +92,28 @@ class TriangleSpace {
     return shared == 3 || triangles_intersect_apart(s, t);
   }
 
-  int64_t cell_of(int32_t at) const { return (int64_t(at) + (int64_t(1) << 40)) / cell_q8_; }
-  /// The same place for some cells that lie apart: what is there meets a box or does not.
+  using Cell = std::array<int64_t, 3>;
+  Cell cell_of(const PointQ8& p) const {
+    const auto on_axis = [&](int32_t at) { return (int64_t(at) + (int64_t(1) << 40)) / cell_q8_; };
+    return {on_axis(p.x), on_axis(p.y), on_axis(p.z)};
+  }
   template <class Visit>
   bool for_each_place(const BoxQ8& box, Visit visit) const {
-    const int64_t high[3] = {cell_of(box.max.x), cell_of(box.max.y), cell_of(box.max.z)};
-    for (int64_t x = cell_of(box.min.x); x <= high[0]; ++x)
-      for (int64_t y = cell_of(box.min.y); y <= high[1]; ++y)
-        for (int64_t z = cell_of(box.min.z); z <= high[2]; ++z)
-          if (!visit(size_t(mix64(uint64_t(x) << 42 ^ uint64_t(y) << 21 ^ uint64_t(z))) & (at_.size() - 1)))
-            return false;
+    const Cell low = cell_of(box.min), high = cell_of(box.max);
+    for (int64_t x = low[0]; x <= high[0]; ++x)
+      for (int64_t y = low[1]; y <= high[1]; ++y)
+        for (int64_t z = low[2]; z <= high[2]; ++z) {
+          Place& place = at_[size_t(mix64(uint64_t(x) << 42 ^ uint64_t(y) << 21 ^ uint64_t(z))) & (at_.size() - 1)];
+          const tbb::spin_mutex::scoped_lock lock(place.mutex);
+          if (!visit(place, Cell{x, y, z})) return false;
+        }
     return true;
   }
 
   int64_t cell_q8_;
   std::vector<CornersOfTriangle> corners_;  ///< by number
   std::vector<char> is_there_;
-  std::vector<std::vector<uint32_t>> at_;  ///< numbers of triangles
+  mutable std::vector<Place> at_;
 };
 
 }  // namespace isoshell

@@ -6,7 +6,9 @@
 #include <queue>
 #include <utility>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "features/walls/wall_blocks.h"
 
 namespace isoshell {
 namespace {
@@ -14,6 +16,9 @@ namespace {
 constexpr double kErrorWeight = 2;  ///< of the squared distance from the walls, beside that of a squared edge
 constexpr double kMostNarrow = 30;  ///< sum of the squared edges of a triangle over twice its area
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kCheap = 0.75;  ///< of the last collapses' cost: what costs less goes anyhow
+constexpr double kEdgesOfBlock = 16;
+constexpr int64_t kManyVertices = 2;  ///< for one that is to stay: cheap ones go in all blocks at once
 constexpr int64_t kStepsBetweenLooks = 1024;
 
 /// The mean of squared distances from planes, weighted by areas.
@@ -37,26 +42,31 @@ struct Quadric {
   }
 };
 
+/// What is known of the vertices.
+struct Known {
+  std::vector<Quadric> quadric;  ///< of the triangles that were around each and what it took in
+  std::vector<double> least;     ///< cost with which each is in a queue; kNever: in none
+};
+
+/// Of some vertices: those of a block, or all.
 class Coarsening {
  public:
-  explicit Coarsening(WallMesh& mesh)
-      : mesh_(mesh), quadric_(mesh.vertices().size()), least_(mesh.vertices().size(), kNever) {
-    for (const RegionTriangle& t : mesh.triangles()) {
-      const WorldPoint& a = mesh.at(t.corner[0]);
-      const WorldPoint n = doubled_area(a, mesh.at(t.corner[1]), mesh.at(t.corner[2]));
-      if (const double size = length(n); size > 0)
-        for (const uint32_t v : t.corner) quadric_[v].add_plane((1 / size) * n, a, size / 6);
-    }
-  }
+  Coarsening(WallMesh& mesh, Known& known, const WallBlocks* blocks, size_t block)
+      : mesh_(mesh), known_(known), blocks_(blocks), block_(block) {}
 
-  void run(int64_t vertices, const Context& context) {
-    if (mesh_.vertex_count() <= vertices) return;
-    for (uint32_t v = 0; v < least_.size(); ++v) push(v);
-    for (int64_t step = 0; mesh_.vertex_count() > vertices && !queue_.empty(); ++step) {
+  void add(uint32_t v) {
+    if (!is_here(v)) return;
+    mesh_.list_targets(v, targets_);
+    for (const uint32_t w : targets_) push(v, cost(v, w));
+  }
+  /// Until so many vertices are left, or each costs so much.
+  void run(int64_t vertices, double most_cost, const Context& context) {
+    for (int64_t step = 0; !queue_.empty() && queue_.top().cost < most_cost; ++step) {
+      if (mesh_.vertex_count() <= vertices) return;
       if (step % kStepsBetweenLooks == 0) check_cancel(context, "features");
       const Entry top = queue_.top();
       queue_.pop();
-      if (!mesh_.around(top.vertex).empty() && top.cost == least_[top.vertex]) take(top.vertex);
+      if (!mesh_.around(top.vertex).empty() && top.cost == known_.least[top.vertex]) take(top.vertex);
     }
   }
 
@@ -67,6 +77,8 @@ class Coarsening {
 
     bool operator<(const Entry& o) const { return cost != o.cost ? cost > o.cost : vertex > o.vertex; }
   };
+
+  bool is_here(uint32_t v) const { return !blocks_ || blocks_->holds_around(block_, v); }
 
   /// Of taking a vertex into another one: the longest edge that comes of it, squared, more where triangles are narrow.
   double cost(uint32_t gone, uint32_t into) const {
@@ -83,7 +95,8 @@ class Coarsening {
       worst = narrow < kMostNarrow * doubled ? std::max(worst, narrow / (kTwoRootThree * doubled)) : kMostNarrow;
     }
     const double aimed_at = mesh_.aimed_at(gone);
-    return (longest_sq * (1 + worst) / 2 + kErrorWeight * quadric_[gone].at(mesh_.at(into))) / (aimed_at * aimed_at);
+    return (longest_sq * (1 + worst) / 2 + kErrorWeight * known_.quadric[gone].at(mesh_.at(into))) /
+           (aimed_at * aimed_at);
   }
 
   void list_ways(uint32_t v) {
@@ -93,42 +106,87 @@ class Coarsening {
     std::sort(ways_.begin(), ways_.end());
   }
   void push(uint32_t v, double cost) {
-    if (cost >= least_[v]) return;
-    least_[v] = cost;
+    if (cost >= known_.least[v]) return;
+    known_.least[v] = cost;
     queue_.push({cost, v});
-  }
-  void push(uint32_t v) {
-    mesh_.list_targets(v, targets_);
-    for (const uint32_t w : targets_) push(v, cost(v, w));
   }
 
   /// Collapses the edge of a vertex that costs the least, of those that can be; later where all have become dearer.
   void take(uint32_t v) {
-    const double expected = least_[v];
-    least_[v] = kNever;
+    const double expected = known_.least[v];
+    known_.least[v] = kNever;
+    if (!is_here(v)) return;
     list_ways(v);
     if (ways_.empty()) return;
     if (ways_[0].first > expected) return push(v, ways_[0].first);
     const auto way =
-        std::find_if(ways_.begin(), ways_.end(), [&](const auto& w) { return mesh_.collapse(v, w.second); });
+        std::find_if(ways_.begin(), ways_.end(), [&](const auto& w) { return mesh_.collapse(v, w.second, scratch_); });
     if (way == ways_.end()) return;  // until something around it changes
     const uint32_t into = way->second;
-    quadric_[into].add(quadric_[v]);
+    known_.quadric[into].add(known_.quadric[v]);
     mesh_.list_neighbours(into, around_);
-    for (const uint32_t w : around_) push(w);
-    push(into);
+    for (const uint32_t w : around_)
+      if (!blocks_ || known_.least[w] == kNever) add(w);  // in a block the others wait for their turn
+    add(into);
   }
 
   WallMesh& mesh_;
-  std::vector<Quadric> quadric_;  ///< per vertex, of the triangles that were around it and what it took in
-  std::vector<double> least_;     ///< per vertex the cost with which it is in the queue
+  Known& known_;
+  const WallBlocks* blocks_;  ///< null: everything is here
+  size_t block_;
   std::priority_queue<Entry> queue_;
   std::vector<uint32_t> targets_, around_;
   std::vector<std::pair<double, uint32_t>> ways_;
+  WallScratch scratch_;
 };
+
+Known known_of(const WallMesh& mesh) {
+  Known known{std::vector<Quadric>(mesh.vertices().size()), std::vector<double>(mesh.vertices().size(), kNever)};
+  for (const RegionTriangle& t : mesh.triangles()) {
+    const WorldPoint& a = mesh.at(t.corner[0]);
+    const WorldPoint n = doubled_area(a, mesh.at(t.corner[1]), mesh.at(t.corner[2]));
+    if (const double size = length(n); size > 0)
+      for (const uint32_t v : t.corner) known.quadric[v].add_plane((1 / size) * n, a, size / 6);
+  }
+  return known;
+}
+
+/// The square of the edge of equilateral triangles that so many vertices make, in terms of the lengths aimed at.
+double square_of_edges(const WallMesh& mesh, int64_t vertices) {
+  double doubled = 0;
+  for (const RegionTriangle& t : mesh.triangles()) {
+    if (t.is_gone()) continue;
+    const double aimed_at = mesh.aimed_at(t.corner[0]);
+    doubled +=
+        length(doubled_area(mesh.at(t.corner[0]), mesh.at(t.corner[1]), mesh.at(t.corner[2]))) / (aimed_at * aimed_at);
+  }
+  return 2 * doubled / (kTwoRootThree * double(vertices));
+}
+
+/// Collapses what costs far less than the last collapses will, in all blocks at once.
+void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, Known& known, const Context& context) {
+  const double most_cost = kCheap * square_of_edges(mesh, vertices);
+  const double side_q8 = kEdgesOfBlock * mean_edge_q8(mesh, vertices);
+  for (const bool is_shifted : {false, true}) {
+    const WallBlocks blocks(mesh, side_q8, is_shifted);
+    for_each_index(size_t(0), blocks.size(), [&](size_t b) {
+      Coarsening here(mesh, known, &blocks, b);
+      for (const uint32_t v : blocks.vertices_of(b)) here.add(v);
+      here.run(0, most_cost, context);
+      for (const uint32_t v : blocks.vertices_of(b)) known.least[v] = kNever;
+    });
+  }
+}
 
 }  // namespace
 
-void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) { Coarsening(mesh).run(vertices, context); }
+void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) {
+  if (mesh.vertex_count() <= vertices) return;
+  Known known = known_of(mesh);
+  if (mesh.vertex_count() > kManyVertices * vertices) coarsen_in_blocks(mesh, vertices, known, context);
+  Coarsening all(mesh, known, nullptr, 0);
+  for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
+  all.run(vertices, kNever, context);
+}
 
 }  // namespace isoshell

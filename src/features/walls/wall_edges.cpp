@@ -26,58 +26,59 @@ bool WallMesh::may_replace(const RegionTriangle& made, const RegionTriangle& bef
 }
 
 /// Whether a vertex may be taken into another one as far as kinds, curves and topology tell: the two have neighbours in
-/// common across their edge only, and no two edges on curves become one. Lists in `fused_` the edges that become one
+/// common across their edge only, and no two edges on curves become one. Lists in `fused` the edges that become one
 /// with an edge on a curve.
-bool WallMesh::may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides) {
+bool WallMesh::may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides, WallScratch& scratch) const {
   using Kind = RegionVertex::Kind;
   const Kind kind = vertices_[gone].kind;
   if (sides.empty() || kind == Kind::corner) return false;
   if (kind == Kind::on_curve && triangles_[sides[0].triangle].curve[sides[0].edge] == kNone) return false;
-  list_neighbours(gone, here_);
-  list_neighbours(into, there_);
+  list_neighbours(gone, scratch.here);
+  list_neighbours(into, scratch.there);
   size_t both = 0;
-  for (const uint32_t v : here_) both += size_t(std::count(there_.begin(), there_.end(), v));
-  const bool are_tetrahedra = here_.size() == both + 1 && there_.size() == both + 1;  // faces would be there twice
+  for (const uint32_t v : scratch.here) both += size_t(std::count(scratch.there.begin(), scratch.there.end(), v));
+  const bool are_tetrahedra =
+      scratch.here.size() == both + 1 && scratch.there.size() == both + 1;  // faces would be there twice
   if (both != sides.size() || are_tetrahedra) return false;
-  fused_.clear();
+  scratch.fused.clear();
   for (const Side& s : sides) {
     const RegionTriangle& t = triangles_[s.triangle];
     const uint32_t one = t.curve[(s.edge + 1) % 3], other = t.curve[(s.edge + 2) % 3];
     if (one != kNone && other != kNone) return false;
     const uint32_t curve = one != kNone ? one : other;
-    if (curve != kNone) fused_.push_back({t.corner[(s.edge + 2) % 3], curve});
+    if (curve != kNone) scratch.fused.push_back({t.corner[(s.edge + 2) % 3], curve});
   }
   return true;
 }
 
-bool WallMesh::collapse(uint32_t gone, uint32_t into) {
-  if (!may_collapse(gone, into, sides_of(gone, into))) return false;
-  replaced_ = around_[gone];
-  made_.clear();
-  number_.clear();
-  for (const uint32_t i : replaced_) {
+bool WallMesh::collapse(uint32_t gone, uint32_t into, WallScratch& scratch) {
+  if (!may_collapse(gone, into, sides_of(gone, into), scratch)) return false;
+  scratch.replaced = around_[gone];
+  scratch.made.clear();
+  scratch.number.clear();
+  for (const uint32_t i : scratch.replaced) {
     if (has(triangles_[i], into)) continue;
     RegionTriangle t = triangles_[i];
     std::replace(t.corner.begin(), t.corner.end(), gone, into);
     if (!may_replace(t, triangles_[i])) return false;
-    made_.push_back(t);
-    number_.push_back(i);
+    scratch.made.push_back(t);
+    scratch.number.push_back(i);
   }
-  if (!are_free(made_, replaced_)) return false;
-  for (const uint32_t i : replaced_)
+  if (!are_free(scratch)) return false;
+  for (const uint32_t i : scratch.replaced)
     if (has(triangles_[i], into)) replace(i, none_at(into));
-  for (size_t i = 0; i < made_.size(); ++i) replace(number_[i], made_[i]);
-  for (const auto& [end, curve] : fused_)
+  for (size_t i = 0; i < scratch.made.size(); ++i) replace(scratch.number[i], scratch.made[i]);
+  for (const auto& [end, curve] : scratch.fused)
     for (const Side& s : sides_of(into, end)) triangles_[s.triangle].curve[s.edge] = curve;
   return true;
 }
 
-bool WallMesh::split(uint32_t u, uint32_t v, const RegionVertex& middle) {
+bool WallMesh::split(uint32_t u, uint32_t v, const RegionVertex& middle, WallScratch& scratch) {
   const auto m = uint32_t(vertices_.size());
   vertices_.push_back(middle);
   around_.emplace_back();
-  replaced_.clear();
-  made_.clear();
+  scratch.replaced.clear();
+  scratch.made.clear();
   bool may_split = true;
   for (const Side& s : sides_of(u, v)) {
     const RegionTriangle before = triangles_[s.triangle];
@@ -86,18 +87,18 @@ bool WallMesh::split(uint32_t u, uint32_t v, const RegionVertex& middle) {
     one.corner[next] = other.corner[s.edge] = m;
     one.curve[next] = other.curve[last] = kNone;
     may_split = may_split && may_replace(one, before) && may_replace(other, before);
-    made_.insert(made_.end(), {one, other});
-    replaced_.push_back(s.triangle);
+    scratch.made.insert(scratch.made.end(), {one, other});
+    scratch.replaced.push_back(s.triangle);
   }
-  if (made_.empty() || !may_split || !are_free(made_, replaced_)) {
+  if (scratch.made.empty() || !may_split || !are_free(scratch)) {
     vertices_.pop_back();
     around_.pop_back();
     return false;
   }
-  for (size_t i = 0; i < replaced_.size(); ++i) {
-    replace(replaced_[i], made_[2 * i]);
+  for (size_t i = 0; i < scratch.replaced.size(); ++i) {
+    replace(scratch.replaced[i], scratch.made[2 * i]);
     triangles_.push_back(none_at(m));
-    replace(uint32_t(triangles_.size() - 1), made_[2 * i + 1]);
+    replace(uint32_t(triangles_.size() - 1), scratch.made[2 * i + 1]);
   }
   return true;
 }

@@ -156,10 +156,11 @@ std::optional<uint32_t> WallMesh::curve_between(uint32_t u, uint32_t v) const {
   return triangles_[sides[0].triangle].curve[sides[0].edge];
 }
 
-bool WallMesh::are_free(const std::vector<RegionTriangle>& made, const std::vector<uint32_t>& replaced) {
-  corners_.clear();
-  for (const RegionTriangle& t : made) corners_.push_back(corners(t));
-  return space_.are_free(corners_, replaced);
+/// What is made, beside what it replaces.
+bool WallMesh::are_free(WallScratch& scratch) const {
+  scratch.corners.clear();
+  for (const RegionTriangle& t : scratch.made) scratch.corners.push_back(corners(t));
+  return space_.are_free(scratch.corners, scratch.replaced);
 }
 
 WorldPoint WallMesh::normal(const RegionTriangle& t) const {
@@ -192,7 +193,7 @@ double WallMesh::cost_around(uint32_t v) const {
   return sum;
 }
 
-bool WallMesh::flip(uint32_t triangle, size_t edge) {
+bool WallMesh::flip(uint32_t triangle, size_t edge, WallScratch& scratch) {
   const RegionTriangle t = triangles_[triangle];
   if (t.is_gone() || t.curve[edge] != kNone) return false;
   const uint32_t a = t.corner[edge], b = t.corner[(edge + 1) % 3], c = t.corner[(edge + 2) % 3];
@@ -205,21 +206,24 @@ bool WallMesh::flip(uint32_t triangle, size_t edge) {
   const RegionTriangle first = {{a, d, c}, {s.curve[(other.edge + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch};
   const RegionTriangle second = {{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(other.edge + 2) % 3]}, t.patch};
   if (cost(first) + cost(second) >= kEnough * (cost(t) + cost(s)) || !sides_of(c, d).empty()) return false;
-  if (!are_free({first, second}, {triangle, other.triangle})) return false;
+  scratch.made.assign({first, second});
+  scratch.replaced.assign({triangle, other.triangle});
+  if (!are_free(scratch)) return false;
   replace(triangle, first);
   replace(other.triangle, second);
   return true;
 }
 
-bool WallMesh::move(uint32_t v, const RegionVertex& to) {
+bool WallMesh::move(uint32_t v, const RegionVertex& to, WallScratch& scratch) {
   const RegionVertex before = vertices_[v];
   const double cost_before = cost_around(v);
   vertices_[v].home = to.home;
   vertices_[v].at = to.at;
   vertices_[v].position = to.position;
-  made_.clear();
-  for (const uint32_t t : around_[v]) made_.push_back(triangles_[t]);
-  if (cost_around(v) >= kEnough * cost_before || !are_free(made_, around_[v])) {
+  scratch.made.clear();
+  for (const uint32_t t : around_[v]) scratch.made.push_back(triangles_[t]);
+  scratch.replaced = around_[v];
+  if (cost_around(v) >= kEnough * cost_before || !are_free(scratch)) {
     vertices_[v] = before;
     return false;
   }

@@ -1,6 +1,7 @@
 // All walls of a cut surface as one mesh, changed edge by edge so that no triangles come to meet.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -23,11 +24,20 @@ struct WallTriangles {
   const std::vector<uint32_t>& source_face;  ///< per triangle, as in FineMesh
 };
 
+/// What changes of a WallMesh take memory for: kept, so that they do not take it each time.
+struct WallScratch {
+  std::vector<uint32_t> here, there, replaced, number;
+  std::vector<RegionTriangle> made;
+  std::vector<CornersOfTriangle> corners;
+  std::vector<std::pair<uint32_t, uint32_t>> fused;  ///< ends of edges of which one was on a curve, and that
+};
+
 /// A change keeps the topology of every region, the patches and the curves. One that would not, or after
 /// which a triangle met another one outside of corners that they share, is not made; no collapse or split turns a
 /// triangle over or makes a needle of it. Vertices and triangles keep their numbers; those that are gone have no
 /// triangles, and one corner twice. Cost of each: the triangles around its vertices, and a look at those whose boxes
-/// meet them.
+/// meet them. Several threads may make changes at once, each with its own scratch, but for splits, where the triangles
+/// around their vertices, before and after, lie in boxes that do not meet.
 class WallMesh {
  public:
   /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.
@@ -50,13 +60,13 @@ class WallMesh {
   std::optional<uint32_t> curve_between(uint32_t u, uint32_t v) const;
 
   /// Whether the change was made, here and below.
-  bool collapse(uint32_t gone, uint32_t into);
+  bool collapse(uint32_t gone, uint32_t into, WallScratch& scratch);
   /// Puts a vertex, the last one then, into an edge.
-  bool split(uint32_t u, uint32_t v, const RegionVertex& middle);
+  bool split(uint32_t u, uint32_t v, const RegionVertex& middle, WallScratch& scratch);
   /// Where that costs less.
-  bool flip(uint32_t triangle, size_t edge);
+  bool flip(uint32_t triangle, size_t edge, WallScratch& scratch);
   /// Along its curve, or in its patch, where that costs less.
-  bool move(uint32_t v, const RegionVertex& to);
+  bool move(uint32_t v, const RegionVertex& to, WallScratch& scratch);
 
  private:
   struct Side {
@@ -77,9 +87,9 @@ class WallMesh {
   WorldPoint normal(const RegionTriangle& t) const;
   double sine(const RegionTriangle& t) const;
   bool may_replace(const RegionTriangle& made, const RegionTriangle& before) const;
-  bool may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides);
+  bool may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides, WallScratch& scratch) const;
   CornersOfTriangle corners(const RegionTriangle& t) const;
-  bool are_free(const std::vector<RegionTriangle>& made, const std::vector<uint32_t>& replaced);
+  bool are_free(WallScratch& scratch) const;
   void replace(uint32_t triangle, const RegionTriangle& by);
 
   std::shared_ptr<const CutLookup> lookup_;
@@ -87,12 +97,7 @@ class WallMesh {
   std::vector<RegionTriangle> triangles_;
   std::vector<std::vector<uint32_t>> around_;  ///< per vertex its triangles
   TriangleSpace space_;
-  int64_t count_ = 0;
-  // Of the change that is being made: kept, so that it takes no memory each time.
-  std::vector<uint32_t> here_, there_, replaced_, number_;
-  std::vector<RegionTriangle> made_;
-  std::vector<CornersOfTriangle> corners_;
-  std::vector<std::pair<uint32_t, uint32_t>> fused_;  ///< ends of edges of which one was on a curve, and that
+  std::atomic<int64_t> count_{0};
 };
 
 }  // namespace isoshell

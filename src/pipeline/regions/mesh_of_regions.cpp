@@ -24,6 +24,7 @@ namespace {
 constexpr int64_t kManyVertices = 2;  ///< of walls, for one that is asked for
 constexpr const char* kCoarsened =
     "the edges between regions were collapsed and flipped, not relaxed, and triangles are less even: ";
+constexpr const char* kTooThin = "walls bend, and are nearer to one another than half an edge";
 
 FaceRegions without_labels(const FaceRegions& regions) {
   FaceRegions out;
@@ -91,6 +92,7 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
   SharedCut cut = p.cut;
   JoinedPatches joined;
   const std::string why_not = failure_reason([&]() -> std::string {
+    if (p.walls->are_too_thin) return kTooThin;
     if (std::string why = mesh_in_rounds(p, cut, made, in_patches, report, context); !why.empty()) return why;
     joined =
         timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(in_patches), context); });

@@ -8,6 +8,7 @@
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/free_seeds.h"
 #include "features/mesh/weld_for_features.h"
+#include "features/walls/thin_walls.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/grid/sizing.h"
@@ -20,6 +21,10 @@
 
 namespace isoshell {
 namespace {
+
+/// Of relaxed walls of brains with smaller parts, few triangles intersect and rounds part them; above, cells of
+/// hundreds are no disks.
+constexpr double kMostThin = 0.11;
 
 void check_asked_for(const RemeshOptions& options) {
   const auto refuse = [](const char* what) {
@@ -89,7 +94,7 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     auto walls = std::make_shared<RegionWalls>();
     walls->mesh = run_with_threads(context, [&] { return weld_for_features(soup); });
     walls->regions = soup.regions;
-    p.walls = std::move(walls);
+    p.walls = walls;
     const CurveNetwork network =
         run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
     report_found(p.walls->mesh, network, false, report.features);
@@ -100,6 +105,8 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     }
     report.features.patches = int64_t(patch_count(*cut));
     p.cut = cut;
+    walls->are_too_thin = walls->regions.are_of_voxels &&
+                          run_with_threads(context, [&] { return share_of_thin_walls(*cut, cut->seeds) > kMostThin; });
   });
   report.input.topology = measured.topology;
   report.grid.frame = p.surface.frame;
