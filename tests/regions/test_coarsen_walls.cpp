@@ -90,19 +90,21 @@ TEST_CASE("walls that bend nearer to one another than half an edge are coarsened
     return share_of_thin_walls(*prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context).cut,
                                vertices);
   };
-  const LabelVolume waves = label_volume(40, 40, 40, [](int i, int j, int k) {
-    return 5 + int(std::floor((k + 4 * std::sin(i / 3.) * std::cos(j / 3.)) / 2.6));
-  });
+  const auto waves = [](int32_t n) {
+    return label_volume(n, n, 24, [](int i, int j, int k) {
+      return 5 + int(std::floor((k + 4 * std::sin(i / 3.) * std::cos(j / 3.)) / 2));
+    });
+  };
   const LabelVolume layers = label_volume(40, 40, 40, [](int, int, int k) { return 1 + k / 3; });
-  CHECK(share(waves, 1000) > 0.3);
-  CHECK(share(waves, 100000) < 0.05);
+  CHECK(share(waves(32), 1000) > 0.3);
+  CHECK(share(waves(32), 40000) < 0.1);
   CHECK(share(layers, 1000) < 0.05);  // flat triangles never meet, however near
   CHECK(share(voronoi_grains(40, 20), 500) < 0.05);
 
   RemeshOptions options;
-  options.vertices = 1000;
-  const RemeshResult result = remesh(surface_of_labels(waves, "labels", 0), options, context);
-  CHECK(result.mesh.vertices.size() == 1000);
+  options.vertices = 10000;
+  const RemeshResult result = remesh(surface_of_labels(waves(72), "labels", 0), options, context);
+  CHECK(result.mesh.vertices.size() == 10000);
   CHECK(result.report.relax.passes == 0);
   CHECK(std::any_of(result.report.warnings.begin(), result.report.warnings.end(), [](const std::string& text) {
     return text.find("nearer to one another than half an edge") != std::string::npos;

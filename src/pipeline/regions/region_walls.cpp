@@ -25,6 +25,7 @@ namespace {
 /// Of relaxed walls of brains with smaller parts, few triangles intersect and rounds part them; above, cells of
 /// hundreds are no disks.
 constexpr double kMostThin = 0.11;
+constexpr int64_t kManyVertices = 10000;  ///< with fewer it costs little to relax them and see
 
 void check_asked_for(const RemeshOptions& options) {
   const auto refuse = [](const char* what) {
@@ -105,8 +106,9 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     }
     report.features.patches = int64_t(patch_count(*cut));
     p.cut = cut;
-    walls->are_too_thin = walls->regions.are_of_voxels &&
-                          run_with_threads(context, [&] { return share_of_thin_walls(*cut, cut->seeds) > kMostThin; });
+    if (walls->regions.are_of_voxels && cut->seeds >= kManyVertices)
+      walls->are_too_thin =
+          run_with_threads(context, [&] { return share_of_thin_walls(*cut, cut->seeds) > kMostThin; });
   });
   report.input.topology = measured.topology;
   report.grid.frame = p.surface.frame;
