@@ -281,6 +281,21 @@ TEST_CASE("part meshes: two cubes keep their planes, edges and volumes") {
   CHECK(pairs_of(mesh.regions) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}, {1, 2}});
 }
 
+TEST_CASE("part meshes: vertices of flat walls are on their planes, and corners where they were, to the last bit") {
+  const TriangleMesh cubes = meshed(cubes_in_a_row(2), "components", 4000);
+  for (const WorldPoint& p : cubes.vertices) {
+    const double off = std::min({std::abs(p.x), std::abs(p.x - 1), std::abs(p.x - 2), std::abs(p.y), std::abs(p.y - 1),
+                                 std::abs(p.z), std::abs(p.z - 1)});
+    REQUIRE(off == 0);
+  }
+  const WorldPoint corner{.123456789, .2, .5};
+  const TriangleSoup sheet =
+      shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), rectangle(corner, {.6, 0, 0}, {0, .6, 0}));
+  const TriangleMesh mesh = meshed(sheet, "components", 1000);
+  CHECK(std::count_if(mesh.vertices.begin(), mesh.vertices.end(),
+                      [&](const WorldPoint& p) { return p.x == corner.x && p.y == corner.y && p.z == corner.z; }) == 1);
+}
+
 TEST_CASE("part meshes: a pin in a hole shares the wall of the hole") {
   const TriangleSoup soup = pin_in_a_plate();
   const PartRegions found = regions_of(soup, "components");

@@ -7,7 +7,7 @@ import pytest
 from conftest import SOURCE
 
 pytest.importorskip("scipy")
-sys.path.append(str(SOURCE / "bench"))
+sys.path.append(str(SOURCE / "bench/regions"))
 
 from compare_regions import from_labels  # noqa: E402
 from region_geometry import crossing  # noqa: E402

@@ -13,9 +13,10 @@
 namespace isoshell {
 namespace {
 
-constexpr double kFlat = 1e-7;             // of a patch's own size: by how far its vertices may be off its plane
-constexpr double kFarthestVox = 8. / 256;  // that a vertex is moved: some steps, which no check has to look at again
-constexpr double kLeastSine = 1e-3;        // between planes that give a line or a point
+constexpr double kFlat = 1e-7;  // of a patch's own size: by how far its vertices may be off its plane
+constexpr double kFarthestVox =
+    32. / 256;                       // that a vertex is moved: part of an edge that no check has to look at again
+constexpr double kLeastSine = 1e-3;  // between planes that give a line or a point
 
 struct Plane {
   WorldPoint at{0, 0, 0}, normal{0, 0, 0};  ///< of no length: the patch is not flat
@@ -76,9 +77,23 @@ WorldPoint nearest_on(const std::vector<Plane>& planes, const WorldPoint& from) 
   return at;
 }
 
+/// Nowhere where that is far.
+void move_to(const WorldPoint& there, const CutSurface& cut, WorldPoint& p) {
+  if (distance_sq(there, p) <= std::pow(kFarthestVox * cut.frame.voxel_size, 2)) p = there;
+}
+
+/// Corners, to the vertices that they were as the walls came in.
+void put_on_corners(const CutSurface& cut, const RegionWalls& walls, View<const uint32_t> home, TriangleMesh& mesh) {
+  std::vector<uint32_t> fine_vertex(size_t(cut.surface.vertex_count()), 0);
+  for (size_t c = 0; c < cut.corner.size(); ++c) fine_vertex[cut.corner[c]] = cut.fine->triangles[c / 3][c % 3];
+  for (const uint32_t v : mesh.features.corners)
+    if (const uint32_t of_walls = fine_vertex[home[v]]; of_walls < walls.mesh.vertices.size())
+      move_to(walls.mesh.vertices[of_walls], cut, mesh.vertices[v]);
+}
+
 }  // namespace
 
-void put_on_planes(const CutSurface& cut, const RegionWalls& walls, TriangleMesh& mesh) {
+void put_on_planes(const CutSurface& cut, const RegionWalls& walls, View<const uint32_t> home, TriangleMesh& mesh) {
   const std::vector<Plane> planes = planes_of_patches(cut, walls);
   std::vector<std::pair<uint32_t, uint32_t>> at_vertex;  // vertex, patch
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -92,9 +107,9 @@ void put_on_planes(const CutSurface& cut, const RegionWalls& walls, TriangleMesh
     const uint32_t v = at_vertex[begin].first;
     std::vector<Plane> meeting;
     for (; end < at_vertex.size() && at_vertex[end].first == v; ++end) meeting.push_back(planes[at_vertex[end].second]);
-    const WorldPoint to = nearest_on(meeting, mesh.vertices[v]);
-    if (distance_sq(to, mesh.vertices[v]) <= std::pow(kFarthestVox * cut.frame.voxel_size, 2)) mesh.vertices[v] = to;
+    move_to(nearest_on(meeting, mesh.vertices[v]), cut, mesh.vertices[v]);
   }
+  put_on_corners(cut, walls, home, mesh);
 }
 
 }  // namespace isoshell
