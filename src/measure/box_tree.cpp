@@ -21,10 +21,8 @@ int64_t twice_middle(const BoxQ8& b, int axis) {
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<BoxQ8>& boxes) {
-  if (boxes.empty()) return;
-  list_.reserve(boxes.size());
-  for (const BoxQ8& box : boxes) list_.push_back({box, uint32_t(list_.size())});
+void BoxTree::arrange_all() {
+  if (list_.empty()) return;
   Node last{0, 0, list_.size()};  // the larger half is above, so no node has a larger number
   while (!last.is_leaf()) last = last.upper();
   around_.resize(last.number + 1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "geometry/box.h"
@@ -14,7 +15,14 @@ namespace isoshell {
 class BoxTree {
  public:
   /// Cost: n log n for n boxes, in parallel.
-  explicit BoxTree(const std::vector<BoxQ8>& boxes);
+  explicit BoxTree(const std::vector<BoxQ8>& boxes) : BoxTree(boxes.size(), [&](uint32_t i) { return boxes[i]; }) {}
+  /// Of so many boxes, box_of(i) each, which need not all be held at once.
+  template <class BoxOf>
+  BoxTree(size_t count, const BoxOf& box_of) {
+    list_.reserve(count);
+    for (uint32_t i = 0; i < count; ++i) list_.push_back({box_of(i), i});
+    arrange_all();
+  }
 
   /// Calls visit(i) for each box i that meets this one, in any order, while that returns true. Result: whether all did.
   template <class Visit>
@@ -72,6 +80,7 @@ class BoxTree {
     for (size_t i = std::max(node.begin, begin); i < node.end; ++i)
       if (boxes_meet(list_[i].box, box)) look(i);
   }
+  void arrange_all();
   void arrange(const Node& node);
 
   std::vector<Numbered> list_;

@@ -31,12 +31,10 @@ std::vector<std::array<uint32_t, 2>> crossing_pairs(View<const PointQ8> position
     const TriangleIndices i = triangles[t];
     return CornersOfTriangle{{id(i.a), id(i.b), id(i.c)}, {position[i.a], position[i.b], position[i.c]}};
   };
-  std::vector<BoxQ8> boxes(size_t(triangles.size));
-  for (uint32_t t = 0; t < boxes.size(); ++t) {
+  const BoxTree tree(size_t(triangles.size), [&](uint32_t t) {
     const TriangleIndices i = triangles[t];
-    boxes[t] = box_of(position[i.a], position[i.b], position[i.c]);
-  }
-  const BoxTree tree(boxes);
+    return box_of(position[i.a], position[i.b], position[i.c]);
+  });
   std::vector<std::vector<std::array<uint32_t, 2>>> parts((tree.groups() + kGroupsOfTask - 1) / kGroupsOfTask);
   for_each_index(size_t(0), parts.size(), [&](size_t p) {
     for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g) {
