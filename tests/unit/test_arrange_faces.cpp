@@ -154,6 +154,19 @@ TEST_CASE("arrangement: triangles on a small grid, which share lines and planes,
     }
 }
 
+TEST_CASE("arrangement: triangles nearly in one plane, that would be cut for ever, are given up", "[arrangement]") {
+  TriangleSoup flat = shapes::random_soup(60, 0, 1, 5);
+  for (WorldPoint& p : flat.vertices) p.z *= 1e-4;
+  WorldPoint at[2] = {{9, 9, 9}, {9, 9, 9}};
+  for (const int threads : {1, 4}) {
+    Context context;
+    context.threads = threads;
+    CHECK_FALSE(repair::arrange_faces(flat, at[threads / 4], context));
+  }
+  CHECK((at[0].x == at[1].x && at[0].y == at[1].y && at[0].z == at[1].z));
+  CHECK((at[0].x > 0 && at[0].x < 1));
+}
+
 TEST_CASE("arrangement: a result is independent of threads", "[arrangement]") {
   const TriangleSoup balls = together(shapes::sphere({0, 0, 0}, 1, 48),
                                       together(shapes::sphere({.7, .3, .1}, 1, 48), on_grid(20, 2, 1, 1e-7)));

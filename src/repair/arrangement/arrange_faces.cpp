@@ -22,6 +22,10 @@ constexpr double kReaches[] = {128, 96, 64, 32, 16}, kLateReach = 3;
 constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
 constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
 
+// Of all rounds together: 10 to 40 a triangle where large parts touch or overlap, and some 100,000 in soups of a few
+// thousand triangles. Soups in one plane would take thousands of times that.
+constexpr int64_t kLeastWork = 1 << 22, kWorkOfTriangle = 1 << 10;
+
 /// From the world to steps and back. Around the faces is room for what moves them.
 class StepFrame {
  public:
@@ -100,8 +104,9 @@ ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const Weld
   return result;
 }
 
-/// None, and a place where faces cross, when rounds do not come to an end.
-std::optional<LatticeFaces> cut_all(LatticeFaces faces, StepPoint& failed_at, const Context& context) {
+/// None, and a place where faces cross, when rounds do not come to an end, or take more than the work that is left.
+std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, StepPoint& failed_at,
+                                    const Context& context) {
   size_t most_faces = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     if (round == kNearEdgeRounds) faces.leaves_near_edges = true;
@@ -110,11 +115,12 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, StepPoint& failed_at, co
       faces.leaves_near = true;
       most_faces = kFewFaces + kMostGrowth * faces.face.size();
     }
-    Contacts contacts = find_contacts(faces, context);
+    Contacts contacts = find_contacts(faces, work_left, context);
     if (!contacts.found.empty()) failed_at = faces.point[faces.face[contacts.found.front().pair[0]][0]];
     const bool is_growing = (round > kFullRounds && faces.face.size() > most_faces) ||
                             contacts.found.size() > kFewFaces + kMostContactsOfFace * faces.face.size();
-    if (is_growing) return {};
+    work_left -= contacts.work();
+    if (is_growing || work_left < 0) return {};
     if (!contacts.close.empty()) {
       weld_close(faces, contacts);
     } else if (!contacts.found.empty()) {
@@ -133,11 +139,13 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
   const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
   const StepFrame frame(box_of(welded.position));
   const LatticeFaces whole = snapped(soup, welded, frame);
+  int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
   for (const double reach : kReaches) {
+    if (work_left < 0) return {};
     LatticeFaces faces = whole;
     faces.reach_steps = reach;
     StepPoint at{0, 0, 0};
-    std::optional<LatticeFaces> cut = cut_all(std::move(faces), at, context);
+    std::optional<LatticeFaces> cut = cut_all(std::move(faces), work_left, at, context);
     if (cut) return result_of(std::move(*cut), soup, welded, frame);
     failed_at = frame.to_world(at);
   }

@@ -26,8 +26,9 @@ struct ArrangedFaces {
 /// (both are bent through one point). Triangles lower than half of that vanish. What two faces have in common is an
 /// edge of both, also where a face ends within another. Faces that lie on each other have the same parts. Where
 /// cuts that are rounded do not come to an end, less is made one, down to an eighth of that. None where they do not
-/// then either; then `failed_at` is a place where they cross. Throws: interrupted. Result: independent of threads.
-/// Cost: a tree of the boxes of all triangles, pairs whose boxes meet, and rounds over those that were cut.
+/// then either, or where that takes far more work than any parts do: then `failed_at` is a place where they cross.
+/// Throws: interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles, pairs whose boxes
+/// meet, and rounds over those that were cut; in all no more than is proportional to the triangles.
 std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context);
 
 }  // namespace isoshell::repair

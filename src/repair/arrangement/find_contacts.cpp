@@ -2,6 +2,7 @@
 #include "repair/arrangement/find_contacts.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
@@ -22,7 +23,7 @@ size_t tasks_of(size_t count, size_t of_task) { return (count + of_task - 1) / o
 
 }  // namespace
 
-Contacts find_contacts(const LatticeFaces& faces, const Context& context) {
+Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Context& context) {
   Contacts all;
   // What is too low to be a triangle vanishes before its neighbours are looked at.
   std::vector<uint32_t> unsettled;
@@ -36,27 +37,42 @@ Contacts find_contacts(const LatticeFaces& faces, const Context& context) {
   const size_t first_tasks = tasks_of(tree.groups(), kGroupsOfTask);
   const size_t second_tasks = unsettled.size() == faces.face.size() ? 0 : tasks_of(faces.face.size(), kFacesOfTask);
   std::vector<Contacts> parts(first_tasks + second_tasks);
+  std::atomic<int64_t> work{0};
+  // The first part is always whole, so that it says the same of a place, whichever threads run ahead.
+  const auto is_too_much = [&](size_t p) { return p > 0 && work.load(std::memory_order_relaxed) > most_work; };
   for_each_index(size_t(0), parts.size(), [&](size_t p) {
     check_cancel(context, "regions");
     Contacts& part = parts[p];
     if (p < first_tasks) {
-      for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g)
+      for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g) {
+        if (is_too_much(p)) return;
+        const int64_t before = part.work();
         tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) { meet_faces(faces, unsettled[s], unsettled[t], part); });
+        work.fetch_add(part.work() - before, std::memory_order_relaxed);
+      }
       return;
     }
     const size_t begin = (p - first_tasks) * kFacesOfTask;
     for (size_t f = begin; f < std::min(faces.face.size(), begin + kFacesOfTask); ++f) {
       if (faces.is_unsettled[f]) continue;
+      if (is_too_much(p)) return;
+      const int64_t before = part.work();
       tree.for_all_meeting(reach_of(faces, uint32_t(f)), [&](uint32_t s) {
         meet_faces(faces, uint32_t(f), unsettled[s], part);
         return true;
       });
+      work.fetch_add(part.work() - before, std::memory_order_relaxed);
     }
   });
+  if (work > most_work) {
+    parts.resize(1);
+    all.pairs = most_work + 1;
+  }
   for (const Contacts& part : parts) {
     all.found.insert(all.found.end(), part.found.begin(), part.found.end());
     all.close.insert(all.close.end(), part.close.begin(), part.close.end());
     all.near_close.insert(all.near_close.end(), part.near_close.begin(), part.near_close.end());
+    all.pairs += part.pairs;
   }
   return all;
 }

@@ -8,7 +8,7 @@ namespace isoshell::repair {
 
 /// Of the pairs of faces of which one is unsettled, and of these with themselves; in an order that is independent of
 /// threads. Throws: interrupted. Cost: a tree of the unsettled faces, for every other one a look at its root, and the
-/// pairs whose boxes meet.
-Contacts find_contacts(const LatticeFaces& faces, const Context& context);
+/// pairs whose boxes meet. Where that is more than `most_work`, less may be found; work() is more than that then.
+Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Context& context);
 
 }  // namespace isoshell::repair

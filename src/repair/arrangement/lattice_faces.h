@@ -50,6 +50,10 @@ struct Contacts {
   std::vector<Contact> found;
   std::vector<Ends> close;           ///< points that are to be one
   std::vector<uint32_t> near_close;  ///< faces at those
+  int64_t pairs = 0;                 ///< of faces that were looked at
+
+  /// A contact takes as long as many pairs, and memory.
+  int64_t work() const { return pairs + 16 * int64_t(found.size()); }
 };
 
 }  // namespace isoshell::repair

@@ -216,6 +216,7 @@ class FacePair {
 }  // namespace
 
 void meet_faces(const LatticeFaces& faces, uint32_t f, uint32_t g, Contacts& to) {
+  ++to.pairs;
   FacePair(faces, std::min(f, g), std::max(f, g), to).meet();
 }
 
