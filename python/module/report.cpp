@@ -26,7 +26,7 @@ namespace {
 Source source_of(const RunRequest& request) {
   return {"",
           [request](const RunRequest& again, const Context& context) {
-            return read_input_of(request, context.memory_limit_bytes, again.tell);
+            return read_input_of(request, context, again.tell);
           },
           {},
           {}};

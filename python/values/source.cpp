@@ -140,8 +140,7 @@ Source labels(const AnyArray& values, const LabelLattice& lattice) {
             if (request.input.iso) refuse("--iso is for volumes; leave it out");
             if (request.input.labels.given())
               refuse("--background and --smallest-island are for files; give them to isoshell.Labels");
-            const LabelVolume volume = std::move(*given);  // freed when its walls are there
-            return input_of(volume, "labels", context.memory_limit_bytes, request.tell);
+            return input_of(std::move(*given), "labels", context, request.tell);
           },
           {},
           {}};
@@ -173,7 +172,7 @@ void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, 
 }  // namespace
 
 Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context) {
-  return read ? read(request, context) : read_input_of(request, context.memory_limit_bytes, request.tell);
+  return read ? read(request, context) : read_input_of(request, context, request.tell);
 }
 
 RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context) {

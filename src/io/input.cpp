@@ -4,12 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <unordered_set>
+#include <utility>
 
 #include "core/attribute_values.h"
 #include "core/file_format.h"
@@ -95,8 +97,7 @@ void check_no_labels(const LabelReading& labels) {
 
 class Reader {
  public:
-  Reader(const std::string& path, int64_t memory_limit_bytes, const Tell& tell)
-      : memory_limit_bytes_(memory_limit_bytes), tell_(tell) {
+  Reader(const std::string& path, const Context& context, const Tell& tell) : context_(context), tell_(tell) {
     input_.facts.path = path;
   }
 
@@ -141,7 +142,7 @@ class Reader {
   void hold(const PointCloud& cloud, VolumeCreases creases) {
     input_.facts.kind = InputKind::points;
     PointSurfaceInfo points;
-    hold(surface_of_points(cloud, memory_limit_bytes_, points, creases));
+    hold(surface_of_points(cloud, context_.memory_limit_bytes, points, creases));
     input_.facts.vertices = points.points;
     std::ostringstream text;
     text << counted(points.points, "point") << ", spacing " << points.spacing_world << ", surface from voxels of "
@@ -172,15 +173,16 @@ class Reader {
           "from it");
   }
 
-  void hold(const LabelVolume& labels, const std::string& origin = "") {
+  void hold(LabelVolume labels, const std::string& origin = "") {
     input_.facts.kind = InputKind::labels;
-    hold(surface_of_labels(labels, input_.facts.name(), memory_limit_bytes_,
+    const std::array<int32_t, 3> size_vox = labels.size_vox;
+    hold(surface_of_labels(std::move(labels), input_.facts.name(), context_,
                            [&](MessageKind kind, const std::string& text) { tell(kind, text); }));
     std::unordered_set<int32_t> regions;
     for (const auto& pair : input_.soup.regions.labels) regions.insert(pair.begin(), pair.end());
-    regions.erase(labels.background);
-    note(origin + counted(int64_t(regions.size()), "region") + ", " + std::to_string(labels.size_vox[0]) + " x " +
-         std::to_string(labels.size_vox[1]) + " x " + std::to_string(labels.size_vox[2]) + " voxels");
+    regions.erase(input_.soup.regions.background);
+    note(origin + counted(int64_t(regions.size()), "region") + ", " + std::to_string(size_vox[0]) + " x " +
+         std::to_string(size_vox[1]) + " x " + std::to_string(size_vox[2]) + " voxels");
   }
 
   Input taken() { return std::move(input_); }
@@ -198,15 +200,15 @@ class Reader {
     const MeshSource source(request.path);
     if (holds_labels(source, request.grid)) return read_label_file(source, request);
     hold_volume([&](VolumeInfo& volume) {
-      return read_volume(source, {request.grid, request.iso, memory_limit_bytes_, request.creases}, volume);
+      return read_volume(source, {request.grid, request.iso, context_.memory_limit_bytes, request.creases}, volume);
     });
   }
 
   void read_label_file(const MeshSource& source, const InputRequest& request) {
     if (request.iso) refuse_iso();  // before the labels are read
-    LabelGrid grid = read_label_grid(source, {request.grid, memory_limit_bytes_, request.labels.background});
+    LabelGrid grid = read_label_grid(source, {request.grid, context_.memory_limit_bytes, request.labels.background});
     if (request.labels.smallest_island_vox) grid.volume.smallest_island_vox = *request.labels.smallest_island_vox;
-    hold(grid.volume, "grid " + grid.name + ", ");
+    hold(std::move(grid.volume), "grid " + grid.name + ", ");
   }
 
   void read_stage_file() {
@@ -223,7 +225,7 @@ class Reader {
   }
 
   Input input_;
-  int64_t memory_limit_bytes_;
+  const Context& context_;
   const Tell& tell_;
 };
 
@@ -270,16 +272,23 @@ InputRequest named_input(const std::string& name, InputRequest request) {
   return request;
 }
 
-Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell) {
-  Reader reader(request.path, memory_limit_bytes, tell);
+Input read_input(const InputRequest& request, const Context& context, const Tell& tell) {
+  Reader reader(request.path, context, tell);
   reader.read(request);
   return reader.taken();
+}
+
+Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell) {
+  Context context;
+  context.memory_limit_bytes = memory_limit_bytes;
+  return read_input(request, context, tell);
 }
 
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
   check_surface(soup, name);
   if (soup.faces_in_file == 0) soup.faces_in_file = int64_t(soup.triangles.size());  // it comes from no file
-  Reader reader(name, 0, tell);
+  const Context unlimited;
+  Reader reader(name, unlimited, tell);
   reader.hold(std::move(soup));
   return reader.taken();
 }
@@ -287,19 +296,22 @@ Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell,
                VolumeCreases creases) {
   check_points(cloud, name);
-  Reader reader(name, memory_limit_bytes, tell);
+  Context context;
+  context.memory_limit_bytes = memory_limit_bytes;
+  Reader reader(name, context, tell);
   reader.hold(cloud, creases);
   return reader.taken();
 }
 
-Input input_of(const LabelVolume& volume, const std::string& name, int64_t memory_limit_bytes, const Tell& tell) {
-  Reader reader(name, memory_limit_bytes, tell);
-  reader.hold(volume);
+Input input_of(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
+  Reader reader(name, context, tell);
+  reader.hold(std::move(volume));
   return reader.taken();
 }
 
 Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options, const Tell& tell) {
-  Reader reader(name, options.memory_limit_bytes, tell);
+  const Context unlimited;  // the options have the limit
+  Reader reader(name, unlimited, tell);
   reader.hold_volume([&](VolumeInfo& info) { return surface_of_volume(volume, name, options, info); });
   return reader.taken();
 }

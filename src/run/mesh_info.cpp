@@ -79,8 +79,8 @@ MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell&
   Input mesh;
   std::optional<Input> reference;
   step("read", context, [&] {
-    mesh = read_input(request.mesh, context.memory_limit_bytes, tell);
-    if (request.reference) reference = read_input(*request.reference, context.memory_limit_bytes, tell);
+    mesh = read_input(request.mesh, context, tell);
+    if (request.reference) reference = read_input(*request.reference, context, tell);
   });
   return mesh_info(std::move(mesh), std::move(reference), request.gates, context);
 }

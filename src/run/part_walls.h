@@ -11,8 +11,10 @@
 
 namespace isoshell {
 
-/// As find_part_regions() makes them; tells its warnings. Throws: as that, and usage for an input that is no mesh.
-inline TriangleSoup walls_of_parts(const Input& input, const std::string& parts, const Tell& tell, Context& context) {
+/// As find_part_regions() makes them; tells its warnings, and notes which there are.
+/// Throws: as that, and usage for an input that is no mesh.
+inline TriangleSoup walls_of_parts(const Input& input, const std::string& parts, const Tell& tell, InputFacts& facts,
+                                   Context& context) {
   const std::string asked = "--regions " + parts, name = input.facts.name();
   if (input.facts.kind != InputKind::mesh)
     throw Error(ErrorCode::usage, "options", asked + " is for meshes, and " + name + " is none; leave it out");
@@ -21,6 +23,8 @@ inline TriangleSoup walls_of_parts(const Input& input, const std::string& parts,
   PartRegions found = find_part_regions(input.soup, parts, context);
   if (tell)
     for (const std::string& text : found.warnings) tell(MessageKind::warning, name + ": " + text);
+  facts.walls = find_region_walls(found.walls);
+  facts.region_names = found.walls.regions.names;
   return std::move(found.walls);
 }
 

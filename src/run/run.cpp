@@ -28,10 +28,10 @@ VolumeCreases volume_creases(const Features& features) {
   return features.creases == Features::Creases::automatic ? VolumeCreases::of_sharp_bodies : VolumeCreases::all;
 }
 
-Input read_input_of(const RunRequest& request, int64_t memory_limit_bytes, const Tell& tell) {
+Input read_input_of(const RunRequest& request, const Context& context, const Tell& tell) {
   InputRequest input = request.input;
   input.creases = volume_creases(request.options.values.features);
-  return read_input(input, memory_limit_bytes, tell);
+  return read_input(input, context, tell);
 }
 
 }  // namespace isoshell

@@ -76,7 +76,7 @@ class Sequence {
     result_.bad.push_back({frame, code, message});
   }
 
-  Input read(const RunRequest& one) const { return read_input_of(one, context_.memory_limit_bytes, one.tell); }
+  Input read(const RunRequest& one) const { return read_input_of(one, context_, one.tell); }
 
   void set_velocity(const RunRequest& one) {
     if (!request_.velocity.empty() && request_.is_coherent)

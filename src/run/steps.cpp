@@ -75,7 +75,7 @@ class RunSteps::Run {
 
   void read() {
     if (input_) return;
-    take(timed("read", [&] { return read_input_of(request_, context_->memory_limit_bytes, teller()); }));
+    take(timed("read", [&] { return read_input_of(request_, *context_, teller()); }));
   }
 
   void take(Input input) {
@@ -99,18 +99,15 @@ class RunSteps::Run {
     read();
     read_sizing_field();
     if (input_->stage) refuse_use("--dry-run needs a mesh as INPUT, a stage file has its grid already");
-    return estimate_run(input_->soup, measure_topology(input_->soup, *context_).topology, options_.values);
+    find_walls();
+    return estimate_run(surface(), measure_topology(surface(), *context_).topology, options_.values);
   }
 
   const Prepared& prepare() {
     if (prepared_) return *prepared_;
     check_files();
     read();
-    if (const std::string& parts = options_.values.regions; !parts.empty()) {
-      walls_ = timed("regions", [&] { return walls_of_parts(*input_, parts, teller(), *context_); });
-      record_.input.walls = find_region_walls(*walls_);
-      record_.input.region_names = walls_->regions.names;
-    }
+    find_walls();
     const bool has_regions = !surface().regions.empty();  // then distances are from the walls as they came
     region_files_ = checked_region_files(request_, surface().regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
@@ -237,10 +234,12 @@ class RunSteps::Run {
   }
 
   void around_write(const std::string& path, const std::function<void()>& write) const {
-    if (request_.around_write)
-      request_.around_write(path, write);
-    else
-      write();
+    request_.around_write ? request_.around_write(path, write) : write();
+  }
+
+  void find_walls() {  // of the parts of a mesh, where they are asked for
+    if (const std::string& parts = options_.values.regions; !parts.empty() && !walls_)
+      walls_ = timed("regions", [&] { return walls_of_parts(*input_, parts, teller(), record_.input, *context_); });
   }
 
   void read_sizing_field() {

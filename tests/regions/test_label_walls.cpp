@@ -176,6 +176,31 @@ TEST_CASE("regions that touched in an island alone are named") {
   CHECK(soup.absorbed_walls == std::vector<std::array<int32_t, 2>>{{1, 3}});
 }
 
+TEST_CASE("labels tell how far they are, and stop where the context is cancelled") {
+  const LabelVolume volume = voronoi_grains(24, 6);
+  CpuContext context;
+  std::vector<double> told;
+  context.progress = [&](const char* stage, double done) {
+    CHECK(std::string(stage) == "read");
+    told.push_back(done);
+  };
+  surface_of_labels(volume, "labels", context);
+  CHECK(told.size() > 20);
+  CHECK(std::is_sorted(told.begin(), told.end()));
+  CHECK((told.front() == 0 && told.back() == 1));
+  for (const double when : {0., told[1], told[2], .5, .75}) {
+    INFO("cancelled when " << when << " is done");
+    context.cancel = false;
+    int more = 0;
+    context.progress = [&](const char*, double done) {
+      more += context.cancel ? 1 : 0;
+      if (done >= when) context.cancel = true;
+    };
+    CHECK(error_of([&] { surface_of_labels(volume, "labels", context); }).code() == ErrorCode::interrupted);
+    CHECK(more == 0);
+  }
+}
+
 TEST_CASE("a volume of labels that is none is refused with what is wrong") {
   LabelVolume volume = label_volume(2, 2, 2);
   CHECK(contains(message_of(ErrorCode::nothing_to_mesh, [&] { surface_of_labels(volume, "seg.vdb", 0); }),

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"
@@ -68,7 +69,10 @@ struct Input {
 /// Reads a file of any kind, and makes a surface of points and volumes. Tells what was read, and warns of what of it
 /// could not be used. Throws: unreadable_input when the file is missing or of no known kind, usage for an isovalue of
 /// what is no volume and for LabelReading of what holds no labels, and as the readers of each kind do (mesh_file.h,
-/// point_file.h, volume_file.h, vdb_file.h); out_of_memory over `memory_limit_bytes`, if above 0.
+/// point_file.h, volume_file.h, vdb_file.h); out_of_memory over the context's limit, and interrupted while labels
+/// become walls.
+Input read_input(const InputRequest& request, const Context& context, const Tell& tell = {});
+/// The same with a limit alone, if that is above 0.
 Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell = {});
 
 /// A surface and points that are in memory already, under the name that messages and statistics call them by. A surface

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "isoshell/io/input.h"
 
 namespace isoshell {
@@ -40,13 +41,17 @@ TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& nam
 /// The walls between voxels of different labels, faired within the voxels: every region is bounded by closed triangles,
 /// which it shares with those beside it (see implicit/labels). `surface.regions` says what they part. Result: the same
 /// for any number of threads. Islands of fewer than volume.smallest_island_vox voxels are absorbed first, which is
-/// told. Throws: usage for an array without voxels, a number of labels that is not theirs, or steps that span no
-/// volume; nothing_to_mesh where all voxels have one label; out_of_memory over the limit, if that is above 0.
+/// told. The context's threads and limit hold, and its progress is that of "read". Throws: usage for an array without
+/// voxels, a number of labels that is not theirs, or steps that span no volume; nothing_to_mesh where all voxels have
+/// one label; out_of_memory over the limit, before walls are made; interrupted.
+TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, const Context& context,
+                               const Tell& tell = {});
+/// The same with all threads there are.
 TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, int64_t memory_limit_bytes,
                                const Tell& tell = {});
 
 /// The same as an input. Throws: as surface_of_labels does.
-Input input_of(const LabelVolume& volume, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {});
+Input input_of(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell = {});
 
 /// The same as an input. Throws: as surface_of_volume does.
 Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,

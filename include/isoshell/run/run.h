@@ -76,6 +76,6 @@ RunEstimate dry_run(Input input, const RunRequest& request, Context& context);
 VolumeCreases volume_creases(const Features& features);
 
 /// Reads the input as a run of the request does. Throws: as read_input().
-Input read_input_of(const RunRequest& request, int64_t memory_limit_bytes, const Tell& tell);
+Input read_input_of(const RunRequest& request, const Context& context, const Tell& tell);
 
 }  // namespace isoshell

@@ -9,10 +9,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/watched.h"
+
 namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 8;  ///< islands among islands wait for those around them
+constexpr int64_t kRowsBetweenLooks = 256;
 
 /// Voxels of one label in a row.
 struct Run {
@@ -23,10 +26,11 @@ struct Run {
 /// The runs of a volume, row by row, and which of them are connected.
 class Islands {
  public:
-  explicit Islands(const LabelVolume& volume) : volume_(volume) {
+  Islands(const LabelVolume& volume, const Context& context) : volume_(volume), context_(context) {
     const int64_t rows = int64_t(size(1)) * size(2);
     first_.push_back(0);
     for (int64_t row = 0; row < rows; ++row) {
+      look_for_cancel(row);
       const int32_t* const label = volume.labels.data() + row * size(0);
       for (int32_t x = 0; x < size(0);) {
         int32_t end = x + 1;
@@ -81,11 +85,15 @@ class Islands {
 
  private:
   int32_t size(size_t axis) const { return volume_.size_vox[axis]; }
+  void look_for_cancel(int64_t row) const {
+    if (row % kRowsBetweenLooks == 0) check_cancel(context_, "read");
+  }
 
   /// Calls visit(a, b) for runs that share faces, the earlier one first.
   template <class Visit>
   void each_touching(Visit visit) const {
     for (int64_t row = 0; row + 1 < int64_t(first_.size()); ++row) {
+      look_for_cancel(row);
       for (size_t r = first_[size_t(row)] + 1; r < first_[size_t(row) + 1]; ++r) visit(r - 1, r);
       if (row % size(1) > 0) each_overlapping(row - 1, row, visit);
       if (row >= size(1)) each_overlapping(row - size(1), row, visit);
@@ -140,6 +148,7 @@ class Islands {
   }
 
   const LabelVolume& volume_;
+  const Context& context_;
   std::vector<Run> runs_;
   std::vector<size_t> first_;   ///< per row, and one more: offsets into runs
   std::vector<size_t> parent_;  ///< per run an earlier one of its island
@@ -167,12 +176,12 @@ std::set<std::array<int32_t, 2>> pairs_of(const LabelVolume& volume) {
 
 }  // namespace
 
-AbsorbedIslands absorb_islands(LabelVolume& volume) {
+AbsorbedIslands absorb_islands(LabelVolume& volume, const Context& context) {
   AbsorbedIslands absorbed;
   if (volume.smallest_island_vox <= 1) return absorbed;
   std::set<std::array<int32_t, 2>> before;
   for (int round = 0; round < kMostRounds; ++round) {
-    Islands islands(volume);
+    Islands islands(volume, context);
     const std::unordered_map<size_t, int32_t> becomes = islands.labels_around();
     if (becomes.empty()) break;
     if (round == 0) before = pairs_of(volume);

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "isoshell/regions.h"
 
 namespace isoshell {
@@ -17,8 +18,8 @@ struct AbsorbedIslands {
 
 /// Gives every island of fewer than volume.smallest_island_vox voxels, connected through faces, the label that most
 /// voxels beside it have that are of no such island; of equal ones the smallest. The largest island of each region
-/// stays however small it is, and so does background that reaches the sides of the array. Cost: a look at all voxels,
-/// and few at the runs of equal ones along x.
-AbsorbedIslands absorb_islands(LabelVolume& volume);
+/// stays however small it is, and so does background that reaches the sides of the array. Throws: interrupted. Cost: a
+/// look at all voxels, and few at the runs of equal ones along x.
+AbsorbedIslands absorb_islands(LabelVolume& volume, const Context& context);
 
 }  // namespace isoshell

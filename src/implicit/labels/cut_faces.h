@@ -1,10 +1,12 @@
 // The faces of walls as triangles.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
-#include "implicit/labels/label_walls.h"
 #include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 
@@ -19,11 +21,23 @@ inline bool is_cut_from_first(const std::array<uint32_t, 4>& face, const std::ve
   return distance_sq(face[0], face[2]) <= distance_sq(face[1], face[3]);
 }
 
-/// Triangles, and the face that each is of.
-struct CutFaces {
-  std::vector<TriangleIndices> triangles;
-  std::vector<uint32_t> face;
-};
-CutFaces cut_faces(const std::vector<std::array<uint32_t, 4>>& faces, const std::vector<PointQ8>& position);
+/// Calls visit(triangle) for the one or two triangles of a face.
+template <class Visit>
+void each_triangle(const std::array<uint32_t, 4>& face, const std::vector<PointQ8>& position, const Visit& visit) {
+  const auto& [a, b, c, d] = face;
+  if (d == kNone) {
+    visit(TriangleIndices{a, b, c});
+  } else if (is_cut_from_first(face, position)) {
+    visit(TriangleIndices{a, b, c});
+    visit(TriangleIndices{a, c, d});
+  } else {
+    visit(TriangleIndices{a, b, d});
+    visit(TriangleIndices{b, c, d});
+  }
+}
+
+/// All of them, face by face.
+std::vector<TriangleIndices> triangles_of_faces(const std::vector<std::array<uint32_t, 4>>& faces,
+                                                const std::vector<PointQ8>& position);
 
 }  // namespace isoshell

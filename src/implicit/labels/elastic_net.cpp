@@ -1,6 +1,7 @@
 // ElasticNet (see elastic_net.h).
 #include "implicit/labels/elastic_net.h"
 
+#include "core/watched.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
@@ -113,13 +114,14 @@ void ElasticNet::step(double share) {
   at_.swap(next_);
 }
 
-void ElasticNet::twice(int steps, double share) {
+void ElasticNet::twice(int steps, double share, const Context& context) {
   std::vector<FinePoint> way(at_.size());
   for_each_index(size_t(0), at_.size(), [&](size_t v) {
     const Voxel& h = walls_.rest_halves[v];
     way[v] = {rest_of(h.x) - at_[v].x, rest_of(h.y) - at_[v].y, rest_of(h.z) - at_[v].z};
   });
   for (int step = 0; step < steps; ++step) {
+    check_cancel(context, "read");
     for_each_index(size_t(0), way.size(), [&](size_t v) { next_[v] = pulled(way, v, share); });
     way.swap(next_);
   }

@@ -7,6 +7,7 @@
 
 #include "implicit/labels/label_walls.h"
 #include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/backend.h"
 
 namespace isoshell {
 
@@ -31,8 +32,8 @@ class ElasticNet {
   /// Every vertex goes this share of the way to the mean of those that it follows.
   void step(double share);
   /// Gives back what steps took from the coarse shape: every vertex goes the way back to its rest, after so many steps
-  /// between the vertices have smoothed these ways.
-  void twice(int steps, double share);
+  /// between the vertices have smoothed these ways. Throws: interrupted.
+  void twice(int steps, double share, const Context& context);
   /// Every vertex v goes by `way(v)`, in voxels.
   template <class Way>
   void move(const Way& way) {

@@ -2,10 +2,11 @@
 #include "implicit/labels/fair_walls.h"
 
 #include <algorithm>
-#include <atomic>
 
+#include "core/watched.h"
 #include "implicit/labels/elastic_net.h"
 #include "implicit/labels/keep_volumes.h"
+#include "implicit/labels/read_progress.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "measure/box_tree.h"
 #include "measure/crossings.h"
@@ -25,14 +26,14 @@ constexpr size_t kFacesOfTask = 8192;
 using Faces = std::vector<std::array<uint32_t, 4>>;
 
 /// Of triangles that intersect, ascending.
-std::vector<uint32_t> crossing_vertices(const Faces& faces, const std::vector<PointQ8>& position) {
-  const std::atomic<bool> never{false};
-  const CutFaces cut = cut_faces(faces, position);
+std::vector<uint32_t> crossing_vertices(const Faces& faces, const std::vector<PointQ8>& position,
+                                        const Context& context) {
+  const std::vector<TriangleIndices> triangles = triangles_of_faces(faces, position);
   std::vector<uint32_t> found;
   for (const auto& pair : crossing_pairs({position.data(), int64_t(position.size())},
-                                         {cut.triangles.data(), int64_t(cut.triangles.size())}, {}, never))
-    for (const uint32_t t : pair)
-      found.insert(found.end(), {cut.triangles[t].a, cut.triangles[t].b, cut.triangles[t].c});
+                                         {triangles.data(), int64_t(triangles.size())}, {}, context.cancel))
+    for (const uint32_t t : pair) found.insert(found.end(), {triangles[t].a, triangles[t].b, triangles[t].c});
+  check_cancel(context, "read");
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
@@ -66,9 +67,9 @@ Faces faces_near(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, con
 /// Lets vertices go back, as far as that takes, to where no triangles intersect: half of the way, and at last all of
 /// it. After the first look only what moved can intersect anything.
 void part_crossing(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, const std::vector<PointQ8>& parted,
-                   std::vector<PointQ8>& position) {
+                   std::vector<PointQ8>& position, const Context& context) {
   std::vector<uint8_t> rounds(position.size(), 0);
-  std::vector<uint32_t> back = crossing_vertices(walls.faces, position);
+  std::vector<uint32_t> back = crossing_vertices(walls.faces, position, context);
   for (int round = 0; !back.empty(); ++round) {
     if (round == kMostRounds) {
       position = parted;
@@ -80,7 +81,7 @@ void part_crossing(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, c
       const PointQ8 &at = position[v], &to = parted[v];
       position[v] = {between(at.x, to.x), between(at.y, to.y), between(at.z, to.z)};
     }
-    back = crossing_vertices(faces_near(walls, faces_at, back, position), position);
+    back = crossing_vertices(faces_near(walls, faces_at, back, position), position, context);
   }
 }
 
@@ -88,16 +89,21 @@ struct FairedWalls {
   std::vector<PointQ8> parted, position;  ///< after the first step, and after all of them
 };
 
-FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& faces_at) {
+FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, const Context& context) {
   ElasticNet net(walls, faces_at);
   net.step(kFirstShare);
   FairedWalls out;
   out.parted = net.rounded();
-  for (int step = 1; step < kSteps; ++step) net.step(kShare);
-  net.twice(kSteps, kShare);
+  for (int step = 1; step < kSteps; ++step) {
+    tell_read(context, kWallsFound + (kTwiced - kWallsFound) * step / (2 * kSteps));
+    net.step(kShare);
+  }
+  net.twice(kSteps, kShare, context);
+  tell_read(context, kTwiced);
   out.position = net.rounded();
   VolumeKeeper volumes(walls, faces_at);
   for (int i = 0; i < kMostOffsets && volumes.find_offsets(out.position) > kLeastOffset_q8; ++i) {
+    tell_read(context, kTwiced + (kFaired - kTwiced) * i / kMostOffsets);
     net.move([&](size_t v) { return volumes.way_of(v, out.position); });
     out.position = net.rounded();
   }
@@ -106,10 +112,11 @@ FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& face
 
 }  // namespace
 
-std::vector<PointQ8> fair_walls(const LabelWalls& walls) {
+std::vector<PointQ8> fair_walls(const LabelWalls& walls, const Context& context) {
   const Buckets<uint32_t> faces_at = faces_at_vertices(walls);
-  FairedWalls faired = fair_in_steps(walls, faces_at);
-  part_crossing(walls, faces_at, faired.parted, faired.position);
+  FairedWalls faired = fair_in_steps(walls, faces_at, context);
+  tell_read(context, kFaired);
+  part_crossing(walls, faces_at, faired.parted, faired.position, context);
   return std::move(faired.position);
 }
 

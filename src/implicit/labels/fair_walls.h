@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "implicit/labels/cut_faces.h"
+#include "implicit/labels/label_walls.h"
+#include "isoshell/backend.h"
 
 namespace isoshell {
 
@@ -13,7 +15,7 @@ namespace isoshell {
 /// halves the error where walls are curved. What volumes of regions are still wrong by is mended by offsets of
 /// walls (see VolumeKeeper). Where triangles then intersect, vertices go back to where the first, shorter step had
 /// parted the walls. Result: per vertex its place in 1/256 voxel, for any number of threads. Cost: O(walls) a step, and
-/// a search for intersections (see crossing_pairs).
-std::vector<PointQ8> fair_walls(const LabelWalls& walls);
+/// a search for intersections (see crossing_pairs). Tells the progress of "read". Throws: interrupted.
+std::vector<PointQ8> fair_walls(const LabelWalls& walls, const Context& context);
 
 }  // namespace isoshell

@@ -4,9 +4,13 @@
 #include <string>
 #include <utility>
 
+#include "core/parallel_ranges.h"
+#include "core/wall_memory.h"
 #include "geometry/world_vector.h"
 #include "implicit/labels/absorb_islands.h"
+#include "implicit/labels/count_walls.h"
 #include "implicit/labels/fair_walls.h"
+#include "implicit/labels/read_progress.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/readable.h"
@@ -15,7 +19,7 @@ namespace isoshell {
 namespace {
 
 constexpr size_t kMostNamed = 10;
-constexpr int64_t kBytesPerWall = 340;  ///< measured at the peak, over the faces between voxels; of noise a fifth more
+constexpr int64_t kBytesPerRun = 100;  ///< while islands are looked for; measured: 40 to 100
 
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
 
@@ -39,33 +43,13 @@ void check_volume(const LabelVolume& volume, const std::string& name) {
     refuse_use(name + ": its steps from voxel to voxel span no volume; give three finite ones that do");
 }
 
-/// Faces between voxels of different labels, those at the array's sides left out: O(voxels).
-int64_t count_walls(const LabelVolume& volume) {
-  const int64_t nx = volume.size_vox[0], ny = volume.size_vox[1], nz = volume.size_vox[2];
-  const int32_t* const labels = volume.labels.data();
-  return sum_over_ranges(nz, 1, [&](int64_t begin, int64_t end) {
-    int64_t count = 0;
-    for (int64_t z = begin; z < end; ++z)
-      for (int64_t y = 0; y < ny; ++y) {
-        const int32_t* const row = labels + (z * ny + y) * nx;
-        for (int64_t x = 0; x + 1 < nx; ++x) count += row[x] != row[x + 1];
-        if (y + 1 < ny)
-          for (int64_t x = 0; x < nx; ++x) count += row[x] != row[x + nx];
-        if (z + 1 < nz)
-          for (int64_t x = 0; x < nx; ++x) count += row[x] != row[x + nx * ny];
-      }
-    return count;
-  });
-}
-
-void check_memory(const LabelVolume& volume, const std::string& name, int64_t limit) {
-  if (limit <= 0) return;
-  const int64_t bytes = kBytesPerWall * count_walls(volume) + 4 * int64_t(volume.labels.size());
-  if (bytes <= limit) return;
+void check_memory(const LabelVolume& volume, int64_t bytes, const char* what, const std::string& name,
+                  const Context& context) {
+  bytes += 4 * int64_t(volume.labels.size());
+  if (context.memory_limit_bytes <= 0 || bytes <= context.memory_limit_bytes) return;
   throw Error(ErrorCode::out_of_memory, "read",
-              name + ": the walls between its labels would take about " + std::to_string(bytes >> 20) +
-                  " MiB, more than the limit of " + std::to_string(limit >> 20) +
-                  " MiB; raise --max-memory, or make the volume coarser");
+              name + ": " + what + " would take about " + readable_bytes(bytes) + ", more than the limit of " +
+                  readable_bytes(context.memory_limit_bytes) + "; raise --max-memory, or make the volume coarser");
 }
 
 /// Corner (0, 0, 0) is half a voxel before the first centre.
@@ -98,38 +82,63 @@ void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const T
   tell(MessageKind::warning, text);
 }
 
-}  // namespace
+/// Walls that are faired, with what of them is no geometry.
+TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, const LabelVolume& volume) {
+  TriangleSoup soup;
+  soup.triangles.reserve(2 * walls.faces.size());
+  soup.regions.labels.reserve(2 * walls.faces.size());
+  const bool is_mirrored = spanned_world(volume) < 0;  // which turns faces around
+  for (size_t f = 0; f < walls.faces.size(); ++f)
+    each_triangle(walls.faces[f], fair, [&](const TriangleIndices& t) {
+      soup.triangles.push_back(is_mirrored ? std::array{t.a, t.c, t.b} : std::array{t.a, t.b, t.c});
+      soup.regions.labels.push_back(walls.labels[f]);
+    });
+  soup.vertices.resize(fair.size());
+  for_each_index(size_t(0), fair.size(), [&](size_t v) { soup.vertices[v] = to_world(volume, fair[v]); });
+  soup.regions.background = volume.background;
+  soup.regions.are_of_voxels = true;
+  soup.regions.names = volume.names;
+  soup.faces_in_file = int64_t(walls.faces.size());
+  return soup;
+}
 
-TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, int64_t memory_limit_bytes,
-                               const Tell& tell) {
-  check_volume(volume, name);
-  check_memory(volume, name, memory_limit_bytes);
-  AbsorbedIslands absorbed = absorb_islands(volume);
+TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
+  if (volume.smallest_island_vox > 1)
+    check_memory(volume, kBytesPerRun * count_walls(volume, context).runs, "the search for islands among its labels",
+                 name, context);
+  AbsorbedIslands absorbed = absorb_islands(volume, context);
   tell_of(absorbed, volume, tell);
-  const LabelWalls walls = find_label_walls(volume);
+  tell_read(context, kIslandsAbsorbed);
+  const WallCount count = count_walls(volume, context);
+  check_memory(volume, bytes_to_make_walls(count.triangles(), count.vertices()), "the walls between its labels", name,
+               context);
+  const LabelWalls walls = find_label_walls(volume, context);
+  volume.labels = {};
   if (walls.faces.empty())
     throw Error(
         ErrorCode::nothing_to_mesh, "read",
         name + ": all its voxels are background, " + std::to_string(volume.background) + "; regions have other labels");
-  const std::vector<PointQ8> fair = fair_walls(walls);
-  const CutFaces cut = cut_faces(walls.faces, fair);
-  TriangleSoup soup;
-  soup.triangles.resize(cut.triangles.size());
-  const bool is_mirrored = spanned_world(volume) < 0;  // which turns faces around
-  for_each_index(size_t(0), cut.triangles.size(), [&](size_t t) {
-    const auto& [a, b, c] = cut.triangles[t];
-    soup.triangles[t] = is_mirrored ? std::array{a, c, b} : std::array{a, b, c};
-  });
-  soup.vertices.resize(fair.size());
-  for_each_index(size_t(0), fair.size(), [&](size_t v) { soup.vertices[v] = to_world(volume, fair[v]); });
-  soup.regions.labels.resize(cut.face.size());
-  for_each_index(size_t(0), cut.face.size(), [&](size_t t) { soup.regions.labels[t] = walls.labels[cut.face[t]]; });
-  soup.regions.background = volume.background;
-  soup.regions.are_of_voxels = true;
-  soup.regions.names = volume.names;
+  tell_read(context, kWallsFound);
+  TriangleSoup soup = soup_of(walls, fair_walls(walls, context), volume);
   soup.absorbed_walls = std::move(absorbed.lost_pairs);
-  soup.faces_in_file = int64_t(walls.faces.size());
   return soup;
+}
+
+}  // namespace
+
+TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
+  check_volume(volume, name);
+  tell_read(context, 0);
+  TriangleSoup soup = run_with_threads(context, [&] { return soup_of_labels(std::move(volume), name, context, tell); });
+  tell_read(context, 1);
+  return soup;
+}
+
+TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, int64_t memory_limit_bytes,
+                               const Tell& tell) {
+  Context context;
+  context.memory_limit_bytes = memory_limit_bytes;
+  return surface_of_labels(std::move(volume), name, context, tell);
 }
 
 }  // namespace isoshell

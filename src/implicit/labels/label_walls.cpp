@@ -4,34 +4,16 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 
+#include "core/watched.h"
+#include "implicit/labels/label_rows.h"
 #include "implicit/labels/wall_corner.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
-
-/// Labels at any place.
-class Labels {
- public:
-  explicit Labels(const LabelVolume& volume)
-      : volume_(volume), outside_(size_t(volume.size_vox[0]), volume.background) {}
-
-  int32_t size(int axis) const { return volume_.size_vox[size_t(axis)]; }
-  int32_t background() const { return volume_.background; }
-  /// As many labels as there are along x.
-  const int32_t* row(int32_t y, int32_t z) const {
-    const bool is_inside = y >= 0 && z >= 0 && y < size(1) && z < size(2);
-    return is_inside ? volume_.labels.data() + (size_t(z) * size_t(size(1)) + size_t(y)) * size_t(size(0))
-                     : outside_.data();
-  }
-  int32_t at(Voxel v) const { return v.x >= 0 && v.x < size(0) ? row(v.y, v.z)[v.x] : background(); }
-
- private:
-  const LabelVolume& volume_;
-  std::vector<int32_t> outside_;
-};
 
 Voxel stepped(Voxel v, int axis, int32_t by) {
   (axis == 0 ? v.x : axis == 1 ? v.y : v.z) += by;
@@ -52,7 +34,7 @@ class CornerLayer {
   uint32_t vertices = 0;
 
   CornerLayer() = default;
-  CornerLayer(const Labels& labels, int32_t z) {
+  CornerLayer(const LabelRows& labels, int32_t z) {
     const int32_t width = labels.size(0) + 1, background = labels.background();
     for (int32_t y = 0; y <= labels.size(1); ++y) {
       first_of_row_.push_back(uint32_t(used.size()));
@@ -97,11 +79,11 @@ struct Middle {
 /// Makes the walls, layer by layer.
 class WallMaker {
  public:
-  explicit WallMaker(const LabelVolume& volume)
-      : labels_(volume), corners_(size_t(volume.size_vox[2]) + 1), middles_(corners_.size()) {}
+  WallMaker(const LabelVolume& volume, const Context& context)
+      : labels_(volume), context_(context), corners_(size_t(volume.size_vox[2]) + 1), middles_(corners_.size()) {}
 
   LabelWalls make() {
-    for_each_index(size_t(0), corners_.size(), [&](size_t z) {
+    for_each_layer([&](size_t z) {
       corners_[z] = CornerLayer(labels_, int32_t(z));
       middles_[z] = middles_of(int32_t(z));
     });
@@ -110,20 +92,38 @@ class WallMaker {
     walls.rest_halves.resize(first_vertex_.back());
     walls.is_thin.assign(first_vertex_.back(), 0);
     std::vector<LabelWalls> layers(corners_.size());
-    for_each_index(size_t(0), corners_.size(), [&](size_t z) {
+    for_each_layer([&](size_t z) {
       place_vertices(z, walls.rest_halves);
       mark_thin(z, walls.is_thin);
       layers[z] = faces_of(int32_t(z));
     });
+    join_layers(std::move(layers), walls);
+    return walls;
+  }
+
+ private:
+  template <class Work>
+  void for_each_layer(Work work) const {
+    for_each_index(size_t(0), corners_.size(), [&](size_t z) {
+      check_cancel(context_, "read");
+      work(z);
+    });
+  }
+  /// Corners are not needed any more, and each layer only until it is copied.
+  void join_layers(std::vector<LabelWalls> layers, LabelWalls& walls) {
+    corners_ = {};
+    middles_ = {};
+    size_t faces = 0;
+    for (const LabelWalls& layer : layers) faces += layer.faces.size();
+    walls.faces.reserve(faces);
+    walls.labels.reserve(faces);
     for (LabelWalls& layer : layers) {
       walls.faces.insert(walls.faces.end(), layer.faces.begin(), layer.faces.end());
       walls.labels.insert(walls.labels.end(), layer.labels.begin(), layer.labels.end());
       layer = {};
     }
-    return walls;
   }
 
- private:
   uint32_t width() const { return uint32_t(labels_.size(0)) + 1; }
   uint32_t place_of(Voxel corner) const { return uint32_t(corner.y) * width() + uint32_t(corner.x); }
   Voxel corner_at(uint32_t place, size_t z) const {
@@ -280,7 +280,8 @@ class WallMaker {
     return out;
   }
 
-  Labels labels_;
+  LabelRows labels_;
+  const Context& context_;
   std::vector<CornerLayer> corners_;
   std::vector<std::vector<Middle>> middles_;  ///< per layer of corners, ascending
   std::vector<size_t> first_vertex_;          ///< per layer, and one more
@@ -288,6 +289,8 @@ class WallMaker {
 
 }  // namespace
 
-LabelWalls find_label_walls(const LabelVolume& volume) { return WallMaker(volume).make(); }
+LabelWalls find_label_walls(const LabelVolume& volume, const Context& context) {
+  return WallMaker(volume, context).make();
+}
 
 }  // namespace isoshell

@@ -6,6 +6,7 @@
 
 #include "core/buckets.h"
 #include "isoshell/advanced/lattice.h"
+#include "isoshell/backend.h"
 #include "isoshell/regions.h"
 
 namespace isoshell {
@@ -23,7 +24,7 @@ struct LabelWalls {
 /// edge are parted each pair has one in its middle: so every two vertices have at most one edge, which has two faces,
 /// or three or four that part as many different regions. A region's boundary has two faces at each of its edges, and
 /// touches itself in vertices only. Result: by layers of voxels along z, whatever the number of threads. Cost: a look
-/// at every voxel, and O(walls). Throws: out_of_memory where vertices cannot be numbered in 32 bits.
-LabelWalls find_label_walls(const LabelVolume& volume);
+/// at every voxel, and O(walls). Throws: interrupted; out_of_memory where vertices cannot be numbered in 32 bits.
+LabelWalls find_label_walls(const LabelVolume& volume, const Context& context);
 
 }  // namespace isoshell
