@@ -3,7 +3,9 @@
 
 #include "geometry/world_vector.h"
 #include "isoshell/io/memory_input.h"
+#include "isoshell/memory_estimate.h"
 #include "isoshell/mesh_census.h"
+#include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
 #include "regions/label_volumes.h"
 #include "regions/region_oracle.h"
@@ -51,6 +53,26 @@ TEST_CASE("regions have the same mesh with any number of threads") {
   const TriangleMesh a = meshed(volume, 1500, one).mesh, b = meshed(volume, 1500, two).mesh;
   CHECK(a.triangles == b.triangles);
   CHECK(a.regions.labels == b.regions.labels);
+}
+
+TEST_CASE("a run on regions that does not fit its limit is refused before its walls are cut") {
+  const TriangleSoup walls = surface_of_labels(voronoi_grains(32, 12), "labels", 0);
+  RemeshOptions options;
+  options.vertices = 1000;
+  TestContext context;
+  const InputTopology topology = measure_topology(walls, context).topology;
+  const RunEstimate few = estimate_run(walls, topology, options);
+  options.vertices = 400000;
+  const RunEstimate many = estimate_run(walls, topology, options);
+  CHECK(few.sheet_vertices < 2 * int64_t(walls.vertices.size()));
+  CHECK(many.sheet_vertices > 4 * few.sheet_vertices);
+  CHECK(many.bytes > 4 * few.bytes);
+  context.memory_limit_bytes = many.bytes - 1;
+  const std::string why = message_of(ErrorCode::out_of_memory, [&] { prepare(walls, options, context); });
+  CHECK(contains(why, "cut for 400,000 vertices, need about"));
+  CHECK(contains(why, "raise --max-memory"));
+  options.vertices = 1000;
+  CHECK(prepare(walls, options, context).report().grid.memory_estimate_bytes == few.bytes);
 }
 
 TEST_CASE("ugly labels give valid regions, and the walls as they came in where nothing else is valid") {

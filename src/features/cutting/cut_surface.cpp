@@ -20,8 +20,7 @@ namespace {
 
 constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
 constexpr double kFirstCut = 1.5;     ///< lengths of the mesh on which they are found, over the one that is asked for
-constexpr double kPartsOfRoughEdge = 2;  ///< walls of voxels are finer than edges anyway
-constexpr int kMostCuts = 3;             ///< until the fine mesh shows the lengths that are asked for
+constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
 
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {

@@ -10,6 +10,9 @@
 
 namespace isoshell {
 
+/// Edges that one of the result is as long as, at least; walls of voxels are finer than edges anyway.
+constexpr double kPartsOfEdge = 3, kPartsOfRoughEdge = 2;
+
 /// Triangles and paths on lattice positions that are not rounded yet, in 1/256 voxel.
 struct FineMesh {
   std::vector<WorldPoint> position;
@@ -17,7 +20,7 @@ struct FineMesh {
   MeshTriangles triangles;
   std::vector<uint32_t> source_face;  ///< per triangle, as in FeatureMesh; empty: not known
   std::vector<CurvePath> paths;
-  double parts_of_edge = 3;  ///< edges that one of the result is as long as, at least
+  double parts_of_edge = kPartsOfEdge;
 };
 
 /// To the nearest whole steps.

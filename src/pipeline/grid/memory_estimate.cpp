@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "options/check_options.h"
-
 namespace isoshell {
 namespace {
 
@@ -19,16 +17,6 @@ constexpr double kBytesPerSeed = 1000;
 constexpr double kFixedBytes = 64 << 20;  // lookup tables, thread-local scratch
 
 }  // namespace
-
-RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
-                         int32_t resolution) {
-  return estimate_run(soup, bounding_box(soup), input, options, resolution);
-}
-
-RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
-                         const RemeshOptions& options, int32_t resolution) {
-  return estimate_plan(plan_of(checked(options), input, box), soup, resolution);
-}
 
 RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t resolution) {
   const RemeshOptions& options = plan.options;

@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-/// As estimate_run.
+/// As estimate_run, of a surface that parts no regions.
 RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t resolution);
 
 }  // namespace isoshell

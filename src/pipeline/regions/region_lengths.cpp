@@ -88,23 +88,34 @@ std::vector<double> lengths_of_faces_world(const FaceRegions& regions, const std
   return of_face;
 }
 
-int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world) {
-  const RemeshOptions& options = plan.options;
-  const int32_t usual = plan.first_resolution();
-  if (!plan.chooses_grid() || !wants_lengths(options)) return usual;
-  std::vector<double> field(soup.vertices.size(), 0);
-  if (options.sizing) field = options.sizing->lengths_at(soup.vertices);
-  double least = std::numeric_limits<double>::infinity(), vertices = 0;
-  for (size_t t = 0; t < soup.triangles.size(); ++t) {
-    double length = of_face_world.empty() ? 0 : of_face_world[t];
-    if (length <= 0) length = shortest_at(field, soup.triangles[t]);
-    if (length <= 0) length = plan.target.edge_length_world;
-    least = std::min(least, length);
-    const auto& [a, b, c] = soup.triangles[t];
-    vertices += triangle_area(soup.vertices[a], soup.vertices[b], soup.vertices[c]) /
-                (kCellOfEdge * kCellOfEdge * length * length);
+LengthsOnWalls::LengthsOnWalls(const TriangleSoup& walls, const Plan& plan, const std::vector<double>& of_face_world)
+    : walls_(walls),
+      of_face_world_(of_face_world),
+      usual_world_(plan.target.edge_length_world),
+      least_world_(std::numeric_limits<double>::infinity()) {
+  if (plan.options.sizing) field_world_ = plan.options.sizing->lengths_at(walls.vertices);
+  for (size_t t = 0; t < walls.triangles.size(); ++t) {
+    const double length = asked_world(t);
+    least_world_ = std::min(least_world_, length);
+    const auto& [a, b, c] = walls.triangles[t];
+    vertices_ += triangle_area(walls.vertices[a], walls.vertices[b], walls.vertices[c]) /
+                 (kCellOfEdge * kCellOfEdge * length * length);
   }
-  if (!field_decides(options)) least *= std::sqrt(vertices / double(plan.target.vertices));
+  if (field_decides(plan.options)) return;
+  scale_ = std::sqrt(vertices_ / double(plan.target.vertices));
+  vertices_ = double(plan.target.vertices);
+}
+
+double LengthsOnWalls::asked_world(size_t triangle) const {
+  double length = of_face_world_.empty() ? 0 : of_face_world_[triangle];
+  if (length <= 0 && !field_world_.empty()) length = shortest_at(field_world_, walls_.triangles[triangle]);
+  return length > 0 ? length : usual_world_;
+}
+
+int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world) {
+  const int32_t usual = plan.first_resolution();
+  if (!plan.chooses_grid() || !wants_lengths(plan.options)) return usual;
+  const double least = LengthsOnWalls(soup, plan, of_face_world).least_world();
   const double longest =
       std::max({plan.box.max.x - plan.box.min.x, plan.box.max.y - plan.box.min.y, plan.box.max.z - plan.box.min.z});
   return std::max(usual, resolution_for_cell(longest, kCellOfEdge * least, plan.target.vertices));

@@ -1,6 +1,7 @@
 // Edge lengths that a run asks for on the walls of regions.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,24 @@ namespace isoshell {
 /// ask for none; empty where they ask for none anywhere. Throws: usage for a region that no face has, or that has two
 /// lengths.
 std::vector<double> lengths_of_faces_world(const FaceRegions& regions, const std::vector<RegionEdgeLength>& lengths);
+
+/// The lengths that a run aims at on walls, before they are bounded and smoothed. Keeps references to all.
+class LengthsOnWalls {
+ public:
+  LengthsOnWalls(const TriangleSoup& walls, const Plan& plan, const std::vector<double>& of_face_world);
+
+  double vertices() const { return vertices_; }  ///< that have these lengths
+  double least_world() const { return scale_ * least_world_; }
+  double on_triangle_world(size_t triangle) const { return scale_ * asked_world(triangle); }
+
+ private:
+  double asked_world(size_t triangle) const;
+
+  const TriangleSoup& walls_;
+  const std::vector<double>& of_face_world_;
+  std::vector<double> field_world_;  ///< per vertex; empty: there is none
+  double usual_world_, least_world_, vertices_ = 0, scale_ = 1;
+};
 
 /// Voxels along the longest side that carry the shortest edges asked for, where the run chooses them.
 int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world);

@@ -17,6 +17,7 @@
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/regions/region_lengths.h"
+#include "pipeline/regions/region_memory.h"
 #include "pipeline/sheet/crease_search.h"
 
 namespace isoshell {
@@ -87,7 +88,10 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
   const Plan plan = plan_of(options, measured.topology, bounding_box(soup));
   LatticeSurface surface;
   const std::vector<double> of_face_world = lengths_of_faces_world(soup.regions, options.region_edge_lengths);
-  surface.frame = LatticeFrame::around(plan.box.min, plan.box.max, resolution_for_walls(soup, plan, of_face_world));
+  const RunEstimate estimate = estimate_walls(plan, soup, of_face_world);
+  require_memory_for_walls(estimate, context);
+  report.grid.memory_estimate_bytes = estimate.bytes;
+  surface.frame = LatticeFrame::around(plan.box.min, plan.box.max, estimate.resolution);
   surface.topology = measured.topology;
   surface.topology.closed = surface.topology.oriented = true;  // as each region's own surface is
   PreparedSurface p = begin_with(std::move(surface), options);

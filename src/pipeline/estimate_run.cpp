@@ -1,0 +1,21 @@
+// estimate_run (see isoshell/memory_estimate.h).
+#include "options/check_options.h"
+#include "pipeline/grid/memory_estimate.h"
+#include "pipeline/regions/region_lengths.h"
+#include "pipeline/regions/region_memory.h"
+
+namespace isoshell {
+
+RunEstimate estimate_run(const TriangleSoup& soup, const InputTopology& input, const RemeshOptions& options,
+                         int32_t resolution) {
+  return estimate_run(soup, bounding_box(soup), input, options, resolution);
+}
+
+RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const InputTopology& input,
+                         const RemeshOptions& options, int32_t resolution) {
+  const Plan plan = plan_of(checked(options), input, box);
+  if (soup.regions.empty()) return estimate_plan(plan, soup, resolution);
+  return estimate_walls(plan, soup, lengths_of_faces_world(soup.regions, plan.options.region_edge_lengths), resolution);
+}
+
+}  // namespace isoshell
