@@ -53,7 +53,7 @@ RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, RemeshReport& report, Co
 
 /// On the patches of a cut surface, or on the sheet. None where a mesh is to be made without.
 SeedSet relax_seeds(const PreparedSurface& p, Begin begin, bool in_patches, RemeshReport& report, Context& context) {
-  if (p.walls && p.walls->are_too_thin) return {};
+  if (p.walls && p.walls->are_too_near) return {};
   const bool is_warm = report.coherence.began_warm = begin == Begin::as_prepared && p.previous;
   RelaxedSeeds relaxed;
   if (!in_patches && !is_warm && p.options.method == Method::shell)

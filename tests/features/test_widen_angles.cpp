@@ -79,6 +79,18 @@ TEST_CASE("wide angles: fewer triangles are poor, none is worse than the worst, 
   CHECK(after < before / 3);
 }
 
+TEST_CASE("wide angles: poor triangles that there are too many of are counted and stay", "[widen_angles][stage]") {
+  Context context;
+  const Made made = hardly_relaxed(feature_shapes()[0], context);
+  const JoinedMesh joined = join_patches(made.mesh.mesh, made.mesh.seeds.fixed);
+  REQUIRE(poor_of(joined.mesh) > 0);
+  const JoinOptions no_tries{count_of(made.mesh), false, 0};
+  const JoinedPatches same = join_and_widen(made.cut, made.mesh, no_tries, context);
+  CHECK(same.left_alone == poor_of(joined.mesh));
+  CHECK(poor_of(same.mesh) == poor_of(joined.mesh));
+  CHECK(join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, context).left_alone == 0);
+}
+
 TEST_CASE("wide angles: curves are the same, in edges between places on them", "[widen_angles][stage]") {
   Context context;
   for (const FeatureShape& shape : feature_shapes()) {

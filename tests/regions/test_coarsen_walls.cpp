@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "features/walls/coarsen_walls.h"
-#include "features/walls/thin_walls.h"
+#include "features/walls/near_walls.h"
 #include "isoshell/io/memory_input.h"
 #include "measure/crossings.h"
 #include "pipeline/regions/region_walls.h"
@@ -87,7 +87,7 @@ TEST_CASE("walls that bend nearer to one another than half an edge are coarsened
     RemeshOptions options;
     options.vertices = vertices;
     RemeshReport report;
-    return share_of_thin_walls(*prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context).cut,
+    return share_of_near_walls(*prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context).cut,
                                vertices);
   };
   const auto waves = [](int32_t n) {

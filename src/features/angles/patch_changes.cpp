@@ -44,15 +44,22 @@ bool PatchMesh::is_free(const Cutout& cutout, const MeshRegion& region) const {
 /// A triangle without corners where there is none before, or is none any more.
 void PatchMesh::replace(uint32_t triangle, const RegionTriangle& by) {
   RegionTriangle& t = triangles_[triangle];
-  if (!t.is_gone())
+  const auto note_change = [&] {
+    for (const uint32_t v : t.corner)
+      if (v < replaced_at_.size()) replaced_at_[v] = clock_;
+  };
+  if (!t.is_gone()) {
     for (const uint32_t v : t.corner)
       around_[v].erase(std::lower_bound(around_[v].begin(), around_[v].end(), triangle));
+    note_change();
+  }
   space_->take(triangle);
   t = by;
   if (t.is_gone()) return;
   for (const uint32_t v : t.corner)
     around_[v].insert(std::lower_bound(around_[v].begin(), around_[v].end(), triangle), triangle);
   space_->put(triangle, corners(t));
+  note_change();
   is_hopeless_[triangle] = 0;
 }
 

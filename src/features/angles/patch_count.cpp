@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "features/angles/patch_mesh.h"
 #include "isoshell/advanced/voxel_set.h"
@@ -12,6 +13,7 @@ namespace {
 constexpr double kMostPerCount = 1. / 24;  ///< cost that a change may bring that only keeps the count
 constexpr double kMostAtFirst = 0.25;      ///< beyond that, before vertices move
 constexpr int64_t kMostTriesPerCount = 64;
+constexpr size_t kAhead = 64;       ///< edges that are looked at side by side
 constexpr size_t kFewEdges = 11;    ///< of both ends of an edge that is collapsed: 7 are left then
 constexpr size_t kPassesOfFew = 3;  ///< over edges, each with one edge more at the ends, before all count
 constexpr size_t kMostPasses = 12;
@@ -20,7 +22,7 @@ constexpr int64_t kLeastShare = 10;  ///< a pass that meets less than one part i
 }  // namespace
 
 /// Each edge between vertices off curves, by its length beside the one aimed at there.
-std::vector<std::pair<double, uint64_t>> PatchMesh::edges_by_length() const {
+std::vector<uint64_t> PatchMesh::edges_by_length() const {
   using Kind = RegionVertex::Kind;
   const EdgeLengths& lengths = cut_->surface.lengths;
   std::vector<std::pair<double, uint64_t>> out;
@@ -34,7 +36,9 @@ std::vector<std::pair<double, uint64_t>> PatchMesh::edges_by_length() const {
           {distance_sq(vertices_[u].position, vertices_[v].position) / (aimed_at * aimed_at), edge_key(u, v)});
     }
   std::sort(out.begin(), out.end());
-  return out;
+  std::vector<uint64_t> edges;
+  for (const auto& [length, edge] : out) edges.push_back(edge);
+  return edges;
 }
 
 /// With a vertex more or less in the edge between the first two, where that hardly costs.
@@ -53,22 +57,58 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
   return {};
 }
 
+/// Whether an edge is there, and takes part in a pass.
+bool PatchMesh::may_recount(uint64_t edge, size_t pass) const {
+  const auto u = uint32_t(edge >> 32), v = uint32_t(edge);
+  const bool has_many = surplus() > 0 && around_[u].size() + around_[v].size() > kFewEdges + pass;
+  return is_edge(u, v) && !(has_many && pass < kPassesOfFew);
+}
+
+PatchMesh::Recount PatchMesh::recount_at(uint64_t edge) const {
+  const auto u = uint32_t(edge >> 32), v = uint32_t(edge);
+  Recount out;
+  out.cutout = cut_out({u, v}, triangles_around({u, v}));
+  out.made = recounted(out.cutout->region);
+  return out;
+}
+
+/// Whether something around has changed since.
+bool PatchMesh::is_stale(const Recount& recount) const {
+  const std::vector<RegionVertex>& vertices = recount.cutout->region.vertices();
+  return std::any_of(vertices.begin(), vertices.end(),
+                     [&](const RegionVertex& v) { return replaced_at_[v.number] == clock_; });
+}
+
+/// One edge after the other. What each would become is found ahead, side by side, and found again where another one has
+/// changed what is around: the result is that of one thread.
+void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, int64_t tries) {
+  const size_t ahead = loops_run_alone() ? 1 : kAhead;
+  for (size_t begin = 0; begin < edges.size(); begin += ahead) {
+    const size_t count = std::min(ahead, edges.size() - begin);
+    std::vector<Recount> recounts(count);
+    ++clock_;
+    replaced_at_.resize(vertices_.size(), 0);
+    for_each_index(size_t(0), count, [&](size_t i) {
+      if (may_recount(edges[begin + i], pass)) recounts[i] = recount_at(edges[begin + i]);
+    });
+    for (size_t i = 0; i < count; ++i) {
+      if (surplus() == 0 || tries == 0) return;
+      if (!may_recount(edges[begin + i], pass)) continue;
+      --tries;
+      if (!recounts[i].cutout || is_stale(recounts[i])) recounts[i] = recount_at(edges[begin + i]);
+      if (recounts[i].made) put_back(*recounts[i].cutout, *recounts[i].made);
+    }
+  }
+}
+
 void PatchMesh::meet_count(const Context& context) {
   if (surplus() != 0) fill_space();
   for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
     check_cancel(context, "features");
     const int64_t before = surplus();
-    std::vector<std::pair<double, uint64_t>> edges = edges_by_length();
+    std::vector<uint64_t> edges = edges_by_length();
     if (before < 0) std::reverse(edges.begin(), edges.end());
-    int64_t tries = kMostTriesPerCount * std::abs(before);
-    for (size_t i = 0; i < edges.size() && surplus() != 0 && tries > 0; ++i) {
-      const auto u = uint32_t(edges[i].second >> 32), v = uint32_t(edges[i].second);
-      const bool has_many = before > 0 && around_[u].size() + around_[v].size() > kFewEdges + pass;
-      if (!is_edge(u, v) || (has_many && pass < kPassesOfFew)) continue;
-      --tries;
-      const Cutout cutout = cut_out({u, v}, triangles_around({u, v}));
-      if (const std::optional<MeshRegion> there = recounted(cutout.region)) put_back(cutout, *there);
-    }
+    recount_edges(edges, pass, kMostTriesPerCount * std::abs(before));
     const int64_t gained = std::abs(before) - std::abs(surplus());
     if (pass >= kPassesOfFew && kLeastShare * gained < std::abs(before)) return;
   }

@@ -20,6 +20,7 @@ constexpr double kLessIfSteady =
 constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triangle itself must have for changes to pay
 constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
 constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor
+constexpr int64_t kFewTries = 20000;            ///< that every mesh may take
 constexpr double kHopeless = 1.5;  ///< of the least cost so far: a change that is above after a round is given up
 
 /// Along strips narrower than edges all triangles are poor. Where one hardly counts beside the others, changes at its
@@ -51,6 +52,7 @@ PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOp
   list_triangles(*open, *seeds, joined);
   is_hopeless_.assign(triangles_.size(), 0);
   count_ = int64_t(vertices_.size());
+  tries_ = options_.tries_per_vertex * std::max(count_, kFewTries);
 }
 
 PatchMesh::PatchMesh(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles,
@@ -269,7 +271,13 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
   while (!triangles.empty()) {
     const auto is_done = [&](uint32_t t) { return sine_of(t) >= kPoorSine || is_hopeless_[t]; };
     triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_done), triangles.end());
-    const std::vector<uint32_t> apart = take_apart(triangles);
+    std::vector<uint32_t> apart = take_apart(triangles);
+    if (int64_t(apart.size()) > tries_) {
+      left_alone_ = int64_t(apart.size() + triangles.size()) - tries_;
+      apart.resize(size_t(tries_));
+      triangles.clear();
+    }
+    tries_ -= int64_t(apart.size());
     std::vector<std::optional<Cutout>> cutouts(apart.size());
     std::vector<std::optional<MeshRegion>> better(apart.size());
     for_each_index(size_t(0), apart.size(), [&](size_t i) {
@@ -292,6 +300,7 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
 JoinedPatches PatchMesh::joined() const {
   std::vector<uint32_t> number(vertices_.size(), kNone);
   JoinedPatches out;
+  out.left_alone = left_alone_;
   out.mesh.position = Buffer<PointQ8>(count_);
   out.home = Buffer<uint32_t>(count_);
   uint32_t count = 0;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "features/angles/mesh_region.h"
-#include "features/angles/triangle_space.h"
 #include "isoshell/triangle_mesh.h"
+#include "measure/triangle_space.h"
 
 namespace isoshell {
 
@@ -17,7 +17,8 @@ struct JoinedPatches {
   DualMesh mesh;
   Buffer<uint32_t> home;  ///< per vertex one of the surface, one of the copies where it has several
   MeshFeatures features;
-  int64_t on_curves = 0;  ///< vertices on curves and corners
+  int64_t on_curves = 0;   ///< vertices on curves and corners
+  int64_t left_alone = 0;  ///< poor triangles that there were too many of to look at
 };
 
 /// What becomes of the mesh of patches.
@@ -25,6 +26,8 @@ struct JoinOptions {
   int64_t vertices;  ///< that it is to have
   /// In a frame that follows another: vertices come and go only where no triangle is poor then, or that halves a cost.
   bool is_steady = false;
+  /// Looks at poor triangles, beside some thousands: what bounds the time. Few meshes take a third of it.
+  int64_t tries_per_vertex = 1;
 };
 
 /// Changes are made only where no triangle comes to meet another one outside of corners that they share.
@@ -52,6 +55,11 @@ class PatchMesh {
     std::vector<uint32_t> triangles;  ///< of the mesh
     MeshRegion region;
   };
+  /// What an edge less, or a vertex in it, makes of what is around it.
+  struct Recount {
+    std::optional<Cutout> cutout;  ///< none: the edge does not take part
+    std::optional<MeshRegion> made;
+  };
   struct Change {
     enum { split, collapse } what;
     uint32_t u, v;
@@ -66,7 +74,11 @@ class PatchMesh {
 
   double sine_of(uint32_t triangle) const;
   bool is_edge(uint32_t u, uint32_t v) const;
-  std::vector<std::pair<double, uint64_t>> edges_by_length() const;
+  std::vector<uint64_t> edges_by_length() const;
+  bool may_recount(uint64_t edge, size_t pass) const;
+  Recount recount_at(uint64_t edge) const;
+  bool is_stale(const Recount& recount) const;
+  void recount_edges(const std::vector<uint64_t>& edges, size_t pass, int64_t tries);
 
   std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
   Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;
@@ -91,8 +103,12 @@ class PatchMesh {
   std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
   std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
   std::optional<TriangleSpace> space_;               ///< once something is to change
+  std::vector<uint32_t> replaced_at_;                ///< per vertex when one of its triangles was replaced last
+  uint32_t clock_ = 0;                               ///< edges looked at together so far
   int64_t count_ = 0;
   JoinOptions options_;
+  int64_t tries_ = 0;       ///< that are left
+  int64_t left_alone_ = 0;  ///< triangles without one
 };
 
 }  // namespace isoshell

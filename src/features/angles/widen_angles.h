@@ -10,7 +10,7 @@ namespace isoshell {
 /// worst angles wider and the triangles follow surface and curves no worse. As many edges are collapsed or split
 /// elsewhere, where triangles stay good, until there are as many vertices as asked for, or as near to that as it goes.
 /// Curves stay edges, the topology stays, and no triangles come to intersect. Result: the same for every number of
-/// threads. In host memory. Cost: about a millisecond a poor triangle.
+/// threads. In host memory. Cost: about a millisecond a poor triangle, for no more of them than options allow.
 JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
                              Context& context);
 

@@ -14,7 +14,7 @@ namespace {
 uint32_t side(uint32_t triangle, bool is_front) { return 2 * triangle + (is_front ? 0 : 1); }
 
 constexpr double kThin = 1e-6;  // height of triangles that have no direction, in terms of their longest edge
-constexpr int kMostThin = 8;    // of them one beside the other
+constexpr int kMostNear = 8;    // of them one beside the other
 
 /// A triangle at an edge, seen along the edge.
 struct FaceAtEdge {
@@ -107,7 +107,7 @@ class Regions {
   /// longest of its other edges.
   uint32_t with_height(const FeatureEdge& edge, uint32_t triangle) const {
     const FeatureEdge* behind = &edge;
-    for (int i = 0; i < kMostThin && is_thin(triangle); ++i) {
+    for (int i = 0; i < kMostNear && is_thin(triangle); ++i) {
       const FeatureEdge* longest = nullptr;
       for (const uint32_t e : edges_.of_triangle[triangle]) {
         const FeatureEdge& other = edges_.edges[e];

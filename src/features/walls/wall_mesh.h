@@ -10,8 +10,8 @@
 
 #include "features/angles/cut_lookup.h"
 #include "features/angles/mesh_region.h"
-#include "features/angles/triangle_space.h"
 #include "features/mesh/refine_mesh.h"
+#include "measure/triangle_space.h"
 
 namespace isoshell {
 

@@ -97,6 +97,13 @@ void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report)
   report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
 }
 
+void warn_of_left_alone(int64_t triangles, RemeshReport& report) {
+  if (triangles == 0) return;
+  report.warnings.push_back(counted(triangles, "triangle") +
+                            " with angles below 30 degrees beside curves were left as they were: more looks at them "
+                            "than the result has vertices would take too long; more vertices make better triangles");
+}
+
 void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why) {
   FeatureReport& features = report.features;
   const int64_t creases = features.curves - features.seams - features.lines;

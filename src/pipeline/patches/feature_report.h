@@ -29,6 +29,9 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
 /// Says that some of the curves are not kept while others are, and warns.
 void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report);
 
+/// Warns of poor triangles that are left because looking at all of them would take too long.
+void warn_of_left_alone(int64_t triangles, RemeshReport& report);
+
 /// Says that none of the curves is kept, and warns.
 void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why);
 

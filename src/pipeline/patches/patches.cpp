@@ -251,6 +251,7 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetW
   if (const int64_t vertices = made_here.joined.mesh.position.size(); vertices != cut.seeds)
     report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
                               std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
+  warn_of_left_alone(made_here.joined.left_alone, report);
   if (cut.source->is_sheet) {
     const PreparedSurface& whole = sheet.get(report);
     const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(whole.sheet, mesh); });

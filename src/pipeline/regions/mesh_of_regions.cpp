@@ -13,6 +13,7 @@
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
+#include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/new_crossings.h"
 #include "pipeline/patches/patch_rounds.h"
 #include "pipeline/regions/flat_walls.h"
@@ -24,7 +25,7 @@ namespace {
 constexpr int64_t kManyVertices = 2;  ///< of walls, for one that is asked for
 constexpr const char* kCoarsened =
     "the edges between regions were collapsed and flipped, not relaxed, and triangles are less even: ";
-constexpr const char* kTooThin = "walls bend, and are nearer to one another than half an edge";
+constexpr const char* kTooNear = "walls bend, and are nearer to one another than half an edge";
 
 FaceRegions without_labels(const FaceRegions& regions) {
   FaceRegions out;
@@ -78,6 +79,7 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
     report.warnings.push_back(
         "the result has " + std::to_string(vertices) + " vertices instead of " + std::to_string(p.target.vertices) +
         (vertices > p.target.vertices ? ": the curves between its regions, and walls close together, need them" : ""));
+  warn_of_left_alone(joined.left_alone, report);
   measure_edges(cut, joined, report.sizing);
   report.features.vertices = joined.on_curves;
   report.features.segments = int64_t(mesh.features.curve_edges.size());
@@ -92,7 +94,7 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
   SharedCut cut = p.cut;
   JoinedPatches joined;
   const std::string why_not = failure_reason([&]() -> std::string {
-    if (p.walls->are_too_thin) return kTooThin;
+    if (p.walls->are_too_near) return kTooNear;
     if (std::string why = mesh_in_rounds(p, cut, made, in_patches, report, context); !why.empty()) return why;
     joined =
         timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(in_patches), context); });

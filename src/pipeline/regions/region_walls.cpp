@@ -7,8 +7,9 @@
 #include "core/watched.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/free_seeds.h"
+#include "features/mesh/thin_out.h"
 #include "features/mesh/weld_for_features.h"
-#include "features/walls/thin_walls.h"
+#include "features/walls/near_walls.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/grid/sizing.h"
@@ -25,8 +26,10 @@ namespace {
 
 /// Of relaxed walls of brains with smaller parts, few triangles intersect and rounds part them; above, cells of
 /// hundreds are no disks.
-constexpr double kMostThin = 0.11;
-constexpr int64_t kManyVertices = 10000;  ///< with fewer it costs little to relax them and see
+constexpr double kMostNear = 0.11;
+constexpr int64_t kManyVertices = 10000;    ///< with fewer it costs little to relax them and see
+constexpr int64_t kVerticesPerVertex = 16;  ///< of walls, for one that is asked for: four edges for one of the result
+constexpr int64_t kSmallPatch = 4;          ///< vertices of the result: walls with as few stay as fine as they are
 
 void check_asked_for(const RemeshOptions& options) {
   const auto refuse = [](const char* what) {
@@ -35,6 +38,17 @@ void check_asked_for(const RemeshOptions& options) {
   };
   if (options.method != Method::sheet) refuse("--method shell cannot be used");
   if (options.want_shell) refuse("there is no shell to save");
+}
+
+/// With fewer triangles, where voxels made far more than edges need that are as long everywhere: what follows takes
+/// time and memory for each.
+FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool lengths_vary, const Context& context) {
+  FeatureMesh mesh = run_with_threads(context, [&] { return weld_for_features(soup); });
+  const auto vertices = int64_t(mesh.vertices.size());
+  if (!soup.regions.are_of_voxels || lengths_vary || vertices <= kVerticesPerVertex * p.target.vertices) return mesh;
+  const double edge_world = edge_length_for(mesh, {}, p.target.vertices);
+  const auto fewest = uint32_t(kSmallPatch * vertices / p.target.vertices);
+  return thin_out(std::move(mesh), p.surface.frame, edge_world, fewest, context);
 }
 
 CurveOptions curves_between_regions(const PreparedSurface& p) {
@@ -97,7 +111,7 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
   PreparedSurface p = begin_with(std::move(surface), options);
   timed(report, "features", context, [&] {
     auto walls = std::make_shared<RegionWalls>();
-    walls->mesh = run_with_threads(context, [&] { return weld_for_features(soup); });
+    walls->mesh = walls_of(soup, p, wants_lengths(options), context);
     walls->regions = soup.regions;
     p.walls = walls;
     const CurveNetwork network =
@@ -111,8 +125,8 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     report.features.patches = int64_t(patch_count(*cut));
     p.cut = cut;
     if (walls->regions.are_of_voxels && cut->seeds >= kManyVertices)
-      walls->are_too_thin =
-          run_with_threads(context, [&] { return share_of_thin_walls(*cut, cut->seeds) > kMostThin; });
+      walls->are_too_near =
+          run_with_threads(context, [&] { return share_of_near_walls(*cut, cut->seeds) > kMostNear; });
   });
   report.input.topology = measured.topology;
   report.grid.frame = p.surface.frame;

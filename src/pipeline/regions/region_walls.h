@@ -11,7 +11,7 @@ namespace isoshell {
 struct RegionWalls {
   FeatureMesh mesh;
   FaceRegions regions;
-  bool are_too_thin = false;  ///< for edges as long as asked for: relaxed triangles would intersect, so none are
+  bool are_too_near = false;  ///< for edges as long as asked for: relaxed triangles would intersect, so none are
 
   const std::array<int32_t, 2>& labels_of(size_t triangle) const { return regions.labels[mesh.source_face[triangle]]; }
 };

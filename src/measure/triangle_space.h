@@ -24,8 +24,8 @@ class TriangleSpace {
     size_t places = 1024;
     while (2 * places < triangles) places *= 2;
     at_ = std::vector<Place>(places);
-    is_there_.reserve(triangles);
-    corners_.reserve(triangles);
+    is_there_.resize(triangles, 0);
+    corners_.resize(triangles);
   }
 
   void put(uint32_t number, const CornersOfTriangle& triangle) {

@@ -1,5 +1,5 @@
-// share_of_thin_walls (see thin_walls.h).
-#include "features/walls/thin_walls.h"
+// share_of_near_walls (see near_walls.h).
+#include "features/walls/near_walls.h"
 
 #include <cmath>
 #include <vector>
@@ -29,7 +29,7 @@ class Walls {
   }
 
   size_t size() const { return fine_.triangles.size(); }
-  bool is_thin(size_t t) const {
+  bool is_near(size_t t) const {
     const auto& [a, b, c] = fine_.triangles[t];
     const WorldPoint middle = (1. / 3) * (fine_.position[a] + fine_.position[b] + fine_.position[c]);
     const WorldPoint n = normal(t);
@@ -80,15 +80,15 @@ class Walls {
 
 }  // namespace
 
-double share_of_thin_walls(const CutSurface& cut, int64_t vertices) {
+double share_of_near_walls(const CutSurface& cut, int64_t vertices) {
   const Walls walls(cut, vertices);
   const size_t stride = walls.size() / kMostSamples + 1, samples = (walls.size() + stride - 1) / stride;
-  const int64_t thin = sum_over_ranges(int64_t(samples), 64, [&](int64_t begin, int64_t end) {
+  const int64_t near = sum_over_ranges(int64_t(samples), 64, [&](int64_t begin, int64_t end) {
     int64_t sum = 0;
-    for (int64_t s = begin; s < end; ++s) sum += walls.is_thin(size_t(s) * stride) ? 1 : 0;
+    for (int64_t s = begin; s < end; ++s) sum += walls.is_near(size_t(s) * stride) ? 1 : 0;
     return sum;
   });
-  return double(thin) / double(samples);
+  return double(near) / double(samples);
 }
 
 }  // namespace isoshell
