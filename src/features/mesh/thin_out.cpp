@@ -93,8 +93,8 @@ class ThinnedWalls {
 
  private:
   struct Scratch {
-    Scratch(const Cubes& of, int64_t number, View<const uint32_t> all, double cell_q8)
-        : cubes(of), cube(number), triangles(all), space(cell_q8, size_t(all.size)) {}
+    Scratch(const Cubes& of, int64_t in, View<const uint32_t> all, double cell_q8)
+        : cubes(of), cube(in), triangles(all), space(cell_q8, size_t(all.size)) {}
 
     const Cubes& cubes;
     int64_t cube;

@@ -12,14 +12,17 @@
 #include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
+#include "pipeline/grid/sizing.h"
 #include "pipeline/regions/region_lengths.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kBytesPerFinePoint =
-    720;  // the cut walls, what relaxes on them, and walls that are cut again: 500 to 880
-constexpr double kBytesPerWallVertex = 60;  // the walls as they came in, welded
+constexpr double kBytesPerFinePoint = 720;        ///< the cut walls, what relaxes on them, cut again or not: 500 to 880
+constexpr double kBytesPerWallVertex = 60;        ///< the walls as they came in, welded
+constexpr double kBytesPerThinnedVertex = 360;    ///< where most vertices go before walls are cut: meanwhile
+constexpr double kBytesOfSmallWalls = 112 << 20;  ///< which stay as they are then
+constexpr int64_t kPointsWhenThinned = 16;        ///< fine points for one of the result, then
 constexpr double kBytesPerSeed = 500;
 constexpr double kFixedBytes = 16 << 20;
 constexpr int64_t kTrianglesOfTask = 4096;
@@ -60,8 +63,14 @@ RunEstimate estimate_walls(const Plan& plan, const TriangleSoup& walls, const st
       });
   const auto vertices = int64_t(walls.vertices.size());
   e.sheet_vertices = vertices + twice_inside / 2;
-  e.bytes = int64_t(kFixedBytes + kBytesPerWallVertex * double(vertices) +
-                    kBytesPerFinePoint * double(e.sheet_vertices) + kBytesPerSeed * double(e.vertices));
+  const double bytes_of_walls = kBytesPerWallVertex * double(vertices);
+  double bytes = bytes_of_walls + kBytesPerFinePoint * double(e.sheet_vertices) + kBytesPerSeed * double(e.vertices);
+  if (!wants_lengths(plan.options) && are_thinned_out(walls, e.vertices)) {
+    e.sheet_vertices = kPointsWhenThinned * e.vertices;
+    bytes = std::max(kBytesOfSmallWalls + kBytesPerThinnedVertex * double(vertices),
+                     bytes_of_walls + kBytesPerFinePoint * double(e.sheet_vertices));
+  }
+  e.bytes = int64_t(kFixedBytes + bytes);
   if (walls.regions.are_of_voxels)
     e.bytes = std::max(e.bytes, bytes_to_make_walls(int64_t(walls.triangles.size()), vertices));
   return e;

@@ -27,9 +27,8 @@ namespace {
 /// Of relaxed walls of brains with smaller parts, few triangles intersect and rounds part them; above, cells of
 /// hundreds are no disks.
 constexpr double kMostNear = 0.11;
-constexpr int64_t kManyVertices = 10000;    ///< with fewer it costs little to relax them and see
-constexpr int64_t kVerticesPerVertex = 16;  ///< of walls, for one that is asked for: four edges for one of the result
-constexpr int64_t kSmallPatch = 4;          ///< vertices of the result: walls with as few stay as fine as they are
+constexpr int64_t kManyVertices = 10000;  ///< with fewer it costs little to relax them and see
+constexpr int64_t kSmallPatch = 4;        ///< vertices of the result: walls with as few stay as fine as they are
 
 void check_asked_for(const RemeshOptions& options) {
   const auto refuse = [](const char* what) {
@@ -45,7 +44,7 @@ void check_asked_for(const RemeshOptions& options) {
 FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool lengths_vary, const Context& context) {
   FeatureMesh mesh = run_with_threads(context, [&] { return weld_for_features(soup); });
   const auto vertices = int64_t(mesh.vertices.size());
-  if (!soup.regions.are_of_voxels || lengths_vary || vertices <= kVerticesPerVertex * p.target.vertices) return mesh;
+  if (lengths_vary || !are_thinned_out(soup, p.target.vertices)) return mesh;
   const double edge_world = edge_length_for(mesh, {}, p.target.vertices);
   const auto fewest = uint32_t(kSmallPatch * vertices / p.target.vertices);
   return thin_out(std::move(mesh), p.surface.frame, edge_world, fewest, context);
