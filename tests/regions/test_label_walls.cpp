@@ -107,6 +107,22 @@ TEST_CASE("faired walls stay near the planes between grains") {
   CHECK(std::sqrt(sum / count) < 0.1);
 }
 
+TEST_CASE("walls at the sides of a volume are flat, its edges straight and its corners where they are") {
+  const TriangleSoup soup = surface_of_labels(voronoi_grains(24, 7), "labels", 0);
+  const double low = -0.5, high = 23.5;
+  int64_t corners = 0;
+  for (size_t t = 0; t < soup.triangles.size(); ++t)
+    for (const uint32_t v : soup.triangles[t]) {
+      const WorldPoint p = soup.vertices[v];
+      const int sides = (p.x == low || p.x == high) + (p.y == low || p.y == high) + (p.z == low || p.z == high);
+      if (soup.regions.labels[t][1] == 0) REQUIRE(sides > 0);
+      CHECK(std::min({p.x, p.y, p.z}) >= low);
+      CHECK(std::max({p.x, p.y, p.z}) <= high);
+      corners += sides == 3 ? 1 : 0;
+    }
+  CHECK(corners >= 8);
+}
+
 TEST_CASE("curves between grains stay apart where they run side by side") {
   const CpuContext context;
   const LabelWalls walls = find_label_walls(voronoi_grains(64, 60), context);

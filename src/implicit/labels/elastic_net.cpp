@@ -1,7 +1,6 @@
 // ElasticNet (see elastic_net.h).
 #include "implicit/labels/elastic_net.h"
 
-#include "core/watched.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"
 
@@ -48,6 +47,7 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, const Buckets<uint32_t>& faces
   const int32_t reach = is_on_curve ? kCurveReach : is_sheet ? kThinReach : kReach;
   const FinePoint& rest = at_[vertex];
   Box box{rest - all_along(reach), rest + all_along(reach)};
+  keep_on_sides(vertex, box);
   if (!is_on_curve) return box;
   for (const uint32_t f : faces_at.in(int64_t(vertex)))
     for (const uint32_t v : walls_.faces[f]) {
@@ -55,11 +55,20 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, const Buckets<uint32_t>& faces
       const Voxel &own = walls_.rest_halves[vertex], &other = walls_.rest_halves[v];
       const int32_t way[3] = {other.x - own.x, other.y - own.y, other.z - own.z};
       for (int axis = 0; axis < 3; ++axis) {
-        if (way[axis] < 0) box.low[axis] = rest[axis] - kStripReach;
-        if (way[axis] > 0) box.high[axis] = rest[axis] + kStripReach;
+        if (way[axis] < 0) box.low[axis] = std::max(box.low[axis], rest[axis] - kStripReach);
+        if (way[axis] > 0) box.high[axis] = std::min(box.high[axis], rest[axis] + kStripReach);
       }
     }
   return box;
+}
+
+/// Where a volume ends what it shows goes on: it is cut there, and the cut is flat.
+void ElasticNet::keep_on_sides(size_t vertex, Box& box) const {
+  const Voxel &h = walls_.rest_halves[vertex], &size = walls_.size_vox;
+  const bool is_on_side[3] = {h.x == 0 || h.x == 2 * size.x, h.y == 0 || h.y == 2 * size.y,
+                              h.z == 0 || h.z == 2 * size.z};
+  for (int axis = 0; axis < 3; ++axis)
+    if (is_on_side[axis]) box.low[axis] = box.high[axis] = at_[vertex][axis];
 }
 
 /// This share of the way to the mean of those that a vertex follows.
@@ -120,13 +129,13 @@ FinePoint ElasticNet::slope_at(size_t vertex) const {
   return slope;
 }
 
-void ElasticNet::unbend(int steps, double stiffness_of_curves, const Context& context) {
+void ElasticNet::unbend(int steps, double stiffness_of_curves, const std::function<void(int)>& begin_step) {
   std::vector<FinePoint> ahead = at_;
   const int32_t of_walls = -whole_share(1), of_curves = -whole_share(stiffness_of_curves),
                 slope_share = whole_share(kSlopeShare);
   double pace = 1;
   for (int i = 0; i < steps; ++i) {
-    check_cancel(context, "read");
+    begin_step(i);
     for_each_index(size_t(0), at_.size(), [&](size_t v) {
       const int32_t share = (links_.is_on_curve(v) ? of_curves : of_walls) / links_.followed(v);
       bend_[v] = links_.kind(v) == Kind::corner ? FinePoint{0, 0, 0, 0} : mean_way(v, ahead, share);

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "implicit/labels/wall_links.h"
 #include "isoshell/advanced/lattice_surface.h"
-#include "isoshell/backend.h"
 
 namespace isoshell {
 
@@ -29,8 +29,8 @@ class ElasticNet {
   void step(double share);
   /// So many steps down the slope of the energy, each with the momentum of those before (Nesterov 1983). The bends of
   /// curves count so many times. Walls pull curves along their normals, once these were found.
-  /// Throws: interrupted.
-  void unbend(int steps, double stiffness_of_curves, const Context& context);
+  /// Calls begin_step(i) before step i, which may throw.
+  void unbend(int steps, double stiffness_of_curves, const std::function<void(int)>& begin_step);
   /// Finds the normals of walls beside curves. Along a wall its vertices lie as voxels do, which is no reason for a
   /// curve to follow them.
   void find_normals(const Buckets<uint32_t>& faces_at);
@@ -51,6 +51,7 @@ class ElasticNet {
   };
 
   Box box_of(size_t vertex, const Buckets<uint32_t>& faces_at) const;
+  void keep_on_sides(size_t vertex, Box& box) const;
   FinePoint mean_way(size_t vertex, const std::vector<FinePoint>& field, int32_t share) const;
   FinePoint pull_of(uint32_t beside) const;
   FinePoint slope_at(size_t vertex) const;

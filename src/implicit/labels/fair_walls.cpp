@@ -95,11 +95,11 @@ FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& face
   FairedWalls out;
   out.parted = net.rounded();
   net.find_normals(faces_at);
-  net.unbend(kSoftSteps, kSoft, context);
-  tell_read(context, kCurvesLed);
+  net.unbend(kSoftSteps, kSoft,
+             [&](int step) { tell_read(context, kWallsFound + (kCurvesLed - kWallsFound) * step / kSoftSteps); });
   net.find_normals(faces_at);
-  net.unbend(kStiffSteps, kStiff, context);
-  tell_read(context, kUnbent);
+  net.unbend(kStiffSteps, kStiff,
+             [&](int step) { tell_read(context, kCurvesLed + (kUnbent - kCurvesLed) * step / kStiffSteps); });
   out.position = net.rounded();
   VolumeKeeper volumes(walls, faces_at);
   for (int i = 0; i < kMostOffsets && volumes.find_offsets(out.position) > kLeastOffset_q8; ++i) {
