@@ -103,7 +103,7 @@ TEST_CASE("walls that bend nearer to one another than half an edge are coarsened
 
   RemeshOptions options;
   options.vertices = 10000;
-  const RemeshResult result = remesh(surface_of_labels(waves(88), "labels", 0), options, context);
+  const RemeshResult result = remesh(surface_of_labels(waves(72), "labels", 0), options, context);
   CHECK(result.mesh.vertices.size() == 10000);
   CHECK(result.report.relax.passes == 0);
   CHECK(std::any_of(result.report.warnings.begin(), result.report.warnings.end(), [](const std::string& text) {

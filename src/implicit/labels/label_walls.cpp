@@ -290,9 +290,7 @@ class WallMaker {
 }  // namespace
 
 LabelWalls find_label_walls(const LabelVolume& volume, const Context& context) {
-  LabelWalls walls = WallMaker(volume, context).make();
-  walls.size_vox = {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]};
-  return walls;
+  return WallMaker(volume, context).make();
 }
 
 }  // namespace isoshell
