@@ -81,9 +81,10 @@ bool PatchMesh::is_stale(const Recount& recount) const {
 
 /// One edge after the other. What each would become is found ahead, side by side, and found again where another one has
 /// changed what is around: the result is that of one thread.
-void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, int64_t tries) {
+void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, int64_t tries, const Context& context) {
   const size_t ahead = loops_run_alone() ? 1 : kAhead;
   for (size_t begin = 0; begin < edges.size(); begin += ahead) {
+    check_cancel(context, "features");
     const size_t count = std::min(ahead, edges.size() - begin);
     std::vector<Recount> recounts(count);
     ++clock_;
@@ -104,11 +105,10 @@ void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, i
 void PatchMesh::meet_count(const Context& context) {
   if (surplus() != 0) fill_space();
   for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
-    check_cancel(context, "features");
     const int64_t before = surplus();
     std::vector<uint64_t> edges = edges_by_length();
     if (before < 0) std::reverse(edges.begin(), edges.end());
-    recount_edges(edges, pass, kMostTriesPerCount * std::abs(before));
+    recount_edges(edges, pass, kMostTriesPerCount * std::abs(before), context);
     const int64_t gained = std::abs(before) - std::abs(surplus());
     if (pass >= kPassesOfFew && kLeastShare * gained < std::abs(before)) return;
   }

@@ -78,7 +78,7 @@ class PatchMesh {
   bool may_recount(uint64_t edge, size_t pass) const;
   Recount recount_at(uint64_t edge) const;
   bool is_stale(const Recount& recount) const;
-  void recount_edges(const std::vector<uint64_t>& edges, size_t pass, int64_t tries);
+  void recount_edges(const std::vector<uint64_t>& edges, size_t pass, int64_t tries, const Context& context);
 
   std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
   Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;

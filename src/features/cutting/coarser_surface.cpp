@@ -8,6 +8,7 @@
 #include "core/watched.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_fine_mesh.h"
+#include "features/mesh/corner_lists.h"
 #include "geometry/half_edges.h"
 #include "voxel/exact_int.h"
 
@@ -34,9 +35,7 @@ class ThinnedTriangles {
         seeds_(seeds),
         vertices_(uint32_t(surface_.vertex_count())),
         corner_(3 * size_t(surface_.triangles.size())),
-        next_(corner_.size(), kNone),
-        first_(vertices_, kNone),
-        last_(vertices_, kNone),
+        corners_(corner_.size(), vertices_),
         before_(vertices_, kNone),
         after_(vertices_, kNone),
         may_change_(vertices_, 1) {
@@ -48,7 +47,7 @@ class ThinnedTriangles {
       for (int64_t n = surface_.vertex_first[v]; n < surface_.vertex_first[v + 1]; ++n) {
         uint32_t c = 3 * surface_.vertex_triangles[n];
         while (corner_[c] != v) ++c;
-        append(v, c, c);
+        corners_.add(v, c);
       }
       if (cut_.place[v] == kNone) return;
       before_[v] = surface_.border_before[v];
@@ -90,7 +89,7 @@ class ThinnedTriangles {
     std::vector<std::pair<int64_t, uint32_t>> choice;
   };
 
-  bool is_left(uint32_t vertex) const { return first_[vertex] != kNone; }
+  bool is_left(uint32_t vertex) const { return corners_.is_there(vertex); }
   int64_t length_sq(uint32_t u, uint32_t v) const {
     return distance_sq_q16(surface_.position[u], surface_.position[v]);
   }
@@ -100,15 +99,12 @@ class ThinnedTriangles {
     return int64_t(length * length);
   }
 
-  void append(uint32_t v, uint32_t first, uint32_t last) {
-    (first_[v] == kNone ? first_[v] : next_[last_[v]]) = first;
-    last_[v] = last;
-  }
   /// Calls visit(corner) for the corners that a vertex has.
   template <class Visit>
   void for_each_corner(uint32_t v, Visit visit) const {
-    for (uint32_t c = first_[v]; c != kNone; c = next_[c])
+    corners_.for_each(v, [&](uint32_t c) {
       if (corner_[c] != kNone) visit(c);
+    });
   }
   void find_ring(uint32_t v, Ring& ring) const {
     ring.clear();
@@ -156,8 +152,7 @@ class ThinnedTriangles {
       else
         corner_[c] = into;
     });
-    append(into, first_[v], last_[v]);
-    first_[v] = kNone;
+    corners_.take_into(v, into);
     for (const uint32_t w : ring) stays_[w] = may_change_[w] = 1;
     if (before_[v] == kNone) return;
     before_[after_[v]] = before_[v];
@@ -270,9 +265,8 @@ class ThinnedTriangles {
   const int scale_;
   const FreeSeeds::Counts& seeds_;
   const uint32_t vertices_;
-  std::vector<uint32_t> corner_;            ///< per corner 3 t + i of triangle t its vertex; kNone: it is gone
-  std::vector<uint32_t> next_;              ///< corner of the same vertex
-  std::vector<uint32_t> first_, last_;      ///< per vertex the ends of that list; empty: it is gone
+  std::vector<uint32_t> corner_;  ///< per corner 3 t + i of triangle t its vertex; kNone: it is gone
+  CornerLists corners_;
   std::vector<uint32_t> before_, after_;    ///< per vertex its neighbours on the border
   std::vector<char> may_change_;            ///< per vertex: something around it has changed since it could not go
   std::vector<char> stays_;                 ///< per vertex: for a sweep

@@ -8,6 +8,7 @@
 
 #include "core/buckets.h"
 #include "core/watched.h"
+#include "features/mesh/corner_lists.h"
 #include "features/mesh/lattice_cubes.h"
 #include "geometry/box.h"
 #include "geometry/half_edges.h"
@@ -45,14 +46,12 @@ class ThinnedWalls {
         edge_world_(edge_world),
         edge_q8_(edge_world / frame.voxel_size * kOneVoxelQ8),
         place_(mesh_.vertices.size()),
-        next_(3 * mesh_.triangles.size(), kNone),
-        first_(mesh_.vertices.size(), kNone),
-        last_(mesh_.vertices.size(), kNone),
+        corners_(3 * mesh_.triangles.size(), mesh_.vertices.size()),
         curve_(mesh_.vertices.size(), kOffCurves),
         normal_(mesh_.vertices.size()),
         may_change_(mesh_.vertices.size(), 1),
         stays_(mesh_.vertices.size(), 0) {
-    for (size_t c = 0; c < next_.size(); ++c) append(corner(uint32_t(c)), uint32_t(c), uint32_t(c));
+    for (uint32_t c = 0; c < 3 * mesh_.triangles.size(); ++c) corners_.add(corner(c), c);
     for_each_index(uint32_t(0), vertices(), [&](uint32_t v) {
       normal_[v] = normal_at(v);
       place_[v] = frame.snap(mesh_.vertices[v]);
@@ -70,7 +69,7 @@ class ThinnedWalls {
     std::vector<uint32_t> number(vertices(), kNone);
     uint32_t count = 0;
     for (uint32_t v = 0; v < vertices(); ++v)
-      if (first_[v] != kNone) mesh_.vertices[count] = mesh_.vertices[v], number[v] = count++;
+      if (corners_.is_there(v)) mesh_.vertices[count] = mesh_.vertices[v], number[v] = count++;
     mesh_.vertices.resize(count);
     std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
     for (size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -112,15 +111,12 @@ class ThinnedWalls {
   double most_sq(double edges) const { return edges * edges * edge_world_ * edge_world_; }
   bool is_on_curve(uint32_t v) const { return curve_[v] != kOffCurves && curve_[v] != kStays; }
 
-  void append(uint32_t v, uint32_t first, uint32_t last) {
-    (first_[v] == kNone ? first_[v] : next_[last_[v]]) = first;
-    last_[v] = last;
-  }
   /// Calls visit(corner) for the corners that a vertex has.
   template <class Visit>
   void for_each_corner(uint32_t v, Visit visit) const {
-    for (uint32_t c = first_[v]; c != kNone; c = next_[c])
+    corners_.for_each(v, [&](uint32_t c) {
       if (corner(c) != kNone) visit(c);
+    });
   }
   void find_ring(uint32_t v, Ring& ring) const {
     ring.clear();
@@ -145,7 +141,6 @@ class ThinnedWalls {
 
   /// Curves are along edges that have not two triangles which pass them in opposite directions.
   void find_curves() {
-    std::vector<std::pair<uint32_t, std::array<uint32_t, 2>>> found;
     Ring out, in;
     for (uint32_t v = 0; v < vertices(); ++v) {
       out.clear(), in.clear();
@@ -269,8 +264,7 @@ class ThinnedWalls {
       else
         t[c % 3] = into;
     });
-    append(into, first_[v], last_[v]);
-    first_[v] = kNone;
+    corners_.take_into(v, into);
     for (const uint32_t w : s.ring) stays_[w] = may_change_[w] = 1;
     if (!is_on_curve(v)) return;
     const uint32_t other = other_beside(v, into);
@@ -293,7 +287,7 @@ class ThinnedWalls {
     const Cubes cubes(place_, kCell * edge_q8_, offset);
     const auto vertices_in = sort_into_buckets<uint32_t>(cubes.count(), int64_t(vertices()), [&](int64_t v, auto put) {
       const auto i = size_t(v);
-      if (first_[i] != kNone && curve_[i] != kStays) put(cubes.of(place_[i]), uint32_t(v));
+      if (corners_.is_there(uint32_t(v)) && curve_[i] != kStays) put(cubes.of(place_[i]), uint32_t(v));
     });
     const auto triangles_in =
         sort_into_buckets<uint32_t>(cubes.count(), int64_t(mesh_.triangles.size()), [&](int64_t t, auto put) {
@@ -318,7 +312,7 @@ class ThinnedWalls {
       has_changed = false;
       for (const uint32_t v : vertices) stays_[v] = 0;
       for (const uint32_t v : vertices) {
-        if (stays_[v] || !may_change_[v] || first_[v] == kNone) continue;
+        if (stays_[v] || !may_change_[v] || !corners_.is_there(v)) continue;
         find_ring(v, s.ring);
         if (!std::all_of(s.ring.begin(), s.ring.end(), [&](uint32_t w) { return s.cubes.of(place_[w]) == s.cube; }))
           continue;
@@ -363,10 +357,9 @@ class ThinnedWalls {
 
   FeatureMesh mesh_;  ///< a triangle that is gone has no corners
   double edge_world_, edge_q8_;
-  std::vector<PointQ8> place_;          ///< per vertex, on the lattice of the run
-  std::vector<uint32_t> next_;          ///< corner of the same vertex
-  std::vector<uint32_t> first_, last_;  ///< per vertex the ends of that list; empty: it is gone
-  std::vector<uint32_t> curve_;         ///< per vertex on a curve its number in beside_
+  std::vector<PointQ8> place_;  ///< per vertex, on the lattice of the run
+  CornerLists corners_;
+  std::vector<uint32_t> curve_;  ///< per vertex on a curve its number in beside_
   std::vector<std::array<uint32_t, 2>> beside_;
   std::vector<Normal8> normal_;           ///< per vertex that of the walls there
   std::vector<char> may_change_, stays_;  ///< per vertex: something has changed since it could not go; for a sweep

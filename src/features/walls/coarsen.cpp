@@ -16,8 +16,7 @@ namespace {
 constexpr double kErrorWeight = 2;  ///< of the squared distance from the walls, beside that of a squared edge
 constexpr double kMostNarrow = 30;  ///< sum of the squared edges of a triangle over twice its area
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kCheap = 0.75;  ///< of the last collapses' cost: what costs less goes anyhow
-constexpr double kEdgesOfBlock = 16;
+constexpr double kCheap = 0.75;       ///< of the last collapses' cost: what costs less goes anyhow
 constexpr int64_t kManyVertices = 2;  ///< for one that is to stay: cheap ones go in all blocks at once
 constexpr int64_t kStepsBetweenLooks = 1024;
 
@@ -166,7 +165,7 @@ double square_of_edges(const WallMesh& mesh, int64_t vertices) {
 /// Collapses what costs far less than the last collapses will, in all blocks at once.
 void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, Known& known, const Context& context) {
   const double most_cost = kCheap * square_of_edges(mesh, vertices);
-  const double side_q8 = kEdgesOfBlock * mean_edge_q8(mesh, vertices);
+  const double side_q8 = side_of_blocks_q8(mesh, vertices);
   for (const bool is_shifted : {false, true}) {
     const WallBlocks blocks(mesh, side_q8, is_shifted);
     for_each_index(size_t(0), blocks.size(), [&](size_t b) {

@@ -16,8 +16,7 @@ namespace isoshell {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kRoundsToSplit = 4;  ///< edges are split in every one of so many
-constexpr double kEdgesOfBlock = 16;
+constexpr int kRoundsToSplit = 4;    ///< edges are split in every one of so many
 constexpr double kLong = 1.35;       ///< mean edges: longer ones are split
 constexpr int64_t kMostSplits = 16;  ///< one vertex in so many, at once
 
@@ -140,7 +139,7 @@ void split_long_edges(WallMesh& mesh, int64_t most) {
 }  // namespace
 
 void even_out(WallMesh& mesh, int64_t vertices, const Context& context) {
-  const double side_q8 = kEdgesOfBlock * mean_edge_q8(mesh, vertices);
+  const double side_q8 = side_of_blocks_q8(mesh, vertices);
   for (int round = 0; round < kRounds; ++round) {
     in_blocks(mesh, side_q8, round % 2 != 0, context, [](Evening& here) {
       here.flip_edges();

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLowestQ8 = double(1 << 24);  ///< that no lattice coordinate is as far below 0 as
 constexpr int kBitsOfAxis = 21;
+constexpr double kEdges = 16;
 
 }  // namespace
 
@@ -49,11 +50,11 @@ bool WallBlocks::holds_around(size_t block, uint32_t v) const {
   });
 }
 
-double mean_edge_q8(const WallMesh& mesh, int64_t vertices) {
+double side_of_blocks_q8(const WallMesh& mesh, int64_t vertices) {
   double doubled = 0;
   for (const RegionTriangle& t : mesh.triangles())
     if (!t.is_gone()) doubled += length(doubled_area(mesh.at(t.corner[0]), mesh.at(t.corner[1]), mesh.at(t.corner[2])));
-  return std::sqrt(2 * doubled / (kTwoRootThree * double(vertices)));
+  return kEdges * std::sqrt(2 * doubled / (kTwoRootThree * double(vertices)));
 }
 
 }  // namespace isoshell

@@ -35,7 +35,7 @@ class WallBlocks {
   std::vector<uint32_t> block_of_;  ///< per vertex
 };
 
-/// How long edges would be on average if so many vertices were spread over the walls, in lattice steps.
-double mean_edge_q8(const WallMesh& mesh, int64_t vertices);
+/// A side of blocks whose tasks are worth it: some edges of a result with so many vertices, in lattice steps.
+double side_of_blocks_q8(const WallMesh& mesh, int64_t vertices);
 
 }  // namespace isoshell
