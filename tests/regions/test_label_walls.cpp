@@ -1,7 +1,9 @@
 // Walls between voxels of different labels, and how they are faired, on orderly volumes and on ugly ones.
 #include <tbb/task_arena.h>
 
+#include "implicit/labels/fair_walls.h"
 #include "implicit/labels/wall_corner.h"
+#include "implicit/labels/wall_links.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/mesh_census.h"
@@ -103,6 +105,40 @@ TEST_CASE("faired walls stay near the planes between grains") {
     }
   CHECK(count > 1000);
   CHECK(std::sqrt(sum / count) < 0.1);
+}
+
+TEST_CASE("walls at the sides of a volume are flat, its edges straight and its corners where they are") {
+  const TriangleSoup soup = surface_of_labels(voronoi_grains(24, 7), "labels", 0);
+  const double low = -0.5, high = 23.5;
+  int64_t corners = 0;
+  for (size_t t = 0; t < soup.triangles.size(); ++t)
+    for (const uint32_t v : soup.triangles[t]) {
+      const WorldPoint p = soup.vertices[v];
+      const int sides = (p.x == low || p.x == high) + (p.y == low || p.y == high) + (p.z == low || p.z == high);
+      if (soup.regions.labels[t][1] == 0) REQUIRE(sides > 0);
+      CHECK(std::min({p.x, p.y, p.z}) >= low);
+      CHECK(std::max({p.x, p.y, p.z}) <= high);
+      corners += sides == 3 ? 1 : 0;
+    }
+  CHECK(corners >= 8);
+}
+
+TEST_CASE("curves between grains stay apart where they run side by side") {
+  const CpuContext context;
+  const LabelWalls walls = find_label_walls(voronoi_grains(64, 60), context);
+  const std::vector<PointQ8> position = fair_walls(walls, context);
+  const WallLinks links(walls, faces_at_vertices(walls));
+  int64_t pairs = 0;
+  int32_t least_q8 = kOneVoxelQ8;
+  for (const auto& face : walls.faces)
+    for (size_t i = 0; i < 2; ++i) {
+      if (face[3] == kNone || !links.is_strip_between(face[i], face[i + 2], face)) continue;
+      const PointQ8 &p = position[face[i]], &q = position[face[i + 2]];
+      least_q8 = std::min(least_q8, std::max({std::abs(p.x - q.x), std::abs(p.y - q.y), std::abs(p.z - q.z)}));
+      ++pairs;
+    }
+  CHECK(pairs > 100);
+  CHECK(least_q8 >= kOneVoxelQ8 * 3 / 8);
 }
 
 TEST_CASE("a mirrored volume has the same regions, which look outward still") {

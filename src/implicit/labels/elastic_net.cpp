@@ -1,133 +1,170 @@
 // ElasticNet (see elastic_net.h).
 #include "implicit/labels/elastic_net.h"
 
-#include "core/watched.h"
+#include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
-/// Sheets of one voxel stay so thick that edges longer than that follow both of their sides.
-constexpr int32_t kReach = kOneVoxelFine / 2, kThinReach = kOneVoxelFine * 3 / 8;
+using Kind = WallLinks::Kind;
+
+/// Sheets of one voxel stay so thick that edges longer than that follow both of their sides. Where regions meet in
+/// curves, the thin end of a wedge is no sheet. Voxels cut such ends off, and the curve itself may lie beyond them.
+constexpr int32_t kReach = kOneVoxelFine / 2, kThinReach = kOneVoxelFine * 3 / 8, kCurveReach = kOneVoxelFine * 5 / 8;
+/// Curves on both sides of a face go no farther towards each other: of the strip of wall between them is left as much
+/// as triangles without small angles need.
+constexpr int32_t kStripReach = kOneVoxelFine * 5 / 16;
+constexpr double kSlopeShare = 0.25;  ///< of the slope, in a step: over what bends of regular walls grow by at most
 
 int32_t rest_of(int32_t halves) { return halves * (kOneVoxelFine / 2); }
 
-/// Calls visit(neighbour) for those that a vertex follows, ascending. `ends`: room for its neighbours, once a face.
-template <class Visit>
-void each_followed(const LabelWalls& walls, View<const uint32_t> faces, uint32_t vertex, std::vector<uint32_t>& ends,
-                   Visit visit) {
-  ends.clear();
-  for (const uint32_t f : faces) {
-    const auto& face = walls.faces[f];
-    const size_t corners = face[3] == kNone ? 3 : 4;
-    for (size_t i = 0; i < corners; ++i)
-      if (face[i] == vertex) {
-        ends.push_back(face[(i + 1) % corners]);
-        ends.push_back(face[(i + corners - 1) % corners]);
-      }
-  }
-  std::sort(ends.begin(), ends.end());
-  const auto each_run = [&](auto see) {
-    for (size_t i = 0, j = 0; i < ends.size(); i = j) {
-      while (j < ends.size() && ends[j] == ends[i]) ++j;
-      see(ends[i], j - i);
-    }
-  };
-  bool is_on_curve = false;
-  each_run([&](uint32_t, size_t count) { is_on_curve |= count != 2; });
-  each_run([&](uint32_t w, size_t count) {
-    if (!is_on_curve || count != 2) visit(w);
-  });
-}
+FinePoint all_along(int32_t part) { return FinePoint{part, part, part, 0}; }
 
-/// Which vertices each one follows.
-Buckets<uint32_t> followed_by(const LabelWalls& walls, const Buckets<uint32_t>& faces_at) {
-  const int64_t vertices = faces_at.count();
-  Buckets<uint32_t> out;
-  out.first = Buffer<int64_t>(vertices + 1);
-  out.first[vertices] = 0;
-  const auto for_each_vertex = [&](auto step) {
-    for_ranges(vertices, 1024, [&](int64_t begin, int64_t end) {
-      std::vector<uint32_t> ends;
-      for (int64_t v = begin; v < end; ++v)
-        step(v, [&](auto visit) { each_followed(walls, faces_at.in(v), uint32_t(v), ends, visit); });
-    });
-  };
-  for_each_vertex([&](int64_t v, auto each) {
-    int64_t count = 0;
-    each([&](uint32_t) { ++count; });
-    out.first[v] = count;
-  });
-  offsets_from_counts(out.first.view());
-  out.items = Buffer<uint32_t>(out.first[vertices]);
-  for_each_vertex([&](int64_t v, auto each) {
-    int64_t at = out.first[v];
-    each([&](uint32_t w) { out.items[at++] = w; });
-  });
-  return out;
+/// In 1/32768, so that a share of a whole number is one again.
+constexpr int kShareBits = 15;
+int32_t whole_share(double share) { return int32_t(std::floor(share * (1 << kShareBits) + 0.5)); }
+/// Rounded, of a share of at most 1. No product here is longer than 32 bits, which lanes of processors have.
+FinePoint share_of(int32_t share, const FinePoint& p) {
+  const FinePoint high = p >> kShareBits, low = p & ((1 << kShareBits) - 1);
+  return share * high + ((share * low + (1 << (kShareBits - 1))) >> kShareBits);
 }
 
 }  // namespace
 
-Buckets<uint32_t> faces_at_vertices(const LabelWalls& walls) {
-  return sort_into_buckets<uint32_t>(int64_t(walls.rest_halves.size()), int64_t(walls.faces.size()),
-                                     [&](int64_t f, auto put) {
-                                       for (const uint32_t v : walls.faces[size_t(f)])
-                                         if (v != kNone) put(int64_t(v), uint32_t(f));
-                                     });
-}
-
 ElasticNet::ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at)
-    : walls_(walls), followed_(followed_by(walls, faces_at)), at_(walls.rest_halves.size()), next_(at_.size()) {
+    : walls_(walls), links_(walls, faces_at), at_(walls.rest_halves.size()), bend_(at_.size()), box_(at_.size()) {
   for_each_index(size_t(0), at_.size(), [&](size_t v) {
     const Voxel& h = walls.rest_halves[v];
-    at_[v] = {rest_of(h.x), rest_of(h.y), rest_of(h.z)};
+    at_[v] = FinePoint{rest_of(h.x), rest_of(h.y), rest_of(h.z), 0};
+    box_[v] = box_of(v, faces_at);
   });
 }
 
-FinePoint ElasticNet::pulled(const std::vector<FinePoint>& field, size_t vertex, double share) const {
-  const View<const uint32_t> of = followed_.in(int64_t(vertex));
-  const FinePoint& p = field[vertex];
-  if (of.size == 0) return p;
-  int32_t x = 0, y = 0, z = 0;  // of neighbours within a few voxels
-  for (const uint32_t w : of) {
-    x += field[w].x - p.x;
-    y += field[w].y - p.y;
-    z += field[w].z - p.z;
+ElasticNet::Box ElasticNet::box_of(size_t vertex, const Buckets<uint32_t>& faces_at) const {
+  const bool is_on_curve = links_.is_on_curve(vertex);
+  const int32_t reach = walls_.is_thin[vertex] ? kThinReach : is_on_curve ? kCurveReach : kReach;
+  const FinePoint& rest = at_[vertex];
+  Box box{rest - all_along(reach), rest + all_along(reach)};
+  keep_on_sides(vertex, box);
+  if (!is_on_curve) return box;
+  for (const uint32_t f : faces_at.in(int64_t(vertex)))
+    for (const uint32_t v : walls_.faces[f]) {
+      if (v == kNone || !links_.is_strip_between(uint32_t(vertex), v, walls_.faces[f])) continue;
+      const Voxel &own = walls_.rest_halves[vertex], &other = walls_.rest_halves[v];
+      const int32_t way[3] = {other.x - own.x, other.y - own.y, other.z - own.z};
+      for (int axis = 0; axis < 3; ++axis) {
+        if (way[axis] < 0) box.low[axis] = std::max(box.low[axis], rest[axis] - kStripReach);
+        if (way[axis] > 0) box.high[axis] = std::min(box.high[axis], rest[axis] + kStripReach);
+      }
+    }
+  return box;
+}
+
+/// Where a volume ends what it shows goes on: it is cut there, and the cut is flat.
+void ElasticNet::keep_on_sides(size_t vertex, Box& box) const {
+  const Voxel &h = walls_.rest_halves[vertex], &size = walls_.size_vox;
+  const bool is_on_side[3] = {h.x == 0 || h.x == 2 * size.x, h.y == 0 || h.y == 2 * size.y,
+                              h.z == 0 || h.z == 2 * size.z};
+  for (int axis = 0; axis < 3; ++axis)
+    if (is_on_side[axis]) box.low[axis] = box.high[axis] = at_[vertex][axis];
+}
+
+/// This share of the way to the mean of those that a vertex follows.
+FinePoint ElasticNet::mean_way(size_t vertex, const std::vector<FinePoint>& field, int32_t share) const {
+  const FinePoint own = field[vertex];
+  FinePoint sum{0, 0, 0, 0};  // of neighbours within a few voxels
+  if (!links_.is_on_curve(vertex)) {
+    for (const WallLink link : links_.at(vertex)) sum += field[link.vertex()] - own;
+    return share_of(share / links_.followed(vertex), sum);
   }
-  const double part = share / double(of.size);
-  const auto moved = [&](int32_t at, int32_t sum) { return at + int32_t(std::floor(part * sum + 0.5)); };
-  return {moved(p.x, x), moved(p.y, y), moved(p.z, z)};
+  int32_t count = 0;
+  for (const WallLink link : links_.at(vertex)) {
+    if (!link.is_along_curve()) continue;
+    sum += field[link.vertex()] - own;
+    ++count;
+  }
+  return share_of(share / std::max(count, 1), sum);
 }
 
 FinePoint ElasticNet::within_reach(size_t vertex, const FinePoint& p) const {
-  const int32_t reach = walls_.is_thin[vertex] ? kThinReach : kReach;
-  const auto held = [&](int32_t at, int32_t halves) {
-    return std::clamp(at, rest_of(halves) - reach, rest_of(halves) + reach);
-  };
-  const Voxel& h = walls_.rest_halves[vertex];
-  return {held(p.x, h.x), held(p.y, h.y), held(p.z, h.z)};
+  const FinePoint &low = box_[vertex].low, &high = box_[vertex].high;
+  const FinePoint above = p < low ? low : p;
+  return above > high ? high : above;
 }
 
 void ElasticNet::step(double share) {
-  for_each_index(size_t(0), at_.size(), [&](size_t v) { next_[v] = within_reach(v, pulled(at_, v, share)); });
-  at_.swap(next_);
+  const int32_t whole = whole_share(share);
+  for_each_index(size_t(0), at_.size(),
+                 [&](size_t v) { bend_[v] = within_reach(v, at_[v] + mean_way(v, at_, whole)); });
+  at_.swap(bend_);
 }
 
-void ElasticNet::twice(int steps, double share, const Context& context) {
-  std::vector<FinePoint> way(at_.size());
-  for_each_index(size_t(0), at_.size(), [&](size_t v) {
-    const Voxel& h = walls_.rest_halves[v];
-    way[v] = {rest_of(h.x) - at_[v].x, rest_of(h.y) - at_[v].y, rest_of(h.z) - at_[v].z};
-  });
-  for (int step = 0; step < steps; ++step) {
-    check_cancel(context, "read");
-    for_each_index(size_t(0), way.size(), [&](size_t v) { next_[v] = pulled(way, v, share); });
-    way.swap(next_);
+/// What the bend at a vertex of a wall is for a curve beside it.
+FinePoint ElasticNet::pull_of(uint32_t beside) const {
+  const FinePoint& bend = bend_[beside];
+  if (normal_.empty()) return bend;
+  const FinePoint& n = normal_[beside];
+  const auto product = [&](int axis) { return int64_t(n[axis]) * bend[axis]; };
+  const int64_t along = (product(0) + product(1) + product(2) + (1 << (kShareBits - 1))) >> kShareBits;
+  return share_of(int32_t(along), n);
+}
+
+/// Of the energy, where `bend_` has every bend over the number of neighbours that it is from.
+FinePoint ElasticNet::slope_at(size_t vertex) const {
+  const FinePoint own = bend_[vertex];
+  const Kind kind = links_.kind(vertex);
+  FinePoint slope{0, 0, 0, 0};
+  if (kind == Kind::in_wall) {
+    for (const WallLink link : links_.at(vertex)) slope += own - bend_[link.vertex()];
+  } else if (kind == Kind::beside_curve) {
+    for (const WallLink link : links_.at(vertex)) slope += link.is_to_curve() ? own : own - bend_[link.vertex()];
+  } else {
+    for (const WallLink link : links_.at(vertex)) {
+      if (link.is_along_curve()) slope += own - bend_[link.vertex()];
+      if (!link.is_to_curve()) slope -= pull_of(link.vertex());
+    }
   }
+  return slope;
+}
+
+void ElasticNet::unbend(int steps, double stiffness_of_curves, const std::function<void(int)>& begin_step) {
+  std::vector<FinePoint> ahead = at_;
+  const int32_t of_walls = -whole_share(1), of_curves = -whole_share(stiffness_of_curves),
+                slope_share = whole_share(kSlopeShare);
+  double pace = 1;
+  for (int i = 0; i < steps; ++i) {
+    begin_step(i);
+    for_each_index(size_t(0), at_.size(), [&](size_t v) {
+      const int32_t share = (links_.is_on_curve(v) ? of_curves : of_walls) / links_.followed(v);
+      bend_[v] = links_.kind(v) == Kind::corner ? FinePoint{0, 0, 0, 0} : mean_way(v, ahead, share);
+    });
+    const double next_pace = (1 + std::sqrt(1 + 4 * pace * pace)) / 2;
+    const int32_t momentum = whole_share((pace - 1) / next_pace);
+    pace = next_pace;
+    for_each_index(size_t(0), at_.size(), [&](size_t v) {
+      const FinePoint to = within_reach(v, ahead[v] - share_of(slope_share, slope_at(v)));
+      ahead[v] = to + share_of(momentum, to - at_[v]);
+      at_[v] = to;
+    });
+  }
+}
+
+void ElasticNet::find_normals(const Buckets<uint32_t>& faces_at) {
+  normal_.assign(at_.size(), FinePoint{0, 0, 0, 0});
   for_each_index(size_t(0), at_.size(), [&](size_t v) {
-    const FinePoint &p = at_[v], &by = way[v];
-    at_[v] = within_reach(v, {p.x + by.x, p.y + by.y, p.z + by.z});
+    if (links_.kind(v) != Kind::beside_curve) return;
+    WorldPoint sum{0, 0, 0};
+    for (const uint32_t f : faces_at.in(int64_t(v))) {  // of one sheet, which all look the same way
+      const auto& [a, b, c, d] = walls_.faces[f];
+      const auto way = [&](uint32_t from, uint32_t to) {
+        const FinePoint by = at_[to] - at_[from];
+        return WorldPoint{double(by[0]), double(by[1]), double(by[2])};
+      };
+      sum = sum + cross(way(a, c), way(b, d == kNone ? a : d));
+    }
+    const WorldPoint n = normalised(sum);
+    normal_[v] = FinePoint{whole_share(n.x), whole_share(n.y), whole_share(n.z), 0};
   });
 }
 
@@ -137,7 +174,7 @@ std::vector<PointQ8> ElasticNet::rounded() const {
   const auto nearest = [](int32_t fine) { return (fine + kShare / 2) >> 8; };
   std::vector<PointQ8> out(at_.size());
   for_each_index(size_t(0), out.size(), [&](size_t v) {
-    out[v] = {nearest(at_[v].x), nearest(at_[v].y), nearest(at_[v].z)};
+    out[v] = {nearest(at_[v][0]), nearest(at_[v][1]), nearest(at_[v][2])};
   });
   return out;
 }

@@ -14,11 +14,11 @@
 namespace isoshell {
 namespace {
 
-constexpr int kSteps = 28;               ///< more make walls no smoother than they make them differ from the labels
-constexpr double kFirstShare = 0.25;     ///< of the way: the first step parts walls, which do not cross then
-constexpr double kShare = 0.75;          ///< as smooth as half of the way with a third fewer steps
-constexpr int kMostOffsets = 5;          ///< thin regions need them, as vertices go no farther than half a voxel
-constexpr double kLeastOffset_q8 = 0.5;  ///< less is lost when positions are rounded
+constexpr double kFirstShare = 0.25;  ///< of the way: the first step parts walls, which do not cross then
+constexpr int kSoftSteps = 28, kStiffSteps = 38;
+constexpr double kSoft = 0.02, kStiff = 1;  ///< curves first go where walls lead them, and then get straight
+constexpr int kMostOffsets = 5;             ///< thin regions need them, as vertices go no farther than half a voxel
+constexpr double kLeastOffset_q8 = 0.5;     ///< less is lost when positions are rounded
 constexpr int kHalvings = 4;
 constexpr int kMostRounds = 24;
 constexpr size_t kFacesOfTask = 8192;
@@ -94,16 +94,16 @@ FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& face
   net.step(kFirstShare);
   FairedWalls out;
   out.parted = net.rounded();
-  for (int step = 1; step < kSteps; ++step) {
-    tell_read(context, kWallsFound + (kTwiced - kWallsFound) * step / (2 * kSteps));
-    net.step(kShare);
-  }
-  net.twice(kSteps, kShare, context);
-  tell_read(context, kTwiced);
+  net.find_normals(faces_at);
+  net.unbend(kSoftSteps, kSoft,
+             [&](int step) { tell_read(context, kWallsFound + (kCurvesLed - kWallsFound) * step / kSoftSteps); });
+  net.find_normals(faces_at);
+  net.unbend(kStiffSteps, kStiff,
+             [&](int step) { tell_read(context, kCurvesLed + (kUnbent - kCurvesLed) * step / kStiffSteps); });
   out.position = net.rounded();
   VolumeKeeper volumes(walls, faces_at);
   for (int i = 0; i < kMostOffsets && volumes.find_offsets(out.position) > kLeastOffset_q8; ++i) {
-    tell_read(context, kTwiced + (kFaired - kTwiced) * i / kMostOffsets);
+    tell_read(context, kUnbent + (kFaired - kUnbent) * i / kMostOffsets);
     net.move([&](size_t v) { return volumes.way_of(v, out.position); });
     out.position = net.rounded();
   }

@@ -161,9 +161,21 @@ class WallMaker {
     for (int o = 0; o < 8; ++o) {
       const Voxel v{corner.x - 1 + (o & 1), corner.y - 1 + (o >> 1 & 1), corner.z - 1 + (o >> 2 & 1)};
       const int32_t own = labels_.at(v);
-      for (int axis = 0; axis < 3; ++axis)
-        if (labels_.at(stepped(v, axis, 1)) != own && labels_.at(stepped(v, axis, -1)) != own) return true;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::array<int32_t, 2> sides{labels_.at(stepped(v, axis, -1)), labels_.at(stepped(v, axis, 1))};
+        if (sides[0] != own && sides[1] != own && !is_end_of_wedge(v, axis, sides)) return true;
+      }
     }
+    return false;
+  }
+  /// Whether the regions on the two sides of a voxel meet beside it.
+  bool is_end_of_wedge(Voxel v, int axis, const std::array<int32_t, 2>& sides) const {
+    if (sides[0] == sides[1]) return false;
+    for (int across = 1; across < 3; ++across)
+      for (const int step : {-1, 1}) {
+        const int32_t beside = labels_.at(stepped(v, (axis + across) % 3, step));
+        if (beside == sides[0] || beside == sides[1]) return true;
+      }
     return false;
   }
   void mark_thin(size_t z, std::vector<uint8_t>& is_thin) const {
@@ -290,7 +302,9 @@ class WallMaker {
 }  // namespace
 
 LabelWalls find_label_walls(const LabelVolume& volume, const Context& context) {
-  return WallMaker(volume, context).make();
+  LabelWalls walls = WallMaker(volume, context).make();
+  walls.size_vox = {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]};
+  return walls;
 }
 
 }  // namespace isoshell

@@ -13,7 +13,8 @@ namespace isoshell {
 
 /// Walls with vertices at corners of voxels. Corner (x, y, z) is the one of voxel (x, y, z) nearest to the origin.
 struct LabelWalls {
-  std::vector<uint8_t> is_thin;    ///< per vertex: a voxel beside it has other labels on both sides along an axis
+  Voxel size_vox{0, 0, 0};         ///< of the volume
+  std::vector<uint8_t> is_thin;    ///< per vertex: a voxel beside it is all there is between two walls along an axis
   std::vector<Voxel> rest_halves;  ///< per vertex where it lies on the lattice, in half voxels
   std::vector<std::array<uint32_t, 4>> faces;  ///< four corners in turn, as seen from the second region; of triangles
                                                ///< the last one is kNone

@@ -6,7 +6,7 @@
 namespace isoshell {
 
 // What is done when a step ends, by the time that they take.
-constexpr double kIslandsAbsorbed = 0.1, kWallsFound = 0.3, kTwiced = 0.6, kFaired = 0.75;
+constexpr double kIslandsAbsorbed = 0.1, kWallsFound = 0.3, kCurvesLed = 0.45, kUnbent = 0.65, kFaired = 0.75;
 
 /// To be called from the thread that reads. Throws: interrupted.
 inline void tell_read(const Context& context, double done) {
