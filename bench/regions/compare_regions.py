@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Programs that mesh volumes of labels, side by side on one volume in one run, judged by region_judge: a Markdown table.
 
-usage: compare_regions.py grains:128 | grains:128:320 | cubes | sheets | shell | FILE.npy | FILE.nii.gz   [--only NAME...] [--repeats 3]
+usage: compare_regions.py grains:128 | grains:128:320 | folds:160:80 | cubes | sheets | shell | FILE.npy | FILE.nii.gz   [--only NAME...] [--repeats 3]
                           [--vertices 50000] [--json FILE] [--most-faces 1000000]
 
 Runs those of vtk (vtkSurfaceNets3D), serra-mesh, zmesh and isoshell that are installed. Seconds are the best of
@@ -202,6 +202,8 @@ def read_volume(name):
     """The volume of that name, and the planes between its grains, if it has any."""
     if name.startswith("grains:"):
         return region_volumes.grains(*map(int, name.split(":")[1:]))
+    if name.startswith("folds:"):
+        return region_volumes.folds(*map(int, name.split(":")[1:])), None
     if name.endswith((".nii", ".nii.gz")):
         import nibabel
         data = np.asarray(nibabel.load(name).dataobj)

@@ -50,6 +50,15 @@ def grains(n, count=64):
     return labels, grain_planes(seeds)
 
 
+def folds(n, count=64):
+    """A folded layer of two to three voxels in a box of n a side, with background on both sides, parted into regions 1
+    to count: as maps of the cortex are. It is that around a gyroid with a period of 16 voxels."""
+    layers, at = grains(n, count)[0], 2 * np.pi * np.arange(n) / 16
+    sine, cosine = np.sin(at), np.cos(at)
+    gyroid = (sine[:, None, None] * cosine[:, None] + sine[:, None] * cosine + sine * cosine[:, None, None])
+    return np.where(abs(gyroid) < 0.6, layers, 0).astype(np.int32)
+
+
 def touching_cubes(n=8, margin=2):
     """Two cubes of n voxels a side that share a face."""
     labels = np.zeros((2 * n + 2 * margin, n + 2 * margin, n + 2 * margin), np.int32)

@@ -15,7 +15,10 @@ RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const In
                          const RemeshOptions& options, int32_t resolution) {
   const Plan plan = plan_of(checked(options), input, box);
   if (soup.regions.empty()) return estimate_plan(plan, soup, resolution);
-  return estimate_walls(plan, soup, lengths_of_faces_world(soup.regions, plan.options.region_edge_lengths), resolution);
+  const std::vector<double> of_face_world = lengths_of_faces_world(soup.regions, plan.options.region_edge_lengths);
+  return estimate_walls(plan, soup, of_face_world,
+                        resolution > 0 ? LatticeFrame::around(plan.box.min, plan.box.max, resolution)
+                                       : frame_of_walls(soup, plan, of_face_world));
 }
 
 }  // namespace isoshell

@@ -45,6 +45,21 @@ inline LabelVolume voronoi_grains(int32_t n, int grains, uint32_t seed = 7) {
   });
 }
 
+/// A folded layer of two to three voxels with background on both sides, parted into so many regions: as ribbons of
+/// brains are. The layer is that around a gyroid with a period of 16 voxels.
+inline LabelVolume folded_layer(int32_t n, int regions) {
+  LabelVolume v = voronoi_grains(n, regions);
+  const auto at = [](int32_t i) { return i * (2 * 3.14159265358979 / 16); };
+  size_t next = 0;
+  for (int32_t k = 0; k < n; ++k)
+    for (int32_t j = 0; j < n; ++j)
+      for (int32_t i = 0; i < n; ++i, ++next)
+        if (std::abs(std::sin(at(i)) * std::cos(at(j)) + std::sin(at(j)) * std::cos(at(k)) +
+                     std::sin(at(k)) * std::cos(at(i))) > 0.6)
+          v.labels[next] = 0;
+  return v;
+}
+
 /// One of eight kinds of random volumes, by its number: noise of few and of many labels, checkerboards, lines of one
 /// voxel, islands, labels that touch in edges and points only, thin layers, and blobs.
 inline LabelVolume random_labels(uint32_t number) {

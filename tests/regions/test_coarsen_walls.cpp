@@ -5,6 +5,7 @@
 #include "features/walls/coarsen_walls.h"
 #include "features/walls/near_walls.h"
 #include "isoshell/io/memory_input.h"
+#include "isoshell/mesh_census.h"
 #include "measure/crossings.h"
 #include "pipeline/regions/region_walls.h"
 #include "regions/label_volumes.h"
@@ -103,12 +104,30 @@ TEST_CASE("walls that bend nearer to one another than half an edge are coarsened
 
   RemeshOptions options;
   options.vertices = 10000;
-  const RemeshResult result = remesh(surface_of_labels(waves(72), "labels", 0), options, context);
+  const RemeshResult result = remesh(surface_of_labels(waves(88), "labels", 0), options, context);
   CHECK(result.mesh.vertices.size() == 10000);
   CHECK(result.report.relax.passes == 0);
   CHECK(std::any_of(result.report.warnings.begin(), result.report.warnings.end(), [](const std::string& text) {
     return text.find("nearer to one another than half an edge") != std::string::npos;
   }));
+}
+
+TEST_CASE(
+    "a folded layer that edges are longer than thick becomes regions with the vertices asked for and no crossings") {
+  TestContext context;
+  const LabelVolume volume = folded_layer(64, 12);
+  RemeshOptions options;
+  options.vertices = 10000;
+  const RemeshResult result = remesh(surface_of_labels(volume, "labels", 0), options, context);
+  CHECK(result.mesh.vertices.size() == 10000);
+  CHECK(fault_of_regions(result.mesh.triangles, result.mesh.regions).empty());
+  CHECK(take_census(result.mesh, context).intersecting_pairs == 0);
+  for (const auto& [label, world] :
+       volumes_of_regions(result.mesh.vertices, result.mesh.triangles, result.mesh.regions)) {
+    const auto voxels = double(std::count(volume.labels.begin(), volume.labels.end(), label));
+    INFO("region " << label << " of " << voxels << " voxels");
+    if (label != 0) CHECK(std::abs(world / voxels - 1) < 0.01);
+  }
 }
 
 TEST_CASE("coarsened walls of ugly labels stay closed, keep all pairs of regions and never meet") {

@@ -45,6 +45,35 @@ TEST_CASE("grains become one mesh of closed regions with the vertices that were 
   }
 }
 
+TEST_CASE("a volume that regions fill keeps its flat sides, its edges and its corners") {
+  TestContext context;
+  for (const int64_t vertices : {1500, 250}) {  // for the latter walls are thinned out
+    const RemeshResult result = meshed(voronoi_grains(24, 7), vertices, context);
+    const TriangleMesh& mesh = result.mesh;
+    INFO(vertices << " vertices, " << mesh.vertices.size() << " made");
+    double filled = 0;
+    for (const auto& [label, world] : volumes_of_regions(mesh.vertices, mesh.triangles, mesh.regions))
+      if (label != 0) filled += world;
+    CHECK(std::abs(filled - 24 * 24 * 24) < 1e-6);
+    const double parts = 1 / result.report.grid.frame.voxel_size;  // corners of walls are points of the lattice
+    CHECK(std::abs(parts - std::round(parts)) < 1e-9);
+  }
+}
+
+TEST_CASE("regions keep their volumes, though long edges cut off what is curved") {
+  TestContext context;
+  const LabelVolume volume = label_volume(32, 32, 32, [](int x, int y, int z) {
+    const double from_middle = std::hypot(x - 15.5, y - 15.5, z - 15.5);
+    return from_middle < 8 ? 2 : from_middle < 13 ? 1 : 0;
+  });
+  const TriangleMesh mesh = meshed(volume, 150, context).mesh;
+  for (const auto& [label, world] : volumes_of_regions(mesh.vertices, mesh.triangles, mesh.regions)) {
+    const auto voxels = double(std::count(volume.labels.begin(), volume.labels.end(), label));
+    INFO("region " << label << " of " << voxels << " voxels");
+    if (label != 0) CHECK(std::abs(world / voxels - 1) < 0.002);
+  }
+}
+
 TEST_CASE("regions have the same mesh with any number of threads") {
   const LabelVolume volume = voronoi_grains(20, 8);
   TestContext one, two;

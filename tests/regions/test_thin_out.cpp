@@ -50,7 +50,7 @@ TEST_CASE("thinned walls of any labels bound closed regions, and part what the w
     INFO("random volume " << number);
     const TriangleSoup soup = surface_of_labels(random_labels(number), "labels", 0);
     const FeatureMesh before = weld_for_features(soup);
-    const FeatureMesh after = thin_out(before, frame_of(before), 4, 8, context);
+    const FeatureMesh after = thin_out(before, {}, frame_of(before), 4, 8, context);
     const FaceRegions regions = regions_of(after, soup.regions);
     const std::string fault = fault_of_regions(after.triangles, regions);
     INFO(fault);
@@ -65,7 +65,7 @@ TEST_CASE("thinned walls of grains have far fewer vertices, and hold the same vo
   CpuContext context;
   const TriangleSoup soup = surface_of_labels(voronoi_grains(64, 12), "labels", 0);
   const FeatureMesh before = weld_for_features(soup);
-  const FeatureMesh after = thin_out(before, frame_of(before), 8, 8, context);
+  const FeatureMesh after = thin_out(before, {}, frame_of(before), 8, 8, context);
   CHECK(4 * after.vertices.size() < before.vertices.size());
   const auto all = volumes_of_regions(before.vertices, before.triangles, regions_of(before, soup.regions));
   const auto left = volumes_of_regions(after.vertices, after.triangles, regions_of(after, soup.regions));
@@ -81,8 +81,8 @@ TEST_CASE("thinned walls are the same for any number of threads, and keep the or
   Context alone, several;
   alone.threads = 1;
   several.threads = 4;
-  const FeatureMesh one = thin_out(before, frame_of(before), 6, 8, alone),
-                    other = thin_out(before, frame_of(before), 6, 8, several);
+  const FeatureMesh one = thin_out(before, {}, frame_of(before), 6, 8, alone),
+                    other = thin_out(before, {}, frame_of(before), 6, 8, several);
   CHECK(one.vertices == other.vertices);
   CHECK(one.triangles == other.triangles);
   CHECK(one.source_face == other.source_face);

@@ -19,12 +19,12 @@ enum class CreaseMode : uint8_t {
 
 struct CurveOptions {
   CreaseMode mode = CreaseMode::automatic;
-  double degrees = 40;                                ///< of mode threshold, above 0 and at most 180
-  double edge_length_world = 0;                       ///< h, the edge length that the result aims at; above 0
-  std::vector<std::array<uint32_t, 2>> seams = {};    ///< ends of edges that are curves, too; others are passed over
-  std::vector<std::array<uint32_t, 2>> lines = {};    ///< likewise
-  std::vector<std::array<uint32_t, 2>> creases = {};  ///< likewise; of mode given
-  std::vector<std::array<uint32_t, 2>> smooth = {};   ///< ends of edges that are no creases, however sharp they are
+  double degrees = 40;           ///< of mode threshold, above 0 and at most 180
+  double edge_length_world = 0;  ///< h, the edge length that the result aims at; above 0
+  EdgeList seams = {};           ///< ends of edges that are curves, too; others are passed over
+  EdgeList lines = {};           ///< likewise
+  EdgeList creases = {};         ///< likewise; of mode given
+  EdgeList smooth = {};          ///< ends of edges that are no creases, however sharp they are
   /// Of mode automatic: the frame before, where this one has other faces. What a simulation meshes anew has sharp edges
   /// here and there for a moment, so unless nearly all that looks like a crease is one, none come, and those that were
   /// there stay while they are the rule on the whole surface. Null where every crease may come.

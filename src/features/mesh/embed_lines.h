@@ -18,9 +18,6 @@ struct LinesOnMesh {
   std::vector<std::array<uint32_t, 2>> segments;  ///< two points each
 };
 
-/// Ends of edges.
-using EdgeList = std::vector<std::array<uint32_t, 2>>;
-
 struct MeshWithLines {
   FeatureMesh mesh;                   ///< the same surface, cut into more triangles
   EdgeList edges;                     ///< that the segments run along, ascending, the smaller end first

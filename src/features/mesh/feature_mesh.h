@@ -18,6 +18,9 @@ struct FeatureMesh {
   double rounding_world = 0;          ///< by how far coordinates may be off
 };
 
+/// Edges by their ends.
+using EdgeList = std::vector<std::array<uint32_t, 2>>;
+
 enum class CurveKind : uint8_t {
   border,        ///< edges of one triangle
   non_manifold,  ///< edges of three triangles or more, or of two that pass them the same way

@@ -41,7 +41,7 @@ using Ring = std::vector<uint32_t>;  ///< neighbours of a vertex
 class ThinnedWalls {
  public:
   /// A patch between curves with fewer vertices inside than `fewest` stays as it is.
-  ThinnedWalls(FeatureMesh mesh, const LatticeFrame& frame, double edge_world, uint32_t fewest)
+  ThinnedWalls(FeatureMesh mesh, const EdgeList& creases, const LatticeFrame& frame, double edge_world, uint32_t fewest)
       : mesh_(std::move(mesh)),
         edge_world_(edge_world),
         edge_q8_(edge_world / frame.voxel_size * kOneVoxelQ8),
@@ -56,7 +56,7 @@ class ThinnedWalls {
       normal_[v] = normal_at(v);
       place_[v] = frame.snap(mesh_.vertices[v]);
     });
-    find_curves();
+    find_curves(creases);
     keep_small_patches(fewest);
   }
 
@@ -139,9 +139,12 @@ class ThinnedWalls {
     return {whole(n.x), whole(n.y), whole(n.z)};
   }
 
-  /// Curves are along edges that have not two triangles which pass them in opposite directions.
-  void find_curves() {
+  /// Curves are along creases, and edges that have not two triangles which pass them in opposite directions.
+  void find_curves(const EdgeList& creases) {
     Ring out, in;
+    const auto is_crease = [&](uint32_t v, uint32_t w) {
+      return std::binary_search(creases.begin(), creases.end(), std::array{std::min(v, w), std::max(v, w)});
+    };
     for (uint32_t v = 0; v < vertices(); ++v) {
       out.clear(), in.clear();
       for_each_corner(v, [&](uint32_t c) {
@@ -151,12 +154,15 @@ class ThinnedWalls {
       });
       std::sort(out.begin(), out.end());
       std::sort(in.begin(), in.end());
-      if (out == in && std::adjacent_find(out.begin(), out.end()) == out.end()) continue;
-      note_curve(v, out, in);
+      if (out == in && std::adjacent_find(out.begin(), out.end()) == out.end() &&
+          std::none_of(out.begin(), out.end(), [&](uint32_t w) { return is_crease(v, w); }))
+        continue;
+      note_curve(v, out, in, [&](uint32_t w) { return is_crease(v, w); });
     }
   }
   /// Of the neighbours that edges lead to, and from.
-  void note_curve(uint32_t v, const Ring& out, const Ring& in) {
+  template <class IsCrease>
+  void note_curve(uint32_t v, const Ring& out, const Ring& in, IsCrease is_crease_to) {
     Ring all = out;
     all.insert(all.end(), in.begin(), in.end());
     std::sort(all.begin(), all.end());
@@ -164,7 +170,8 @@ class ThinnedWalls {
     for (auto i = all.begin(); i != all.end();) {
       const auto end = std::upper_bound(i, all.end(), *i);
       const auto leading = std::equal_range(out.begin(), out.end(), *i);
-      if (end - i != 2 || leading.second - leading.first != 1) along.push_back({*i, size_t(end - i)});
+      if (end - i != 2 || leading.second - leading.first != 1 || is_crease_to(*i))
+        along.push_back({*i, size_t(end - i)});
       i = end;
     }
     const bool is_inside = along.size() == 2 && along[0].second == along[1].second;
@@ -367,11 +374,11 @@ class ThinnedWalls {
 
 }  // namespace
 
-FeatureMesh thin_out(FeatureMesh mesh, const LatticeFrame& frame, double edge_world, uint32_t fewest,
-                     const Context& context) {
+FeatureMesh thin_out(FeatureMesh mesh, const EdgeList& creases, const LatticeFrame& frame, double edge_world,
+                     uint32_t fewest, const Context& context) {
   if (mesh.triangles.empty()) return mesh;
   return run_with_threads(context, [&] {
-    ThinnedWalls thinned(std::move(mesh), frame, edge_world, fewest);
+    ThinnedWalls thinned(std::move(mesh), creases, frame, edge_world, fewest);
     thinned.run(context);
     return thinned.left();
   });

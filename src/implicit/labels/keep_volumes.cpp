@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/wall_pressures.h"
 #include "implicit/labels/cut_faces.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int kIterations = 30;        ///< of conjugate gradients: what is left is for the next offsets
-constexpr double kSolved = 1e-10;      ///< of the first residual's square
 constexpr double kMostOffset_q8 = 64;  ///< where walls cannot go far enough, pressures grow without bounds
 constexpr int64_t kFacesOfTask = 8192;
 
@@ -23,16 +22,9 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Six times the volume of the tetrahedron with the origin. What overflows comes right in sums that do not.
-uint64_t spanned(const PointQ8& a, const PointQ8& b, const PointQ8& c) {
-  const Vector n = cross(Vector{a.x, a.y, a.z}, Vector{b.x, b.y, b.z});
-  const auto product = [](int64_t u, int64_t v) { return uint64_t(u) * uint64_t(v); };
-  return product(n.x, c.x) + product(n.y, c.y) + product(n.z, c.z);
-}
-
 uint64_t spanned(const std::array<uint32_t, 4>& face, const std::vector<PointQ8>& position) {
   const auto of = [&](int i, int j, int k) {
-    return spanned(position[face[size_t(i)]], position[face[size_t(j)]], position[face[size_t(k)]]);
+    return spanned_volume(position[face[size_t(i)]], position[face[size_t(j)]], position[face[size_t(k)]]);
   };
   if (face[3] == kNone) return of(0, 1, 2);
   return is_cut_from_first(face, position) ? of(0, 1, 2) + of(0, 2, 3) : of(0, 1, 3) + of(1, 2, 3);
@@ -114,54 +106,16 @@ std::vector<double> VolumeKeeper::lacking_volumes() const {
   return out;
 }
 
-/// What volumes grow by, six times, when walls are offset by the differences of pressures.
-std::vector<double> VolumeKeeper::laplacian_of(const std::vector<double>& pressure) const {
-  std::vector<double> out(regions_, 0);
-  for (const Pair& pair : pairs_) {
-    const auto& [inside, outside] = pair.region;
-    const double grown = 3 * double(pair.doubled_area) * (pressure[inside] - pressure[outside]);
-    out[inside] += grown;
-    out[outside] -= grown;
-  }
-  return out;
-}
-
-/// Conjugate gradients, each equation divided by what is on its diagonal.
-std::vector<double> VolumeKeeper::solve_pressures(std::vector<double> residual) const {
-  std::vector<double> diagonal(regions_, 0), pressure(regions_, 0), scaled(regions_), along(regions_, 0);
-  for (const Pair& pair : pairs_)
-    for (const uint32_t r : pair.region) diagonal[r] += 3 * double(pair.doubled_area);
-  const auto dot = [&](const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0;
-    for (size_t r = 0; r < regions_; ++r) sum += a[r] * b[r];
-    return sum;
-  };
-  double last = 0, first = 0;
-  for (int i = 0; i < kIterations; ++i) {
-    for (size_t r = 0; r < regions_; ++r) scaled[r] = diagonal[r] > 0 ? residual[r] / diagonal[r] : 0;
-    const double size = dot(residual, scaled);
-    if (i == 0) first = size;
-    if (size <= kSolved * first) break;
-    for (size_t r = 0; r < regions_; ++r) along[r] = scaled[r] + (i == 0 ? 0 : size / last) * along[r];
-    last = size;
-    const std::vector<double> grown = laplacian_of(along);
-    const double curvature = dot(along, grown);
-    if (curvature <= 0) break;
-    for (size_t r = 0; r < regions_; ++r) {
-      pressure[r] += size / curvature * along[r];
-      residual[r] -= size / curvature * grown[r];
-    }
-  }
-  return pressure;
-}
-
 double VolumeKeeper::find_offsets(const std::vector<PointQ8>& position) {
   for (Pair& pair : pairs_) pair.now = 0, pair.doubled_area = 0;
   add_by_pair([&](const std::array<uint32_t, 4>& face, Pair& sum) {
     sum.now += spanned(face, position);
     sum.doubled_area += std::llround(length(normal_of(face, position)));
   });
-  const std::vector<double> pressure = solve_pressures(lacking_volumes());
+  std::vector<WallsBetween> areas;
+  for (const Pair& pair : pairs_)
+    areas.push_back({pair.region, 3 * double(pair.doubled_area)});  // of volumes six times
+  const std::vector<double> pressure = pressures_of_regions(areas, lacking_volumes());
   double largest = 0;
   for (Pair& pair : pairs_) {
     pair.offset_q8 = std::clamp(pressure[pair.region[0]] - pressure[pair.region[1]], -kMostOffset_q8, kMostOffset_q8);

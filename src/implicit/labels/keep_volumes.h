@@ -11,19 +11,17 @@
 
 namespace isoshell {
 
-/// Every pair of regions has one offset for all of its walls, along their normals. Of the offsets that give every
-/// region the volume that it has with walls at rest, to first order, those are taken whose squares, each times the area
-/// of its walls, have the least sum: the offset of a pair then is a pressure of its one region less that of its other
-/// one, as of bubbles in foam, and the pressures solve a Laplace equation on the graph of regions. Vertices on curves
-/// go by the mean of the walls there, weighted by area. Volumes and areas are sums of integers and the equation is
-/// solved in a fixed order: no number of threads shows.
+/// Every pair of regions has one offset for all of its walls, along their normals, that gives every region the volume
+/// that it has with walls at rest (see pressures_of_regions). Vertices on curves go by the mean of the walls there,
+/// weighted by area. Volumes and areas are sums of integers and the equation is solved in a fixed order: no number of
+/// threads shows.
 class VolumeKeeper {
  public:
   /// Both must outlive it. Cost: O(walls), and a sort of the pairs of regions.
   VolumeKeeper(const LabelWalls& walls, const Buckets<uint32_t>& faces_at);
 
   /// Finds the offsets for walls with vertices here. Result: the largest one, in 1/256 voxel. Cost: O(walls), and
-  /// kIterations times the pairs of regions.
+  /// that of pressures_of_regions.
   double find_offsets(const std::vector<PointQ8>& position);
   /// How far a vertex goes by the offsets that were found, in voxels.
   WorldPoint way_of(size_t vertex, const std::vector<PointQ8>& position) const;
@@ -40,8 +38,6 @@ class VolumeKeeper {
   template <class Add>
   void add_by_pair(const Add& add);
   std::vector<double> lacking_volumes() const;
-  std::vector<double> laplacian_of(const std::vector<double>& pressure) const;
-  std::vector<double> solve_pressures(std::vector<double> lacking) const;
 
   const LabelWalls& walls_;
   const Buckets<uint32_t>& faces_at_;

@@ -59,6 +59,15 @@ WorldPoint to_world(const LabelVolume& volume, const PointQ8& p) {
          vox(p.z) * volume.step_world[2];
 }
 
+/// See FaceRegions::voxel_size_world.
+double voxel_size_world(const LabelVolume& volume) {
+  const auto& [x, y, z] = volume.step_world;
+  const bool are_along_axes = x.y == 0 && x.z == 0 && y.x == 0 && y.z == 0 && z.x == 0 && z.y == 0;
+  const double steps[3] = {std::abs(x.x), std::abs(y.y), std::abs(z.z)}, least = *std::min_element(steps, steps + 3);
+  const auto is_multiple = [&](double step) { return std::floor(step / least) * least == step; };
+  return are_along_axes && std::all_of(steps, steps + 3, is_multiple) ? least : 0;
+}
+
 /// A region by its label and name.
 std::string shown(int32_t label, const LabelVolume& volume) {
   for (const RegionName& region : volume.names)
@@ -82,14 +91,32 @@ void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const T
   tell(MessageKind::warning, text);
 }
 
+/// See FaceRegions::side.
+uint8_t side_of_volume(const LabelWalls& walls, size_t face) {
+  const auto& corners = walls.faces[face];
+  const auto are_all = [&](int32_t Voxel::*axis, int32_t at) {
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](uint32_t v) { return v == kNone || walls.rest_halves[v].*axis == at; });
+  };
+  uint8_t side = 1;
+  for (const auto axis : {&Voxel::x, &Voxel::y, &Voxel::z})
+    for (const int32_t at : {0, 2 * walls.size_vox.*axis}) {
+      if (are_all(axis, at)) return side;
+      ++side;
+    }
+  return 0;
+}
+
 /// Walls that are faired, with what of them is no geometry.
 TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, const LabelVolume& volume) {
   TriangleSoup soup;
   soup.triangles.reserve(2 * walls.faces.size());
   soup.regions.labels.reserve(2 * walls.faces.size());
   const bool is_mirrored = spanned_world(volume) < 0;  // which turns faces around
+  soup.regions.side.reserve(2 * walls.faces.size());
   for (size_t f = 0; f < walls.faces.size(); ++f)
     each_triangle(walls.faces[f], fair, [&](const TriangleIndices& t) {
+      soup.regions.side.push_back(side_of_volume(walls, f));
       soup.triangles.push_back(is_mirrored ? std::array{t.a, t.c, t.b} : std::array{t.a, t.b, t.c});
       soup.regions.labels.push_back(walls.labels[f]);
     });
@@ -97,6 +124,7 @@ TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, 
   for_each_index(size_t(0), fair.size(), [&](size_t v) { soup.vertices[v] = to_world(volume, fair[v]); });
   soup.regions.background = volume.background;
   soup.regions.are_of_voxels = true;
+  soup.regions.voxel_size_world = voxel_size_world(volume);
   soup.regions.names = volume.names;
   soup.faces_in_file = int64_t(walls.faces.size());
   return soup;

@@ -18,6 +18,7 @@
 #include "pipeline/patches/patch_rounds.h"
 #include "pipeline/regions/flat_walls.h"
 #include "pipeline/regions/region_walls.h"
+#include "pipeline/regions/restore_volumes.h"
 
 namespace isoshell {
 namespace {
@@ -67,7 +68,10 @@ std::optional<JoinedPatches> coarsened(const PreparedSurface& p, int64_t vertice
   });
 }
 
-TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatches joined, RemeshReport& report) {
+TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatches joined, RemeshReport& report,
+                     Context& context) {
+  if (p.walls->regions.are_of_voxels)
+    timed(report, "volumes", context, [&] { restore_volumes(cut, *p.walls, joined, context); });
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);
   if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh);
@@ -109,7 +113,7 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
     if (!coarse) return walls_themselves(*p.walls);
     joined = std::move(*coarse);
   }
-  return mesh_of(p, *cut, std::move(joined), report);
+  return mesh_of(p, *cut, std::move(joined), report, context);
 }
 
 }  // namespace isoshell

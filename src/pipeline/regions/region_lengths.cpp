@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "geometry/box.h"
 #include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "pipeline/grid/sizing.h"
@@ -16,6 +17,7 @@
 namespace isoshell {
 namespace {
 
+constexpr int32_t kFiner = 4;      ///< few walls come to intersect; on a much finer lattice cells take longer
 constexpr size_t kMostNamed = 20;  ///< regions that a message lists
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -68,6 +70,14 @@ double shortest_at(const std::vector<double>& field, const std::array<uint32_t, 
   return shortest;
 }
 
+/// Voxels along the longest side that carry the shortest edges asked for, where the run chooses them.
+int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world) {
+  const int32_t usual = plan.first_resolution();
+  if (!plan.chooses_grid() || !wants_lengths(plan.options)) return usual;
+  const double least = LengthsOnWalls(soup, plan, of_face_world).least_world();
+  return std::max(usual, resolution_for_cell(longest_side(plan.box), kCellOfEdge * least, plan.target.vertices));
+}
+
 }  // namespace
 
 std::vector<double> lengths_of_faces_world(const FaceRegions& regions, const std::vector<RegionEdgeLength>& lengths) {
@@ -112,13 +122,19 @@ double LengthsOnWalls::asked_world(size_t triangle) const {
   return length > 0 ? length : usual_world_;
 }
 
-int32_t resolution_for_walls(const TriangleSoup& soup, const Plan& plan, const std::vector<double>& of_face_world) {
-  const int32_t usual = plan.first_resolution();
-  if (!plan.chooses_grid() || !wants_lengths(plan.options)) return usual;
-  const double least = LengthsOnWalls(soup, plan, of_face_world).least_world();
-  const double longest =
-      std::max({plan.box.max.x - plan.box.min.x, plan.box.max.y - plan.box.min.y, plan.box.max.z - plan.box.min.z});
-  return std::max(usual, resolution_for_cell(longest, kCellOfEdge * least, plan.target.vertices));
+LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const std::vector<double>& of_face_world) {
+  const WorldPoint &low = plan.box.min, &high = plan.box.max;
+  const int32_t resolution = resolution_for_walls(walls, plan, of_face_world);
+  if (!walls.regions.are_of_voxels || !plan.chooses_grid()) return LatticeFrame::around(low, high, resolution);
+  const double step_world = walls.regions.voxel_size_world;
+  if (step_world <= 0) return LatticeFrame::around(low, high, std::min(kFiner * resolution, kMaxResolution));
+  const auto steps_along = [&](double side) {
+    return std::max(int32_t(std::ceil(side / step_world - 0.5 / kOneVoxelQ8)), 1);
+  };
+  const auto end = [&](double from, double to) { return from + steps_along(to - from) * step_world; };
+  const int32_t steps = steps_along(longest_side(plan.box));
+  const int32_t parts = std::min((resolution - 2) / steps + 1, std::max((kMaxResolution - 1) / steps, 1));
+  return LatticeFrame::around(low, {end(low.x, high.x), end(low.y, high.y), end(low.z, high.z)}, steps * parts + 1);
 }
 
 std::vector<std::string> warnings_of_bounds(const RequestedLengths& requested) {

@@ -44,10 +44,10 @@ int64_t twice_points_in(const WorldPoint& a, const WorldPoint& b, const WorldPoi
 }  // namespace
 
 RunEstimate estimate_walls(const Plan& plan, const TriangleSoup& walls, const std::vector<double>& of_face_world,
-                           int32_t resolution) {
+                           const LatticeFrame& frame) {
   RunEstimate e;
-  e.resolution = resolution > 0 ? resolution : resolution_for_walls(walls, plan, of_face_world);
-  e.voxel_size_world = LatticeFrame::around(plan.box.min, plan.box.max, e.resolution).voxel_size;
+  e.resolution = frame.resolution;
+  e.voxel_size_world = frame.voxel_size;
   const LengthsOnWalls lengths(walls, plan, of_face_world);
   e.vertices = std::llround(lengths.vertices());
   const double parts = walls.regions.are_of_voxels ? kPartsOfRoughEdge : kPartsOfEdge;

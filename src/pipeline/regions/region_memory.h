@@ -18,7 +18,7 @@ inline bool are_thinned_out(const TriangleSoup& walls, int64_t vertices) {
 /// As estimate_run: from how finely walls are cut (see refine_mesh), and of those of voxels what making them took.
 /// `of_face_world` as lengths_of_faces_world() gives it. Cost: O(triangles).
 RunEstimate estimate_walls(const Plan& plan, const TriangleSoup& walls, const std::vector<double>& of_face_world,
-                           int32_t resolution = 0);
+                           const LatticeFrame& frame);
 
 /// Throws: out_of_memory where the estimate is above the limit.
 void require_memory_for_walls(const RunEstimate& estimate, const Context& context);

@@ -10,6 +10,7 @@
 #include "features/mesh/thin_out.h"
 #include "features/mesh/weld_for_features.h"
 #include "features/walls/near_walls.h"
+#include "geometry/wall_pressures.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/grid/sizing.h"
@@ -19,6 +20,7 @@
 #include "pipeline/patches/patches.h"
 #include "pipeline/regions/region_lengths.h"
 #include "pipeline/regions/region_memory.h"
+#include "pipeline/regions/side_creases.h"
 #include "pipeline/sheet/crease_search.h"
 
 namespace isoshell {
@@ -47,13 +49,32 @@ FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool le
   if (lengths_vary || !are_thinned_out(soup, p.target.vertices)) return mesh;
   const double edge_world = edge_length_for(mesh, {}, p.target.vertices);
   const auto fewest = uint32_t(kSmallPatch * vertices / p.target.vertices);
-  return thin_out(std::move(mesh), p.surface.frame, edge_world, fewest, context);
+  const EdgeList creases = side_creases(mesh, soup.regions.side, edge_world);
+  return thin_out(std::move(mesh), creases, p.surface.frame, edge_world, fewest, context);
+}
+
+std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const LatticeFrame& frame) {
+  std::map<int32_t, uint64_t> volumes;
+  std::vector<PointQ8> at(soup.vertices.size());
+  for_each_index(size_t(0), at.size(), [&](size_t v) { at[v] = frame.snap(soup.vertices[v]); });
+  for (size_t t = 0; t < soup.triangles.size();) {
+    const std::array<int32_t, 2> labels = soup.regions.labels[t];
+    uint64_t sum = 0;
+    for (; t < soup.triangles.size() && soup.regions.labels[t] == labels; ++t) {
+      const auto& [a, b, c] = soup.triangles[t];
+      sum += spanned_volume(at[a], at[b], at[c]);
+    }
+    volumes[labels[0]] += sum;
+    volumes[labels[1]] -= sum;
+  }
+  return volumes;
 }
 
 CurveOptions curves_between_regions(const PreparedSurface& p) {
   CurveOptions curves = curve_options(p.options, nullptr, p.target.edge_length_world);
-  const bool asked = p.options.features.creases == Features::Creases::threshold;
-  if (p.walls->regions.are_of_voxels && !asked) curves.mode = CreaseMode::off;
+  if (!p.walls->regions.are_of_voxels || curves.mode != CreaseMode::automatic) return curves;
+  curves.creases = side_creases(p.walls->mesh, p.walls->regions.side, curves.edge_length_world);
+  curves.mode = curves.creases.empty() ? CreaseMode::off : CreaseMode::given;
   return curves;
 }
 
@@ -101,10 +122,10 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
   const Plan plan = plan_of(options, measured.topology, bounding_box(soup));
   LatticeSurface surface;
   const std::vector<double> of_face_world = lengths_of_faces_world(soup.regions, options.region_edge_lengths);
-  const RunEstimate estimate = estimate_walls(plan, soup, of_face_world);
+  surface.frame = frame_of_walls(soup, plan, of_face_world);
+  const RunEstimate estimate = estimate_walls(plan, soup, of_face_world, surface.frame);
   require_memory_for_walls(estimate, context);
   report.grid.memory_estimate_bytes = estimate.bytes;
-  surface.frame = LatticeFrame::around(plan.box.min, plan.box.max, estimate.resolution);
   surface.topology = measured.topology;
   surface.topology.closed = surface.topology.oriented = true;  // as each region's own surface is
   PreparedSurface p = begin_with(std::move(surface), options);
@@ -112,6 +133,8 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     auto walls = std::make_shared<RegionWalls>();
     walls->mesh = walls_of(soup, p, wants_lengths(options), context);
     walls->regions = soup.regions;
+    if (soup.regions.are_of_voxels)
+      walls->spanned_volume_q8 = run_with_threads(context, [&] { return spanned_volumes(soup, p.surface.frame); });
     p.walls = walls;
     const CurveNetwork network =
         run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });

@@ -1,6 +1,8 @@
 // The walls between regions as a run has them.
 #pragma once
 
+#include <map>
+
 #include "features/mesh/feature_mesh.h"
 #include "isoshell/regions.h"
 #include "pipeline/grid/prepared_surface.h"
@@ -11,6 +13,8 @@ namespace isoshell {
 struct RegionWalls {
   FeatureMesh mesh;
   FaceRegions regions;
+  /// Of voxels: six times the volume of each region as they came in, and the background's, modulo 2^64, by its label.
+  std::map<int32_t, uint64_t> spanned_volume_q8 = {};
   bool are_too_near = false;  ///< for edges as long as asked for: relaxed triangles would intersect, so none are
 
   const std::array<int32_t, 2>& labels_of(size_t triangle) const { return regions.labels[mesh.source_face[triangle]]; }
