@@ -24,8 +24,11 @@ struct FaceRegions {
   std::vector<std::array<int32_t, 2>> labels;
   int32_t background = 0;       ///< the label of what is no region
   bool are_of_voxels = false;   ///< walls between voxels, which have no creases that are more than their steps
-  double voxel_size_world = 0;  ///< of those along the axes the shortest step, if others are multiples of it, or 0
-  /// Of those per triangle on which side of the volume it lies, 1 to 6, and 0 on none: there walls are cut, and flat.
+  /// Between such voxels the shortest step, where they lie along the axes of the world and the other steps are whole
+  /// multiples of it; 0 where not.
+  double voxel_size_world = 0;
+  /// Between such voxels, per triangle: on which side of the volume it lies, 1 to 6, and 0 on none. There walls are cut,
+  /// and flat. Empty: not known.
   std::vector<uint8_t> side = {};
   std::vector<RegionName> names = {};  ///< ascending by label; labels may have none
 

@@ -133,8 +133,11 @@ LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const s
   };
   const auto end = [&](double from, double to) { return from + steps_along(to - from) * step_world; };
   const int32_t steps = steps_along(longest_side(plan.box));
-  const int32_t parts = std::min((resolution - 2) / steps + 1, std::max((kMaxResolution - 1) / steps, 1));
-  return LatticeFrame::around(low, {end(low.x, high.x), end(low.y, high.y), end(low.z, high.z)}, steps * parts + 1);
+  const double parts_wanted = double(resolution - 1) / steps;  // the nearest number, or one that carries all lengths
+  const auto parts = int32_t(wants_lengths(plan.options) ? std::ceil(parts_wanted) : std::floor(parts_wanted + 0.5));
+  const int32_t most_parts = std::max((kMaxResolution - 1) / steps, 1);
+  return LatticeFrame::around(low, {end(low.x, high.x), end(low.y, high.y), end(low.z, high.z)},
+                              steps * std::clamp(parts, 1, most_parts) + 1);
 }
 
 std::vector<std::string> warnings_of_bounds(const RequestedLengths& requested) {

@@ -34,9 +34,9 @@ class LengthsOnWalls {
   double usual_world_, least_world_, vertices_ = 0, scale_ = 1;
 };
 
-/// The lattice of a run on walls. Between voxels it is finer than edges need where the run chooses it: corners are on
-/// 1/256 of a voxel, and those are points of it where voxels are as high and deep as wide or whole multiples of that,
-/// and near to points of it elsewhere. What does not intersect before must not on it.
+/// The lattice of a run on walls. The corners of those of voxels are on 1/256 of a voxel, and those are points of it
+/// where the run chooses it and steps between voxels are whole multiples of the shortest one; elsewhere it is finer
+/// than edges need, and they are near to points of it. What does not intersect before must not on it.
 LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const std::vector<double>& of_face_world);
 
 /// What is said where the lengths of faces, or the usual one, are shorter than the grid carries, or longer than others
