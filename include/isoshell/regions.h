@@ -22,13 +22,13 @@ struct FaceRegions {
   /// of two is never the background; of two that are not it is the smaller one. Of a sheet both are the label of what
   /// it lies in, or the background. Empty: no regions.
   std::vector<std::array<int32_t, 2>> labels;
-  int32_t background = 0;       ///< the label of what is no region
-  bool are_of_voxels = false;   ///< walls between voxels, which have no creases that are more than their steps
+  int32_t background = 0;      ///< the label of what is no region
+  bool are_of_voxels = false;  ///< walls between voxels, which have no creases that are more than their steps
   /// Between such voxels the shortest step, where they lie along the axes of the world and the other steps are whole
   /// multiples of it; 0 where not.
   double voxel_size_world = 0;
-  /// Between such voxels, per triangle: on which side of the volume it lies, 1 to 6, and 0 on none. There walls are cut,
-  /// and flat. Empty: not known.
+  /// Between such voxels, per triangle: on which side of the volume it lies, 1 to 6, and 0 on none. There walls are
+  /// cut, and flat. Empty: not known.
   std::vector<uint8_t> side = {};
   std::vector<RegionName> names = {};  ///< ascending by label; labels may have none
 

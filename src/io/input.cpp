@@ -66,6 +66,9 @@ void check_surface(const TriangleSoup& soup, const std::string& name) {
   if (!soup.regions.empty() && soup.regions.labels.size() != soup.triangles.size())
     refuse(name + ": there are regions of " + std::to_string(soup.regions.labels.size()) + " faces for " +
            std::to_string(soup.triangles.size()) + " triangles; give two labels a triangle");
+  if (!soup.regions.side.empty() && soup.regions.side.size() != soup.triangles.size())
+    refuse(name + ": there are sides of " + std::to_string(soup.regions.side.size()) + " faces for " +
+           std::to_string(soup.triangles.size()) + " triangles; give one a triangle, or none at all");
   for (const Attribute& a : soup.attributes)
     if (const std::string misfit = misfit_of(a, soup.vertices.size(), soup.triangles.size()); !misfit.empty())
       refuse(name + ": " + misfit);

@@ -123,6 +123,13 @@ TEST_CASE("walls at the sides of a volume are flat, its edges straight and its c
   CHECK(corners >= 8);
 }
 
+TEST_CASE("a wall to background inside of a volume is straight up to the volume's sides") {
+  const TriangleSoup soup =
+      surface_of_labels(label_volume(24, 24, 24, [](int x, int, int) { return x < 12 ? 1 : 0; }), "labels", 0);
+  for (const WorldPoint& p : soup.vertices)
+    if (p.x > 11) CHECK(std::abs(p.x - 11.5) < 0.05);
+}
+
 TEST_CASE("curves between grains stay apart where they run side by side") {
   const CpuContext context;
   const LabelWalls walls = find_label_walls(voronoi_grains(64, 60), context);

@@ -60,6 +60,50 @@ TEST_CASE("a volume that regions fill keeps its flat sides, its edges and its co
   }
 }
 
+TEST_CASE("a cube of few vertices, and a result that is meshed again, stay in the box of their volume") {
+  TestContext context;
+  const TriangleMesh cube = meshed(label_volume(24, 24, 24, [](int, int, int) { return 1; }), 60, context).mesh;
+  CHECK(std::abs(volumes_of_regions(cube.vertices, cube.triangles, cube.regions).at(1) - 24 * 24 * 24) < 1e-6);
+
+  TriangleSoup again;
+  const TriangleMesh half =
+      meshed(label_volume(24, 24, 24, [](int x, int, int) { return x < 12 ? 1 : 0; }), 1500, context).mesh;
+  again.vertices = half.vertices;
+  again.triangles = half.triangles;
+  again.regions = half.regions;
+  RemeshOptions options;
+  options.vertices = 1000;
+  for (const WorldPoint& p : remesh(again, options, context).mesh.vertices) {
+    CHECK(std::min({p.x, p.y, p.z}) > -0.501);
+    CHECK(std::max(p.y, p.z) < 23.501);
+  }
+}
+
+TEST_CASE("regions of few slices keep their volumes") {
+  TestContext context;
+  for (const int slices : {1, 3}) {
+    const LabelVolume volume =
+        label_volume(36, 36, slices, [](int x, int y, int) { return std::hypot(x - 17.5, y - 17.5) < 15 ? 1 : 0; });
+    const TriangleMesh mesh = meshed(volume, 150, context).mesh;
+    const auto voxels = double(std::count(volume.labels.begin(), volume.labels.end(), 1));
+    INFO(slices << " slices");
+    CHECK(std::abs(volumes_of_regions(mesh.vertices, mesh.triangles, mesh.regions).at(1) / voxels - 1) < 0.005);
+  }
+}
+
+TEST_CASE("voxels far longer than wide, or turned, are meshed on a lattice that is there") {
+  TestContext context;
+  LabelVolume volume = voronoi_grains(16, 5);
+  for (const double deep : {2., 3., 0.37, 1000.}) {
+    volume.step_world = {WorldPoint{0, 0.1, 0}, WorldPoint{-0.1, 0, 0}, WorldPoint{0, 0, 0.1 * deep}};
+    INFO("steps of .1, .1 and " << 0.1 * deep);
+    const RemeshResult result = meshed(volume, 1500, context);
+    const double parts = 0.1 / result.report.grid.frame.voxel_size;
+    CHECK((std::abs(parts - std::round(parts)) < 1e-9) == (deep == 2 || deep == 3));
+  }
+  CHECK(meshed(label_volume(8192, 2, 2, [](int, int, int) { return 1; }), 5000, context).mesh.vertices.size() > 0);
+}
+
 TEST_CASE("regions keep their volumes, though long edges cut off what is curved") {
   TestContext context;
   const LabelVolume volume = label_volume(32, 32, 32, [](int x, int y, int z) {
@@ -82,6 +126,8 @@ TEST_CASE("regions have the same mesh with any number of threads") {
   const TriangleMesh a = meshed(volume, 1500, one).mesh, b = meshed(volume, 1500, two).mesh;
   CHECK(a.triangles == b.triangles);
   CHECK(a.regions.labels == b.regions.labels);
+  CHECK(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),
+                   [](const WorldPoint& p, const WorldPoint& q) { return p.x == q.x && p.y == q.y && p.z == q.z; }));
 }
 
 TEST_CASE("a run on regions that does not fit its limit is refused before its walls are cut") {

@@ -12,8 +12,8 @@ using Kind = WallLinks::Kind;
 /// Sheets of one voxel stay so thick that edges longer than that follow both of their sides. Where regions meet in
 /// curves, the thin end of a wedge is no sheet. Voxels cut such ends off, and the curve itself may lie beyond them.
 constexpr int32_t kReach = kOneVoxelFine / 2, kThinReach = kOneVoxelFine * 3 / 8, kCurveReach = kOneVoxelFine * 5 / 8;
-/// Curves on both sides of a face go no farther towards each other: of the strip of wall between them is left as much
-/// as triangles without small angles need.
+/// Curves on both sides of a face go no farther towards each other where they are a voxel apart: of the strip of wall
+/// between them is left as much as triangles without small angles need.
 constexpr int32_t kStripReach = kOneVoxelFine * 5 / 16;
 constexpr double kSlopeShare = 0.25;  ///< of the slope, in a step: over what bends of regular walls grow by at most
 
@@ -54,8 +54,9 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, const Buckets<uint32_t>& faces
       const Voxel &own = walls_.rest_halves[vertex], &other = walls_.rest_halves[v];
       const int32_t way[3] = {other.x - own.x, other.y - own.y, other.z - own.z};
       for (int axis = 0; axis < 3; ++axis) {
-        if (way[axis] < 0) box.low[axis] = std::max(box.low[axis], rest[axis] - kStripReach);
-        if (way[axis] > 0) box.high[axis] = std::min(box.high[axis], rest[axis] + kStripReach);
+        const int32_t reach_of_strip = kStripReach * std::abs(way[axis]) / 2;
+        if (way[axis] < 0) box.low[axis] = std::max(box.low[axis], rest[axis] - reach_of_strip);
+        if (way[axis] > 0) box.high[axis] = std::min(box.high[axis], rest[axis] + reach_of_strip);
       }
     }
   return box;

@@ -61,8 +61,8 @@ class ElasticNet {
   WallLinks links_;
   std::vector<FinePoint> at_, bend_;
   std::vector<Box> box_;  ///< where each vertex may go
-  std::vector<FinePoint>
-      normal_;  ///< of vertices beside curves, in 1/32768 of their length; empty until they are found
+  /// Of vertices beside curves, in 1/32768 of their length; empty until they are found.
+  std::vector<FinePoint> normal_;
 };
 
 }  // namespace isoshell

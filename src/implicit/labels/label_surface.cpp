@@ -59,13 +59,22 @@ WorldPoint to_world(const LabelVolume& volume, const PointQ8& p) {
          vox(p.z) * volume.step_world[2];
 }
 
-/// See FaceRegions::voxel_size_world.
+/// See FaceRegions::voxel_size_world. What headers of files round is let pass.
 double voxel_size_world(const LabelVolume& volume) {
-  const auto& [x, y, z] = volume.step_world;
-  const bool are_along_axes = x.y == 0 && x.z == 0 && y.x == 0 && y.z == 0 && z.x == 0 && z.y == 0;
-  const double steps[3] = {std::abs(x.x), std::abs(y.y), std::abs(z.z)}, least = *std::min_element(steps, steps + 3);
-  const auto is_multiple = [&](double step) { return std::floor(step / least) * least == step; };
-  return are_along_axes && std::all_of(steps, steps + 3, is_multiple) ? least : 0;
+  constexpr double kMostOffVox = 1e-4;  // over the whole volume: nearer to points of the lattice than to others
+  std::array<double, 3> size{};
+  for (size_t i = 0; i < 3; ++i) {
+    const WorldPoint& step = volume.step_world[i];
+    const double along[3] = {std::abs(step.x), std::abs(step.y), std::abs(step.z)};
+    size[i] = *std::max_element(along, along + 3);
+    if ((along[0] + along[1] + along[2] - size[i]) * volume.size_vox[i] > kMostOffVox * size[i]) return 0;
+  }
+  const double least = *std::min_element(size.begin(), size.end());
+  for (size_t i = 0; i < 3; ++i) {
+    const double multiple = size[i] / least;
+    if (std::abs(multiple - std::round(multiple)) * volume.size_vox[i] > kMostOffVox) return 0;
+  }
+  return least;
 }
 
 /// A region by its label and name.
@@ -91,22 +100,6 @@ void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const T
   tell(MessageKind::warning, text);
 }
 
-/// See FaceRegions::side.
-uint8_t side_of_volume(const LabelWalls& walls, size_t face) {
-  const auto& corners = walls.faces[face];
-  const auto are_all = [&](int32_t Voxel::*axis, int32_t at) {
-    return std::all_of(corners.begin(), corners.end(),
-                       [&](uint32_t v) { return v == kNone || walls.rest_halves[v].*axis == at; });
-  };
-  uint8_t side = 1;
-  for (const auto axis : {&Voxel::x, &Voxel::y, &Voxel::z})
-    for (const int32_t at : {0, 2 * walls.size_vox.*axis}) {
-      if (are_all(axis, at)) return side;
-      ++side;
-    }
-  return 0;
-}
-
 /// Walls that are faired, with what of them is no geometry.
 TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, const LabelVolume& volume) {
   TriangleSoup soup;
@@ -114,12 +107,14 @@ TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, 
   soup.regions.labels.reserve(2 * walls.faces.size());
   const bool is_mirrored = spanned_world(volume) < 0;  // which turns faces around
   soup.regions.side.reserve(2 * walls.faces.size());
-  for (size_t f = 0; f < walls.faces.size(); ++f)
+  for (size_t f = 0; f < walls.faces.size(); ++f) {
+    const uint8_t side = walls.side_of(f);
     each_triangle(walls.faces[f], fair, [&](const TriangleIndices& t) {
-      soup.regions.side.push_back(side_of_volume(walls, f));
+      soup.regions.side.push_back(side);
       soup.triangles.push_back(is_mirrored ? std::array{t.a, t.c, t.b} : std::array{t.a, t.b, t.c});
       soup.regions.labels.push_back(walls.labels[f]);
     });
+  }
   soup.vertices.resize(fair.size());
   for_each_index(size_t(0), fair.size(), [&](size_t v) { soup.vertices[v] = to_world(volume, fair[v]); });
   soup.regions.background = volume.background;

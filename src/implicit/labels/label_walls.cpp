@@ -301,6 +301,20 @@ class WallMaker {
 
 }  // namespace
 
+uint8_t LabelWalls::side_of(size_t face) const {
+  const auto are_all = [&](int32_t Voxel::*axis, int32_t at) {
+    return std::all_of(faces[face].begin(), faces[face].end(),
+                       [&](uint32_t v) { return v == kNone || rest_halves[v].*axis == at; });
+  };
+  uint8_t side = 1;
+  for (const auto axis : {&Voxel::x, &Voxel::y, &Voxel::z})
+    for (const int32_t at : {0, 2 * size_vox.*axis}) {
+      if (are_all(axis, at)) return side;
+      ++side;
+    }
+  return 0;
+}
+
 LabelWalls find_label_walls(const LabelVolume& volume, const Context& context) {
   LabelWalls walls = WallMaker(volume, context).make();
   walls.size_vox = {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]};

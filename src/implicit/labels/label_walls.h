@@ -19,6 +19,9 @@ struct LabelWalls {
   std::vector<std::array<uint32_t, 4>> faces;  ///< four corners in turn, as seen from the second region; of triangles
                                                ///< the last one is kNone
   std::vector<std::array<int32_t, 2>> labels;  ///< per face, as in FaceRegions
+
+  /// On which side of the volume a face lies, 1 to 6, or 0: as FaceRegions has it.
+  uint8_t side_of(size_t face) const;
 };
 
 /// Every sheet of walls at a corner of the lattice has a vertex of its own there, and where the walls along a lattice

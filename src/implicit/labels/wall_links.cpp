@@ -8,24 +8,33 @@
 namespace isoshell {
 namespace {
 
+/// A vertex at the other end of an edge, as one of its faces has it, and on which side of the volume that face lies.
+struct EndOfFace {
+  uint32_t vertex;
+  uint8_t side;
+};
+
 /// Calls visit(link) for all edges at a vertex. `ends`: room for their ends, once a face.
 template <class Visit>
-void each_link(const LabelWalls& walls, View<const uint32_t> faces, uint32_t vertex, std::vector<uint32_t>& ends,
+void each_link(const LabelWalls& walls, View<const uint32_t> faces, uint32_t vertex, std::vector<EndOfFace>& ends,
                Visit visit) {
   ends.clear();
   for (const uint32_t f : faces) {
     const auto& face = walls.faces[f];
     const size_t corners = face[3] == kNone ? 3 : 4;
+    const uint8_t side = walls.side_of(f);
     for (size_t i = 0; i < corners; ++i)
       if (face[i] == vertex) {
-        ends.push_back(face[(i + 1) % corners]);
-        ends.push_back(face[(i + corners - 1) % corners]);
+        ends.push_back({face[(i + 1) % corners], side});
+        ends.push_back({face[(i + corners - 1) % corners], side});
       }
   }
-  std::sort(ends.begin(), ends.end());
+  std::sort(ends.begin(), ends.end(), [](const EndOfFace& a, const EndOfFace& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.side < b.side;
+  });
   for (size_t i = 0, j = 0; i < ends.size(); i = j) {
-    while (j < ends.size() && ends[j] == ends[i]) ++j;
-    visit(WallLink(ends[i], j - i != 2));
+    while (j < ends.size() && ends[j].vertex == ends[i].vertex) ++j;
+    visit(WallLink(ends[i].vertex, j - i != 2 || ends[i].side != ends[j - 1].side));
   }
 }
 
@@ -36,7 +45,7 @@ Buckets<WallLink> find_links(const LabelWalls& walls, const Buckets<uint32_t>& f
   out.first[vertices] = 0;
   const auto for_each_vertex = [&](auto step) {
     for_ranges(vertices, 1024, [&](int64_t begin, int64_t end) {
-      std::vector<uint32_t> ends;
+      std::vector<EndOfFace> ends;
       for (int64_t v = begin; v < end; ++v)
         step(v, [&](auto visit) { each_link(walls, faces_at.in(v), uint32_t(v), ends, visit); });
     });

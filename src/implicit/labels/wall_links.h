@@ -26,7 +26,8 @@ class WallLink {
   uint32_t bits_;
 };
 
-/// The edges at each vertex. Those with other than two faces are along curves.
+/// The edges at each vertex. Those with other than two faces are along curves, and so are those at which walls leave a
+/// side of the volume: the fold there is no bend.
 class WallLinks {
  public:
   enum class Kind : uint8_t { in_wall, beside_curve, on_curve, corner };  ///< corners have other than two curves' edges
@@ -38,7 +39,8 @@ class WallLinks {
   bool is_on_curve(size_t vertex) const { return kind_[vertex] >= Kind::on_curve; }
   /// How many neighbours a vertex has that is no corner; one on a curve has two along it.
   int followed(size_t vertex) const { return is_on_curve(vertex) ? 2 : int(at(vertex).size); }
-  /// Whether these two corners of a face are on curves, and no curve runs from the one to the other around the face.
+  /// Whether these two corners of a face are on curves, and no curve runs from the one to the other
+  /// around the face by a vertex that is no corner of curves.
   bool is_strip_between(uint32_t a, uint32_t b, const std::array<uint32_t, 4>& face) const;
 
  private:

@@ -28,10 +28,10 @@ constexpr const char* kCoarsened =
     "the edges between regions were collapsed and flipped, not relaxed, and triangles are less even: ";
 constexpr const char* kTooNear = "walls bend, and are nearer to one another than half an edge";
 
+/// Of a mesh whose vertices are no corners of voxels any more.
 FaceRegions without_labels(const FaceRegions& regions) {
   FaceRegions out;
   out.background = regions.background;
-  out.are_of_voxels = regions.are_of_voxels;
   out.names = regions.names;
   return out;
 }
@@ -41,8 +41,14 @@ TriangleMesh walls_themselves(const RegionWalls& walls) {
   TriangleMesh mesh;
   mesh.vertices = walls.mesh.vertices;
   mesh.triangles = walls.mesh.triangles;  // each from its smallest corner, and sorted
-  mesh.regions = without_labels(walls.regions);
-  for (size_t t = 0; t < mesh.triangles.size(); ++t) mesh.regions.labels.push_back(walls.labels_of(t));
+  const FaceRegions& regions = walls.regions;
+  mesh.regions = without_labels(regions);
+  mesh.regions.are_of_voxels = regions.are_of_voxels;
+  mesh.regions.voxel_size_world = regions.voxel_size_world;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    mesh.regions.labels.push_back(walls.labels_of(t));
+    if (!regions.side.empty()) mesh.regions.side.push_back(regions.side[walls.mesh.source_face[t]]);
+  }
   return mesh;
 }
 

@@ -18,6 +18,7 @@ namespace isoshell {
 namespace {
 
 constexpr int32_t kFiner = 4;      ///< few walls come to intersect; on a much finer lattice cells take longer
+constexpr int32_t kMostFiner = 8;  ///< where the corners of walls are points of the lattice
 constexpr size_t kMostNamed = 20;  ///< regions that a message lists
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -127,17 +128,15 @@ LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const s
   const int32_t resolution = resolution_for_walls(walls, plan, of_face_world);
   if (!walls.regions.are_of_voxels || !plan.chooses_grid()) return LatticeFrame::around(low, high, resolution);
   const double step_world = walls.regions.voxel_size_world;
-  if (step_world <= 0) return LatticeFrame::around(low, high, std::min(kFiner * resolution, kMaxResolution));
-  const auto steps_along = [&](double side) {
-    return std::max(int32_t(std::ceil(side / step_world - 0.5 / kOneVoxelQ8)), 1);
-  };
-  const auto end = [&](double from, double to) { return from + steps_along(to - from) * step_world; };
-  const int32_t steps = steps_along(longest_side(plan.box));
+  const auto steps_along = [&](double side) { return std::max(std::ceil(side / step_world - 0.5 / kOneVoxelQ8), 1.); };
+  if (step_world <= 0 || steps_along(longest_side(plan.box)) > std::min(kMostFiner * resolution, kMaxResolution - 1))
+    return LatticeFrame::around(low, high, std::min(kFiner * resolution, kMaxResolution));
+  const auto steps = int32_t(steps_along(longest_side(plan.box)));
   const double parts_wanted = double(resolution - 1) / steps;  // the nearest number, or one that carries all lengths
   const auto parts = int32_t(wants_lengths(plan.options) ? std::ceil(parts_wanted) : std::floor(parts_wanted + 0.5));
-  const int32_t most_parts = std::max((kMaxResolution - 1) / steps, 1);
+  const auto end = [&](double from, double to) { return from + steps_along(to - from) * step_world; };
   return LatticeFrame::around(low, {end(low.x, high.x), end(low.y, high.y), end(low.z, high.z)},
-                              steps * std::clamp(parts, 1, most_parts) + 1);
+                              steps * std::clamp(parts, 1, (kMaxResolution - 1) / steps) + 1);
 }
 
 std::vector<std::string> warnings_of_bounds(const RequestedLengths& requested) {

@@ -35,8 +35,9 @@ class LengthsOnWalls {
 };
 
 /// The lattice of a run on walls. The corners of those of voxels are on 1/256 of a voxel, and those are points of it
-/// where the run chooses it and steps between voxels are whole multiples of the shortest one; elsewhere it is finer
-/// than edges need, and they are near to points of it. What does not intersect before must not on it.
+/// where the run chooses it, steps between voxels are whole multiples of the shortest one, and that is not far finer
+/// than edges need; elsewhere it is some times as fine as edges need, and they are near to points of it. What does not
+/// intersect before must not on it.
 LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const std::vector<double>& of_face_world);
 
 /// What is said where the lengths of faces, or the usual one, are shorter than the grid carries, or longer than others

@@ -13,7 +13,7 @@ namespace isoshell {
 struct RegionWalls {
   FeatureMesh mesh;
   FaceRegions regions;
-  /// Of voxels: six times the volume of each region as they came in, and the background's, modulo 2^64, by its label.
+  /// Of voxels: six times the volume of each region, faired, and the background's, modulo 2^64, by its label.
   std::map<int32_t, uint64_t> spanned_volume_q8 = {};
   bool are_too_near = false;  ///< for edges as long as asked for: relaxed triangles would intersect, so none are
 

@@ -24,7 +24,9 @@ constexpr double kLeastOffset_q8 = 1;  ///< less is lost when positions are roun
 /// What a triangle whose corners stay counts for, of one with a corner that moves: where such walls bound all that
 /// others can move, pressures are bounded all the same.
 constexpr double kStaying = 0.01;
-constexpr double kFarthestOfEdge = 1. / 16;
+constexpr double kFarthestOfEdge = 1. / 8;
+constexpr double kMostOffset_q8 = 1 << 20;  ///< where walls cannot go far enough, pressures grow without bounds
+constexpr uint8_t kAllAxes = 7;
 constexpr int kMostRounds = 16;  ///< in which vertices go back
 
 class WallOffsets {
@@ -34,24 +36,24 @@ class WallOffsets {
         patch_(joined.features.patch),
         before_(joined.mesh.position.begin(), joined.mesh.position.end()),
         at_(before_),
-        may_move_(before_.size(), 1),
-        farthest_q8_(int32_t(kFarthestOfEdge * cut.longest_edge_q8)),
+        may_move_(before_.size(), kAllAxes),
         at_vertices_(sort_into_buckets<uint32_t>(int64_t(before_.size()), triangles_.size, [&](int64_t t, auto put) {
           for (const uint32_t v : corners(t)) put(v, uint32_t(t));
         })) {
     number_pairs(cut, walls);
     keep_sides(cut, walls);
+    bound_ways();
   }
 
-  /// False where nothing is to be done, or more.
+  /// Whether vertices moved.
   bool offset() {
     const std::vector<double> offsets = find_offsets();
     const auto is_small = [](double offset) { return std::abs(offset) < kLeastOffset_q8; };
     if (std::all_of(offsets.begin(), offsets.end(), is_small)) return false;
     std::vector<PointQ8> next(at_.size());
-    for_each_index(size_t(0), at_.size(), [&](size_t v) { next[v] = may_move_[v] ? moved(v, offsets) : at_[v]; });
+    for_each_index(size_t(0), at_.size(), [&](size_t v) { next[v] = may_move_[v] != 0 ? moved(v, offsets) : at_[v]; });
     at_.swap(next);
-    return true;
+    return !std::equal(at_.begin(), at_.end(), next.begin(), is_same);
   }
 
   /// Lets vertices go back where triangles became worse; they stay there.
@@ -73,6 +75,7 @@ class WallOffsets {
       if (!went_back) return;
     }
     at_ = before_;
+    std::fill(may_move_.begin(), may_move_.end(), uint8_t(0));
   }
 
   const std::vector<PointQ8>& positions() const { return at_; }
@@ -104,27 +107,41 @@ class WallOffsets {
     }
   }
 
-  /// Vertices of patches that lie at sides of the volume, which are flat: along an axis they have one place. Patches
-  /// lie there in part where creases were too small to cut them.
+  /// Patches that lie at sides of the volume are flat: along an axis they have one place, and their vertices move along
+  /// the others alone. Patches lie there in part where creases were too small to cut them.
   void keep_sides(const CutSurface& cut, const RegionWalls& walls) {
     const std::vector<uint8_t>& side = walls.regions.side;
-    std::vector<WorldBox> sides(pair_of_patch_.size(), box_of_none());
-    std::vector<uint8_t> is_side(sides.size(), side.empty() ? 0 : 1);
+    std::vector<WorldBox> boxes(pair_of_patch_.size(), box_of_none());
+    is_side_.resize(boxes.size(), side.empty() ? 0 : 1);
     for (size_t t = 0; t < cut.fine->triangles.size() && !side.empty(); ++t) {
       const uint32_t patch = cut.surface.patch[cut.corner[3 * t]];
-      if (side[cut.fine->source_face[t]] == 0) is_side[patch] = 0;
-      for (const uint32_t v : cut.fine->triangles[t]) stretch(sides[patch], cut.fine->position[v]);
+      if (side[cut.fine->source_face[t]] == 0) is_side_[patch] = 0;
+      for (const uint32_t v : cut.fine->triangles[t]) stretch(boxes[patch], cut.fine->position[v]);
     }
     for (int64_t t = 0; t < triangles_.size; ++t) {
-      if (!is_side[patch_[size_t(t)]]) continue;
-      const PointQ8 low = rounded(sides[patch_[size_t(t)]].min), high = rounded(sides[patch_[size_t(t)]].max);
+      if (!is_side(t)) continue;
+      const PointQ8 low = rounded(boxes[patch_[size_t(t)]].min), high = rounded(boxes[patch_[size_t(t)]].max);
+      const bool is_oblique = low.x != high.x && low.y != high.y && low.z != high.z;
       for (const uint32_t v : corners(t)) {
-        may_move_[v] = 0;
-        if (low.x == high.x) at_[v].x = low.x;
-        if (low.y == high.y) at_[v].y = low.y;
-        if (low.z == high.z) at_[v].z = low.z;
+        if (is_oblique) may_move_[v] = 0;
+        if (low.x == high.x) at_[v].x = low.x, may_move_[v] &= uint8_t(~1);
+        if (low.y == high.y) at_[v].y = low.y, may_move_[v] &= uint8_t(~2);
+        if (low.z == high.z) at_[v].z = low.z, may_move_[v] &= uint8_t(~4);
       }
     }
+  }
+  bool is_side(int64_t t) const { return is_side_[patch_[size_t(t)]] != 0; }
+
+  /// A part of the edges there are at each vertex, as their triangles have area.
+  void bound_ways() {
+    farthest_q8_.resize(at_.size());
+    for_each_index(size_t(0), at_.size(), [&](size_t v) {
+      const View<const uint32_t> around = at_vertices_.in(int64_t(v));
+      double doubled_area = 0;
+      for (const uint32_t t : around) doubled_area += length(normal(t, before_));
+      const double mean = doubled_area / double(std::max<int64_t>(around.size, 1));
+      farthest_q8_[v] = int32_t(kFarthestOfEdge * std::sqrt(mean / (std::sqrt(3.) / 2)));
+    });
   }
 
   /// Of each pair of regions that of its walls, in 1/256 voxel. A wall counts as much as it can move.
@@ -137,33 +154,35 @@ class WallOffsets {
       const uint64_t volume = spanned_volume(at_[a], at_[b], at_[c]);
       lacking[pair.region[0]] -= volume;
       lacking[pair.region[1]] += volume;
-      pair.area +=
-          (may_move_[a] + may_move_[b] + may_move_[c] + kStaying) * length(normal(t, at_));  // volumes six times
+      const int moving = is_side(t) ? 0 : (may_move_[a] != 0) + (may_move_[b] != 0) + (may_move_[c] != 0);
+      pair.area += (moving + kStaying) * length(normal(t, at_));  // of volumes six times
     }
     std::vector<double> volumes, offsets;
     for (const uint64_t of : lacking) volumes.push_back(double(int64_t(of)));
     const std::vector<double> pressure = pressures_of_regions(pairs_, std::move(volumes));
     for (const WallsBetween& pair : pairs_)
       offsets.push_back(
-          std::clamp(pressure[pair.region[0]] - pressure[pair.region[1]], -double(farthest_q8_), double(farthest_q8_)));
+          std::clamp(pressure[pair.region[0]] - pressure[pair.region[1]], -kMostOffset_q8, kMostOffset_q8));
     return offsets;
   }
 
-  /// By the mean of the offsets of the walls at a vertex, weighted by area.
+  /// By the mean of the offsets of the walls at a vertex that are not at sides, weighted by area.
   PointQ8 moved(size_t v, const std::vector<double>& offsets) const {
     WorldPoint way{0, 0, 0};
     double area = 0;
     for (const uint32_t t : at_vertices_.in(int64_t(v))) {
+      if (is_side(t)) continue;
       const WorldPoint n = normal(t, at_);
       way = way + offsets[pair_of_patch_[patch_[t]]] * n;
       area += length(n);
     }
     if (area == 0) return at_[v];
-    const auto along = [&](int32_t at, int32_t from, double by) {
-      return std::clamp(at + int32_t(std::floor(by / area + 0.5)), from - farthest_q8_, from + farthest_q8_);
+    const auto along = [&](int axis, int32_t at, int32_t from, double by) {
+      if ((may_move_[v] >> axis & 1) == 0) return at;
+      return std::clamp(at + int32_t(std::floor(by / area + 0.5)), from - farthest_q8_[v], from + farthest_q8_[v]);
     };
     const PointQ8 &p = at_[v], &from = before_[v];
-    return {along(p.x, from.x, way.x), along(p.y, from.y, way.y), along(p.z, from.z, way.z)};
+    return {along(0, p.x, from.x, way.x), along(1, p.y, from.y, way.y), along(2, p.z, from.z, way.z)};
   }
 
   bool is_worse(int64_t t) const {
@@ -178,12 +197,13 @@ class WallOffsets {
   const std::vector<uint32_t>& patch_;  ///< per triangle
   const std::vector<PointQ8> before_;
   std::vector<PointQ8> at_;
-  std::vector<uint8_t> may_move_;
-  int32_t farthest_q8_;
-  Buckets<uint32_t> at_vertices_;  ///< triangles
-  std::vector<uint64_t> wanted_;   ///< per region six times its volume, modulo 2^64
+  std::vector<uint8_t> may_move_;     ///< per vertex a bit for each axis along which it may
+  std::vector<int32_t> farthest_q8_;  ///< per vertex, along each of them
+  Buckets<uint32_t> at_vertices_;     ///< triangles
+  std::vector<uint64_t> wanted_;      ///< per region six times its volume, modulo 2^64
   std::vector<WallsBetween> pairs_;
   std::vector<uint32_t> pair_of_patch_;
+  std::vector<uint8_t> is_side_;  ///< per patch
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "pipeline/regions/side_creases.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "geometry/world_vector.h"
@@ -12,6 +13,12 @@ namespace {
 
 constexpr double kNarrow = 2;  ///< edges of the result
 
+/// The shorter side of a rectangle with this area and border.
+double width_of(double area, double border) {
+  const double square = border * border - 16 * area;
+  return square > 0 ? (border - std::sqrt(square)) / 4 : std::sqrt(area);
+}
+
 struct SideEdge {
   std::array<uint32_t, 2> ends;
   uint32_t triangle;  ///< by its number among those at sides
@@ -21,6 +28,8 @@ struct SideEdge {
 class SideParts {
  public:
   SideParts(const FeatureMesh& walls, const std::vector<uint8_t>& side) : walls_(walls) {
+    const auto is_at_side = [&](uint32_t face) { return side[face] != 0; };
+    edges_.reserve(3 * size_t(std::count_if(walls.source_face.begin(), walls.source_face.end(), is_at_side)));
     for (size_t t = 0; t < walls.triangles.size(); ++t) {
       const uint8_t of = side[walls.source_face[t]];
       if (of == 0) continue;
@@ -50,7 +59,7 @@ class SideParts {
       const bool is_wide =
           std::any_of(edges_.begin() + ptrdiff_t(begin), edges_.begin() + ptrdiff_t(end), [&](auto& e) {
             const uint32_t part = part_[e.triangle];
-            return 2 * area_[part] >= narrowest_world * border[part];
+            return width_of(area_[part], border[part]) >= narrowest_world;
           });
       if (is_wide) found.push_back(edges_[begin].ends);
     });
