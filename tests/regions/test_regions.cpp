@@ -101,7 +101,7 @@ TEST_CASE("voxels far longer than wide, or turned, are meshed on a lattice that 
     const double parts = 0.1 / result.report.grid.frame.voxel_size;
     CHECK((std::abs(parts - std::round(parts)) < 1e-9) == (deep == 2 || deep == 3));
   }
-  CHECK(meshed(label_volume(8192, 2, 2, [](int, int, int) { return 1; }), 5000, context).mesh.vertices.size() > 0);
+  CHECK_FALSE(meshed(label_volume(8192, 2, 2, [](int, int, int) { return 1; }), 5000, context).mesh.vertices.empty());
 }
 
 TEST_CASE("regions keep their volumes, though long edges cut off what is curved") {
