@@ -94,12 +94,12 @@ TEST_CASE("regions of few slices keep their volumes") {
 TEST_CASE("voxels far longer than wide, or turned, are meshed on a lattice that is there") {
   TestContext context;
   LabelVolume volume = voronoi_grains(16, 5);
-  for (const double deep : {2., 3., 0.37, 1000.}) {
+  for (const double deep : {2., 3., 0.37, 30.}) {
     volume.step_world = {WorldPoint{0, 0.1, 0}, WorldPoint{-0.1, 0, 0}, WorldPoint{0, 0, 0.1 * deep}};
     INFO("steps of .1, .1 and " << 0.1 * deep);
     const RemeshResult result = meshed(volume, 1500, context);
     const double parts = 0.1 / result.report.grid.frame.voxel_size;
-    CHECK((std::abs(parts - std::round(parts)) < 1e-9) == (deep == 2 || deep == 3));
+    CHECK((std::abs(parts - std::round(parts)) < 1e-9) == (deep != 0.37));
   }
   CHECK_FALSE(meshed(label_volume(8192, 2, 2, [](int, int, int) { return 1; }), 5000, context).mesh.vertices.empty());
 }
