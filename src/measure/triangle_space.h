@@ -72,6 +72,18 @@ class TriangleSpace {
       return true;
     });
   }
+  /// Calls use(number) for each triangle that a triangle meets outside of corners that they share, or that it is.
+  template <class Use>
+  void for_each_met(const CornersOfTriangle& triangle, Use use) const {
+    const BoxQ8 around = box(triangle);
+    for_each_place(around, [&](const Place& place, const Cell& cell) {
+      for (const Boxed& t : place.boxed)
+        if (boxes_meet(t.box, around) && cell == cell_of(largest_of(t.box.min, around.min)) &&
+            meet(triangle, corners_[t.number]))
+          use(t.number);
+      return true;
+    });
+  }
 
  private:
   struct Boxed {

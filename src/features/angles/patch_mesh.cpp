@@ -70,6 +70,7 @@ PatchMesh::PatchMesh(const CutSurface& cut, std::vector<RegionVertex> vertices, 
   for (uint32_t v = 0; v < vertices_.size(); ++v) vertices_[v].number = v;
   count_ =
       std::count_if(around_.begin(), around_.end(), [](const auto& triangles_at) { return !triangles_at.empty(); });
+  tries_ = options_.tries_per_vertex * std::max(count_, kFewTries);
 }
 
 void PatchMesh::list_vertices(const SeedSet& seeds, const JoinedMesh& joined) {

@@ -47,6 +47,9 @@ class PatchMesh {
   /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
   void meet_count(const Context& context);
 
+  /// Those that are gone have no triangles, or one corner twice.
+  const std::vector<RegionVertex>& vertices() const { return vertices_; }
+  const std::vector<RegionTriangle>& triangles() const { return triangles_; }
   JoinedPatches joined() const;
 
  private:

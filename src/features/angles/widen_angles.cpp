@@ -8,23 +8,22 @@ namespace {
 
 constexpr int kRounds = 8;  ///< over all poor triangles
 
-void improve(PatchMesh& mesh, const Context& context) {
-  for (int round = 0; round < kRounds; ++round) {
-    check_cancel(context, "features");
-    if (!mesh.improve(mesh.poor_triangles())) return;
-  }
-}
-
 }  // namespace
 
-JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
-                             Context& context) {
+JoinedPatches widened(PatchMesh mesh, const Context& context) {
   return run_with_threads(context, [&] {
-    PatchMesh mesh(cut, made, options);
-    improve(mesh, context);
+    for (int round = 0; round < kRounds; ++round) {
+      check_cancel(context, "features");
+      if (!mesh.improve(mesh.poor_triangles())) break;
+    }
     mesh.meet_count(context);
     return mesh.joined();
   });
+}
+
+JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
+                             const Context& context) {
+  return widened(run_with_threads(context, [&] { return PatchMesh(cut, made, options); }), context);
 }
 
 }  // namespace isoshell

@@ -5,13 +5,16 @@
 
 namespace isoshell {
 
-/// Puts the patches together. Then looks at the triangles with angles below 30 degrees, the worst first, each with
-/// those around it: edges are split and collapsed there and vertices moved, also along the curves, where that makes the
-/// worst angles wider and the triangles follow surface and curves no worse. As many edges are collapsed or split
-/// elsewhere, where triangles stay good, until there are as many vertices as asked for, or as near to that as it goes.
-/// Curves stay edges, the topology stays, and no triangles come to intersect. Result: the same for every number of
-/// threads. In host memory. Cost: about a millisecond a poor triangle, for no more of them than options allow.
+/// Looks at the triangles with angles below 30 degrees, the worst first, each with those around it: edges are split and
+/// collapsed there and vertices moved, also along the curves, where that makes the worst angles wider and the triangles
+/// follow surface and curves no worse. As many edges are collapsed or split elsewhere, where triangles stay good, until
+/// there are as many vertices as asked for, or as near to that as it goes. Curves stay edges, the topology stays, and
+/// no triangles come to intersect. Result: the same for every number of threads. In host memory. Cost: about a
+/// millisecond a poor triangle, for no more of them than options allow.
+JoinedPatches widened(PatchMesh mesh, const Context& context);
+
+/// The same of patches that are put together first.
 JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
-                             Context& context);
+                             const Context& context);
 
 }  // namespace isoshell

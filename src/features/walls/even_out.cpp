@@ -16,6 +16,8 @@ namespace isoshell {
 namespace {
 
 constexpr int kRounds = 16;
+constexpr int kLastRounds = 3;  ///< in which shapes alone count
+constexpr double kCostOfValence = 0.3;
 constexpr int kRoundsToSplit = 4;    ///< edges are split in every one of so many
 constexpr double kLong = 1.35;       ///< mean edges: longer ones are split
 constexpr int64_t kMostSplits = 16;  ///< one vertex in so many, at once
@@ -26,14 +28,14 @@ class Evening {
   Evening(WallMesh& mesh, const WallBlocks& blocks, size_t block)
       : mesh_(mesh), places_(mesh), blocks_(blocks), block_(block) {}
 
-  void flip_edges() {
+  void flip_edges(double cost_of_valence) {
     for (const uint32_t v : blocks_.vertices_of(block_)) {
       if (!is_here(v)) continue;
       around_ = mesh_.around(v);
       for (const uint32_t t : around_)
         for (size_t i = 0; i < 3; ++i) {
           const auto& corner = mesh_.triangles()[t].corner;
-          if (corner[i] == v && is_here(corner[(i + 1) % 3])) mesh_.flip(t, i, scratch_);
+          if (corner[i] == v && is_here(corner[(i + 1) % 3])) mesh_.flip(t, i, cost_of_valence, scratch_);
         }
     }
   }
@@ -141,8 +143,9 @@ void split_long_edges(WallMesh& mesh, int64_t most) {
 void even_out(WallMesh& mesh, int64_t vertices, const Context& context) {
   const double side_q8 = side_of_blocks_q8(mesh, vertices);
   for (int round = 0; round < kRounds; ++round) {
-    in_blocks(mesh, side_q8, round % 2 != 0, context, [](Evening& here) {
-      here.flip_edges();
+    const double cost_of_valence = round < kRounds - kLastRounds ? kCostOfValence : 0;
+    in_blocks(mesh, side_q8, round % 2 != 0, context, [&](Evening& here) {
+      here.flip_edges(cost_of_valence);
       here.move_vertices();
     });
     if (round % kRoundsToSplit != 0 || mesh.vertex_count() > vertices) continue;
@@ -150,7 +153,7 @@ void even_out(WallMesh& mesh, int64_t vertices, const Context& context) {
     coarsen(mesh, vertices, context);
   }
   for (const bool is_shifted : {false, true})
-    in_blocks(mesh, side_q8, is_shifted, context, [](Evening& here) { here.flip_edges(); });
+    in_blocks(mesh, side_q8, is_shifted, context, [](Evening& here) { here.flip_edges(0); });
 }
 
 }  // namespace isoshell

@@ -36,7 +36,12 @@ bool WallMesh::may_collapse(uint32_t gone, uint32_t into, const std::vector<Side
   list_neighbours(gone, scratch.here);
   list_neighbours(into, scratch.there);
   size_t both = 0;
-  for (const uint32_t v : scratch.here) both += size_t(std::count(scratch.there.begin(), scratch.there.end(), v));
+  for (const uint32_t v : scratch.here) {
+    const bool is_there = std::find(scratch.there.begin(), scratch.there.end(), v) != scratch.there.end();
+    both += is_there ? 1 : 0;
+    if (is_there || v == into || others_edges_.empty()) continue;
+    if (is_of_others(into, v, *curve_between(gone, v))) return false;
+  }
   const bool are_tetrahedra =
       scratch.here.size() == both + 1 && scratch.there.size() == both + 1;  // faces would be there twice
   if (both != sides.size() || are_tetrahedra) return false;
@@ -51,7 +56,7 @@ bool WallMesh::may_collapse(uint32_t gone, uint32_t into, const std::vector<Side
   return true;
 }
 
-bool WallMesh::collapse(uint32_t gone, uint32_t into, WallScratch& scratch) {
+bool WallMesh::collapse(uint32_t gone, uint32_t into, WallScratch& scratch, Shapes shapes) {
   if (!may_collapse(gone, into, sides_of(gone, into), scratch)) return false;
   scratch.replaced = around_[gone];
   scratch.made.clear();
@@ -60,7 +65,7 @@ bool WallMesh::collapse(uint32_t gone, uint32_t into, WallScratch& scratch) {
     if (has(triangles_[i], into)) continue;
     RegionTriangle t = triangles_[i];
     std::replace(t.corner.begin(), t.corner.end(), gone, into);
-    if (!may_replace(t, triangles_[i])) return false;
+    if (shapes == Shapes::good ? !may_replace(t, triangles_[i]) : !(cosine_to_surface(t) > 0)) return false;
     scratch.made.push_back(t);
     scratch.number.push_back(i);
   }

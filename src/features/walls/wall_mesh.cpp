@@ -14,8 +14,14 @@ constexpr double kEnough = 1 - 1. / 1024;  ///< of the cost before, or a change 
 constexpr double kFollows = 0.9;           ///< cosine between a triangle's normal and the surface's at its corners
 constexpr double kCostOfTurn = 4;
 constexpr double kMostCostOfWall = 1e6;
+constexpr int kRegularInside = 6, kRegularOnCurve = 3;  ///< triangles around a vertex in a patch
 
 PointQ8 steps(const WorldPoint& p) { return {int32_t(p.x), int32_t(p.y), int32_t(p.z)}; }
+
+std::array<uint32_t, 3> ascending(std::array<uint32_t, 3> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
 
 uint32_t largest_vertex(const MeshTriangles& triangles) {
   uint32_t last = 0;
@@ -115,6 +121,31 @@ void WallMesh::replace(uint32_t triangle, const RegionTriangle& by) {
   space_.put(triangle, corners(t));
 }
 
+void WallMesh::avoid_twins_of(const std::vector<RegionTriangle>& others) {
+  const auto is_here = [&](uint32_t v) { return v < vertices_.size(); };
+  for (const RegionTriangle& t : others) {
+    if (std::all_of(t.corner.begin(), t.corner.end(), is_here)) twins_.push_back(ascending(t.corner));
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
+      if (is_here(u) && is_here(v)) others_edges_.push_back({edge_key(u, v), t.curve[i]});
+    }
+  }
+  std::sort(twins_.begin(), twins_.end());
+  std::sort(others_edges_.begin(), others_edges_.end());
+}
+
+/// Whether an edge on a curve, or off all, would be that of others at another place.
+bool WallMesh::is_of_others(uint32_t u, uint32_t v, uint32_t curve) const {
+  const auto found =
+      std::lower_bound(others_edges_.begin(), others_edges_.end(), std::make_pair(edge_key(u, v), uint32_t(0)));
+  return found != others_edges_.end() && found->first == edge_key(u, v) && (curve == kNone || found->second != curve);
+}
+
+void WallMesh::avoid(const std::vector<CornersOfTriangle>& others) {
+  others_.emplace(lookup_->cut().longest_edge_q8, others.size());
+  for (uint32_t i = 0; i < others.size(); ++i) others_->put(i, others[i]);
+}
+
 double WallMesh::aimed_at(uint32_t v) const {
   return lookup_->cut().is_requested ? lookup_->edge_length(vertices_[v].home) : 1;
 }
@@ -160,7 +191,11 @@ std::optional<uint32_t> WallMesh::curve_between(uint32_t u, uint32_t v) const {
 bool WallMesh::are_free(WallScratch& scratch) const {
   scratch.corners.clear();
   for (const RegionTriangle& t : scratch.made) scratch.corners.push_back(corners(t));
-  return space_.are_free(scratch.corners, scratch.replaced);
+  const auto is_twin = [&](const CornersOfTriangle& t) {
+    return std::binary_search(twins_.begin(), twins_.end(), ascending({t.id[0], t.id[1], t.id[2]}));
+  };
+  if (std::any_of(scratch.corners.begin(), scratch.corners.end(), is_twin)) return false;
+  return space_.are_free(scratch.corners, scratch.replaced) && (!others_ || others_->are_free(scratch.corners, {}));
 }
 
 WorldPoint WallMesh::normal(const RegionTriangle& t) const {
@@ -193,7 +228,16 @@ double WallMesh::cost_around(uint32_t v) const {
   return sum;
 }
 
-bool WallMesh::flip(uint32_t triangle, size_t edge, WallScratch& scratch) {
+/// The square by which the triangles of a vertex in a patch, and some more, are not as many as in a regular mesh.
+double WallMesh::irregularity(uint32_t v, uint32_t patch, int more) const {
+  if (vertices_[v].kind == RegionVertex::Kind::corner) return 0;
+  const auto in_patch = [&](uint32_t t) { return triangles_[t].patch == patch; };
+  const auto count = int(std::count_if(around_[v].begin(), around_[v].end(), in_patch)) + more;
+  const int off = count - (vertices_[v].kind == RegionVertex::Kind::free ? kRegularInside : kRegularOnCurve);
+  return off * off;
+}
+
+bool WallMesh::flip(uint32_t triangle, size_t edge, double cost_of_valence, WallScratch& scratch) {
   const RegionTriangle t = triangles_[triangle];
   if (t.is_gone() || t.curve[edge] != kNone) return false;
   const uint32_t a = t.corner[edge], b = t.corner[(edge + 1) % 3], c = t.corner[(edge + 2) % 3];
@@ -205,7 +249,14 @@ bool WallMesh::flip(uint32_t triangle, size_t edge, WallScratch& scratch) {
   if (c == d || s.corner[other.edge] != b) return false;
   const RegionTriangle first = {{a, d, c}, {s.curve[(other.edge + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch};
   const RegionTriangle second = {{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(other.edge + 2) % 3]}, t.patch};
-  if (cost(first) + cost(second) >= kEnough * (cost(t) + cost(s)) || !sides_of(c, d).empty()) return false;
+  const auto irregular = [&](int at_ends, int beside) {
+    return cost_of_valence * (irregularity(a, t.patch, at_ends) + irregularity(b, t.patch, at_ends) +
+                              irregularity(c, t.patch, beside) + irregularity(d, t.patch, beside));
+  };
+  const double before = cost(t) + cost(s) + irregular(0, 0);
+  if (cost(first) + cost(second) + irregular(-1, 1) >= kEnough * before || !sides_of(c, d).empty() ||
+      is_of_others(c, d, kNone))
+    return false;
   scratch.made.assign({first, second});
   scratch.replaced.assign({triangle, other.triangle});
   if (!are_free(scratch)) return false;

@@ -1,6 +1,7 @@
 // All walls of a cut surface as one mesh, changed edge by edge so that no triangles come to meet.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <memory>
@@ -51,6 +52,19 @@ class WallMesh {
   const WorldPoint& at(uint32_t v) const { return vertices_[v].position; }
   const std::vector<uint32_t>& around(uint32_t v) const { return around_[v]; }
 
+  /// No change makes one of these triangles from now on, nor an edge of theirs but where it is on the same curve. Their
+  /// corners are vertices, or numbers that no vertex has.
+  void avoid_twins_of(const std::vector<RegionTriangle>& others);
+  /// No change lets a triangle come to meet one of these from now on.
+  void avoid(const std::vector<CornersOfTriangle>& others);
+  /// Calls use(i) for each of those to avoid that a triangle meets.
+  template <class Use>
+  void for_each_met(const RegionTriangle& t, Use use) const {
+    others_->for_each_met(corners(t), use);
+  }
+  /// Makes a vertex a corner: it stays.
+  void keep(uint32_t v) { vertices_[v].kind = RegionVertex::Kind::corner; }
+
   /// The length of edges that is aimed at, where lengths were asked for; 1 where edges are to be as long as each other.
   double aimed_at(uint32_t v) const;
   void list_neighbours(uint32_t v, std::vector<uint32_t>& out) const;
@@ -59,12 +73,16 @@ class WallMesh {
   /// The curve of the edge between two vertices, kNone off curves; no value where there is no edge.
   std::optional<uint32_t> curve_between(uint32_t u, uint32_t v) const;
 
+  /// What triangles a collapse may make: no worse ones than said above, or any on the side of the surface that they
+  /// were on.
+  enum class Shapes { good, any };
   /// Whether the change was made, here and below.
-  bool collapse(uint32_t gone, uint32_t into, WallScratch& scratch);
+  bool collapse(uint32_t gone, uint32_t into, WallScratch& scratch, Shapes shapes = Shapes::good);
   /// Puts a vertex, the last one then, into an edge.
   bool split(uint32_t u, uint32_t v, const RegionVertex& middle, WallScratch& scratch);
-  /// Where that costs less.
-  bool flip(uint32_t triangle, size_t edge, WallScratch& scratch);
+  /// Where that costs less. `cost_of_valence`: of the square by which the triangles of a vertex are more or fewer than
+  /// those of a regular mesh, which lets flips pass where they cost a little.
+  bool flip(uint32_t triangle, size_t edge, double cost_of_valence, WallScratch& scratch);
   /// Along its curve, or in its patch, where that costs less.
   bool move(uint32_t v, const RegionVertex& to, WallScratch& scratch);
 
@@ -83,9 +101,11 @@ class WallMesh {
   /// 0 for an equilateral triangle that lies as the surface does, and more for others.
   double cost(const RegionTriangle& t) const;
   double cost_around(uint32_t v) const;
+  double irregularity(uint32_t v, uint32_t patch, int more) const;
   double cosine_to_surface(const RegionTriangle& t) const;
   WorldPoint normal(const RegionTriangle& t) const;
   double sine(const RegionTriangle& t) const;
+  bool is_of_others(uint32_t u, uint32_t v, uint32_t curve) const;
   bool may_replace(const RegionTriangle& made, const RegionTriangle& before) const;
   bool may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides, WallScratch& scratch) const;
   CornersOfTriangle corners(const RegionTriangle& t) const;
@@ -97,6 +117,9 @@ class WallMesh {
   std::vector<RegionTriangle> triangles_;
   std::vector<std::vector<uint32_t>> around_;  ///< per vertex its triangles
   TriangleSpace space_;
+  std::vector<std::array<uint32_t, 3>> twins_;  ///< corners of triangles that are not to be made, all ascending
+  Edges others_edges_;                          ///< of these, ascending
+  std::optional<TriangleSpace> others_;         ///< that are to be avoided
   std::atomic<int64_t> count_{0};
 };
 

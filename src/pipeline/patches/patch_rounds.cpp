@@ -13,7 +13,6 @@
 #include "features/cutting/cut_fine_mesh.h"
 #include "features/cutting/cut_piece.h"
 #include "features/cutting/free_seeds.h"
-#include "features/seeds/edge_lengths.h"
 #include "measure/crossing_corners.h"
 #include "pipeline/defects/fan_patches.h"
 #include "pipeline/defects/flat_patches.h"
@@ -24,7 +23,6 @@
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/new_crossings.h"
-#include "pipeline/patches/next_cut.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/resolve_intersections.h"
 #include "pipeline/sheet/warm_start.h"
@@ -33,13 +31,10 @@ namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 10;
-constexpr size_t kMostWork = 2;           ///< of all rounds after the first one, over that of the whole surface
-constexpr size_t kMostWorkOfRegions = 3;  ///< the same between regions, where every curve must stay
-constexpr size_t kMostHelpless = 1;       ///< the same of rounds that did not help, where there is another way
+constexpr size_t kMostWork = 2;      ///< of all rounds after the first one, over that of the whole surface
+constexpr size_t kMostHelpless = 1;  ///< the same of rounds that did not help, where there is another way
 constexpr int64_t kFewTriangles = 800;
 constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
-constexpr int64_t kMostCrossingOfRegions = 400;  ///< vertices for one pair between regions, where there is another way
-constexpr int64_t kFewVertices = 10000;
 
 using PerPatch = std::vector<char>;
 
@@ -98,24 +93,22 @@ class PatchRounds {
  public:
   PatchRounds(const PreparedSurface& p, const CutSurface& cut, const PatchOptions& options, RemeshReport& report,
               Context& context)
-      : options_(options),
-        report_(report),
-        context_(context),
-        crossings_(p, cut, context),
-        count_(options.seeds.count) {}
+      : options_(options), report_(report), context_(context), crossings_(p, cut, context) {}
+
+  WrongPatches once(const CutSurface& cut, SeededMesh& made) {
+    const Wrong wrong = first(cut, made);
+    return {wrong.patch, wrong.is_nowhere() ? "" : wrong.said()};
+  }
 
   std::string run(std::shared_ptr<const CutSurface>& cut, SeededMesh& made) {
-    report_.dual = {};
-    report_.optimize = {};
-    Wrong wrong = left_of(*cut, made, mesh_patches(*cut, made));
-    if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(*cut, wrong)) halve_where(cut, made, wrong);
+    Wrong wrong = first(*cut, made);
+    if (!wrong.is_nowhere() && wrong.failed() == 0 && !is_hopeless(wrong)) halve_where(cut, made, wrong);
     for (int round = 0; !wrong.is_nowhere(); ++round) {
-      if (options_.previous || is_hopeless(*cut, wrong) || is_helpless(*cut)) return wrong.said();
-      const size_t most_work = cut->regions ? kMostWorkOfRegions : kMostWork;
-      if (round == kMostRounds || work_ > most_work * cut->fine->triangles.size()) return wrong.said();
-      std::optional<NextCut> change = next_cut(*cut, wrong.places());
-      if (!change) return wrong.said();
-      Again again = make_again(cut, made, wrong, std::move(*change));
+      if (options_.previous || is_hopeless(wrong) || is_helpless(*cut)) return wrong.said();
+      if (round == kMostRounds || work_ > kMostWork * cut->fine->triangles.size()) return wrong.said();
+      std::optional<Paths> fewer = drop_creases(*cut->fine, wrong.places());
+      if (!fewer) return wrong.said();
+      Again again = make_again(cut, made, wrong, std::move(*fewer));
       cut = again.cut;
       made = std::move(again.made);
       wrong = std::move(again.wrong);
@@ -124,6 +117,12 @@ class PatchRounds {
   }
 
  private:
+  Wrong first(const CutSurface& cut, SeededMesh& made) {
+    report_.dual = {};
+    report_.optimize = {};
+    return left_of(cut, made, mesh_patches(cut, made));
+  }
+
   OptimizeOptions optimize_options() const {
     return options_.previous ? for_warm_frame(options_.optimize) : options_.optimize;
   }
@@ -184,15 +183,13 @@ class PatchRounds {
   }
 
   /// Of so many vertices the whole mesh has twice as many triangles.
-  bool is_hopeless(const CutSurface& cut, const Wrong& wrong) const {
-    if (cut.regions) return kMostCrossingOfRegions * wrong.crossing > std::max(options_.seeds.count, kFewVertices);
+  bool is_hopeless(const Wrong& wrong) const {
     return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
   }
 
-  /// Whether rounds took long and did not help, where there is another way: curves are laid on the sheet, and walls
-  /// are coarsened.
+  /// Whether rounds took long and did not help, where there is another way: curves are laid on the sheet.
   bool is_helpless(const CutSurface& cut) const {
-    return (cut.source->input || cut.regions) && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
+    return cut.source->input && helpless_work_ > kMostHelpless * cut.fine->triangles.size();
   }
 
   /// Result: whether all cells are disks.
@@ -233,7 +230,7 @@ class PatchRounds {
     bring_to_host(made);
     Wrong wrong(cut);
     add_crossing(cut, made, crossings_.wrong_of(made.mesh, all_crossing(made)), wrong);
-    if (wrong.is_nowhere() || is_hopeless(cut, wrong)) return;
+    if (wrong.is_nowhere() || is_hopeless(wrong)) return;
     timed(report_, "untangle", context_, [&] {
       on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
         RemeshReport here;
@@ -283,7 +280,7 @@ class PatchRounds {
     if (!halved) return;
     std::optional<Again> again;
     failure_reason([&]() -> std::string {  // there may be no room for the seeds of so many segments
-      again = make_again(cut, made, wrong, {std::move(*halved), {}});
+      again = make_again(cut, made, wrong, std::move(*halved));
       return "";
     });
     if (!again || again->wrong.failed() > 0 || again->wrong.where.size() >= wrong.where.size()) return;
@@ -292,33 +289,25 @@ class PatchRounds {
     wrong = std::move(again->wrong);
   }
 
-  std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, NextCut change) {
-    Paths paths = std::move(change.paths);
+  std::shared_ptr<const CutSurface> cut_again(const CutSurface& before, Paths paths) {
     for (;;) {
       auto fine = std::make_shared<FineMesh>(*before.fine);
-      if (!change.edge_length.empty()) fine->edge_length = change.edge_length;
       fine->paths = std::move(paths);
       auto after = std::make_shared<CutSurface>(cut_fine_mesh(std::move(fine), before.frame, context_));
       after->is_requested = before.is_requested;
-      after->regions = before.regions;
       after->seeds = before.seeds;
       after->source = before.source;
       std::optional<Paths> fewer = drop_creases_at_tight_borders(*after);
-      if (!fewer) {
-        if (!change.edge_length.empty())
-          count_ +=
-              std::max<int64_t>(0, std::llround(vertices_of_lengths(*after->fine) - vertices_of_lengths(*before.fine)));
-        return after;
-      }
+      if (!fewer) return after;
       paths = std::move(*fewer);
     }
   }
 
   /// Along changed paths, with new patches beside these and in place of those that are wrong.
   Again make_again(const std::shared_ptr<const CutSurface>& before, const SeededMesh& made, const Wrong& wrong,
-                   NextCut change) {
+                   Paths paths) {
     const std::shared_ptr<const CutSurface> next =
-        timed(report_, "features", context_, [&] { return cut_again(*before, std::move(change)); });
+        timed(report_, "features", context_, [&] { return cut_again(*before, std::move(paths)); });
     PerPatch goes = wrong.patch;
     const std::vector<char> changed = which_changed(before->fine->paths, next->fine->paths);
     for (size_t c = 0; c < changed.size(); ++c)
@@ -331,7 +320,7 @@ class PatchRounds {
     const CutPiece piece = piece_of(*next, comes, context_);
     work_ += piece.cut.fine->triangles.size();
     PatchOptions options = options_;
-    options.seeds.count = count_for(piece.cut, free_of(*next, comes, count_));
+    options.seeds.count = count_for(piece.cut, free_of(*next, comes, options_.seeds.count));
     SeededMesh part = gather_patches(
         piece.cut, {{made, through(vertices_after(*before, *next, all_of(*before)), in_piece(piece, *next))}});
     part.seeds = timed(report_, "relax", context_,
@@ -371,12 +360,16 @@ class PatchRounds {
   RemeshReport& report_;
   Context& context_;
   NewCrossings crossings_;
-  int64_t count_;             ///< of seeds, as many as the lengths around what was wrong ask for
   size_t work_ = 0;           ///< triangles of the fine mesh on which patches were made again
   size_t helpless_work_ = 0;  ///< of these the last ones, after which no less was wrong
 };
 
 }  // namespace
+
+WrongPatches mesh_once(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
+                       RemeshReport& report, Context& context) {
+  return PatchRounds(p, cut, options, report, context).once(cut, made);
+}
 
 std::string mesh_in_rounds(const PreparedSurface& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
                            const PatchOptions& options, RemeshReport& report, Context& context) {

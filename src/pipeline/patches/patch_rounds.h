@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "pipeline/patches/patches.h"
 
@@ -16,5 +17,16 @@ namespace isoshell {
 /// empty where there is one, which may have another number of vertices.
 std::string mesh_in_rounds(const PreparedSurface& p, std::shared_ptr<const CutSurface>& cut, SeededMesh& made,
                            const PatchOptions& options, RemeshReport& report, Context& context);
+
+/// The patches of a mesh that are wrong, and what is.
+struct WrongPatches {
+  std::vector<char> is_wrong;
+  std::string what;  ///< empty: nothing
+};
+
+/// The same between regions, whose curves all stay, without rounds: patches in a plane, and those as small as their
+/// edges, are triangulated where something is wrong, and others stay wrong.
+WrongPatches mesh_once(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
+                       RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -1,7 +1,9 @@
 // See mesh_of_regions.h.
 #include "pipeline/regions/mesh_of_regions.h"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "features/angles/widen_angles.h"
@@ -17,6 +19,7 @@
 #include "pipeline/patches/new_crossings.h"
 #include "pipeline/patches/patch_rounds.h"
 #include "pipeline/regions/flat_walls.h"
+#include "pipeline/regions/mend_patches.h"
 #include "pipeline/regions/region_walls.h"
 #include "pipeline/regions/restore_volumes.h"
 
@@ -64,12 +67,16 @@ bool has_inverted(const CutSurface& cut, const JoinedPatches& joined) {
   return !find_inverted_regions(cut, joined.mesh, joined.features.patch).empty();
 }
 
+bool has_crossing(const PreparedSurface& p, const JoinedPatches& joined, Context& context) {
+  return !NewCrossings(p, *p.cut, context).all(joined.mesh, {}).empty();
+}
+
 /// None where walls intersect as they came in, or a region is too small for fewer vertices.
 std::optional<JoinedPatches> coarsened(const PreparedSurface& p, int64_t vertices, RemeshReport& report,
                                        Context& context) {
   return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
     JoinedPatches made = coarsen_walls(*p.cut, few_triangles_of(p, vertices), vertices, context);
-    if (has_inverted(*p.cut, made) || !NewCrossings(p, *p.cut, context).all(made.mesh, {}).empty()) return {};
+    if (has_inverted(*p.cut, made) || has_crossing(p, made, context)) return {};
     return made;
   });
 }
@@ -97,21 +104,35 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
   return mesh;
 }
 
+/// Of relaxed seeds, with the patches coarsened that are wrong. Result: why there is none.
+std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
+                         JoinedPatches& joined, RemeshReport& report, Context& context) {
+  const CutSurface& cut = *p.cut;
+  const JoinOptions options = join_options(in_patches);
+  auto [is_wrong, what] = mesh_once(p, cut, made, in_patches, report, context);
+  if (what.empty()) {
+    joined = timed(report, "angles", context, [&] { return join_and_widen(cut, made, options, context); });
+  } else {
+    std::optional<JoinedPatches> mended =
+        timed(report, "coarsen", context, [&] { return mend_patches(cut, made, is_wrong, options, context); });
+    if (!mended || has_crossing(p, *mended, context)) return what;
+    joined = std::move(*mended);
+    report.warnings.push_back("in " + std::to_string(std::count(is_wrong.begin(), is_wrong.end(), 1)) + " of " +
+                              std::to_string(is_wrong.size()) + " walls " + kCoarsened + what);
+  }
+  return has_inverted(cut, joined) ? "a region would be inside out" : "";
+}
+
 }  // namespace
 
 TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
                                  RemeshReport& report, Context& context) {
-  SharedCut cut = p.cut;
   JoinedPatches joined;
   const std::string why_not = failure_reason([&]() -> std::string {
     if (p.walls->are_too_near) return kTooNear;
-    if (std::string why = mesh_in_rounds(p, cut, made, in_patches, report, context); !why.empty()) return why;
-    joined =
-        timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(in_patches), context); });
-    return has_inverted(*cut, joined) ? "a region would be inside out" : "";
+    return join_relaxed(p, made, in_patches, joined, report, context);
   });
   if (!why_not.empty()) {
-    cut = p.cut;
     report.optimize = {};
     std::optional<JoinedPatches> coarse = coarsened(p, in_patches.seeds.count, report, context);
     report.warnings.push_back(std::string(coarse ? kCoarsened : "the walls of regions are as they came in: ") +
@@ -119,7 +140,7 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
     if (!coarse) return walls_themselves(*p.walls);
     joined = std::move(*coarse);
   }
-  return mesh_of(p, *cut, std::move(joined), report, context);
+  return mesh_of(p, *p.cut, std::move(joined), report, context);
 }
 
 }  // namespace isoshell

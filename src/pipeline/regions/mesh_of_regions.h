@@ -6,9 +6,8 @@
 namespace isoshell {
 
 /// As triangulate_patches, of walls: every region is closed, and the faces say which regions they part. Where patches
-/// are no disks, or triangles intersect, curves get more seeds there, and the result more vertices. Where that does not
-/// end it, or hundreds of triangles intersect, the walls are coarsened to as many vertices instead (see
-/// coarsen_walls.h); where they intersect as they came in they stay so. The report says so.
+/// are no disks, or triangles intersect, these are coarsened instead (see mend_patches.h), or all walls, to as many
+/// vertices (see coarsen_walls.h); where they intersect as they came in they stay so. The report says so.
 TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
                                  RemeshReport& report, Context& context);
 

@@ -1,0 +1,18 @@
+// Walls between regions of which some could not be relaxed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "features/angles/patch_mesh.h"
+
+namespace isoshell {
+
+/// The joined mesh of relaxed patches, in which those that are wrong are coarsened instead (see coarsen_patches.h), and
+/// those that these come to meet. Afterwards `is_wrong` tells which were. None where they hold more than half of the
+/// walls, or that does not end it: all are coarsened at less cost. In host memory. Cost: that of coarse patches, once
+/// for each time that there are more of them; a few times.
+std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMesh& made, std::vector<char>& is_wrong,
+                                          const JoinOptions& options, Context& context);
+
+}  // namespace isoshell
