@@ -8,15 +8,18 @@
 #include "features/mesh/feature_mesh.h"
 #include "features/walls/coarsen.h"
 #include "features/walls/even_out.h"
+#include "geometry/half_edges.h"
 
 namespace isoshell {
 namespace {
 
 using Kind = RegionVertex::Kind;
 
-constexpr uint32_t kNotCoarse = uint32_t(1) << 31;  ///< first number of vertices that coarse patches have not
-constexpr int64_t kAtFirst = 2;  ///< vertices for one: so many still lie where the walls do, beside relaxed triangles
-constexpr int64_t kFewest = 4;   ///< vertices that coarse patches are asked for at least
+/// Vertices of relaxed patches that coarse ones do not have are numbered from here on where both are looked at.
+constexpr uint32_t kFirstOfRelaxed = uint32_t(1) << 31;
+/// Vertices before seeds alone are left on shared curves, for one that coarse patches will have. Triangles of half the
+/// edge lie about where the walls do, so that few meet relaxed ones.
+constexpr int64_t kAtFirst = 2;
 
 /// The triangles of relaxed patches, and which of their vertices are on curves.
 class RelaxedPart {
@@ -29,18 +32,20 @@ class RelaxedPart {
       triangles_.push_back(t);
       for (const uint32_t v : t.corner) is_used[v] = 1;
     }
-    count_ = std::count(is_used.begin(), is_used.end(), 1);
+    others_ = std::count(is_used.begin(), is_used.end(), 0);
     for (uint32_t v = 0; v < vertices_.size(); ++v)
       if (is_used[v] && vertices_[v].kind != Kind::free) at_place_[cut.place[vertices_[v].home]] = v;
   }
 
-  int64_t count() const { return count_; }
+  /// Vertices of the patches that are not here, but those that are shared.
+  int64_t count_others() const { return others_; }
+  const std::vector<RegionTriangle>& triangles() const { return triangles_; }
   /// The vertex that is where one of the fine mesh is, on a curve; kNone where there is none.
   uint32_t at(const RegionVertex& v) const { return v.kind == Kind::free ? kNone : at_place_[cut_.place[v.home]]; }
-  /// With the numbers that a mesh of coarse patches has for its vertices, and numbers that it never has for others.
-  std::vector<RegionTriangle> triangles(const WallMesh& coarse) const {
+  /// The triangles with the numbers that a mesh of coarse patches has for vertices, or numbers that it never has.
+  std::vector<RegionTriangle> numbered_as(const WallMesh& coarse) const {
     std::vector<uint32_t> number(vertices_.size());
-    for (uint32_t v = 0; v < number.size(); ++v) number[v] = kNotCoarse + v;
+    for (uint32_t v = 0; v < number.size(); ++v) number[v] = kFirstOfRelaxed + v;
     for (uint32_t v = 0; v < coarse.vertices().size(); ++v)
       if (const uint32_t here = coarse.around(v).empty() ? kNone : at(coarse.vertex(v)); here != kNone)
         number[here] = v;
@@ -49,15 +54,18 @@ class RelaxedPart {
       for (uint32_t& v : t.corner) v = number[v];
     return out;
   }
+  /// Where the triangles are, with those numbers.
   std::vector<CornersOfTriangle> corners(const std::vector<RegionTriangle>& numbered) const {
-    std::vector<CornersOfTriangle> out(numbered.size());
+    std::vector<CornersOfTriangle> out(triangles_.size());
     for (size_t t = 0; t < out.size(); ++t)
-      for (size_t i = 0; i < 3; ++i)
-        out[t].id[i] = numbered[t].corner[i], out[t].at[i] = rounded(vertices_[triangles_[t].corner[i]].position);
+      for (size_t i = 0; i < 3; ++i) {
+        out[t].id[i] = numbered[t].corner[i];
+        out[t].at[i] = rounded(vertices_[triangles_[t].corner[i]].position);
+      }
     return out;
   }
   /// Together with coarse patches whose curves have the same vertices.
-  PatchMesh with(const WallMesh& coarse, const JoinOptions& options) && {
+  PatchMesh joined_with(const WallMesh& coarse, const JoinOptions& options) && {
     std::vector<uint32_t> number(coarse.vertices().size(), kNone);
     for (uint32_t v = 0; v < number.size(); ++v) {
       if (coarse.around(v).empty()) continue;
@@ -79,7 +87,7 @@ class RelaxedPart {
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;
   std::vector<uint32_t> at_place_;  ///< per place of a curve the vertex there
-  int64_t count_ = 0;
+  int64_t others_ = 0;
 };
 
 /// The fine triangles of some patches.
@@ -96,59 +104,81 @@ struct FinePatches {
   }
 };
 
-/// Keeps the vertices of curves beside relaxed patches that these have. Result: the other ones of such curves.
-std::vector<uint32_t> keep_seeds(const RelaxedPart& relaxed, const std::vector<char>& is_coarse, WallMesh& coarse) {
+/// Of the vertices on curves that coarse patches share with relaxed ones.
+struct SharedVertices {
+  int64_t seeds = 0;              ///< that relaxed patches have; they stay
+  std::vector<uint32_t> between;  ///< the others, which must go
+};
+
+SharedVertices keep_seeds(const RelaxedPart& relaxed, const std::vector<char>& is_coarse, WallMesh& coarse) {
   const std::vector<CutCurve>& curves = coarse.lookup().cut().curves;
   const auto is_shared = [&](uint32_t curve) {
     const std::vector<uint32_t>& patches = curves[curve].patches;
     return !std::all_of(patches.begin(), patches.end(), [&](uint32_t patch) { return is_coarse[patch]; });
   };
-  std::vector<uint32_t> others;
+  SharedVertices shared;
   for (uint32_t v = 0; v < coarse.vertices().size(); ++v) {
     const RegionVertex& vertex = coarse.vertex(v);
     if (coarse.around(v).empty() || vertex.kind == Kind::free) continue;
     if (relaxed.at(vertex) != kNone) {
       coarse.keep(v);
+      ++shared.seeds;
     } else if (vertex.kind == Kind::on_curve && is_shared(vertex.curve)) {
-      others.push_back(v);
+      shared.between.push_back(v);
     }
   }
-  return others;
-}
-
-int64_t count_kept(const RelaxedPart& relaxed, const WallMesh& coarse) {
-  int64_t count = 0;
-  for (uint32_t v = 0; v < coarse.vertices().size(); ++v)
-    count += !coarse.around(v).empty() && relaxed.at(coarse.vertex(v)) != kNone ? 1 : 0;
-  return count;
+  return shared;
 }
 
 /// Takes vertices into those beside them on their curves. Result: those that cannot go.
-std::vector<uint32_t> without(std::vector<uint32_t> vertices, WallMesh& mesh) {
+std::vector<uint32_t> left_of(std::vector<uint32_t> vertices, WallMesh& mesh, const Context& context) {
   WallScratch scratch;
   std::vector<uint32_t> targets;
   for (const WallMesh::Shapes shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any}) {
-    const auto is_gone = [&](uint32_t v) {
+    const auto goes = [&](uint32_t v) {
       if (mesh.around(v).empty()) return true;
       mesh.list_targets(v, targets);
       return std::any_of(targets.begin(), targets.end(),
                          [&](uint32_t into) { return mesh.collapse(v, into, scratch, shapes); });
     };
     for (size_t before = vertices.size() + 1; vertices.size() < before;) {
+      check_cancel(context, "features");
       before = vertices.size();
-      vertices.erase(std::remove_if(vertices.begin(), vertices.end(), is_gone), vertices.end());
+      vertices.erase(std::remove_if(vertices.begin(), vertices.end(), goes), vertices.end());
     }
   }
   return vertices;
 }
 
-/// From now on coarse triangles come to meet no relaxed ones. Result: the patches of those that they meet already.
-std::vector<uint32_t> list_met(const RelaxedPart& relaxed, const std::vector<RegionTriangle>& numbered,
-                               WallMesh& coarse) {
+std::vector<uint32_t> patches_beside(const std::vector<uint32_t>& vertices, const WallMesh& mesh) {
+  std::vector<uint32_t> patches;
+  for (const uint32_t v : vertices) {
+    const std::vector<uint32_t>& beside = mesh.lookup().cut().curves[mesh.vertex(v).curve].patches;
+    patches.insert(patches.end(), beside.begin(), beside.end());
+  }
+  return patches;
+}
+
+/// The patches of relaxed triangles that meet coarse ones, or have an edge that these have at another place. From now
+/// on no change makes more of them.
+std::vector<uint32_t> patches_met(const RelaxedPart& relaxed, const std::vector<RegionTriangle>& numbered,
+                                  WallMesh& coarse) {
   coarse.avoid(relaxed.corners(numbered));
   std::vector<uint32_t> patches;
-  for (const RegionTriangle& t : coarse.triangles())
-    if (!t.is_gone()) coarse.for_each_met(t, [&](uint32_t other) { patches.push_back(numbered[other].patch); });
+  std::vector<std::pair<uint64_t, uint32_t>> edges;  ///< and the curve that each is on
+  for (const RegionTriangle& t : coarse.triangles()) {
+    if (t.is_gone()) continue;
+    coarse.for_each_met(t, [&](uint32_t other) { patches.push_back(numbered[other].patch); });
+    for (size_t i = 0; i < 3; ++i) edges.push_back({edge_key(t.corner[i], t.corner[(i + 1) % 3]), t.curve[i]});
+  }
+  std::sort(edges.begin(), edges.end());
+  for (const RegionTriangle& t : numbered)
+    for (size_t i = 0; i < 3; ++i) {
+      const uint64_t edge = edge_key(t.corner[i], t.corner[(i + 1) % 3]);
+      const auto found = std::lower_bound(edges.begin(), edges.end(), std::make_pair(edge, uint32_t(0)));
+      const bool is_there = found != edges.end() && found->first == edge;
+      if (is_there && (t.curve[i] == kNone || found->second != t.curve[i])) patches.push_back(t.patch);
+    }
   return patches;
 }
 
@@ -157,26 +187,22 @@ std::vector<uint32_t> list_met(const RelaxedPart& relaxed, const std::vector<Reg
 std::optional<PatchMesh> coarsen_patches(const CutSurface& cut, const PatchMesh& relaxed, std::vector<char>& is_coarse,
                                          const JoinOptions& options, const Context& context) {
   return run_with_threads(context, [&]() -> std::optional<PatchMesh> {
-    RelaxedPart others(cut, relaxed, is_coarse);
+    RelaxedPart part(cut, relaxed, is_coarse);
     const FinePatches fine(cut, is_coarse);
     WallMesh coarse(cut, {fine.triangles, fine.source_face});
-    std::vector<uint32_t> between = keep_seeds(others, is_coarse, coarse);
-    const int64_t vertices = std::max(options.vertices - others.count() + count_kept(others, coarse), kFewest);
-    const std::vector<RegionTriangle> around = others.triangles(coarse);
-    coarse.avoid_twins_of(around);
+    SharedVertices shared = keep_seeds(part, is_coarse, coarse);
+    const int64_t vertices = shared.seeds + part.count_others();
+    const std::vector<RegionTriangle> numbered = part.numbered_as(coarse);
+    coarse.avoid_twins_of(numbered);
     coarsen(coarse, kAtFirst * vertices, context);
-    between = without(std::move(between), coarse);
-    std::vector<uint32_t> more;
-    for (const uint32_t v : between) {
-      const std::vector<uint32_t>& patches = cut.curves[coarse.vertex(v).curve].patches;
-      more.insert(more.end(), patches.begin(), patches.end());
-    }
-    if (between.empty()) more = list_met(others, around, coarse);
+    const std::vector<uint32_t> left = left_of(std::move(shared.between), coarse, context);
+    const std::vector<uint32_t> more =
+        left.empty() ? patches_met(part, numbered, coarse) : patches_beside(left, coarse);
     for (const uint32_t patch : more) is_coarse[patch] = 1;
     if (!more.empty()) return {};
     coarsen(coarse, vertices, context);
     even_out(coarse, vertices, context);
-    return std::move(others).with(coarse, options);
+    return std::move(part).joined_with(coarse, options);
   });
 }
 

@@ -25,13 +25,16 @@ bool WallMesh::may_replace(const RegionTriangle& made, const RegionTriangle& bef
   return narrow >= kLeastSine || narrow >= sine(before);
 }
 
+/// Whether a triangle looks where the surface does, and is no needle.
+bool WallMesh::is_sound(const RegionTriangle& t) const { return cosine_to_surface(t) > 0 && sine(t) >= kLeastSine; }
+
 /// Whether a vertex may be taken into another one as far as kinds, curves and topology tell: the two have neighbours in
 /// common across their edge only, and no two edges on curves become one. Lists in `fused` the edges that become one
 /// with an edge on a curve.
 bool WallMesh::may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides, WallScratch& scratch) const {
   using Kind = RegionVertex::Kind;
   const Kind kind = vertices_[gone].kind;
-  if (sides.empty() || kind == Kind::corner) return false;
+  if (sides.empty() || kind == Kind::corner || is_kept(gone)) return false;
   if (kind == Kind::on_curve && triangles_[sides[0].triangle].curve[sides[0].edge] == kNone) return false;
   list_neighbours(gone, scratch.here);
   list_neighbours(into, scratch.there);
@@ -79,6 +82,7 @@ bool WallMesh::collapse(uint32_t gone, uint32_t into, WallScratch& scratch, Shap
 }
 
 bool WallMesh::split(uint32_t u, uint32_t v, const RegionVertex& middle, WallScratch& scratch) {
+  if (is_kept(u) && is_kept(v) && curve_between(u, v) != kNone) return false;
   const auto m = uint32_t(vertices_.size());
   vertices_.push_back(middle);
   around_.emplace_back();

@@ -146,6 +146,11 @@ void WallMesh::avoid(const std::vector<CornersOfTriangle>& others) {
   for (uint32_t i = 0; i < others.size(); ++i) others_->put(i, others[i]);
 }
 
+void WallMesh::keep(uint32_t v) {
+  is_kept_.resize(vertices_.size(), 0);
+  is_kept_[v] = 1;
+}
+
 double WallMesh::aimed_at(uint32_t v) const {
   return lookup_->cut().is_requested ? lookup_->edge_length(vertices_[v].home) : 1;
 }
@@ -160,7 +165,7 @@ void WallMesh::list_neighbours(uint32_t v, std::vector<uint32_t>& out) const {
 void WallMesh::list_targets(uint32_t v, std::vector<uint32_t>& out) const {
   if (vertices_[v].kind == RegionVertex::Kind::free) return list_neighbours(v, out);
   out.clear();
-  if (vertices_[v].kind == RegionVertex::Kind::corner) return;
+  if (is_kept(v) || vertices_[v].kind == RegionVertex::Kind::corner) return;
   for (const uint32_t t : around_[v])
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t a = triangles_[t].corner[i], b = triangles_[t].corner[(i + 1) % 3];
@@ -253,10 +258,10 @@ bool WallMesh::flip(uint32_t triangle, size_t edge, double cost_of_valence, Wall
     return cost_of_valence * (irregularity(a, t.patch, at_ends) + irregularity(b, t.patch, at_ends) +
                               irregularity(c, t.patch, beside) + irregularity(d, t.patch, beside));
   };
-  const double before = cost(t) + cost(s) + irregular(0, 0);
-  if (cost(first) + cost(second) + irregular(-1, 1) >= kEnough * before || !sides_of(c, d).empty() ||
-      is_of_others(c, d, kNone))
-    return false;
+  const double before = cost(t) + cost(s), after = cost(first) + cost(second);
+  if (after + irregular(-1, 1) >= kEnough * (before + irregular(0, 0))) return false;
+  if (after >= before && !(is_sound(first) && is_sound(second))) return false;
+  if (!sides_of(c, d).empty() || is_of_others(c, d, kNone)) return false;
   scratch.made.assign({first, second});
   scratch.replaced.assign({triangle, other.triangle});
   if (!are_free(scratch)) return false;

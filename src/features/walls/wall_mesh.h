@@ -62,8 +62,8 @@ class WallMesh {
   void for_each_met(const RegionTriangle& t, Use use) const {
     others_->for_each_met(corners(t), use);
   }
-  /// Makes a vertex a corner: it stays.
-  void keep(uint32_t v) { vertices_[v].kind = RegionVertex::Kind::corner; }
+  /// A vertex stays where it is from now on, and so do edges on curves between two that stay.
+  void keep(uint32_t v);
 
   /// The length of edges that is aimed at, where lengths were asked for; 1 where edges are to be as long as each other.
   double aimed_at(uint32_t v) const;
@@ -105,6 +105,8 @@ class WallMesh {
   double cosine_to_surface(const RegionTriangle& t) const;
   WorldPoint normal(const RegionTriangle& t) const;
   double sine(const RegionTriangle& t) const;
+  bool is_kept(uint32_t v) const { return v < is_kept_.size() && is_kept_[v]; }
+  bool is_sound(const RegionTriangle& t) const;
   bool is_of_others(uint32_t u, uint32_t v, uint32_t curve) const;
   bool may_replace(const RegionTriangle& made, const RegionTriangle& before) const;
   bool may_collapse(uint32_t gone, uint32_t into, const std::vector<Side>& sides, WallScratch& scratch) const;
@@ -117,6 +119,7 @@ class WallMesh {
   std::vector<RegionTriangle> triangles_;
   std::vector<std::vector<uint32_t>> around_;  ///< per vertex its triangles
   TriangleSpace space_;
+  std::vector<char> is_kept_;                   ///< per vertex; those beyond its end are not
   std::vector<std::array<uint32_t, 3>> twins_;  ///< corners of triangles that are not to be made, all ascending
   Edges others_edges_;                          ///< of these, ascending
   std::optional<TriangleSpace> others_;         ///< that are to be avoided

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/watched.h"
 #include "features/angles/widen_angles.h"
 #include "features/mesh/feature_mesh.h"
 #include "features/walls/coarsen_patches.h"
@@ -12,8 +13,8 @@
 namespace isoshell {
 namespace {
 
-constexpr int kMostRounds = 16;
 constexpr size_t kMostCoarse = 2;  ///< one fine triangle in so many is in a coarse patch, at most
+constexpr size_t kMostWork = 3;    ///< fine triangles that are coarsened, each time that more are, over all
 
 /// Those around regions that are inside out.
 std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatches& joined) {
@@ -28,19 +29,24 @@ std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatche
   return inverted;
 }
 
-bool are_most(const CutSurface& cut, const std::vector<char>& is_coarse) {
-  const size_t triangles = cut.fine->triangles.size();
-  size_t coarse = 0;
-  for (size_t t = 0; t < triangles; ++t) coarse += is_coarse[cut.surface.patch[cut.corner[3 * t]]] ? 1 : 0;
-  return kMostCoarse * coarse > triangles;
+size_t count_triangles(const CutSurface& cut, const std::vector<char>& is_coarse) {
+  size_t count = 0;
+  for (size_t t = 0; t < cut.fine->triangles.size(); ++t)
+    count += is_coarse[cut.surface.patch[cut.corner[3 * t]]] ? 1 : 0;
+  return count;
 }
 
 }  // namespace
 
 std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMesh& made, std::vector<char>& is_wrong,
                                           const JoinOptions& options, Context& context) {
-  const PatchMesh relaxed(cut, made, options);
-  for (int round = 0; round < kMostRounds && !are_most(cut, is_wrong); ++round) {
+  const size_t triangles = cut.fine->triangles.size();
+  const PatchMesh relaxed = run_with_threads(context, [&] { return PatchMesh(cut, made, options); });
+  for (size_t work = 0;;) {
+    check_cancel(context, "features");
+    const size_t coarse = count_triangles(cut, is_wrong);
+    work += coarse;
+    if (kMostCoarse * coarse > triangles || work > kMostWork * triangles) return {};
     std::optional<PatchMesh> mended = coarsen_patches(cut, relaxed, is_wrong, options, context);
     if (!mended) continue;  // more patches are to be coarse
     const std::vector<uint32_t> more = inverted_patches(cut, mended->joined());
@@ -48,7 +54,6 @@ std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMes
     if (std::all_of(more.begin(), more.end(), [&](uint32_t patch) { return is_wrong[patch]; })) return {};
     for (const uint32_t patch : more) is_wrong[patch] = 1;
   }
-  return {};
 }
 
 }  // namespace isoshell

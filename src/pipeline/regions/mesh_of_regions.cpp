@@ -109,18 +109,19 @@ std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const Patch
                          JoinedPatches& joined, RemeshReport& report, Context& context) {
   const CutSurface& cut = *p.cut;
   const JoinOptions options = join_options(in_patches);
-  auto [is_wrong, what] = mesh_once(p, cut, made, in_patches, report, context);
-  if (what.empty()) {
+  WrongPatches wrong = mesh_once(p, cut, made, in_patches, report, context);
+  if (wrong.what.empty()) {
     joined = timed(report, "angles", context, [&] { return join_and_widen(cut, made, options, context); });
-  } else {
-    std::optional<JoinedPatches> mended =
-        timed(report, "coarsen", context, [&] { return mend_patches(cut, made, is_wrong, options, context); });
-    if (!mended || has_crossing(p, *mended, context)) return what;
-    joined = std::move(*mended);
-    report.warnings.push_back("in " + std::to_string(std::count(is_wrong.begin(), is_wrong.end(), 1)) + " of " +
-                              std::to_string(is_wrong.size()) + " walls " + kCoarsened + what);
+    return has_inverted(cut, joined) ? "a region would be inside out" : "";
   }
-  return has_inverted(cut, joined) ? "a region would be inside out" : "";
+  std::optional<JoinedPatches> mended =
+      timed(report, "coarsen", context, [&] { return mend_patches(cut, made, wrong.is_wrong, options, context); });
+  if (!mended || has_inverted(cut, *mended) || has_crossing(p, *mended, context)) return wrong.what;
+  joined = std::move(*mended);
+  report.optimize.self_intersections = 0;
+  report.warnings.push_back("in " + std::to_string(std::count(wrong.is_wrong.begin(), wrong.is_wrong.end(), 1)) +
+                            " of " + std::to_string(wrong.is_wrong.size()) + " walls " + kCoarsened + wrong.what);
+  return "";
 }
 
 }  // namespace
