@@ -39,7 +39,6 @@ class RelaxedPart {
 
   /// Vertices of the patches that are not here, but those that are shared.
   int64_t count_others() const { return others_; }
-  const std::vector<RegionTriangle>& triangles() const { return triangles_; }
   /// The vertex that is where one of the fine mesh is, on a curve; kNone where there is none.
   uint32_t at(const RegionVertex& v) const { return v.kind == Kind::free ? kNone : at_place_[cut_.place[v.home]]; }
   /// The triangles with the numbers that a mesh of coarse patches has for vertices, or numbers that it never has.

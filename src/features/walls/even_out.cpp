@@ -16,11 +16,11 @@ namespace isoshell {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kLastRounds = 3;  ///< in which shapes alone count
-constexpr double kCostOfValence = 0.3;
-constexpr int kRoundsToSplit = 4;    ///< edges are split in every one of so many
-constexpr double kLong = 1.35;       ///< mean edges: longer ones are split
-constexpr int64_t kMostSplits = 16;  ///< one vertex in so many, at once
+constexpr int kLastRounds = 3;          ///< in which shapes alone count
+constexpr double kCostOfValence = 0.3;  ///< of those before: .1 and 1 leave worse triangles of maps of brains
+constexpr int kRoundsToSplit = 4;       ///< edges are split in every one of so many
+constexpr double kLong = 1.35;          ///< mean edges: longer ones are split
+constexpr int64_t kMostSplits = 16;     ///< one vertex in so many, at once
 
 /// In a block.
 class Evening {

@@ -18,7 +18,7 @@
 namespace isoshell {
 namespace {
 
-constexpr double kBytesPerFinePoint = 780;        ///< the cut walls, what relaxes on them, cut again or not: 500 to 880
+constexpr double kBytesPerFinePoint = 780;        ///< the cut walls, what relaxes on them, some of them coarsened
 constexpr double kBytesPerWallVertex = 60;        ///< the walls as they came in, welded
 constexpr double kBytesPerThinnedVertex = 420;    ///< where most vertices go before walls are cut: meanwhile
 constexpr double kBytesOfSmallWalls = 112 << 20;  ///< which stay as they are then
