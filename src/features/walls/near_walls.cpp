@@ -40,9 +40,11 @@ class Walls {
 
  private:
   static std::vector<BoxQ8> boxes_of(const FineMesh& fine) {
-    std::vector<BoxQ8> boxes;
-    for (const auto& [a, b, c] : fine.triangles)
-      boxes.push_back(box_of(steps(fine.position[a]), steps(fine.position[b]), steps(fine.position[c])));
+    std::vector<BoxQ8> boxes(fine.triangles.size());
+    for_each_index(size_t(0), boxes.size(), [&](size_t t) {
+      const auto& [a, b, c] = fine.triangles[t];
+      boxes[t] = box_of(steps(fine.position[a]), steps(fine.position[b]), steps(fine.position[c]));
+    });
     return boxes;
   }
   WorldPoint normal(size_t t) const {

@@ -17,6 +17,7 @@ namespace {
 constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
 constexpr int64_t kFewestPerPart = 12;           ///< seeds of a level; with fewer its dual is no mesh
 constexpr int32_t kLastPasses = 10;              ///< of the finest level, on all triangles of the surface
+constexpr int64_t kFewPerSeed = 13;              ///< vertices: coarser surfaces have 12 to 13
 
 RelaxOptions for_finest_patches(const PatchOptions& options) {
   RelaxOptions relax = for_finest_level(options.relax, options.tolerance_requested);
@@ -24,7 +25,7 @@ RelaxOptions for_finest_patches(const PatchOptions& options) {
   return relax;
 }
 
-/// The levels of seeds, and the surfaces with fewer triangles that they relax on. The finest is the first one.
+/// The levels of seeds, of which the first is the finest, and the surfaces with fewer triangles that they relax on.
 class PatchLevels {
  public:
   PatchLevels(const CutSurface& cut, const PatchOptions& options, Context& context)
@@ -37,24 +38,28 @@ class PatchLevels {
       if (level > 0 && std::accumulate(free.begin(), free.end(), fixed.size()) < fewest) break;
       counts_.push_back(std::move(free));
     }
+    const bool is_coarse = cut.surface.vertex_count() <= kFewPerSeed * options.seeds.count;
     const auto add_surfaces = [&]() -> std::string {
-      surfaces_.push_back(coarser_surface(cut, counts_[0], 0, context));
-      while (surfaces_.size() < counts_.size())
-        surfaces_.push_back(coarser_surface(surfaces_.back().cut, counts_[surfaces_.size()], 1, context));
+      if (!is_coarse) finest_ = coarser_surface(cut, counts_[0], 0, context);
+      while (coarser_.size() + 1 < counts_.size())
+        coarser_.push_back(coarser_surface(surface(coarser_.size()), counts_[coarser_.size() + 1], 1, context));
       return "";
     };
     failure_reason(add_surfaces);  // the levels that there is no surface for are left out
   }
 
   RelaxedSeeds relax() {
-    for (size_t level = surfaces_.size(); level-- > 1;) relax_coarse(level);
-    if (!surfaces_.empty()) relax_finest();
+    for (size_t level = coarser_.size(); level > 0; --level) relax_coarse(level);
+    if (finest_) relax_finest();
     RelaxOptions last = made_ ? for_finest_patches(options_) : options_.relax;
-    if (made_ && !options_.tolerance_requested) last.max_passes = std::min(last.max_passes, kLastPasses);
+    if (finest_ && !options_.tolerance_requested) last.max_passes = std::min(last.max_passes, kLastPasses);
     return relax_on_sheet(cut_.surface, seeds_on(cut_, free_seeds_, 0, 0), last, context_);
   }
 
  private:
+  const CutSurface& surface(size_t level) const {
+    return level > 0 ? coarser_[level - 1].cut : finest_ ? finest_->cut : cut_;
+  }
   /// The seeds of a level, on the surface of one that is so much finer.
   SeedSet seeds_on(const CutSurface& surface, const FreeSeeds& free_seeds, size_t level, int finer) const {
     SeedSet fixed = seeds_on_curves(surface, finer);
@@ -71,19 +76,19 @@ class PatchLevels {
 
   /// On its own surface; on the finer one where that is too coarse for it.
   void relax_coarse(size_t level) {
-    std::optional<SeededMesh> made = relaxed_on(surfaces_[level].cut, level, 0);
+    std::optional<SeededMesh> made = relaxed_on(surface(level), level, 0);
     const bool is_done = made.has_value();
     if (is_done) made_ = std::move(made);
-    if (made_) bring_to_finer(surfaces_[level], *made_);
-    if (!is_done) made_ = relaxed_on(surfaces_[level - 1].cut, level, 1);
+    if (made_) bring_to_finer(coarser_[level - 1], *made_);
+    if (!is_done) made_ = relaxed_on(surface(level - 1), level, 1);
   }
   void relax_finest() {
-    const CutSurface& on = surfaces_[0].cut;
+    const CutSurface& on = finest_->cut;
     const RelaxOptions relax = made_ ? for_finest_patches(options_) : options_.relax;
     RelaxedSeeds relaxed = relax_on_sheet(on.surface, seeds_on(on, FreeSeeds(on), 0, 0), relax, context_);
     made_ = SeededMesh{{}, std::move(relaxed.seeds)};
     bring_to_host(*made_);
-    bring_to_finer(surfaces_[0], *made_);
+    bring_to_finer(*finest_, *made_);
   }
 
   const CutSurface& cut_;
@@ -91,7 +96,8 @@ class PatchLevels {
   const PatchOptions& options_;
   Context& context_;
   std::vector<FreeSeeds::Counts> counts_;  ///< of free seeds
-  std::vector<CoarserSurface> surfaces_;   ///< each of the one before it; fewer where one cannot be made
+  std::optional<CoarserSurface> finest_;   ///< none where the surface itself has few triangles
+  std::vector<CoarserSurface> coarser_;    ///< of levels from 1 on, each of the one before it; fewer where one fails
   std::optional<SeededMesh> made_;         ///< by the level before, on the surface of the next one
 };
 

@@ -14,7 +14,6 @@ namespace isoshell {
 namespace {
 
 constexpr size_t kMostCoarse = 2;  ///< one fine triangle in so many is in a coarse patch, at most
-constexpr size_t kMostWork = 3;    ///< fine triangles that are coarsened, each time that more are, over all
 
 /// Those around regions that are inside out.
 std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatches& joined) {
@@ -46,7 +45,7 @@ std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMes
     check_cancel(context, "features");
     const size_t coarse = count_triangles(cut, is_wrong);
     work += coarse;
-    if (kMostCoarse * coarse > triangles || work > kMostWork * triangles) return {};
+    if (kMostCoarse * coarse > triangles || work > triangles) return {};
     std::optional<PatchMesh> mended = coarsen_patches(cut, relaxed, is_wrong, options, context);
     if (!mended) continue;  // more patches are to be coarse
     const std::vector<uint32_t> more = inverted_patches(cut, mended->joined());
