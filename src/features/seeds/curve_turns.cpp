@@ -42,7 +42,7 @@ TurnSums sum_turns(const std::vector<WorldPoint>& position, const CurvePath& pat
 }  // namespace
 
 void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::vector<CurvePath>& paths, double e,
-                          std::vector<double>& limit) {
+                          bool turns_are_bends, std::vector<double>& limit) {
   for (const CurvePath& path : paths) {
     const TurnSums sums = sum_turns(position, path);
     const double longest = path.length / double(path.least_segments), width = std::min(e, path.length);
@@ -55,7 +55,8 @@ void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::ve
       const double turn = length(sums.sum[size_t(last)] - sums.sum[size_t(first)]);
       double& l = limit[path.vertex[i]];
       l = std::min(l, longest);
-      if (!path.is_jagged && turn * e > kEdgeOfRadius * width) l = std::min(l, kEdgeOfRadius * width / turn);
+      if (turns_are_bends && !path.is_jagged && turn * e > kEdgeOfRadius * width)
+        l = std::min(l, kEdgeOfRadius * width / turn);
     }
   }
 }

@@ -55,7 +55,7 @@ std::vector<double> most_lengths(const FineMesh& mesh, const VertexGraph& graph,
   std::vector<double> most(mesh.position.size(), 2 * *widest);
   for (double e = *widest;; e /= 2) {
     std::vector<double> here(mesh.position.size(), 2 * *widest);
-    limit_by_curve_turns(mesh.position, mesh.paths, e, here);
+    limit_by_curve_turns(mesh.position, mesh.paths, e, !is_rough, here);
     if (!is_rough) limit_by_surface_turns(mesh, graph, e, here);
     for (size_t v = 0; v < here.size(); ++v)
       if (mesh.edge_length[v] <= e) most[v] = here[v];

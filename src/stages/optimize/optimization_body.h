@@ -204,7 +204,7 @@ class Optimization {
 
   /// Where triangles intersect, takes their corners and the neighbours of these back, until none does or the rounds are
   /// done: first to the sheet, then to where they began. A round that does not help takes more vertices in the next;
-  /// when none did in the end, the best one counts.
+  /// when none did in the end, or all that intersect are where they began, the best one counts.
   void undo_intersections(OptimizeReport& report) {
     Buffer<uint32_t> spread = exec_.template make<uint32_t>(vertices_);
     Buffer<PointQ8> best = exec_.template make<PointQ8>(vertices_);
@@ -216,7 +216,8 @@ class Optimization {
         fewest = report.self_intersections;
         exec_.copy(View<const PointQ8>(mesh_.position.view()), best.view());
       }
-      if (round == kUndoRoundsInAll) break;
+      const IsAway is_away{harmed_.view(), begin_.view(), mesh_.position.view()};
+      if (round == kUndoRoundsInAll || exec_.sum(vertices_, is_away) == 0) break;
       for (int rings = round % kUndoRounds; rings >= 0; --rings) {
         exec_.for_each("spread marks", vertices_, SpreadMarks{view(), harmed_.view(), spread.view()});
         std::swap(harmed_, spread);

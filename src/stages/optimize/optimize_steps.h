@@ -43,6 +43,14 @@ struct ReturnMarked {
     if (marked[v]) position[v] = to[v];
   }
 };
+/// Whether a marked vertex is not where it would be taken back to.
+struct IsAway {
+  View<const uint32_t> marked;
+  View<const PointQ8> from, position;
+  ISOSHELL_HD int64_t operator()(int64_t v) const {
+    return marked[v] && distance_sq_q16(position[v], from[v]) > 0 ? 1 : 0;
+  }
+};
 struct IsMarked {
   View<const uint32_t> marked;
   ISOSHELL_HD int64_t operator()(int64_t v) const { return marked[v]; }
