@@ -217,7 +217,7 @@ class Optimization {
         exec_.copy(View<const PointQ8>(mesh_.position.view()), best.view());
       }
       const IsAway is_away{harmed_.view(), begin_.view(), mesh_.position.view()};
-      if (round == kUndoRoundsInAll || exec_.sum(vertices_, is_away) == 0) break;
+      if (round == kUndoRoundsInAll || (round >= kUndoRounds && exec_.sum(vertices_, is_away) == 0)) break;
       for (int rings = round % kUndoRounds; rings >= 0; --rings) {
         exec_.for_each("spread marks", vertices_, SpreadMarks{view(), harmed_.view(), spread.view()});
         std::swap(harmed_, spread);
