@@ -96,7 +96,7 @@ class PatchLevels {
   const PatchOptions& options_;
   Context& context_;
   std::vector<FreeSeeds::Counts> counts_;  ///< of free seeds
-  std::optional<CoarserSurface> finest_;   ///< none where the surface itself has few triangles
+  std::optional<CoarserSurface> finest_;   ///< none where the surface itself has few, or it fails
   std::vector<CoarserSurface> coarser_;    ///< of levels from 1 on, each of the one before it; fewer where one fails
   std::optional<SeededMesh> made_;         ///< by the level before, on the surface of the next one
 };
