@@ -162,6 +162,14 @@ TEST_CASE("edge lengths: are shorter around holes and between close curves, and 
   CHECK(cut_of(cube, {edge_length_for(cube.mesh, cube.network, 600), 600}).surface.lengths.at.empty());
 }
 
+TEST_CASE("edge lengths: turns of curves of voxels make none shorter", "[cut_surface][stage]") {
+  const FeatureShape cylinder = feature_cylinder(48);
+  CutOptions options{edge_length_for(cylinder.mesh, cylinder.network, 60), 60};
+  CHECK_FALSE(cut_of(cylinder, options).surface.lengths.at.empty());
+  options.is_rough = true;
+  CHECK(cut_of(cylinder, options).surface.lengths.at.empty());
+}
+
 TEST_CASE("edge length: a mesh of that length has about as many vertices as asked for", "[cut_surface][stage]") {
   for (const FeatureShape& shape : feature_shapes()) {
     INFO(shape.name);

@@ -63,7 +63,7 @@ struct CutOptions {
   double edge_length_world = 0;         ///< aimed at, everywhere the same
   int64_t vertices = 0;                 ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
   RequestedLengths requested = {};      ///< in proportion to these, or with 0 vertices these
-  bool is_rough = false;                ///< turns of the surface are no bends: it is made of voxels
+  bool is_rough = false;                ///< turns, of curves too, are no bends: it is made of voxels
   std::vector<WorldPoint> before = {};  ///< vertices of another mesh, which stay seeds of curves where they lie on one
 };
 

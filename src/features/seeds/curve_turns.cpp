@@ -42,10 +42,11 @@ TurnSums sum_turns(const std::vector<WorldPoint>& position, const CurvePath& pat
 }  // namespace
 
 void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::vector<CurvePath>& paths, double e,
-                          bool turns_are_bends, std::vector<double>& limit) {
+                          std::vector<double>& limit) {
   for (const CurvePath& path : paths) {
+    if (path.is_jagged) continue;
     const TurnSums sums = sum_turns(position, path);
-    const double longest = path.length / double(path.least_segments), width = std::min(e, path.length);
+    const double width = std::min(e, path.length);
     const double shift = path.is_loop ? path.length : 0;  // the middle one of three rounds
     for (size_t i = 0; i < path.vertex.size(); ++i) {
       double begin = path.at[i] + shift - width / 2;
@@ -54,9 +55,7 @@ void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::ve
       const auto last = std::lower_bound(sums.at.begin(), sums.at.end(), begin + width) - sums.at.begin();
       const double turn = length(sums.sum[size_t(last)] - sums.sum[size_t(first)]);
       double& l = limit[path.vertex[i]];
-      l = std::min(l, longest);
-      if (turns_are_bends && !path.is_jagged && turn * e > kEdgeOfRadius * width)
-        l = std::min(l, kEdgeOfRadius * width / turn);
+      if (turn * e > kEdgeOfRadius * width) l = std::min(l, kEdgeOfRadius * width / turn);
     }
   }
 }

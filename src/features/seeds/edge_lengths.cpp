@@ -38,6 +38,12 @@ std::vector<double> graded(const VertexGraph& graph, const Limits& limits, doubl
   return graded_lengths(graph, own, limits.growth);
 }
 
+/// On paths, by their own lengths.
+void limit_by_path_lengths(const std::vector<CurvePath>& paths, std::vector<double>& limit) {
+  for (const CurvePath& path : paths)
+    for (const uint32_t v : path.vertex) limit[v] = std::min(limit[v], path.length / double(path.least_segments));
+}
+
 /// Beside strips between two curves, or two parts of one, by their width.
 void limit_by_gaps(const std::vector<FacingVertices>& facing, double e, std::vector<double>& limit) {
   for (const FacingVertices& f : facing) {
@@ -47,20 +53,21 @@ void limit_by_gaps(const std::vector<FacingVertices>& facing, double e, std::vec
   }
 }
 
-/// By turns as edges of the length asked for see them: each vertex takes those within a length that is at most twice
-/// its own.
+/// By turns as edges of the length asked for see them, unless these are no bends: each vertex takes those within a
+/// length that is at most twice its own. And by lengths of paths, and gaps.
 std::vector<double> most_lengths(const FineMesh& mesh, const VertexGraph& graph,
                                  const std::vector<FacingVertices>& facing, bool is_rough) {
   const auto [least, widest] = std::minmax_element(mesh.edge_length.begin(), mesh.edge_length.end());
   std::vector<double> most(mesh.position.size(), 2 * *widest);
-  for (double e = *widest;; e /= 2) {
+  for (double e = *widest; !is_rough; e /= 2) {
     std::vector<double> here(mesh.position.size(), 2 * *widest);
-    limit_by_curve_turns(mesh.position, mesh.paths, e, !is_rough, here);
-    if (!is_rough) limit_by_surface_turns(mesh, graph, e, here);
+    limit_by_curve_turns(mesh.position, mesh.paths, e, here);
+    limit_by_surface_turns(mesh, graph, e, here);
     for (size_t v = 0; v < here.size(); ++v)
       if (mesh.edge_length[v] <= e) most[v] = here[v];
     if (*least > e / 2) break;
   }
+  limit_by_path_lengths(mesh.paths, most);
   limit_by_gaps(facing, *widest, most);
   return most;
 }

@@ -13,7 +13,7 @@ struct LengthOptions {
   int64_t vertices = 0;       ///< above 0: lengths are in such a proportion that they ask for so many; 0: as they are
   double growth = 0.2;        ///< most that a length grows, over the way
   bool as_requested = false;  ///< whatever the surface is like
-  bool is_rough = false;      ///< its turns are no bends: it is made of voxels
+  bool is_rough = false;      ///< turns, of curves too, are no bends: it is made of voxels
 };
 
 /// Sets the lengths of a mesh, which has those asked for, equal ones or others, less where bends and close curves limit

@@ -11,10 +11,9 @@ namespace isoshell {
 /// Longest edge over the radius of a curve or surface.
 constexpr double kEdgeOfRadius = 0.35;
 
-/// On paths: by how far they turn within e, all turns of one direction, unless turns are no bends, as on voxels; and by
-/// their own lengths.
+/// On paths: by how far they turn within e, all turns of one direction; those of jagged ones are no bends.
 void limit_by_curve_turns(const std::vector<WorldPoint>& position, const std::vector<CurvePath>& paths, double e,
-                          bool turns_are_bends, std::vector<double>& limit);
+                          std::vector<double>& limit);
 /// Per vertex how far normals, averaged within about e / 2, turn within e where they turn most; 0 on paths. Sums of
 /// integers: no order shows.
 std::vector<double> surface_turns(const FineMesh& mesh, const VertexGraph& graph, double e);

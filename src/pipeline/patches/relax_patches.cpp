@@ -16,8 +16,8 @@ namespace {
 
 constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
 constexpr int64_t kFewestPerPart = 12;           ///< seeds of a level; with fewer its dual is no mesh
-constexpr int32_t kLastPasses = 10;              ///< of the finest level, on all triangles of the surface
-constexpr int64_t kFewPerSeed = 13;              ///< vertices: coarser surfaces have 12 to 13
+constexpr int32_t kLastPasses = 10;              ///< of the finest level, on the surface itself after a coarser one
+constexpr int64_t kFewPerSeed = 13;              ///< vertices; coarser surfaces have 11 to 17
 
 RelaxOptions for_finest_patches(const PatchOptions& options) {
   RelaxOptions relax = for_finest_level(options.relax, options.tolerance_requested);
