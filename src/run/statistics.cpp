@@ -33,7 +33,10 @@ Json dirt_json(const DirtCounts& d) {
 }
 
 Json repair_json(const RepairReport& m) {
-  return {{"joined_vertices", m.joined_vertices},
+  return {{"far_vertices", m.far_vertices},
+          {"far_distance", m.far_distance_world},
+          {"farthest", m.far_vertices > 0 ? point(m.farthest) : Json()},
+          {"joined_vertices", m.joined_vertices},
           {"repeated_faces", m.repeated_faces},
           {"fins", m.fins},
           {"fin_faces", m.fin_faces},

@@ -1,0 +1,165 @@
+// See far_vertices.h.
+#include "repair/holes/far_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <vector>
+
+#include "geometry/box.h"
+#include "geometry/world_vector.h"
+
+namespace isoshell::repair {
+namespace {
+
+using Face = std::array<uint32_t, 3>;
+
+constexpr double kFarInBodies = 32;     // antennas and tails of real models are shorter
+constexpr double kShareOfBody = .9;     // of the faces: a surface of which more is needles is one of needles
+constexpr double kLongEdgeOfBox = .25;  // shorter ones reach no vertex that is far away
+
+double longest_edge_sq(const TriangleSoup& soup, const Face& f) {
+  const WorldPoint &a = soup.vertices[f[0]], &b = soup.vertices[f[1]], &c = soup.vertices[f[2]];
+  return std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)});
+}
+
+bool has_long_edge(const TriangleSoup& soup) {
+  const double least = kLongEdgeOfBox * longest_side(box_of(soup.vertices, soup.triangles));
+  return std::any_of(soup.triangles.begin(), soup.triangles.end(),
+                     [&](const Face& f) { return longest_edge_sq(soup, f) > least * least; });
+}
+
+WorldBox box_of_body(const TriangleSoup& soup) {
+  std::vector<double> longest_sq;
+  longest_sq.reserve(soup.triangles.size());
+  for (const Face& f : soup.triangles) longest_sq.push_back(longest_edge_sq(soup, f));
+  std::vector<double> in_order = longest_sq;
+  const auto last = in_order.begin() +
+                    std::min<int64_t>(int64_t(kShareOfBody * double(in_order.size())), int64_t(in_order.size()) - 1);
+  std::nth_element(in_order.begin(), last, in_order.end());
+  WorldBox body = box_of_none();
+  for (size_t f = 0; f < longest_sq.size(); ++f)
+    if (longest_sq[f] <= *last)
+      for (const uint32_t v : soup.triangles[f]) stretch(body, soup.vertices[v]);
+  return body;
+}
+
+double distance_to(const WorldBox& box, const WorldPoint& p) {
+  const auto outside = [](double low, double high, double at) { return std::max({low - at, at - high, 0.}); };
+  return length(
+      {outside(box.min.x, box.max.x, p.x), outside(box.min.y, box.max.y, p.y), outside(box.min.z, box.max.z, p.z)});
+}
+
+/// Far vertices that faces connect, by the least of their numbers, and the vertices that these faces stand on.
+struct Needle {
+  std::vector<uint32_t> far, foot;
+};
+
+class FarVertices {
+ public:
+  explicit FarVertices(const TriangleSoup& soup)
+      : soup_(soup), body_(box_of_body(soup)), leader_(soup.vertices.size()) {
+    std::iota(leader_.begin(), leader_.end(), 0u);
+    const double reach = kFarInBodies * longest_side(body_);
+    is_far_.reserve(soup.vertices.size());
+    for (const WorldPoint& p : soup.vertices) is_far_.push_back(distance_to(body_, p) > reach);
+  }
+
+  std::map<uint32_t, Needle> needles() {
+    for (const Face& f : soup_.triangles)
+      for (size_t i = 0; i < 3; ++i) join(f[i], f[(i + 1) % 3]);
+    std::map<uint32_t, Needle> found;
+    for (const Face& f : soup_.triangles) add(f, found);
+    for (auto& [leader, needle] : found) {
+      remove_repeats(needle.far);
+      remove_repeats(needle.foot);
+    }
+    return found;
+  }
+
+  double distance(uint32_t v) const { return distance_to(body_, soup_.vertices[v]); }
+
+ private:
+  uint32_t leader(uint32_t v) {
+    while (leader_[v] != v) v = leader_[v] = leader_[leader_[v]];
+    return v;
+  }
+  void join(uint32_t a, uint32_t b) {
+    if (!is_far_[a] || !is_far_[b]) return;
+    a = leader(a), b = leader(b);
+    leader_[std::max(a, b)] = std::min(a, b);
+  }
+  void add(const Face& f, std::map<uint32_t, Needle>& found) {
+    const auto far = std::find_if(f.begin(), f.end(), [&](uint32_t v) { return is_far_[v] != 0; });
+    if (far == f.end()) return;
+    for (const uint32_t other : f)  // a face may connect two groups of them
+      if (is_far_[other]) {
+        Needle& needle = found[leader(other)];
+        for (const uint32_t v : f) (is_far_[v] ? needle.far : needle.foot).push_back(v);
+      }
+  }
+  static void remove_repeats(std::vector<uint32_t>& of) {
+    std::sort(of.begin(), of.end());
+    of.erase(std::unique(of.begin(), of.end()), of.end());
+  }
+
+  const TriangleSoup& soup_;
+  WorldBox body_;
+  std::vector<uint8_t> is_far_;
+  std::vector<uint32_t> leader_;
+};
+
+/// Result: where the foot's middle is, if no side of its box is as long as an edge.
+std::optional<WorldPoint> middle_of_narrow(const std::vector<WorldPoint>& points, const Needle& needle,
+                                           double edge_world) {
+  if (needle.foot.empty()) return {};
+  WorldBox box = box_of_none();
+  WorldPoint sum{0, 0, 0};
+  for (const uint32_t v : needle.foot) {
+    stretch(box, points[v]);
+    sum = sum + points[v];
+  }
+  if (longest_side(box) >= edge_world) return {};
+  return 1 / double(needle.foot.size()) * sum;
+}
+
+/// Each far vertex becomes the first of its needle, which `to` says where to put.
+TriangleSoup pulled_back(const TriangleSoup& soup, const std::map<uint32_t, uint32_t>& becomes,
+                         const std::map<uint32_t, WorldPoint>& to) {
+  TriangleSoup made;
+  made.vertices = soup.vertices;
+  made.faces_in_file = soup.faces_in_file;
+  for (const auto& [v, at] : to) made.vertices[v] = at;
+  for (Face f : soup.triangles) {
+    for (uint32_t& v : f)
+      if (const auto other = becomes.find(v); other != becomes.end()) v = other->second;
+    if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) made.triangles.push_back(f);
+  }
+  return made;
+}
+
+}  // namespace
+
+std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup, double edge_world, RepairReport& report) {
+  if (soup.triangles.empty() || !has_long_edge(soup)) return {};
+  FarVertices far(soup);
+  std::map<uint32_t, uint32_t> becomes;
+  std::map<uint32_t, WorldPoint> to;
+  for (const auto& [leader, needle] : far.needles()) {
+    const std::optional<WorldPoint> middle = middle_of_narrow(soup.vertices, needle, edge_world);
+    if (!middle) continue;
+    for (const uint32_t v : needle.far) {
+      becomes[v] = needle.far.front();
+      if (far.distance(v) <= report.far_distance_world) continue;
+      report.far_distance_world = far.distance(v);
+      report.farthest = soup.vertices[v];
+    }
+    to[needle.far.front()] = *middle;
+    report.far_vertices += int64_t(needle.far.size());
+  }
+  if (to.empty()) return {};
+  return pulled_back(soup, becomes, to);
+}
+
+}  // namespace isoshell::repair

@@ -1,0 +1,95 @@
+// Vertices far away from all others, on shapes where it is known which these are.
+#include "isoshell/mesh_topology.h"
+#include "isoshell/remesh.h"
+#include "repair/holes/far_vertices.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+
+using namespace isoshell;
+
+namespace {
+
+constexpr double kEdge = .5;  // longer than the foot of one vertex of the ball, shorter than the ball
+
+TriangleSoup ball_with(std::initializer_list<std::pair<uint32_t, WorldPoint>> moved) {
+  TriangleSoup ball = shapes::sphere({0, 0, 0}, 1, 32);
+  for (const auto& [v, to] : moved) ball.vertices[v] = to;
+  return ball;
+}
+
+struct PulledBack {
+  std::optional<TriangleSoup> soup;
+  RepairReport report;
+};
+
+PulledBack pulled_back(const TriangleSoup& soup, double edge_world = kEdge) {
+  PulledBack made;
+  made.soup = repair::pull_back_far_vertices(soup, edge_world, made.report);
+  return made;
+}
+
+/// Closed, and almost the ball that it was.
+void check_ball(const TriangleSoup& soup) {
+  for (const auto& t : soup.triangles)
+    for (const uint32_t v : t) CHECK(std::abs(soup.vertices[v].x) <= 1);
+  CHECK(check_mesh(TriangleMesh{soup.vertices, soup.triangles}).closed);
+  CHECK(volume(soup) == Approx(volume(ball_with({}))).epsilon(.02));
+}
+
+}  // namespace
+
+TEST_CASE("far vertices: one at any distance goes back to the middle of its neighbours", "[repair]") {
+  for (const double distance : {100., 1e3, 1e5, 1e15, 1e100}) {
+    const PulledBack made = pulled_back(ball_with({{200, {distance, 0, 0}}}));
+    REQUIRE(made.soup);
+    CHECK(made.report.far_vertices == 1);
+    CHECK(made.report.far_distance_world == Approx(distance).epsilon(.02));
+    CHECK(made.report.farthest.x == distance);
+    check_ball(*made.soup);
+  }
+}
+
+TEST_CASE("far vertices: neighbours that are far away together become one, others at other distances go back alone",
+          "[repair]") {
+  const TriangleSoup ball = ball_with({});
+  const auto& face = ball.triangles[ball.triangles.size() / 2];
+  const PulledBack edge = pulled_back(ball_with({{face[0], {1e5, 0, 0}}, {face[1], {1e5, 1, 0}}}), 2 * kEdge);
+  REQUIRE(edge.soup);
+  CHECK(edge.report.far_vertices == 2);
+  CHECK(edge.soup->triangles.size() == ball.triangles.size() - 2);
+  check_ball(*edge.soup);
+  const PulledBack three = pulled_back(ball_with({{100, {1e5, 0, 0}}, {300, {0, -1e8, 0}}, {400, {0, 0, 200}}}));
+  REQUIRE(three.soup);
+  CHECK(three.report.far_vertices == 3);
+  CHECK(three.soup->triangles.size() == ball.triangles.size());
+  check_ball(*three.soup);
+}
+
+TEST_CASE("far vertices: spikes of usual lengths, needles that edges can follow, and surfaces of needles stay",
+          "[repair]") {
+  CHECK_FALSE(pulled_back(ball_with({})).soup);
+  CHECK_FALSE(pulled_back(ball_with({{200, {30, 0, 0}}})).soup);          // an antenna
+  CHECK_FALSE(pulled_back(ball_with({{200, {1e5, 0, 0}}}), .01).soup);    // edges are shorter than its foot
+  CHECK_FALSE(pulled_back(shapes::box({0, 0, 0}, {1000, .1, .1})).soup);  // a rod
+  TriangleSoup cone = ball_with({});
+  for (WorldPoint& p : cone.vertices)
+    if (p.x > -.5) p = {1e4, 0, 0};
+  CHECK_FALSE(pulled_back(cone, 1e3).soup);
+  CHECK_FALSE(pulled_back({}).soup);
+}
+
+TEST_CASE("far vertices: parts far away stay, as no face says where they belong", "[repair]") {
+  const TriangleSoup far = shapes::sphere({1e5, 0, 0}, .01, 8);
+  CHECK_FALSE(pulled_back(shapes::together(ball_with({}), far)).soup);
+}
+
+TEST_CASE("far vertices: the mesh of a ball with one is that of a ball, and says what was done", "[repair][run]") {
+  RemeshOptions options;
+  options.vertices = 200;
+  Context context;
+  const RemeshResult result = remesh(ball_with({{200, {1e5, 0, 0}}}), options, context);
+  CHECK(result.mesh.vertices.size() == 200);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(result.report.input.repair.far_vertices == 1);
+  for (const WorldPoint& p : result.mesh.vertices) CHECK(std::abs(p.x) < 1.1);
+}
