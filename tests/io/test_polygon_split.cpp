@@ -93,6 +93,21 @@ TEST_CASE("polygon split: no area and crossing sides still give corner count min
   CHECK(split({{1e200, 0, 0}, {0, 1e200, 0}, {-1e200, 0, 0}, {0, -1e200, 0}}, {0, 1, 2, 3}).size() == 2);
 }
 
+TEST_CASE("polygon split: combs of many teeth are covered exactly once, whichever way they look", "[polygon][unit]") {
+  std::vector<WorldPoint> comb{{0, 0, 0}};
+  for (int i = 1; i < 63999; ++i) comb.push_back({double(i), i % 2 ? 1000. : 1., 0});
+  comb.push_back({63999, 0, 0});
+  std::vector<WorldPoint> lying;
+  for (const WorldPoint& p : comb) lying.push_back({p.y, -p.x, 0});
+  for (const std::vector<WorldPoint>& points : {comb, lying}) {
+    const Triangles triangles = split(points, all_of(points));
+    CHECK(triangles.size() == points.size() - 2);
+    double area = 0;
+    for (const auto& t : triangles) area += std::abs(doubled_area_xy(points, t));
+    CHECK(area == std::abs(polygon_area_xy(points)));
+  }
+}
+
 TEST_CASE("polygon split: a polygon of many corners takes no long time", "[polygon][unit]") {
   const std::vector<WorldPoint> points = star(20000, 3);
   CHECK(split(points, all_of(points)).size() == points.size() - 2);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/world_vector.h"
 
@@ -42,11 +43,6 @@ bool PolygonSplitter::project(const WorldPoint* vertices) {
   return true;
 }
 
-double PolygonSplitter::doubled_area(uint32_t a, uint32_t b, uint32_t c) const {
-  const Point2 p = at_[a], q = at_[b], r = at_[c];
-  return (q.u - p.u) * (r.v - p.v) - (q.v - p.v) * (r.u - p.u);
-}
-
 void PolygonSplitter::emit(uint32_t a, uint32_t b, uint32_t c, std::vector<std::array<uint32_t, 3>>& triangles) const {
   const uint32_t i = ids_[a], j = ids_[b], k = ids_[c];
   if (i != j && j != k && k != i) triangles.push_back({i, j, k});
@@ -55,7 +51,7 @@ void PolygonSplitter::emit(uint32_t a, uint32_t b, uint32_t c, std::vector<std::
 bool PolygonSplitter::split_convex_quad(const WorldPoint* vertices,
                                         std::vector<std::array<uint32_t, 3>>& triangles) const {
   for (uint32_t i = 0; i < 4; ++i)
-    if (!(doubled_area((i + 3) % 4, i, (i + 1) % 4) > 0)) return false;
+    if (!(turn((i + 3) % 4, i, (i + 1) % 4) > 0)) return false;
   // Corner 0 has the smallest index, so its diagonal wins a tie.
   const bool other =
       distance_sq(vertices[ids_[1]], vertices[ids_[3]]) < distance_sq(vertices[ids_[0]], vertices[ids_[2]]);
@@ -73,20 +69,11 @@ bool PolygonSplitter::later(const Ear& a, const Ear& b) {
 // A corner that turns left and whose triangle holds no other corner. Only corners that do not turn left can be in it.
 bool PolygonSplitter::is_ear(uint32_t corner) const {
   const uint32_t a = previous_[corner], c = next_[corner];
-  if (!(doubled_area(a, corner, c) > 0)) return false;
-  const double lowest = std::min({at_[a].u, at_[corner].u, at_[c].u});
-  const double highest = std::max({at_[a].u, at_[corner].u, at_[c].u});
-  auto other = std::lower_bound(by_u_.begin(), by_u_.end(), lowest, [&](uint32_t i, double u) { return at_[i].u < u; });
-  for (; other != by_u_.end() && at_[*other].u <= highest; ++other) {
-    const uint32_t i = *other;
-    const bool gone = next_[i] == i;
-    if (gone || i == a || i == corner || i == c) continue;
-    const Point2 p = at_[i];
-    const auto same = [&](uint32_t j) { return at_[j].u == p.u && at_[j].v == p.v; };
-    if (same(a) || same(corner) || same(c)) continue;  // where a bridge to a hole runs there and back
-    if (doubled_area(a, corner, i) >= 0 && doubled_area(corner, c, i) >= 0 && doubled_area(c, a, i) >= 0) return false;
-  }
-  return true;
+  if (!(turn(a, corner, c) > 0)) return false;
+  return !reflex_.any_in({at_[a], at_[corner], at_[c]}, [&](uint32_t i) {
+    const auto same = [&](uint32_t j) { return at_[j].u == at_[i].u && at_[j].v == at_[i].v; };
+    return !same(a) && !same(corner) && !same(c);  // where a bridge to a hole runs there and back
+  });
 }
 
 void PolygonSplitter::look_at(const WorldPoint* vertices, uint32_t corner) {
@@ -102,15 +89,14 @@ void PolygonSplitter::clip_ears(const WorldPoint* vertices, std::vector<std::arr
   previous_.resize(count);
   next_.resize(count);
   version_.assign(count, 0);
-  by_u_.clear();
+  std::vector<uint32_t> reflex;
   ears_.clear();
   for (uint32_t i = 0; i < count; ++i) {
     previous_[i] = (i + count - 1) % count;
     next_[i] = (i + 1) % count;
-    if (!(doubled_area(previous_[i], i, next_[i]) > 0)) by_u_.push_back(i);
+    if (!(turn(previous_[i], i, next_[i]) > 0)) reflex.push_back(i);
   }
-  std::sort(by_u_.begin(), by_u_.end(),
-            [&](uint32_t i, uint32_t j) { return at_[i].u != at_[j].u ? at_[i].u < at_[j].u : i < j; });
+  reflex_.build(std::move(reflex), at_);
   for (uint32_t i = 0; i < count; ++i) look_at(vertices, i);
 
   uint32_t left = count, somewhere = 0;
@@ -123,7 +109,7 @@ void PolygonSplitter::clip_ears(const WorldPoint* vertices, std::vector<std::arr
     emit(a, ear.corner, c, triangles);
     next_[a] = c;
     previous_[c] = a;
-    next_[ear.corner] = ear.corner;
+    reflex_.remove(ear.corner);
     ++version_[ear.corner];
     somewhere = a;
     --left;
