@@ -151,6 +151,19 @@ def test_creases_of_scans(run, tmp_path, nefertiti, claim):
     assert run(write_obj(tmp_path / "box.obj", *make_box()), "--vertices", 300).stats["features"]["curves"] == 12
 
 
+@claims("Where creases meet at a small angle", "triangles have small angles. A warning names the worst",
+        "`--require min-angle=DEG` refuses such a result", "`--features off` rounds creases off and has wide angles")
+def test_angles_beside_creases(run, tmp_path, claim):
+    vertices = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in ((0, 0), (2, 0), (2, 0.35))])  # a wedge of 10 degrees
+    faces = np.array([(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)])
+    source = write_obj(tmp_path / "wedge.obj", vertices, faces)
+    options = ("--vertices", 500, "--require", "min-angle=30")
+    kept = run(source, *options)
+    assert kept.status == 6 and kept.stats["quality"]["theta_min_deg"] < 15
+    assert "triangles have angles below 30 degrees" in kept.said
+    assert run(source, *options, "--features", "off").status == 0
+
+
 @claims("those around patches that are too small for the edges are left out, and each is named",
         "`--require features`")
 def test_lost_curves(run, tmp_path, claim):
