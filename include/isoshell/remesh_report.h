@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <string>
@@ -81,6 +82,22 @@ struct SheetReport {
   bool agrees = false;       ///< components and genus of the sheet equal the input's
 };
 
+/// How many vertices the result has, and was to have.
+struct CountReport {
+  std::optional<int64_t> asked;  ///< none where lengths of edges decide
+  int64_t made = 0;
+  std::string why;  ///< there are not as many; empty where that is not known
+
+  /// To a tenth.
+  bool is_near() const { return !asked || 10 * std::abs(made - *asked) <= *asked; }
+  bool is_met() const { return !asked || made == *asked; }
+  /// Of a count that is not met, without a full stop.
+  std::string words() const {
+    return "the result has " + std::to_string(made) + " vertices instead of " + std::to_string(*asked) +
+           (why.empty() ? "" : ": " + why);
+  }
+};
+
 /// Everything measured on the way.
 struct RemeshReport {
   InputReport input;
@@ -98,6 +115,7 @@ struct RemeshReport {
   SizingReport sizing;
   GapReport gaps;
   FeatureReport features;
+  CountReport count;
   CoherenceReport coherence;     ///< of a run with a frame before
   std::vector<StageTime> times;  ///< in order; a stage that ran more than once has one entry
   std::map<std::string, std::string> digests;

@@ -12,13 +12,12 @@
 namespace isoshell {
 namespace {
 
-void warn(const WithoutInternalFaces& found, RemeshReport& report) {
-  const WorldPoint& at = found.interfaces.front()[0];
+void warn(const WithoutInternalFaces& found, const TriangleSoup& soup, RemeshReport& report) {
   std::ostringstream text;
   text << counted(found.dropped, "triangle") << " between parts left out, solid is on both sides; "
-       << counted(int64_t(found.interfaces.size()), "edge") << " around them, the first at " << at.x << ' ' << at.y
-       << ' ' << at.z << ", " << (found.interfaces.size() == 1 ? "is a curve" : "are curves")
-       << " where creases are kept";
+       << counted(int64_t(found.interfaces.size()), "edge") << " around them, the first at "
+       << readable_place(found.interfaces.front()[0], bounding_box(soup)) << ", "
+       << (found.interfaces.size() == 1 ? "is a curve" : "are curves") << " where creases are kept";
   report.warnings.push_back(text.str());
 }
 
@@ -63,7 +62,7 @@ std::optional<JoinedParts> without_internal_faces(const TriangleSoup& soup, Reme
     joined.soup = with_caps_last(found->mesh, soup);
     joined.topology = measure_topology(joined.soup, context).topology;
     if (!joined.topology.closed || !joined.topology.oriented) return {};
-    warn(*found, report);
+    warn(*found, soup, report);
     joined.interfaces = std::move(found->interfaces);
     return joined;
   });

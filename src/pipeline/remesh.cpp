@@ -2,13 +2,13 @@
 // triangulate (11). Line 10, flood_shell, makes the Voronoi volume that is saved; the dual is taken on the sheet.
 #include "isoshell/remesh.h"
 
-#include <sstream>
 #include <utility>
 
 #include "core/copy_product.h"
 #include "features/cutting/cut_surface.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
+#include "isoshell/readable.h"
 #include "measure/crossing_corners.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/prepared_surface.h"
@@ -173,17 +173,23 @@ void warn_of_mesh(const PreparedSurface& p, const SeededMesh& made, int64_t requ
     report.warnings.push_back(
         std::to_string(report.dual.failed_cells) +
         " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
-  if (made.seeds.size() != requested)
-    report.warnings.push_back("the result has " + std::to_string(made.seeds.size()) + " vertices instead of " +
-                              std::to_string(requested) + ": its topology needs them at this resolution");
+  if (made.seeds.size() > requested) report.count.why = "its topology needs them at this resolution";
   if (report.optimize.self_intersections == 0) return;
   const std::vector<PointQ8> corners = crossing_corners(*OnHost(made.mesh), {});
   const WorldPoint at = p.surface.frame.to_world(corners.empty() ? made.mesh.position[0] : corners.front());
   report.intersection_at = at;
-  std::ostringstream text;
-  text << report.optimize.self_intersections << " pairs of triangles intersect, near " << at.x << ' ' << at.y << ' '
-       << at.z << ": parts of the surface are nearer to one another than its edges are long; ask for more --vertices";
-  report.warnings.push_back(text.str());
+  report.warnings.push_back(std::to_string(report.optimize.self_intersections) +
+                            " pairs of triangles intersect, near " + readable_place(at, p.surface.frame) +
+                            ": parts of the surface are nearer to one another than its edges are long; ask for more "
+                            "--vertices");
+}
+
+/// A run whose edge lengths decide was asked for no number.
+void report_count(const PreparedSurface& p, const TriangleMesh& mesh, RemeshReport& report) {
+  CountReport& count = report.count;
+  if (!p.options.edge_length_world && !p.vertices_of_lengths) count.asked = p.target.vertices;
+  count.made = int64_t(mesh.vertices.size());
+  if (!count.is_met()) report.warnings.push_back(count.words());
 }
 
 /// From relaxed seeds, with all that is tried where the mesh has flaws.
@@ -230,6 +236,7 @@ RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& con
   best.made.seeds = std::move(relaxed.seeds);
   TriangleMesh mesh = triangulate_anyhow(p, best, context);
   const bool is_in_patches = best.report.features.kept;
+  report_count(p, mesh, best.report);
   follow_previous(p.options, best.report.coherence.began_warm && !is_in_patches, mesh, best.report);
   note_digest(p.options, best.report, context, "mesh", mesh);
   return {std::move(mesh), std::move(best.report)};

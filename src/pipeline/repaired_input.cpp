@@ -1,6 +1,11 @@
 // See repaired_input.h.
 #include "pipeline/repaired_input.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cmath>
+#include <functional>
 #include <utility>
 
 #include "pipeline/grid/timed.h"
@@ -30,6 +35,29 @@ TriangleSoup repaired(const TriangleSoup& soup, const Plan& plan, RepairReport& 
   return repair::repair_open_soup(soup, widest_gap_world, report);
 }
 
+/// Of a closed surface, whose volume is then negative; the sign of next to none is rounding.
+bool is_inside_out(const TriangleSoup& soup, double area_world) {
+  constexpr double kLeastVolume = 1e-9;  // of that of a body with such an area
+  const WorldPoint& o = soup.vertices[soup.triangles[0][0]];
+  const auto six_volumes = [&](size_t t) {
+    double c[3][3];
+    for (size_t i = 0; i < 3; ++i) {
+      const WorldPoint& p = soup.vertices[soup.triangles[t][i]];
+      c[i][0] = p.x - o.x, c[i][1] = p.y - o.y, c[i][2] = p.z - o.z;
+    }
+    return c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) + c[0][1] * (c[1][2] * c[2][0] - c[1][0] * c[2][2]) +
+           c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0]);
+  };
+  const double sum = tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<size_t>(0, soup.triangles.size(), 4096), 0.0,
+      [&](const tbb::blocked_range<size_t>& r, double value) {
+        for (size_t t = r.begin(); t < r.end(); ++t) value += six_volumes(t);
+        return value;
+      },
+      std::plus<double>());
+  return sum < -6 * kLeastVolume * area_world * std::sqrt(area_world);
+}
+
 /// The steps, on what the ones before left.
 class Repair {
  public:
@@ -50,6 +78,8 @@ class Repair {
     }
     const InputTopology& input = made_.topology;
     if (input.closed && input.oriented && input.components > 1) unite();
+    if (input.closed && input.oriented && input.components == 1 && is_inside_out(soup(), input.area_world))
+      report_.input.united.turned_components = 1;  // by what follows, which knows one side from the other
     report_.input.united.cut_faces += cut_faces_;
     if (cut_faces_ > 0 && report_.input.united.joined_components == 0)
       report_.input.united.joined_components = input.components;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "isoshell/readable.h"
+
 namespace isoshell {
 namespace {
 
@@ -54,9 +56,7 @@ std::vector<double> wanted_lengths(const PreparedSurface& p, Context& context) {
 
 std::string near_vertex(const Sheet& sheet, size_t v) {
   const WorldPoint at = sheet.frame.to_world(sheet.position.to_host()[int64_t(v)]);
-  std::ostringstream text;
-  text << "near (" << at.x << ", " << at.y << ", " << at.z << ")";
-  return text.str();
+  return "near " + readable_place(at, sheet.frame);
 }
 
 /// Lengths within what the grid and the energy carry; `cell_of_length` is the width of cells over lengths.

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "core/copy_product.h"
 #include "features/mesh/curve_paths.h"
+#include "geometry/box.h"
 #include "geometry/world_vector.h"
 #include "isoshell/readable.h"
 
@@ -65,12 +65,12 @@ void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, Reme
     if (!at) at = &mesh.vertices[curve.vertex.front()];
   }
   if (!at) return;
-  std::ostringstream text;
-  text << counted(edges, "edge") << " of more than two faces, or of two that disagree about the outside, the first at "
-       << at->x << ' ' << at->y << ' ' << at->z
-       << ": a result that is a manifold cannot have them, and follows the surface around";
+  const std::string text = counted(edges, "edge") +
+                           " of more than two faces, or of two that disagree about the outside, the first at " +
+                           readable_place(*at, box_of(mesh.vertices)) +
+                           ": a result that is a manifold cannot have them, and follows the surface around";
   std::vector<std::string>& all = report.warnings;
-  if (std::find(all.begin(), all.end(), text.str()) == all.end()) all.push_back(text.str());
+  if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
 }
 
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network) {
@@ -83,16 +83,17 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
   return curves;
 }
 
-void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report) {
+void report_left_out(const std::vector<LostCurve>& curves, const LatticeFrame& frame, RemeshReport& report) {
   std::map<std::string, std::vector<const LostCurve*>> by_reason;
   for (const LostCurve& curve : curves) by_reason[curve.reason].push_back(&curve);
   for (const auto& [reason, of_it] : by_reason) {
-    const WorldPoint& at = of_it.front()->at;
-    std::ostringstream text;
-    text << counted(int64_t(of_it.size()), "crease is", "creases are") << " not kept, the first near " << at.x << ' '
-         << at.y << ' ' << at.z << ": "
-         << (reason == kEdgesTooLong ? "the edges are too long for them; ask for more --vertices" : reason);
-    report.warnings.push_back(text.str());
+    report.warnings.push_back(
+        counted(int64_t(of_it.size()), "crease is", "creases are") + " not kept, the first near " +
+        readable_place(of_it.front()->at, frame) + ": " +
+        (reason == kEdgesTooLong
+             ? "the edges are too long for them; ask for more --vertices, or, where they are noise, "
+               "for fewer creases by --features DEG or --features off"
+             : reason));
   }
   report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
 }

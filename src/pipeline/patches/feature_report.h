@@ -27,7 +27,7 @@ void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, Reme
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);
 
 /// Says that some of the curves are not kept while others are, and warns.
-void report_left_out(const std::vector<LostCurve>& curves, RemeshReport& report);
+void report_left_out(const std::vector<LostCurve>& curves, const LatticeFrame& frame, RemeshReport& report);
 
 /// Warns of poor triangles that are left because looking at all of them would take too long.
 void warn_of_left_alone(int64_t triangles, RemeshReport& report);

@@ -93,7 +93,7 @@ void report_kept(const CutSurface& cut, RemeshReport& report) {
   }
   double& kept_length_world = report.features.kept_length_world;  // edges of three faces may be kept, too
   kept_length_world = std::min(kept_length_world, report.features.length_world);
-  report_left_out(lost, report);
+  report_left_out(lost, cut.frame, report);
 }
 
 /// Says which attributes have none that could be kept.
@@ -248,9 +248,7 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetW
   if (const int64_t crossings = report.optimize.self_intersections; crossings > 0)
     report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
                               " where the input's own triangles do");
-  if (const int64_t vertices = made_here.joined.mesh.position.size(); vertices != cut.seeds)
-    report.warnings.push_back("the result has " + std::to_string(vertices) + " vertices instead of " +
-                              std::to_string(cut.seeds) + ": its curves need them, or leave no room for more");
+  report.count.why = "its curves need them, or leave no room for more";
   warn_of_left_alone(made_here.joined.left_alone, report);
   if (cut.source->is_sheet) {
     const PreparedSurface& whole = sheet.get(report);

@@ -91,11 +91,8 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
   mesh.regions = without_labels(p.walls->regions);
   const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut);
   for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);
-  if (const auto vertices = int64_t(mesh.vertices.size());
-      vertices != p.target.vertices && !p.options.edge_length_world)
-    report.warnings.push_back(
-        "the result has " + std::to_string(vertices) + " vertices instead of " + std::to_string(p.target.vertices) +
-        (vertices > p.target.vertices ? ": the curves between its regions, and walls close together, need them" : ""));
+  if (int64_t(mesh.vertices.size()) > p.target.vertices)
+    report.count.why = "the curves between its regions, and walls close together, need them";
   warn_of_left_alone(joined.left_alone, report);
   measure_edges(cut, joined, report.sizing);
   report.features.vertices = joined.on_curves;
@@ -138,7 +135,10 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
     std::optional<JoinedPatches> coarse = coarsened(p, in_patches.seeds.count, report, context);
     report.warnings.push_back(std::string(coarse ? kCoarsened : "the walls of regions are as they came in: ") +
                               why_not);
-    if (!coarse) return walls_themselves(*p.walls);
+    if (!coarse) {
+      report.count.why = "the walls of its regions are as they came in";
+      return walls_themselves(*p.walls);
+    }
     joined = std::move(*coarse);
   }
   return mesh_of(p, *p.cut, std::move(joined), report, context);

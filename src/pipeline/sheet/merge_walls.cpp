@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/copy_product.h"
+#include "isoshell/readable.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/thin_walls.h"
@@ -46,8 +47,8 @@ void report_merge(const MergedWalls& merged, const std::vector<PointQ8>& points,
                         report.sheet.topology.genus == input.genus;
   std::ostringstream text;
   text << "walls nearer to one another than edges can follow were merged, grown by "
-       << merged.grown_vox * p.surface.frame.voxel_size << " to each side, near " << report.merged.at.x << ' '
-       << report.merged.at.y << ' ' << report.merged.at.z << "; more --vertices tell them apart";
+       << merged.grown_vox * p.surface.frame.voxel_size << " to each side, near "
+       << readable_place(report.merged.at, p.surface.frame) << "; more --vertices tell them apart";
   report.warnings.push_back(text.str());
 }
 
