@@ -85,4 +85,10 @@ struct MeshCensus {
 /// for 32-bit half-edges, and one that names a vertex that is not there or not finite; interrupted.
 MeshCensus take_census(const TriangleMesh& mesh, Context& context, int64_t dropped = 0);
 
+/// The pairs alone. Throws: as take_census.
+int64_t count_intersecting_pairs(const TriangleMesh& mesh, Context& context);
+
+/// Positions and triangles of a mesh, vertices of one position as one.
+TriangleMesh with_joined_vertices(const TriangleMesh& mesh);
+
 }  // namespace isoshell

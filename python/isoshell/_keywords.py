@@ -18,6 +18,7 @@ INSTEAD = {  # of options that only the command has
     "version": "see isoshell.__version__",
     "dry_run": "call isoshell.estimate",
 }
+PLACES = ("recenter",)  # of three numbers
 OF_SEQUENCES = "sequences are meshed by isoshell.remesh_sequence"
 
 class Kind(NamedTuple):
@@ -57,7 +58,7 @@ def keywords_of(options: dict[str, Any]) -> Keywords:
         elif value is None:
             continue
         elif not kind.is_flag:
-            text = _text(name, value)
+            text = text_of(name, value)
             if text:
                 words.append((option, text))
         elif not isinstance(value, bool):
@@ -72,7 +73,11 @@ def _plain(value: Any) -> Any:
     return value.item() if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0 else value
 
 
-def _text(name: str, value: Any) -> str:
+def text_of(name: str, given: Any) -> str:
+    """A value as the command takes it; None is empty."""
+    value = _plain(given)
+    if value is None:
+        return ""
     if isinstance(value, (float, int)) and not isinstance(value, bool):
         return repr(value)
     if isinstance(value, (str, os.PathLike)):
@@ -81,6 +86,8 @@ def _text(name: str, value: Any) -> str:
         return "\n".join(f"{_key(name, key)}={_plain(part)!r}" for key, part in value.items())
     if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):
         return "none" if name == "attributes" and not value else ",".join(value)
+    if name in PLACES and hasattr(value, "__len__") and len(value) == 3:
+        return ",".join(repr(float(number)) for number in value)
     raise Error(f"{name} is {value!r}; it must be a number, text or a list of texts", stage="options")
 
 

@@ -63,6 +63,8 @@ class Options(TypedDict, total=False):
         save_voronoi: also write the Voronoi volume, to resume from.
         split_regions: also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the
             format of OUTPUT.
+        recenter: write meshes with this place at the origin, auto: round numbers near the middle of the result; for
+            formats whose numbers are too coarse far from the origin, as STL.
         stop_after: stop after this stage; OUTPUT is its .vdb file.
         stats: write all statistics as JSON; - writes to standard output.
         report: also write a page that shows the result beside the input, with all that was measured; by the Python
@@ -74,9 +76,10 @@ class Options(TypedDict, total=False):
             manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, regions (each is closed, walls are
             shared, no triangles intersect), adjacency (regions that touch in the input share a wall, and no others do),
             min-angle=DEG (smallest angle in degrees), max-deviation=W (distance between result and input in world
-            units), normal-deviation=DEG (mean angle between normals of result and input), features (no curve of the
-            input is lost), kept-edges=PERCENT (of a frame that follows another: edges that it keeps, at least), born=N
-            (of a frame that follows another: vertices that are new, at most).
+            units), normal-deviation=DEG (mean angle between normals of result and input), count (as many vertices as
+            were asked for, to a tenth), features (no curve of the input is lost), kept-edges=PERCENT (of a frame that
+            follows another: edges that it keeps, at least), born=N (of a frame that follows another: vertices that are
+            new, at most).
         allow_intersections: exit with status 0, not 6, where the result intersects itself.
         device: device to run on [auto].
         threads: number of CPU threads [all].
@@ -118,6 +121,7 @@ class Options(TypedDict, total=False):
     save_shell: Optional[Path]
     save_voronoi: Optional[Path]
     split_regions: Optional[Path]
+    recenter: Optional[Union[str, Sequence[float]]]
     stop_after: Optional[Literal["shell", "voronoi"]]
     stats: Optional[Union[bool, Path]]
     report: Optional[Path]

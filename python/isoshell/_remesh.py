@@ -65,7 +65,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     made = _isoshell.remesh(place, start, keywords, "" if is_stage else target, measure_all, progress, listener(given))
     result = result_of(made, start, keywords, source, volumes)
     if is_stage:
-        result.save(target, overwrite=given.get("force") is True)
+        result.save(target, overwrite=given.get("force") is True, recenter=given.get("recenter"))
     if options.get("report"):
         _report.write(result, source_of(source), os.fsdecode(str(options["report"])))
     return checked(result)

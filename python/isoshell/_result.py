@@ -7,7 +7,8 @@ import os
 from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 from . import _isoshell
-from ._errors import Error
+from ._errors import Error, warn
+from ._keywords import text_of
 from ._labels import label_of
 from ._usd import Origin, is_usd
 
@@ -141,23 +142,32 @@ class Result:
         """Sixteen hexadecimal digits: the same for the same vertices and faces."""
         return self._made.digest
 
-    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False,
+             recenter: Union[str, Sequence[float], None] = None) -> None:
         """Write the mesh with its attributes, as far as the format that the path's ending names has them.
+
+        Args:
+            path: file.
+            overwrite: replace a file that is there.
+            recenter: three numbers that are subtracted from what is written, or "auto", which takes round ones near the
+                middle of the mesh. A RunWarning names them. For formats whose numbers are too coarse far from the
+                origin, as STL.
 
         A stage of USD (.usda, .usdc, .usd, .usdz; needs usd-core) also names the stage files that the run saved, but
         in packages: see isoshell.usd.write, which takes more.
 
         Raises:
-            Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True; of code
-                USAGE for an ending that names no format.
+            Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True, or the
+                format's numbers do not hold the triangles; of code USAGE for an ending that names no format.
         """
         if is_usd(path):
             from . import usd
 
             package = os.fsdecode(path).lower().endswith(".usdz")
-            usd.write(path, self, volumes=[] if package else self._volumes, overwrite=overwrite)
+            usd.write(path, self, volumes=[] if package else self._volumes, overwrite=overwrite, recenter=recenter)
         else:
-            self._made.save(os.fspath(path), overwrite)
+            for text in self._made.save(os.fspath(path), overwrite, text_of("recenter", recenter)):
+                warn(text)
 
     def to_trimesh(self) -> trimesh.Trimesh:
         """A trimesh.Trimesh with copies of vertices and faces, and the colours of vertices. Needs trimesh."""

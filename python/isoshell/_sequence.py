@@ -178,7 +178,8 @@ class _Sequence:
         result = result_of(made, start, keywords, source, stage_files(options))
         result.frame = frame
         if self._target and not self._output and self._stage is None:
-            result.save(_path_at(self._target, frame), overwrite=options.get("force") is True)
+            result.save(_path_at(self._target, frame), overwrite=options.get("force") is True,
+                        recenter=options.get("recenter"))
         return result
 
     def _go_on_from(self, chain: _isoshell.Frames, frame: Number, source: Callable[[], Any]) -> None:
@@ -259,6 +260,8 @@ class _Sequence:
         from ._usd._samples import SampledStage
 
         check_stage(target, self._options, [])
+        if self._options.get("recenter") is not None:
+            raise Error(f"recenter: not where all frames are {target}, whose mesh has a transform", stage="options")
         return SampledStage(target)
 
 

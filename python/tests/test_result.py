@@ -195,3 +195,35 @@ def test_attributes_that_do_not_fit_are_refused_by_name(box, attributes):
     name = next(name for key, values in attributes.items() if key != "labels" for name in values)
     with pytest.raises(isoshell.Error, match=f"'{name}'"):
         isoshell.remesh(isoshell.Mesh(vertices, faces, **attributes), **SMALL)
+
+
+def far(ball):
+    return np.asarray(ball[0]) + (500_000, 5_400_000, 300), ball[1]
+
+
+def test_a_far_result_is_saved_less_an_offset_that_a_warning_names(tmp_path, ball):
+    result = isoshell.remesh(far(ball), vertices=1000, device="cpu")
+    for recenter in ("auto", (500_000, 5_400_000, 300), np.array([500_000, 5_400_000, 300])):
+        with pytest.warns(isoshell.RunWarning, match="500000 5400000 300 is subtracted from the positions"):
+            result.save(tmp_path / "a.stl", overwrite=True, recenter=recenter)
+        isoshell.mesh_info(tmp_path / "a.stl", require="closed,manifold,no-self-intersections")
+    with pytest.raises(isoshell.Error, match="recenter"):
+        result.save(tmp_path / "b.stl", recenter=(1, 2))
+
+
+def test_a_file_whose_numbers_do_not_hold_the_result_is_refused(tmp_path, ball):
+    result = isoshell.remesh((np.asarray(ball[0]) + (1e8, 0, 0), ball[1]), vertices=1000, device="cpu")
+    with pytest.raises(isoshell.Error, match="32-bit floats do not hold the mesh") as refused:
+        result.save(tmp_path / "a.stl")
+    assert refused.value.code == isoshell.ErrorCode.UNWRITABLE_OUTPUT
+    assert not (tmp_path / "a.stl").exists()
+    with pytest.raises(isoshell.Error, match="its numbers are too coarse") as missed:
+        isoshell.remesh((np.asarray(ball[0]) + (1e8, 0, 0), ball[1]), vertices=1000, device="cpu",
+                        output=tmp_path / "b.stl")
+    assert len(missed.value.result.vertices) == 1000
+
+
+def test_the_number_of_vertices_is_a_requirement(ball):
+    assert isoshell.remesh(ball, vertices=300, require="count", device="cpu").report["counts"]["asked"] == 300
+    with pytest.raises(isoshell.Error, match="require count compares"):
+        isoshell.remesh(ball, edge_length=1, require="count", device="cpu")

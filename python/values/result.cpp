@@ -1,6 +1,8 @@
 #include "values/result.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -9,6 +11,7 @@
 #include "isoshell/advanced/digest.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/region_census.h"
+#include "isoshell/run/run.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
 
@@ -19,10 +22,24 @@ namespace {
 
 const TriangleMesh& mesh_of(nb::handle self) { return nb::cast<const RunResult&>(self).mesh; }
 
-void save(const RunResult& result, const std::string& path, bool overwrite) {
+/// What "auto" or three numbers subtract; none where that is not asked for.
+std::optional<std::array<double, 3>> offset(const RunResult& result, const std::string& recenter) {
+  if (recenter.empty()) return {};
+  const std::optional<WorldPoint> given = parse_recenter(recenter).offset_world;
+  const WorldPoint by = given ? *given : offset_to_origin(result.mesh);
+  return std::array<double, 3>{by.x, by.y, by.z};
+}
+
+/// Result: what there is to warn of.
+std::vector<std::string> save(const RunResult& result, const std::string& path, bool overwrite,
+                              const std::string& recenter) {
   MeshWriteOptions options;
   options.overwrite = overwrite;
+  if (const auto by = offset(result, recenter)) options.offset_world = {(*by)[0], (*by)[1], (*by)[2]};
   write_mesh(path, result.mesh, options);
+  const std::string format = named_output(path, "", StopAfter::mesh).format;
+  return warnings_of_files({{path, format, positions_in_file(result.mesh, format, options.offset_world).held}},
+                           offset_to_origin(result.mesh));
 }
 
 /// Vertices, faces and attributes of one region's boundary.
@@ -58,7 +75,10 @@ void bind_result(nb::module_& m) {
       .def("region", region, nb::arg("label"),
            nb::sig("def region(self, label: int) -> tuple[typing.Any, typing.Any, list[tuple[str, str, typing.Any, "
                    "list[str]]]]"))
-      .def("save", save, nb::arg("path"), nb::arg("overwrite"), nb::call_guard<nb::gil_scoped_release>());
+      .def("offset", offset, nb::arg("recenter"),
+           nb::sig("def offset(self, recenter: str) -> tuple[float, float, float] | None"))
+      .def("save", save, nb::arg("path"), nb::arg("overwrite"), nb::arg("recenter"),
+           nb::call_guard<nb::gil_scoped_release>());
 }
 
 }  // namespace isoshell::python

@@ -7,47 +7,58 @@ namespace isoshell {
 
 TriangleSoup read_ply(const MeshSource&);
 PointCloud read_ply_points(const MeshSource&);
-void write_ply(OutputFile&, const TriangleMesh&, const MeshWriteOptions&);
+void write_ply(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
+Placement place_in_ply(const TriangleMesh&, const WorldPoint&);
 std::string what_ply_lacks(const Attribute&);
 TriangleSoup read_obj(const MeshSource&);
-void write_obj(OutputFile&, const TriangleMesh&, const MeshWriteOptions&);
+void write_obj(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
 std::string what_obj_lacks(const Attribute&);
 TriangleSoup read_stl(const MeshSource&);
-void write_stl(OutputFile&, const TriangleMesh&, const MeshWriteOptions&);
+void write_stl(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
 TriangleSoup read_off(const MeshSource&);
-void write_off(OutputFile&, const TriangleMesh&, const MeshWriteOptions&);
+void write_off(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
 TriangleSoup read_gltf(const MeshSource&);
-void write_glb(OutputFile&, const TriangleMesh&, const MeshWriteOptions&);
-void write_gltf(OutputFile&, const TriangleMesh&, const MeshWriteOptions&);
+void write_glb(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
+void write_gltf(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
+Placement place_in_gltf(const TriangleMesh&, const WorldPoint&);
 std::string what_gltf_lacks(const Attribute&);
 PointCloud read_xyz(const MeshSource&);
 PointCloud read_pcd(const MeshSource&);
 
 namespace {
 
-FormatRow of_meshes(const char* name, TriangleSoup (*read)(const MeshSource&),
-                    void (*write)(OutputFile&, const TriangleMesh&, const MeshWriteOptions&),
+using Write = void(OutputFile&, const TriangleMesh&, const Placement&, const MeshWriteOptions&);
+
+FormatRow of_meshes(const char* name, TriangleSoup (*read)(const MeshSource&), Write* write,
+                    Placement (*place)(const TriangleMesh&, const WorldPoint&),
                     std::string (*lacks)(const Attribute&)) {
-  FormatRow row{{name}, read, nullptr, write, lacks};
+  FormatRow row{{name}, read, nullptr, write, place, lacks};
   row.format.reads_mesh = row.format.writes_mesh = true;
   return row;
 }
 
 FormatRow of_ply() {
-  FormatRow row = of_meshes("ply", read_ply, write_ply, what_ply_lacks);
+  FormatRow row = of_meshes("ply", read_ply, write_ply, place_in_ply, what_ply_lacks);
   row.read_points = read_ply_points;
   row.format.reads_points = row.format.holds_edges = row.format.holds_textures = row.format.holds_regions = true;
   return row;
 }
 
 FormatRow of_obj() {
-  FormatRow row = of_meshes("obj", read_obj, write_obj, what_obj_lacks);
+  FormatRow row = of_meshes("obj", read_obj, write_obj, place_in_doubles, what_obj_lacks);
   row.format.holds_regions = true;
   return row;
 }
 
-FormatRow of_gltf(const char* name, void (*write)(OutputFile&, const TriangleMesh&, const MeshWriteOptions&)) {
-  FormatRow row = of_meshes(name, read_gltf, write, what_gltf_lacks);
+FormatRow of_stl() {
+  FormatRow row = of_meshes("stl", read_stl, write_stl, place_in_floats,
+                            [](const Attribute&) -> std::string { return "STL files are written without attributes"; });
+  row.format.joins_vertices = true;
+  return row;
+}
+
+FormatRow of_gltf(const char* name, Write* write) {
+  FormatRow row = of_meshes(name, read_gltf, write, place_in_gltf, what_gltf_lacks);
   row.format.holds_gltf_materials = row.format.holds_regions = true;
   return row;
 }
@@ -69,9 +80,8 @@ const std::vector<FormatRow>& rows() {
   static const std::vector<FormatRow> all = {
       of_ply(),
       of_obj(),
-      of_meshes("stl", read_stl, write_stl,
-                [](const Attribute&) -> std::string { return "STL files are written without attributes"; }),
-      of_meshes("off", read_off, write_off,
+      of_stl(),
+      of_meshes("off", read_off, write_off, place_in_doubles,
                 [](const Attribute&) -> std::string { return "OFF files are written without attributes"; }),
       of_gltf("glb", write_glb),
       of_gltf("gltf", write_gltf),

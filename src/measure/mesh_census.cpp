@@ -10,6 +10,7 @@
 #include "core/watched.h"
 #include "geometry/box.h"
 #include "geometry/triangle_list.h"
+#include "geometry/weld.h"
 #include "geometry/world_vector.h"
 #include "measure/complex_counts.h"
 #include "measure/self_intersections.h"
@@ -145,6 +146,19 @@ MeshCensus take_census(const TriangleMesh& mesh, Context& context, int64_t dropp
     for (uint32_t v = 0; v < first_at.size(); ++v) census.counts.duplicate_vertices += first_at[v] != v;
     return census;
   });
+}
+
+int64_t count_intersecting_pairs(const TriangleMesh& mesh, Context& context) {
+  check(mesh);
+  return find_self_intersections(mesh, first_at_position(mesh.vertices), context).pairs;
+}
+
+TriangleMesh with_joined_vertices(const TriangleMesh& mesh) {
+  WeldedVertices welded = weld_vertices(mesh.vertices, mesh.triangles);
+  TriangleMesh joined{std::move(welded.position), mesh.triangles};
+  for (auto& t : joined.triangles)
+    for (uint32_t& v : t) v = welded.place[v];
+  return joined;
 }
 
 }  // namespace isoshell

@@ -1,6 +1,7 @@
 // What a frame hands to the next one (see run/sequence.h).
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/run/sequence.h"
+#include "run/measures.h"
 
 namespace isoshell {
 namespace {
@@ -38,7 +39,9 @@ RunResult FrameChain::run(Input input, RunRequest request, Context& context) {
   TriangleMesh mesh;
   mesh.vertices = made.mesh.vertices;
   mesh.triangles = made.mesh.triangles;
-  round_as_in_ply(mesh);
+  const WorldPoint offset = request.output.recenter.offset();
+  mesh.vertices = positions_in_file(mesh, "ply", offset).vertices;
+  move_by(offset, mesh.vertices);
   const FeatureReport& features = made.record.report.features;
   const bool had_curves = features.kept && features.on_sheet.empty();
   last_ = std::make_unique<Frame>(Frame{std::move(surface), std::move(mesh), had_curves, nullptr});

@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "gates", message); }
 
-enum class GateOf { mesh, distance, curves, frame, input };
+enum class GateOf { mesh, distance, curves, frame, input, request };
 
 /// A gate. Flags hold or not, others have a limit, or the number that must be.
 struct GateRow {
@@ -133,13 +133,18 @@ std::string miss_normal_deviation(const Gates& g, const Measured& m) {
               distance.normal_from_reference.mean_deg, " from the result's");
 }
 
+std::string miss_count(const Gates&, const Measured& m) {
+  if (!m.count || !m.count->asked) return "no number of vertices was asked for";
+  return m.count->is_near() ? "" : m.count->words();
+}
+
 std::string miss_features(const Gates&, const Measured& m) {
   if (!m.features || m.features->lost.empty()) return m.features ? m.features->given_up : "";
   const std::vector<LostCurve>& lost = m.features->lost;
   const LostCurve& first = lost.front();
   return text(counted(int64_t(lost.size()), "curve"), " of the input ", lost.size() == 1 ? "is" : "are",
-              " lost; the first, a ", first.kind, " of length ", first.length_world, " from ", first.at.x, ' ',
-              first.at.y, ' ', first.at.z, ": ", first.reason);
+              " lost; the first, a ", first.kind, " of length ", first.length_world, " from ",
+              readable_place(first.at, m.frame), ": ", first.reason);
 }
 
 std::string miss_kept_edges(const Gates& g, const Measured& m) {
@@ -190,6 +195,7 @@ const std::vector<GateRow>& rows() {
        {0, 90},
        GateOf::distance,
        miss_normal_deviation},
+      {"count", "", "as many vertices as were asked for, to a tenth", &Gates::count, {}, GateOf::request, miss_count},
       {"features", "", "no curve of the input is lost", &Gates::features, {}, GateOf::curves, miss_features},
       {"kept-edges",
        "PERCENT",
@@ -304,6 +310,7 @@ void check_gates_of_mesh(const Gates& gates, bool has_reference) {
     const std::string requested = std::string("--require ") + row.name;
     if (row.of == GateOf::curves) refuse(requested + " is for a run that keeps curves; leave it out");
     if (row.of == GateOf::input) refuse(requested + " is for a run, which knows the input's regions; leave it out");
+    if (row.of == GateOf::request) refuse(requested + " is for a run, which knows what was asked for; leave it out");
     if (row.of == GateOf::frame) refuse(requested + " is for the frames of a sequence; leave it out");
     if (row.of == GateOf::distance && !has_reference)
       refuse(requested + " compares with a reference; give one by --ref");
@@ -331,12 +338,16 @@ std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& recor
   const std::optional<RegionChanges> changes = region_changes_of(record);
   if (changes) m.region_changes = &*changes;
   m.features = &report.features;
+  m.count = &report.count;
+  m.frame = report.grid.frame;
   if (record.options.previous) m.coherence = &report.coherence;
   std::vector<std::string> missed = missed_gates(gates, m);
   const bool is_asked = gates.no_self_intersections || gates.regions;
   if (pairs > 0 && !gates.allow_intersections && !is_asked && !are_the_inputs(record))
     missed.insert(missed.begin(), "the result intersects itself in " + counted(pairs, "pair", "pairs") +
                                       " of triangles; --allow-intersections takes it as it is");
+  for (const WrittenFile& file : record.files)
+    if (file.held.lost_triangles > 0) missed.insert(missed.begin(), words_of_lost(file));
   return missed;
 }
 

@@ -1,13 +1,24 @@
 // See measures.h.
 #include "run/measures.h"
 
+#include <utility>
+
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/gaps.h"
+#include "isoshell/io/file_format.h"
+#include "isoshell/mesh_census.h"
 #include "run/warnings.h"
 
 namespace isoshell {
 
 namespace {
+
+/// A file without numbers of vertices.
+bool joins_vertices(const RunRecord& record) {
+  if (record.files.empty()) return false;
+  const FileFormat* const format = find_format(record.files.front().format);
+  return format && format->joins_vertices;
+}
 
 /// What should not be of a result, whatever the input is; empty where all is well.
 std::string flaw_of(const RunRecord& record) {
@@ -26,17 +37,40 @@ std::optional<RegionChanges> region_changes_of(const RunRecord& record) {
   return find_region_changes(input.walls, input.absorbed_walls, input.region_names, *record.regions);
 }
 
+std::vector<WorldPoint> put_as_in_file(TriangleMesh& mesh, RunRecord& record) {
+  record.vertices = int64_t(mesh.vertices.size());
+  record.triangles = int64_t(mesh.triangles.size());
+  OutputRequest& output = record.output;
+  if (output.recenter.is_asked && !output.recenter.offset_world) output.recenter.offset_world = offset_to_origin(mesh);
+  if (output.path.empty()) return mesh.vertices;
+  FilePositions in_file = positions_in_file(mesh, output.format, output.recenter.offset());
+  record.files.push_back({output.path, output.format, in_file.held});
+  return std::exchange(mesh.vertices, std::move(in_file.vertices));
+}
+
+bool is_coarse(const RunRecord& record) { return !record.files.empty() && record.files.front().held.is_coarse(); }
+
+void move_by(const WorldPoint& offset, std::vector<WorldPoint>& positions) {
+  if (offset.x == 0 && offset.y == 0 && offset.z == 0) return;
+  for (WorldPoint& p : positions) p = {p.x + offset.x, p.y + offset.y, p.z + offset.z};
+}
+
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context) {
   record.topology = check_mesh(mesh);
   record.quality = measure_quality(mesh);
-  if (!mesh.regions.empty()) record.regions = take_region_census(mesh, context);
+  if (!mesh.regions.empty())
+    record.regions = take_region_census(mesh, context);
+  else if (record.report.is_optimized)
+    record.report.optimize.self_intersections = count_intersecting_pairs(mesh, context);
   std::vector<std::string> warnings;
   const std::string flaw = flaw_of(record);
+  if (joins_vertices(record)) record.topology = check_mesh(with_joined_vertices(mesh));
   if (!flaw.empty() && record.report.dual.failed_cells == 0)
     warnings.push_back(flaw + ", which should not be: please report the input");
   if (const std::optional<RegionChanges> changes = region_changes_of(record); changes && changes->any())
     warnings.push_back(words_of(*changes));
-  for (std::string& text : warnings_of_quality(*record.quality)) warnings.push_back(std::move(text));
+  if (!is_coarse(record))  // which is a reason of its own
+    for (std::string& text : warnings_of_quality(record)) warnings.push_back(std::move(text));
   return warnings;
 }
 

@@ -8,8 +8,17 @@
 
 namespace isoshell {
 
-/// Topology, quality and regions, on the triangles alone: no stage's word is taken for them. Result: what there is to
-/// warn of. Throws: interrupted.
+/// Puts the vertices where the file of the output has them, less its offset, and notes that file in the record, and how
+/// many vertices and triangles there are. Result: where they were. Throws: as positions_in_file().
+std::vector<WorldPoint> put_as_in_file(TriangleMesh& mesh, RunRecord& record);
+
+/// Whether that file's numbers are.
+bool is_coarse(const RunRecord& record);
+
+void move_by(const WorldPoint& offset, std::vector<WorldPoint>& positions);
+
+/// Topology, quality, intersections and regions, on the triangles alone: no stage's word is taken for them. Result:
+/// what there is to warn of. Throws: interrupted.
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context);
 
 /// Distances from the surface as it was meshed, of regions from their walls as they are in `soup`, and of borders that

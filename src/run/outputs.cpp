@@ -2,13 +2,16 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include "core/file_format.h"
@@ -150,8 +153,23 @@ Features possible_features(const RemeshOptions& options, const RunRequest& r) {
       "instead");
 }
 
+Recenter parse_recenter(const std::string& text) {
+  if (text == "auto") return {true};
+  std::vector<double> numbers;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) numbers.push_back(parse_real("--recenter", part));
+  const bool is_place = numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(),
+                                                           [](double number) { return std::isfinite(number); });
+  if (!is_place) refuse_use("--recenter is '" + text + "'; it must be auto or three finite numbers, as 500000,0,-20");
+  return {true, WorldPoint{numbers[0], numbers[1], numbers[2]}};
+}
+
 void check_request(const RunRequest& r) {
   check_method(r.options);
+  if (r.output.recenter.is_asked && r.stop_after != StopAfter::mesh)
+    refuse_use("--recenter is for files of meshes; leave out --stop-after");
+  if (r.gates.count && (r.options.values.edge_length_world || r.options.lengths_decide()))
+    refuse_use("--require count compares with the vertices that were asked for; give --vertices, or leave it out");
   if (r.gates.any() && r.stop_after != StopAfter::mesh) refuse_use("--require needs a mesh; leave out --stop-after");
   if (!r.report.empty() && r.stop_after != StopAfter::mesh) refuse_use("--report needs a mesh; leave out --stop-after");
   if (!r.split_regions.empty() && r.stop_after != StopAfter::mesh)
@@ -218,12 +236,22 @@ std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, cons
   return kept;
 }
 
-void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite) {
+void write_output(const TriangleMesh& mesh, bool overwrite, bool curve_edges, const OutputRequest& output) {
+  MeshWriteOptions options{output.format, overwrite, curve_edges, output.recenter.offset()};
+  options.may_lose_triangles = true;  // a gate says it
+  write_mesh(output.path, mesh, options);
+}
+
+void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite, RunRecord& record) {
   std::error_code code;
   const fs::path folder = folder_of(file.path);
   fs::create_directory(folder, code);
   if (code) refuse(folder.string() + ": cannot be made: " + code.message());
-  write_mesh(file.path, region_of(mesh, file.label), {"", overwrite});
+  const TriangleMesh region = region_of(mesh, file.label);
+  const WorldPoint offset = record.output.recenter.offset();
+  const std::string format = format_of_path(file.path);
+  record.files.push_back({file.path, format, positions_in_file(region, format, offset).held});
+  write_mesh(file.path, region, {format, overwrite, false, offset, true});
 }
 
 void write_text(const std::string& path, const std::string& text) {

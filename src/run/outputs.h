@@ -38,8 +38,12 @@ std::vector<RegionFile> checked_region_files(const RunRequest& request, const Fa
 std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, const TriangleMesh& mesh,
                                       const std::function<void(const std::string&)>& warn);
 
-/// The region's closed mesh, in its folder, which is made where it is not there. Throws: as write_mesh().
-void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite);
+/// To the output. Throws: as write_mesh().
+void write_output(const TriangleMesh& mesh, bool overwrite, bool curve_edges, const OutputRequest& output);
+
+/// The region's closed mesh, less the offset of the output, in its folder, which is made where it is not there, and its
+/// file in the record. Throws: as write_mesh().
+void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite, RunRecord& record);
 
 /// A file that appears whole, or standard output. It replaces one that is there: checks have refused what it may not.
 void write_text(const std::string& path, const std::string& text);

@@ -7,6 +7,7 @@
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "isoshell/readable.h"
+#include "run/measures.h"
 
 namespace isoshell {
 namespace {
@@ -89,7 +90,9 @@ class Sequence {
     found_.reset();
     if (!request_.is_coherent) return;
     Input input = read(one);
-    chain_.go_on_from(std::move(input.soup), read_mesh(one.output.path));
+    TriangleSoup mesh = read_mesh(one.output.path);
+    move_by(one.output.recenter.offset(), mesh.vertices);
+    chain_.go_on_from(std::move(input.soup), std::move(mesh));
     set_velocity(one);
   }
 
@@ -124,6 +127,8 @@ void check_sequence(const SequenceRequest& request) {
   if (!every.split_regions.empty()) refuse("--split-regions is for one frame; leave out --frames");
   if (request.resume && every.output.format != "ply")
     refuse("--resume needs PLY files, which keep the numbers of vertices and their positions exactly");
+  if (every.output.recenter.is_asked && !every.output.recenter.offset_world)
+    refuse("--recenter auto takes an offset for each frame; give one for all of them, as --recenter 500000,0,0");
   std::vector<std::string> missing, there;
   for (const int64_t frame : frame_numbers(request.frames)) {
     const RunRequest one = request_of_frame(request, frame);

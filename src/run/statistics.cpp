@@ -87,6 +87,18 @@ Json input_json(const RunRecord& r) {
           {"area", t.area_world}};
 }
 
+/// The numbers of its file, whose positions are those that the result is measured on.
+Json output_json(const RunRecord& r) {
+  Json j = {{"path", r.output.path}, {"format", r.output.format}};
+  if (r.files.empty() || r.files.front().path != r.output.path) return j;
+  const HeldPositions& held = r.files.front().held;
+  j["bits"] = held.is_single ? 32 : 64;
+  j["offset"] = point(held.offset_world);
+  j["moved"] = held.moved_world;
+  j["lost_triangles"] = held.lost_triangles;
+  return j;
+}
+
 Json grid_json(const GridReport& r) {
   return {{"resolution", r.frame.resolution},
           {"voxel_size", r.frame.voxel_size},
@@ -99,6 +111,7 @@ Json counts_json(const RunRecord& r) {
   return {{"sites", r.report.grid.sites},
           {"active_voxels", r.report.grid.active_voxels > 0 ? Json(r.report.grid.active_voxels) : Json()},
           {"leaves", r.report.grid.leaves > 0 ? Json(r.report.grid.leaves) : Json()},
+          {"asked", r.report.count.asked ? Json(*r.report.count.asked) : Json()},
           {"sheet_vertices", r.report.sheet.vertices},
           {"seeds", r.report.seeds},
           {"vertices", known(r.vertices)},
@@ -308,7 +321,7 @@ std::string statistics_json(const RunRecord& r) {
   j["version"] = ISOSHELL_VERSION;
   j["options"] = options_of_schema(r.options);
   j["input"] = input_json(r);
-  j["output"] = {{"path", r.output.path}, {"format", r.output.format}};
+  j["output"] = output_json(r);
   j["grid"] = grid_json(r.report.grid);
   j["counts"] = counts_json(r);
   j["gaps"] = gaps_json(r);

@@ -43,7 +43,8 @@ class RunSteps::Run {
     check_request(request_);
     if (options_.lengths_decide()) options_.values.vertices.reset();
     record_.options = options_.values;
-    record_.output = named_output(request_.output.path, request_.output.format, request_.stop_after);
+    record_.output = request_.output;
+    record_.output.format = named_output(request_.output.path, request_.output.format, request_.stop_after).format;
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();
     options_.values.want_digests |= measures_all();
   }
@@ -152,9 +153,12 @@ class RunSteps::Run {
     save_voronoi_if_requested();
     if (request_.stop_after == StopAfter::voronoi) return result({});
     TriangleMesh mesh = timed("triangulate", [&] { return triangulated(keeps_seeds); });
+    std::vector<WorldPoint> positions = put_as_in_file(mesh, record_);
     timed("measure", [&] { measure(mesh); });
+    if (!record_.files.empty()) move_by(record_.output.recenter.offset(), mesh.vertices);
     if (measures_distance())
       timed("distance", [&] { measure_distances(*prepared_, surface(), mesh, record_, *context_); });
+    mesh.vertices = std::move(positions);
     TriangleSoup& soup = input_->soup;
     if (!soup.attributes.empty())
       mesh.attributes =
@@ -162,13 +166,12 @@ class RunSteps::Run {
     mesh.files = std::move(soup.files);
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
     if (options_.values.color_features) show_features(mesh);
-    const OutputRequest& output = record_.output;
-    if (!output.path.empty())
-      write_step("write", output.path, [&] {
-        write_mesh(output.path, mesh, {output.format, request_.overwrite, options_.values.color_features});
-      });
+    if (const std::string& path = record_.output.path; !path.empty())
+      write_step("write", path,
+                 [&] { write_output(mesh, request_.overwrite, options_.values.color_features, record_.output); });
     for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
-      write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite); });
+      write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite, record_); });
+    for (const std::string& text : warnings_of_files(record_.files, offset_to_origin(mesh))) warn(text);
     return result(std::move(mesh));
   }
 
@@ -176,7 +179,7 @@ class RunSteps::Run {
     check_shell_is_wanted();
     const Prepared& p = prepare();
     write_step("save-shell", path,
-               [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(p, overwrite)); });
+               [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(overwrite)); });
   }
 
   void save_voronoi(const std::vector<std::string>& paths, bool overwrite) {
@@ -190,7 +193,7 @@ class RunSteps::Run {
     const VoronoiLabels labels = timed("flood", [&] { return flood_shell(p.shell(), seeds, *context_); });
     if (options_.values.want_digests)
       record_.report.digests["labels"] = relaxed_->report.digests["labels"] = digest_text(digest(labels));
-    const StageWriteOptions options = stage_options(p, overwrite);
+    const StageWriteOptions options = stage_options(overwrite);
     for (const std::string& path : paths)
       write_step("save-voronoi", path, [&] {
         isoshell::save_voronoi(path, p.surface(), p.samples(), p.shell(), seeds, labels, options);
@@ -268,9 +271,8 @@ class RunSteps::Run {
 
   /// Nothing but attributes that go over to the result is looked for on it any more.
   void free_soup() {
-    TriangleSoup without_faces;
-    without_faces.files = std::move(input_->soup.files);
-    input_->soup = std::move(without_faces);
+    AttributeFiles files = std::move(input_->soup.files);
+    (input_->soup = {}).files = std::move(files);
   }
 
   TriangleMesh triangulated(bool keeps_seeds) {
@@ -281,8 +283,8 @@ class RunSteps::Run {
     return std::move(made.mesh);
   }
 
-  StageWriteOptions stage_options(const Prepared& prepared, bool overwrite) const {
-    return stage_write_options(prepared, options_json(options_.values), left_out_, overwrite);
+  StageWriteOptions stage_options(bool overwrite) const {
+    return stage_write_options(*prepared_, options_json(options_.values), left_out_, overwrite);
   }
 
   void save_shell_if_requested() {
@@ -298,9 +300,8 @@ class RunSteps::Run {
   }
 
   void measure(const TriangleMesh& mesh) {
-    record_.vertices = int64_t(mesh.vertices.size());
-    record_.triangles = int64_t(mesh.triangles.size());
-    if (request_.measures == Measures::none && !measures_all() && !request_.gates.any()) return;
+    const bool is_asked = request_.measures != Measures::none || measures_all() || request_.gates.any();
+    if (!is_asked && !is_coarse(record_)) return;
     for (const std::string& text : measure_mesh(mesh, record_, *context_)) warn(text);
   }
 

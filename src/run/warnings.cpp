@@ -26,6 +26,26 @@ void list(const char* what, const std::vector<Of>& all, std::string& text) {
   if (all.size() > kMostNamed) text += " and " + std::to_string(all.size() - kMostNamed) + " more";
 }
 
+bool is_zero(const WorldPoint& p) { return p.x == 0 && p.y == 0 && p.z == 0; }
+
+/// What makes fewer curves that edges have to follow, where the result has any that need not be.
+std::string ways_to_fewer_curves(const RunRecord& record) {
+  const FeatureReport& f = record.report.features;
+  std::string ways;
+  if (!f.kept || record.regions) return ways;
+  if (f.curves > f.seams + f.lines)
+    ways += ", as does to give up creases by --features off, or those that turn by less than DEG by --features DEG";
+  if (f.seams > 0) ways += ", or seams by leaving out of --attributes what has them";
+  return ways;
+}
+
+std::string ways_to_finer_numbers(const HeldPositions& held, const WorldPoint& offset) {
+  if (!held.is_single) return "";
+  const bool is_far = is_zero(held.offset_world) && !is_zero(offset);
+  return (is_far ? "--recenter auto subtracts " + exact_place(offset) + " from them, or " : std::string()) +
+         "write PLY or OBJ, which have all digits";
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of_repair(const RemeshReport& report, const std::string& input, bool has_regions) {
@@ -62,7 +82,7 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   note(m.capped_loops, caps.str());
   note(m.tubes, "pairs of them joined: they face each other like the ends of a tube");
   const UnionReport& u = report.input.united;
-  note(u.turned_components, "closed components turned outward");
+  note(u.turned_components, "closed components that were inside out, turned outward");
   note(u.swallowed_components, "closed components dropped, they lie inside of others");
   note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
   note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
@@ -70,11 +90,9 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   const JoinReport& j = report.input.joined;
   note(j.left_components, "open or inward looking components left as they are, others were united beside them");
   if (!j.given_up.empty()) {
-    std::ostringstream text;
-    text << input << ": closed components that pass through or touch each other are not joined as one mesh";
-    if (j.at) text << ", near " << j.at->x << ' ' << j.at->y << ' ' << j.at->z;
-    text << ": " << j.given_up << "; creases where they meet are rounded off";
-    warnings.push_back(text.str());
+    std::string text = input + ": closed components that pass through or touch each other are not joined as one mesh";
+    if (j.at) text += ", near " + readable_place(*j.at, report.grid.frame);
+    warnings.push_back(text + ": " + j.given_up + "; creases where they meet are rounded off");
   }
   if (report.features.border_loops == 0)
     note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");
@@ -89,18 +107,47 @@ std::string words_of(const RegionChanges& changes) {
   return text;
 }
 
-std::vector<std::string> warnings_of_quality(const MeshQuality& quality) {
+std::vector<std::string> warnings_of_quality(const RunRecord& record) {
+  const MeshQuality& quality = *record.quality;
   if (quality.below_30_deg == 0) return {};
   std::ostringstream text;
   text << counted(quality.below_30_deg, "triangle has an angle", "triangles have angles") << " below 30 degrees:";
   const char* before = " ";
   for (const PoorAngle& p : quality.poor_angles) {
-    text << before << p.degrees << " near " << p.middle.x << ' ' << p.middle.y << ' ' << p.middle.z;
+    text << before << p.degrees << " near " << readable_place(p.middle, record.report.grid.frame);
     before = ", ";
   }
   text << "; edges of the input may meet at less there, or run nearer to one another than edges are long: more "
-          "--vertices make better triangles";
+          "--vertices make better triangles"
+       << ways_to_fewer_curves(record);
   return {text.str()};
+}
+
+std::vector<std::string> warnings_of_files(const std::vector<WrittenFile>& files, const WorldPoint& offset) {
+  std::vector<std::string> warnings;
+  for (const WrittenFile& file : files) {
+    const HeldPositions& held = file.held;
+    if (&file == &files.front() && !is_zero(held.offset_world))
+      warnings.push_back(file.path + ": " + exact_place(held.offset_world) + " is subtracted from the positions" +
+                         (files.size() > 1 ? ", of files of regions too" : "") +
+                         "; add it to have them where the input is");
+    if (!held.is_coarse()) continue;
+    std::ostringstream text;
+    text << file.path << ": " << file.format << " files have 32-bit floats, which move vertices by up to "
+         << held.moved_world << " where edges are from " << held.shortest_edge_world
+         << " long; what is measured of the result is of these";
+    const std::string ways = ways_to_finer_numbers(held, offset);
+    warnings.push_back(text.str() + (ways.empty() ? "" : ": " + ways));
+  }
+  return warnings;
+}
+
+std::string words_of_lost(const WrittenFile& file) {
+  const HeldPositions& held = file.held;
+  return file.path + ": its numbers are too coarse for " + counted(held.lost_triangles, "triangle") +
+         (held.lost_triangles == 1 ? ", which tilts by more than 60 degrees or loses its area"
+                                   : ", which tilt by more than 60 degrees or lose their area") +
+         "; --recenter auto subtracts an offset from them, and PLY and OBJ files have finer ones";
 }
 
 }  // namespace isoshell

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/quality.h"
 #include "isoshell/region_census.h"
-#include "isoshell/remesh.h"
+#include "isoshell/run/record.h"
 
 namespace isoshell {
 
@@ -17,7 +16,11 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
 /// What a run changed of regions and their walls, by label and name, without a full stop; empty where nothing.
 std::string words_of(const RegionChanges& changes);
 
-/// About the mesh itself: one sentence that names its worst angles, none when all are 30 degrees or more.
-std::vector<std::string> warnings_of_quality(const MeshQuality& quality);
+/// About the mesh itself: one sentence that names its worst angles and the options that make better ones, none when all
+/// are 30 degrees or more.
+std::vector<std::string> warnings_of_quality(const RunRecord& record);
+
+/// That its numbers do not hold the triangles, without a full stop.
+std::string words_of_lost(const WrittenFile& file);
 
 }  // namespace isoshell

@@ -123,6 +123,35 @@ TEST_CASE("gates: a lost curve is named, and the larger mean of normals counts",
                                  "holes were capped"});
 }
 
+TEST_CASE("gates: a number of vertices is met to a tenth, and is a question for runs alone", "[gates]") {
+  RunRecord record = good_record();
+  const Gates gates = parse_gates("count");
+  CHECK(missed_gates(gates, record) == std::vector<std::string>{"count: no number of vertices was asked for"});
+  record.report.count = {200, 180, "its walls are as they came in"};
+  CHECK(missed_gates(gates, record).empty());
+  record.report.count.made = 220;
+  CHECK(missed_gates(gates, record).empty());
+  record.report.count.made = 221;
+  CHECK(missed_gates(gates, record) ==
+        std::vector<std::string>{"count: the result has 221 vertices instead of 200: its walls are as they came in"});
+  CHECK(contains(message_of(ErrorCode::usage, [&] { check_gates_of_mesh(gates, true); }),
+                 "--require count is for a run, which knows what was asked for"));
+}
+
+TEST_CASE("gates: triangles that the numbers of a file do not hold are always missed", "[gates]") {
+  RunRecord record = good_record();
+  record.files.push_back({"far.stl", "stl", {}});
+  CHECK(missed_gates(Gates{}, record).empty());
+  record.files[0].held.lost_triangles = 3;
+  Gates as_it_is;
+  as_it_is.allow_intersections = true;
+  CHECK(missed_gates(as_it_is, record) ==
+        std::vector<std::string>{
+            "far.stl: its numbers are too coarse for 3 triangles, which tilt by more than 60 degrees "
+            "or lose their area; --recenter auto subtracts an offset from them, and PLY and OBJ files have "
+            "finer ones"});
+}
+
 TEST_CASE("gates: an open mesh is a manifold with the borders that were kept, and closed it is not", "[gates]") {
   RunRecord open = good_record();
   open.topology->closed = false;

@@ -98,7 +98,7 @@ Arguments checked_arguments(const Parser& parser, const std::string& output) {
   if (a.verbosity == 0) run.measures = Measures::none;
   run.output.path = output;
   check_request(run);
-  run.output = named_output(output, run.output.format, run.stop_after);
+  run.output.format = named_output(output, run.output.format, run.stop_after).format;
   return a;
 }
 

@@ -129,6 +129,10 @@ std::vector<CommandOption> file_options() {
         "also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the format of "
         "OUTPUT"},
        text_of(&RunRequest::split_regions)},
+      {{group, "recenter", "auto|X,Y,Z",
+        "write meshes with this place at the origin, auto: round numbers near the middle of the result; for formats "
+        "whose numbers are too coarse far from the origin, as STL"},
+       unless_empty([](const std::string& text, Arguments& a) { a.run.output.recenter = parse_recenter(text); })},
       {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"},
        unless_empty(set_stop_after)},
       {{group, "stats", "F.json", "write all statistics as JSON; - writes to standard output"},

@@ -15,6 +15,7 @@ struct FileFormat {
   bool holds_textures = false;        ///< names of images, AttributeFiles::textures
   bool holds_gltf_materials = false;  ///< AttributeFiles::gltf_materials
   bool holds_regions = false;         ///< TriangleMesh::regions
+  bool joins_vertices = false;        ///< of one position: it has no other numbers of them
 };
 
 /// All of them. Meshes come first, and the default for meshes first of these.

@@ -22,18 +22,44 @@ TriangleSoup read_mesh(const std::string& path, const std::string& format = "");
 struct MeshWriteOptions {
   std::string format = {};  ///< a name of file_format.h; empty: by the path
   bool overwrite = false;
-  bool curve_edges = false;  ///< also the edges of the mesh's curves: an element edge, in PLY only
+  bool curve_edges = false;             ///< also the edges of the mesh's curves: an element edge, in PLY only
+  WorldPoint offset_world = {0, 0, 0};  ///< subtracted from what is written; comments of the file say so
+  bool may_lose_triangles = false;      ///< also write what HeldPositions::lost_triangles counts
 };
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted
 /// by material, object and group, binary STL, OFF, glTF in one file with single precision about a node's translation,
 /// vertices split where corners differ. Regions are the integers region_inside and region_outside of PLY's faces with
 /// comments that name them, a group of OBJ and a primitive of glTF for each pair; STL and OFF have none. Written under
-/// a temporary name in the same folder and renamed. `path` "-" writes standard output. Throws: unwritable_output; usage
-/// for attributes, materials or regions that do not fit the mesh, and for names that PLY cannot hold.
+/// a temporary name in the same folder and renamed. `path` "-" writes standard output. Throws: unwritable_output, also
+/// where the format's numbers are too coarse for the triangles, or too small, unless that may be; usage for attributes,
+/// materials or regions that do not fit the mesh, and for names that PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
 
-/// Puts the vertices where a PLY file of the mesh has them.
-void round_as_in_ply(TriangleMesh& mesh);
+/// What the numbers of a file make of the positions of a mesh.
+struct HeldPositions {
+  bool is_single = false;               ///< numbers are 32-bit floats, else of 64 bits
+  WorldPoint offset_world = {0, 0, 0};  ///< that was subtracted
+  double moved_world = 0;               ///< how far rounding moves the farthest vertex
+  double shortest_edge_world = 0;       ///< of the mesh
+  int64_t lost_triangles = 0;           ///< that tilt by more than 60 degrees or lose their area thereby
+
+  /// So that angles are other ones.
+  bool is_coarse() const { return 100 * moved_world > shortest_edge_world; }
+};
+
+struct FilePositions {
+  HeldPositions held;
+  std::vector<WorldPoint> vertices;  ///< as readers have them, without the offset
+};
+
+/// Where a file of the format that a mesh less an offset is written to has its vertices. Throws: usage for what is no
+/// format of meshes; unwritable_output where a position would not be finite.
+FilePositions positions_in_file(const TriangleMesh& mesh, const std::string& format,
+                                const WorldPoint& offset_world = {0, 0, 0});
+
+/// What to subtract from a mesh far from the origin: the middle of its box, to whole multiples of a power of ten that
+/// is as large as the box; 0 where that is nearer.
+WorldPoint offset_to_origin(const TriangleMesh& mesh);
 
 }  // namespace isoshell

@@ -16,6 +16,7 @@ struct Gates {
   bool closed = false, manifold = false, no_self_intersections = false;
   bool allow_intersections = false;  ///< of a run that asks for nothing else: it misses that without this
   std::optional<int64_t> genus, components, boundary_loops;
+  bool count = false;      ///< vertices are as many as were asked for, to a tenth
   bool features = false;   ///< no curve was lost
   bool regions = false;    ///< RegionCensus::is_sound()
   bool adjacency = false;  ///< no region and no wall between two is lost, and none is new
@@ -37,6 +38,8 @@ struct Measured {
   const RegionCensus* regions = nullptr;           ///< of a mesh that has any
   const RegionChanges* region_changes = nullptr;   ///< of a run whose input has any
   const FeatureReport* features = nullptr;         ///< of a run
+  const CountReport* count = nullptr;              ///< of a run
+  LatticeFrame frame = {};                         ///< of a run, for how exact places are
   const CoherenceReport* coherence = nullptr;      ///< of a frame that follows another
 
   int64_t border_loops() const { return features ? features->border_loops : 0; }
@@ -56,7 +59,8 @@ void check_gates_of_mesh(const Gates& gates, bool has_reference);
 /// A sentence for each gate that is not met, in the order of listed_gates(). All that the gates ask for must be there:
 /// topology and quality, the distance for both deviations. Throws: usage when it is not.
 std::vector<std::string> missed_gates(const Gates& gates, const Measured& measured);
-/// The same of a run. That its result is known to intersect itself is one of them unless allowed.
+/// The same of a run. That its result is known to intersect itself is one of them unless allowed, and that a file's
+/// numbers are too coarse for its triangles is one always.
 std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& record);
 
 }  // namespace isoshell

@@ -10,6 +10,7 @@
 #include "isoshell/device_info.h"
 #include "isoshell/distance.h"
 #include "isoshell/io/input.h"
+#include "isoshell/io/mesh_file.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/region_census.h"
@@ -17,11 +18,30 @@
 
 namespace isoshell {
 
+/// Whether files of meshes have positions less an offset; what is in memory stays.
+struct Recenter {
+  bool is_asked = false;
+  std::optional<WorldPoint> offset_world = {};  ///< without a value offset_to_origin() of the result
+
+  WorldPoint offset() const { return offset_world.value_or(WorldPoint{0, 0, 0}); }  ///< as far as it is known
+};
+
 /// A file that a run writes.
 struct OutputRequest {
-  std::string path;    ///< "-" is standard output; empty: no file
-  std::string format;  ///< lower case, without a dot
+  std::string path;        ///< "-" is standard output; empty: no file
+  std::string format;      ///< lower case, without a dot
+  Recenter recenter = {};  ///< also of the files of regions
 };
+
+/// A file of a mesh that a run has written, and what its numbers make of the mesh.
+struct WrittenFile {
+  std::string path, format;
+  HeldPositions held;
+};
+
+/// What files have subtracted, and which numbers are coarse; `offset_world` is what could be subtracted. All have the
+/// same offset.
+std::vector<std::string> warnings_of_files(const std::vector<WrittenFile>& files, const WorldPoint& offset_world);
 
 /// What the input has beside its positions, by name.
 struct AttributeReport {
@@ -29,10 +49,12 @@ struct AttributeReport {
   std::vector<DroppedAttribute> dropped;
 };
 
+/// The result is measured as its file has it, in which positions may be rounded.
 struct RunRecord {
   RemeshOptions options;  ///< as they were asked for
   InputFacts input;
   OutputRequest output;
+  std::vector<WrittenFile> files;  ///< of meshes: that of the output, then those of regions
   RemeshReport report;
   std::optional<MeshTopology> topology;  ///< of the result, from its triangles alone
   std::optional<MeshQuality> quality;

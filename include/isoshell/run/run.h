@@ -47,6 +47,9 @@ struct RunRequest {
 /// it, and when the run does not end with such a file.
 OutputRequest named_output(const std::string& path, const std::string& format, StopAfter stop_after);
 
+/// From "auto" or "X,Y,Z". Throws: usage.
+Recenter parse_recenter(const std::string& text);
+
 /// What can be told of a request before any file is looked at: the format of its output, too, for a request that was
 /// filled in by hand. Throws: usage; unreadable_input for a sizing field when the build has no OpenVDB.
 void check_request(const RunRequest& request);

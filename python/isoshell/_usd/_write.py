@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Sequence, Union
 
-from .._errors import Error
+from .._errors import Error, warn
 from .._isoshell import VERSION, ErrorCode
+from .._keywords import text_of
 from .._result import Result
 from . import Origin, library, reason_of, split_name
 from ._attributes import PrimvarWriter
@@ -50,7 +51,8 @@ def check_target(path: str, overwrite: bool, volumes: Iterable[str] = ()) -> Non
 
 
 def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str | os.PathLike[str]] = (),
-          up_axis: Optional[str] = None, meters_per_unit: Optional[float] = None, overwrite: bool = False) -> None:
+          up_axis: Optional[str] = None, meters_per_unit: Optional[float] = None, overwrite: bool = False,
+          recenter: Union[str, Sequence[float], None] = None) -> None:
     """Write a result as a stage: a mesh with its attributes as primvars, materials, and volumes where they belong.
 
     Args:
@@ -61,11 +63,17 @@ def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str
         up_axis: "Y" or "Z"; without it the source's, or Y.
         meters_per_unit: without it the source's, or 1.
         overwrite: replace a file that is there.
+        recenter: three numbers that are subtracted from the points, or "auto", which takes round ones near the middle
+            of the mesh; a RunWarning and the stage's comment name them. Without it a mesh far from the origin has a
+            transform, which takes it there.
 
     Raises:
-        Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there; UNREADABLE_INPUT for what is no OpenVDB
+        Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there, or the points, which are 32-bit floats,
+            do not hold the triangles; UNREADABLE_INPUT for what is no OpenVDB
             file; USAGE without usd-core.
     """
+    import numpy as np
+
     pxr = library()
     target = os.fsdecode(path)
     files = [os.fsdecode(volume) for volume in volumes]
@@ -83,8 +91,14 @@ def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str
     stage = pxr.Usd.Stage.CreateInMemory()
     root = begin_stage(pxr, stage, origin, axis, unit)
     names: set[str] = {MATERIALS}
-    mesh = define_mesh(pxr, stage, _free(pxr, root, origin.name, names), result)
-    write_shape(pxr, mesh, result, offset_of(result.vertices), pxr.Usd.TimeCode.Default())
+    place = result._made.offset(text_of("recenter", recenter))
+    mesh = define_mesh(pxr, stage, _free(pxr, root, origin.name, names), result, place is None)
+    if place is not None:
+        shown = " ".join(f"{number:.17g}" for number in place)
+        stage.GetRootLayer().comment += f", offset {shown}"
+        warn(f"{target}: {shown} is subtracted from the positions; add it to have them where the input is")
+    offset = offset_of(result.vertices) if place is None else np.array(place)
+    write_shape(pxr, mesh, result, offset, pxr.Usd.TimeCode.Default())
     PrimvarWriter(pxr, mesh, origin).write(result)
     _write_materials(pxr, stage, root.GetPath().AppendChild(MATERIALS), mesh, result, origin, folder)
     write_regions(pxr, mesh, result)
@@ -113,13 +127,13 @@ def _free(pxr: Any, root: Any, name: str, names: set[str]) -> Any:
     return root.GetPath().AppendChild(free)
 
 
-def define_mesh(pxr: Any, stage: Any, path: Any, result: Result) -> Any:
-    """A mesh without a shape yet, at a place where single precision has room for that of the result."""
+def define_mesh(pxr: Any, stage: Any, path: Any, result: Result, is_moved: bool = True) -> Any:
+    """A mesh without a shape yet, moved to a place where single precision has room for that of the result, or not."""
     import numpy as np
 
     mesh = pxr.UsdGeom.Mesh.Define(stage, path)
     offset = offset_of(result.vertices)
-    if np.any(offset):
+    if is_moved and np.any(offset):
         mesh.AddTranslateOp(pxr.UsdGeom.XformOp.PrecisionDouble).Set(pxr.Gf.Vec3d(*map(float, offset)))
     mesh.CreateSubdivisionSchemeAttr(pxr.UsdGeom.Tokens.none)
     return mesh
@@ -129,12 +143,31 @@ def write_shape(pxr: Any, mesh: Any, result: Result, offset: Array, time: Any) -
     """Points, faces and extent at a time; `offset` is where the mesh stands."""
     import numpy as np
 
-    stored = pxr.Vt.Vec3fArray.FromNumpy((result.vertices - offset).astype(np.float32))
+    points = (result.vertices - offset).astype(np.float32)
+    _require_held(result, points)
+    stored = pxr.Vt.Vec3fArray.FromNumpy(points)
     mesh.CreatePointsAttr().Set(stored, time)
     mesh.CreateFaceVertexCountsAttr().Set(pxr.Vt.IntArray.FromNumpy(np.full(len(result.faces), 3, np.int32)), time)
     mesh.CreateFaceVertexIndicesAttr().Set(
         pxr.Vt.IntArray.FromNumpy(np.ascontiguousarray(result.faces.reshape(-1))), time)
     mesh.CreateExtentAttr().Set(pxr.UsdGeom.PointBased.ComputeExtent(stored), time)
+
+
+def _require_held(result: Result, points: Array) -> None:
+    """No triangle may tilt by more than 60 degrees or lose its area where its corners are rounded to these."""
+    import numpy as np
+
+    def normals(at: Array) -> Array:
+        a, b, c = (at[result.faces[:, corner]].astype(np.float64) for corner in range(3))
+        return np.cross(b - a, c - a)
+
+    before = normals(result.vertices)
+    after = normals(points)
+    sizes = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    is_lost = np.any(before != 0, axis=1) & ~((sizes > 0) & (2 * np.sum(before * after, axis=1) >= sizes))
+    if np.any(is_lost):
+        raise Error(f"the points of USD are 32-bit floats, in which {np.sum(is_lost)} triangles tilt by more than 60 "
+                    "degrees or lose their area; write PLY or OBJ", ErrorCode.UNWRITABLE_OUTPUT, "write")
 
 
 def offset_of(points: Array) -> Array:

@@ -287,3 +287,15 @@ def test_the_command_takes_stages(stage_of, tmp_path, ball):
     gate = run(source, target, "--force", "--quiet", "--vertices", 100, "--resolution", 32, "--require", "genus=3")
     assert gate.returncode == ErrorCode.GATE_FAILED and "genus" in gate.stderr
     assert run(source, tmp_path / "out.ply", "--vertices", 100, "--resolution", 32).returncode == 0
+
+
+def test_a_far_mesh_stands_where_it_is_or_less_an_offset(tmp_path, ball):
+    far = np.asarray(ball[0]) + (500_000, 5_400_000, 300), ball[1]
+    result = isoshell.remesh(far, vertices=500, device="cpu")
+    result.save(tmp_path / "a.usda")
+    assert np.abs(written_mesh(tmp_path / "a.usda")[2] - result.vertices).max() < 1e-5
+    with pytest.warns(isoshell.RunWarning, match="500000 5400000 300 is subtracted"):
+        isoshell.remesh(far, vertices=500, device="cpu", output=tmp_path / "b.usda", recenter="auto")
+    stage, _, points = written_mesh(tmp_path / "b.usda")
+    assert stage.GetRootLayer().comment.endswith("offset 500000 5400000 300")
+    assert np.abs(points + (500_000, 5_400_000, 300) - result.vertices).max() < 1e-5

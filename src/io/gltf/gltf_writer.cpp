@@ -47,13 +47,12 @@ bool gltf_holds(const Attribute& a) {
 
 class GltfWriter {
  public:
-  explicit GltfWriter(const TriangleMesh& mesh) : mesh_(mesh) {
+  GltfWriter(const TriangleMesh& mesh, const Placement& placement) : mesh_(mesh), placement_(placement) {
     for (const Attribute& a : mesh.attributes) {
       if (a.domain == AttributeDomain::corner && gltf_holds(a)) of_corners_.push_back(&a);
       if (means(a, kMaterialName) && !a.labels.empty()) material_ = &a;
     }
     split_ = split_vertices(mesh, of_corners_);
-    if (needs_double(mesh)) origin_ = middle();
     put_positions();
     if (!mesh.gap.empty()) put_numbers("_GAP", [&](size_t v) { return double(mesh.gap[split_.vertex[v]]); });
     for (const Attribute* a : of_corners_) put_corners(*a);
@@ -73,16 +72,6 @@ class GltfWriter {
   View<const char> bytes() const { return {bytes_.data(), int64_t(bytes_.size())}; }
 
  private:
-  WorldPoint middle() const {
-    WorldPoint low = mesh_.vertices[0], high = low;
-    for (const WorldPoint& p : mesh_.vertices) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    const auto half = [](double a, double b) { return double(float(a / 2 + b / 2)); };  // exact for readers in floats
-    return {half(low.x, high.x), half(low.y, high.y), half(low.z, high.z)};
-  }
-
   /// An accessor to what was put since byte `start`; its number.
   size_t close(size_t start, int target, int64_t stride, Json accessor) {
     Json view = {{"buffer", 0}, {"byteOffset", start}, {"byteLength", bytes_.size() - start}, {"target", target}};
@@ -100,8 +89,8 @@ class GltfWriter {
     std::fill_n(low, 3, std::numeric_limits<float>::infinity());
     std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
     for (const uint32_t v : split_.vertex) {
-      const WorldPoint& p = mesh_.vertices[v];
-      const float values[] = {float(p.x - origin_.x), float(p.y - origin_.y), float(p.z - origin_.z)};
+      const WorldPoint p = placement_.about_origin(mesh_.vertices[v]);
+      const float values[] = {float(p.x), float(p.y), float(p.z)};
       for (int i = 0; i < 3; ++i) {
         put(bytes_, values[i]);
         low[i] = std::min(low[i], values[i]);
@@ -214,8 +203,10 @@ class GltfWriter {
 
   void put_document() {
     Json node = {{"mesh", 0}};
-    if (origin_.x != 0 || origin_.y != 0 || origin_.z != 0) node["translation"] = {origin_.x, origin_.y, origin_.z};
-    document_ = {{"asset", {{"version", "2.0"}, {"generator", "isoshell"}}},
+    if (const WorldPoint& at = placement_.origin; !is_origin(at)) node["translation"] = {at.x, at.y, at.z};
+    Json asset = {{"version", "2.0"}, {"generator", "isoshell"}};
+    if (const WorldPoint& by = placement_.offset; !is_origin(by)) asset["extras"] = {{"offset", {by.x, by.y, by.z}}};
+    document_ = {{"asset", asset},
                  {"scene", 0},
                  {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
                  {"nodes", Json::array({node})},
@@ -226,14 +217,25 @@ class GltfWriter {
   }
 
   const TriangleMesh& mesh_;
+  const Placement& placement_;
   std::vector<const Attribute*> of_corners_;
   const Attribute* material_ = nullptr;
   GltfVertexSplit split_;
-  WorldPoint origin_{0, 0, 0};  ///< where the node stands
   std::vector<char> bytes_;
   Json attributes_ = Json::object(), primitives_ = Json::array(), accessors_ = Json::array(), views_ = Json::array();
   Json document_;  ///< all but the buffer
 };
+
+WorldPoint middle_of(const TriangleMesh& mesh, const Placement& placement) {
+  WorldPoint low = placement.about_origin(mesh.vertices[0]), high = low;
+  for (const WorldPoint& q : mesh.vertices) {
+    const WorldPoint p = placement.about_origin(q);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const auto half = [](double a, double b) { return in_single(a / 2 + b / 2); };  // exact for readers in floats
+  return {half(low.x, high.x), half(low.y, high.y), half(low.z, high.z)};
+}
 
 void require_triangles(const TriangleMesh& mesh) {
   if (mesh.triangles.empty())
@@ -248,15 +250,21 @@ std::string what_gltf_lacks(const Attribute& attribute) {
                                                    : "glTF files hold no such numbers";
 }
 
-void write_gltf(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
+Placement place_in_gltf(const TriangleMesh& mesh, const WorldPoint& offset) {
+  Placement placement = place_in_floats(mesh, offset);
+  if (!mesh.vertices.empty() && needs_double(mesh, offset)) placement.origin = middle_of(mesh, placement);
+  return placement;
+}
+
+void write_gltf(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, const MeshWriteOptions&) {
   require_triangles(mesh);
-  const GltfWriter writer(mesh);
+  const GltfWriter writer(mesh, placement);
   file.write(writer.json("data:application/octet-stream;base64," + base64_of(writer.bytes())) + "\n");
 }
 
-void write_glb(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
+void write_glb(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, const MeshWriteOptions&) {
   require_triangles(mesh);
-  const GltfWriter writer(mesh);
+  const GltfWriter writer(mesh, placement);
   std::string json = writer.json("");
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const size_t total = 12 + 8 + json.size() + 8 + size_t(writer.bytes().size);  // a multiple of 4, as all elements have

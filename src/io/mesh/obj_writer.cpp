@@ -8,6 +8,7 @@
 #include "core/number_type.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/row_buffer.h"
+#include "io/mesh/precision.h"
 #include "io/mesh/region_pairs.h"
 #include "isoshell/io/mesh_file.h"
 
@@ -24,7 +25,8 @@ double largest_of(NumberType type) {
 
 class ObjWriter {
  public:
-  ObjWriter(OutputFile& file, const TriangleMesh& mesh) : file_(file), mesh_(mesh) {
+  ObjWriter(OutputFile& file, const TriangleMesh& mesh, const Placement& placement)
+      : file_(file), mesh_(mesh), placement_(placement) {
     for (const Attribute& a : mesh.attributes) {
       if (means(a, kColorName)) color_ = &a;
       if (a.name == kUvName && means(a, kUvName)) uv_ = &a;
@@ -39,6 +41,7 @@ class ObjWriter {
   }
 
   void write() {
+    if (const std::string note = offset_note(placement_); !note.empty()) file_.write("# " + note + "\n");
     for (const std::string& name : mesh_.files.materials) file_.write("mtllib " + name + "\n");
     write_vertices();
     write_values("vt ", uv_);
@@ -59,7 +62,7 @@ class ObjWriter {
     write_rows(file_, int64_t(mesh_.vertices.size()), 3 + 6 * (kLongestDouble + 1), [&](int64_t i, RowBuffer& out) {
       out.put('v');
       out.put(' ');
-      put_text(out, mesh_.vertices[size_t(i)]);
+      put_text(out, placement_.written(mesh_.vertices[size_t(i)]));
       for (size_t c = 0; color_ && c < 3; ++c) {
         out.put(' ');
         out.put_number(float(color_->values[size_t(i * color_->components) + c] / largest));
@@ -152,6 +155,7 @@ class ObjWriter {
 
   OutputFile& file_;
   const TriangleMesh& mesh_;
+  const Placement& placement_;
   const Attribute *color_ = nullptr, *uv_ = nullptr, *normal_ = nullptr;
   Attribute groups_;  ///< of regions
   Names names_[3] = {{kMaterialName, "usemtl"}, {kObjectName, "o"}, {kGroupName, "g"}};
@@ -171,6 +175,8 @@ std::string what_obj_lacks(const Attribute& attribute) {
                                                    : "OBJ files hold no numbers but colours";
 }
 
-void write_obj(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) { ObjWriter(file, mesh).write(); }
+void write_obj(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, const MeshWriteOptions&) {
+  ObjWriter(file, mesh, placement).write();
+}
 
 }  // namespace isoshell

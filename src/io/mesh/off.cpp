@@ -6,6 +6,7 @@
 #include "io/bytes/row_buffer.h"
 #include "io/bytes/text_scan.h"
 #include "io/faces/face_collector.h"
+#include "io/mesh/precision.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/surface_source.h"
 
@@ -130,10 +131,12 @@ TriangleSoup read_off(const MeshSource& source) {
   return join_soup(source, std::move(vertices), faces);
 }
 
-void write_off(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
-  file.write("OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.triangles.size()) + " 0\n");
+void write_off(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, const MeshWriteOptions&) {
+  const std::string note = offset_note(placement);
+  file.write("OFF\n" + (note.empty() ? "" : "# " + note + "\n") + std::to_string(mesh.vertices.size()) + " " +
+             std::to_string(mesh.triangles.size()) + " 0\n");
   write_rows(file, int64_t(mesh.vertices.size()), 3 * (kLongestDouble + 1), [&](int64_t i, RowBuffer& out) {
-    put_text(out, mesh.vertices[size_t(i)]);
+    put_text(out, placement.written(mesh.vertices[size_t(i)]));
     out.put('\n');
   });
   write_rows(file, int64_t(mesh.triangles.size()), 2 + 3 * (kLongestIndex + 1), [&](int64_t i, RowBuffer& out) {

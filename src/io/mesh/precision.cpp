@@ -4,47 +4,114 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 
 #include "geometry/world_vector.h"
 #include "io/bytes/row_buffer.h"
-#include "isoshell/io/mesh_file.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
 
-template <class Value, class At>
-Value extreme(int64_t count, Value start, At at, const Value& (*choose)(const Value&, const Value&)) {
+/// Of a value for each index, joined in any order.
+template <class Value, class At, class Join>
+Value joined_over(size_t count, Value start, At at, Join join) {
   return tbb::parallel_reduce(
-      tbb::blocked_range<int64_t>(0, count, kRowsPerBlock), start,
-      [&](const tbb::blocked_range<int64_t>& r, Value best) {
-        for (int64_t i = r.begin(); i < r.end(); ++i) best = choose(best, at(size_t(i)));
-        return best;
+      tbb::blocked_range<int64_t>(0, int64_t(count), kRowsPerBlock), start,
+      [&](const tbb::blocked_range<int64_t>& r, Value value) {
+        for (int64_t i = r.begin(); i < r.end(); ++i) value = join(value, at(size_t(i)));
+        return value;
       },
-      [&](Value a, Value b) { return choose(a, b); });
+      join);
+}
+
+constexpr auto kLarger = [](double a, double b) { return std::max(a, b); };
+constexpr auto kSmaller = [](double a, double b) { return std::min(a, b); };
+
+WorldPoint point_in_single(const WorldPoint& p) { return {in_single(p.x), in_single(p.y), in_single(p.z)}; }
+
+/// A power of two that makes the mesh about 1 wide: squares of its lengths are neither 0 nor infinite, and all bits
+/// stay.
+double scale_of(const TriangleMesh& mesh) {
+  const auto reach = [&](size_t i) {
+    const WorldPoint &p = mesh.vertices[i], &q = mesh.vertices[0];
+    return std::max({std::abs(p.x / 2 - q.x / 2), std::abs(p.y / 2 - q.y / 2), std::abs(p.z / 2 - q.z / 2)});
+  };
+  const double widest = joined_over(mesh.vertices.size(), 0.0, reach, kLarger);
+  return widest > 0 && std::isfinite(widest) ? std::ldexp(1, std::clamp(-std::ilogb(widest), -1020, 1020)) : 1;
+}
+
+constexpr double kMostTilt = 0.5;  ///< cosine of 60 degrees
+
+/// A triangle is lost where its normal is; one without area has none to lose.
+bool is_lost(const std::array<WorldPoint, 3>& before, const std::array<WorldPoint, 3>& after, double scale) {
+  const auto normal = [&](const std::array<WorldPoint, 3>& t) {
+    return cross(scale * (t[1] - t[0]), scale * (t[2] - t[0]));
+  };
+  const WorldPoint n = normal(before);
+  const WorldPoint m = normal(after);
+  return length_sq(n) > 0 && !(length_sq(m) > 0 && dot(n, m) >= kMostTilt * length(n) * length(m));
 }
 
 }  // namespace
 
-bool needs_double(const TriangleMesh& mesh) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  const auto moved_sq = [&](size_t i) {
+WorldPoint Placement::written(const WorldPoint& p) const {
+  const WorldPoint exact = about_origin(p);
+  return type == NumberType::f32 ? point_in_single(exact) : exact;
+}
+
+WorldPoint Placement::in_file(const WorldPoint& p) const {
+  const auto moved = [](double number, double by) { return by == 0 ? number : number + by; };  // keeps the sign of 0
+  const WorldPoint q = written(p);
+  return {moved(q.x, origin.x), moved(q.y, origin.y), moved(q.z, origin.z)};
+}
+
+std::string offset_note(const Placement& placement) {
+  return is_origin(placement.offset) ? "" : "offset " + exact_place(placement.offset);
+}
+
+int64_t count_lost_triangles(const TriangleMesh& mesh, const Placement& placement) {
+  const double scale = scale_of(mesh);
+  const auto lost = [&](size_t i) -> int64_t {
+    std::array<WorldPoint, 3> before, after;
+    for (size_t c = 0; c < 3; ++c) {
+      before[c] = mesh.vertices[mesh.triangles[i][c]];
+      after[c] = placement.in_file(before[c]);
+    }
+    return is_lost(before, after, scale);
+  };
+  return joined_over(mesh.triangles.size(), int64_t(0), lost, std::plus<int64_t>());
+}
+
+double largest_move_world(const TriangleMesh& mesh, const Placement& placement) {
+  const auto moved = [&](size_t i) {
     const WorldPoint& p = mesh.vertices[i];
-    return distance_sq({double(float(p.x)), double(float(p.y)), double(float(p.z))}, p);
+    return length(placement.written(p) - placement.about_origin(p));
+  };
+  return joined_over(mesh.vertices.size(), 0.0, moved, kLarger);
+}
+
+bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {
+  const double scale = scale_of(mesh);
+  const auto scaled_sq = [&](const WorldPoint& a, const WorldPoint& b) { return length_sq(scale * (b - a)); };
+  const auto moved_sq = [&](size_t i) {
+    const WorldPoint p = mesh.vertices[i] - offset;
+    return scaled_sq(point_in_single(p), p);
   };
   const auto shortest_edge_sq = [&](size_t i) {
     const auto& t = mesh.triangles[i];
     const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    return std::min({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)});
+    return std::min({scaled_sq(a, b), scaled_sq(b, c), scaled_sq(c, a)});
   };
-  const double moved = extreme<double>(int64_t(mesh.vertices.size()), 0.0, moved_sq, std::max<double>);
-  const double edge = extreme<double>(int64_t(mesh.triangles.size()), infinity, shortest_edge_sq, std::min<double>);
-  return moved * 1e6 > edge;
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double moved = joined_over(mesh.vertices.size(), 0.0, moved_sq, kLarger);
+  const double edge = joined_over(mesh.triangles.size(), infinity, shortest_edge_sq, kSmaller);
+  return moved * 1e6 > edge || count_lost_triangles(mesh, {NumberType::f32, offset}) > 0;
 }
 
-void round_as_in_ply(TriangleMesh& mesh) {
-  if (needs_double(mesh)) return;
-  for (WorldPoint& p : mesh.vertices) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
-}
+Placement place_in_doubles(const TriangleMesh&, const WorldPoint& offset) { return {NumberType::f64, offset}; }
+Placement place_in_floats(const TriangleMesh&, const WorldPoint& offset) { return {NumberType::f32, offset}; }
 
 }  // namespace isoshell

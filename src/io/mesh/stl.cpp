@@ -9,6 +9,7 @@
 #include "io/bytes/text_scan.h"
 #include "io/faces/face_collector.h"
 #include "io/faces/weld.h"
+#include "io/mesh/precision.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/surface_source.h"
@@ -188,18 +189,21 @@ TriangleSoup read_text(const MeshSource& source) {
 
 TriangleSoup read_stl(const MeshSource& source) { return is_binary(source) ? read_binary(source) : read_text(source); }
 
-void write_stl(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions&) {
+void write_stl(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, const MeshWriteOptions&) {
   if (mesh.triangles.size() > 0xffffffffu)
     throw Error(ErrorCode::unwritable_output, "write",
                 "the mesh has " + std::to_string(mesh.triangles.size()) +
                     " triangles; an STL file holds at most 4294967295, write PLY");
   std::string header = "binary STL by isoshell";  // must not begin with "solid"
+  if (const std::string note = offset_note(placement); !note.empty() && header.size() + 2 + note.size() <= 80)
+    header += ", " + note;
   header.resize(80, ' ');
   for (int i = 0; i < 4; ++i) header += char(mesh.triangles.size() >> 8 * i & 0xff);
   file.write(header);
   write_rows(file, int64_t(mesh.triangles.size()), 50, [&](int64_t i, RowBuffer& out) {
     const auto& t = mesh.triangles[size_t(i)];
-    const WorldPoint corners[] = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    WorldPoint corners[3];
+    for (size_t c = 0; c < 3; ++c) corners[c] = placement.about_origin(mesh.vertices[t[c]]);
     for (const WorldPoint& p : {normal_of(corners[0], corners[1], corners[2]), corners[0], corners[1], corners[2]}) {
       out.put_binary(float(p.x));
       out.put_binary(float(p.y));

@@ -36,7 +36,8 @@ std::vector<size_t> corners_of(const TriangleMesh& mesh) {
 
 class PlyWriter {
  public:
-  PlyWriter(OutputFile& file, const TriangleMesh& mesh, bool with_curve_edges) : file_(file), mesh_(mesh) {
+  PlyWriter(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, bool with_curve_edges)
+      : file_(file), mesh_(mesh), placement_(placement) {
     if (with_curve_edges) edges_ = &mesh.features.curve_edges;
     for (const Attribute& a : mesh.attributes)
       (is_of_vertices(a, mesh)               ? of_vertices_
@@ -48,9 +49,8 @@ class PlyWriter {
   }
 
   void write() {
-    const bool as_double = needs_double(mesh_);
-    write_header(as_double ? "double" : "float");
-    if (as_double)
+    write_header(name_of(placement_.type));
+    if (placement_.is_double())
       write_vertices<double>();
     else
       write_vertices<float>();
@@ -61,6 +61,7 @@ class PlyWriter {
  private:
   void write_header(const std::string& type) {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
+    if (const std::string note = offset_note(placement_); !note.empty()) text += comment(note);
     for (const std::string& name : mesh_.files.textures) text += comment(std::string(kTextureNote) + " " + name);
     for (const std::string& name : mesh_.files.materials) text += comment(std::string(kLibraryNote) + " " + name);
     for (const Attribute* a : of_faces_)
@@ -129,7 +130,7 @@ class PlyWriter {
   void write_vertices() {
     const int64_t row_bytes = 3 * int64_t(sizeof(Real)) + 1 + bytes_of(of_vertices_);
     write_rows(file_, int64_t(mesh_.vertices.size()), row_bytes, [&](int64_t i, RowBuffer& out) {
-      const WorldPoint& p = mesh_.vertices[size_t(i)];
+      const WorldPoint p = placement_.about_origin(mesh_.vertices[size_t(i)]);
       out.put_binary(Real(p.x));
       out.put_binary(Real(p.y));
       out.put_binary(Real(p.z));
@@ -163,6 +164,7 @@ class PlyWriter {
 
   OutputFile& file_;
   const TriangleMesh& mesh_;
+  const Placement& placement_;
   const std::vector<MeshCurveEdge>* edges_ = nullptr;  ///< null: not asked for
   std::vector<const Attribute*> of_vertices_, of_corners_, of_faces_;
   std::vector<size_t> corner_of_vertex_;
@@ -176,8 +178,13 @@ std::string what_ply_lacks(const Attribute& attribute) {
   return is_more ? "PLY files hold one set of texture coordinates" : "";
 }
 
-void write_ply(OutputFile& file, const TriangleMesh& mesh, const MeshWriteOptions& options) {
-  PlyWriter(file, mesh, options.curve_edges).write();
+Placement place_in_ply(const TriangleMesh& mesh, const WorldPoint& offset) {
+  return {needs_double(mesh, offset) ? NumberType::f64 : NumberType::f32, offset};
+}
+
+void write_ply(OutputFile& file, const TriangleMesh& mesh, const Placement& placement,
+               const MeshWriteOptions& options) {
+  PlyWriter(file, mesh, placement, options.curve_edges).write();
 }
 
 }  // namespace isoshell
