@@ -1,23 +1,16 @@
 #include "vdb_isomesh/command.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <exception>
 #include <new>
 
 #include "isoshell/error.h"
 #include "vdb_isomesh/interrupt.h"
+#include "vdb_isomesh/streams.h"
 
 namespace isoshell::tool {
 namespace {
 
 Context context;
-
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw Error(ErrorCode::unwritable_output, "write", std::string("standard output: ") + std::strerror(errno));
-}
 
 int run_command(int argc, const char* const* argv, const WriteReport& write_report) {
   const CommandLine command = parse_command_line(argc, argv);
@@ -47,6 +40,7 @@ int report(ErrorCode code, const char* message) {
 }  // namespace
 
 int command(int argc, const char* const* argv, const WriteReport& write_report) {
+  fill_closed_streams();
   answer_signals(context);
   try {
     return run_command(argc, argv, write_report);
