@@ -1,7 +1,7 @@
 // The certificate of a mesh as JSON.
 #include <nlohmann/json.hpp>
 
-#include "io/bytes/output_file.h"
+#include "isoshell/io/output_files.h"
 #include "isoshell/run/mesh_info.h"
 #include "run/regions_json.h"
 
@@ -130,9 +130,7 @@ std::string mesh_info_json(const MeshInfo& info) {
 }
 
 void write_mesh_info(const std::string& path, const MeshInfo& info, bool overwrite) {
-  OutputFile file(path, overwrite);
-  file.write(mesh_info_json(info));
-  file.commit();
+  write_text(path, mesh_info_json(info), overwrite);
 }
 
 }  // namespace isoshell

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "core/file_format.h"
-#include "io/bytes/output_file.h"
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
 #include "isoshell/io/mesh_file.h"
@@ -43,39 +42,12 @@ void check_folder(const std::string& path, const fs::path& folder) {
     refuse(path + ": cannot write in " + folder.string() + ": " + std::strerror(errno));
 }
 
-void check_output(const std::string& path, bool overwrite) {
-  std::error_code code;
-  const fs::file_status status = fs::status(path, code);
-  if (fs::is_directory(status)) refuse(path + ": is a folder; name a file");
-  if (fs::exists(status) && !fs::is_regular_file(status))
-    refuse(path + ": is not a regular file; name another, or - for standard output");
-  if (fs::exists(status) && !overwrite) refuse(path + ": exists already; --force replaces it");
-  check_folder(path, folder_of(path));
-}
-
 /// A folder that is there, or can be made.
 void check_folder_of_regions(const std::string& path) {
   std::error_code code;
   if (fs::is_directory(path, code)) return check_folder(path, path);
-  if (fs::exists(fs::status(path, code))) refuse(path + ": is no folder; --split-regions needs one");
+  if (fs::exists(fs::symlink_status(path, code))) refuse(path + ": is no folder; --split-regions needs one");
   check_folder(path, folder_of(fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path()));
-}
-
-std::vector<std::string> files_of(const RunRequest& r) {
-  std::vector<std::string> files = {r.output.path, r.statistics, r.report, r.save_shell, r.save_voronoi};
-  if (!r.save_voronoi.empty()) files.push_back(preview_path(r.save_voronoi));
-  if (r.stop_after == StopAfter::voronoi && !r.output.path.empty()) files.push_back(preview_path(r.output.path));
-  return files;
-}
-
-void check_files(const std::vector<std::string>& files, bool overwrite) {
-  std::set<fs::path> named;
-  for (const std::string& file : files) {
-    if (file.empty() || file == "-") continue;
-    check_output(file, overwrite);
-    if (!named.insert(fs::path(file).lexically_normal()).second)
-      refuse_use(file + " is named twice; every result needs its own file");
-  }
 }
 
 /// The name of a region as one of a file: without what separates folders or means something to a shell.
@@ -164,6 +136,26 @@ Recenter parse_recenter(const std::string& text) {
   return {true, WorldPoint{numbers[0], numbers[1], numbers[2]}};
 }
 
+std::vector<NamedFile> outputs_of(const RunRequest& r) {
+  std::vector<NamedFile> files = {{"OUTPUT", r.output.path},
+                                  {"--stats", r.statistics},
+                                  {"--report", r.report},
+                                  {"--save-shell", r.save_shell},
+                                  {"--save-voronoi", r.save_voronoi}};
+  if (!r.save_voronoi.empty()) files.push_back({"the preview", preview_path(r.save_voronoi)});
+  if (r.stop_after == StopAfter::voronoi && !r.output.path.empty())
+    files.push_back({"the preview", preview_path(r.output.path)});
+  return files;
+}
+
+std::vector<NamedFile> inputs_of(const RunRequest& r) {
+  const std::string& sizing = r.options.sizing;  // FIELD.vdb:GRID
+  const size_t colon = sizing.rfind(".vdb:");
+  return {{kInput, r.input.path},
+          {"--sizing", colon == std::string::npos ? sizing : sizing.substr(0, colon + 4)},
+          {"--features", r.options.values.features.line_file}};
+}
+
 void check_request(const RunRequest& r) {
   check_method(r.options);
   if (r.output.recenter.is_asked && r.stop_after != StopAfter::mesh)
@@ -190,7 +182,7 @@ void check_outputs(const RunRequest& r) {
     refuse(
         "this build writes no .vdb files: leave out --stop-after, --save-shell and --save-voronoi, or build with "
         "-DISOSHELL_VDB=ON");
-  check_files(files_of(r), r.overwrite);
+  check_output_files(outputs_of(r), inputs_of(r), r.overwrite);
   if (!r.split_regions.empty()) check_folder_of_regions(r.split_regions);
 }
 
@@ -217,9 +209,9 @@ std::vector<RegionFile> checked_region_files(const RunRequest& r, const FaceRegi
   const std::string format = named_output(r.output.path, r.output.format, r.stop_after).format;
   std::vector<RegionFile> files = region_files(regions, r.split_regions, format.empty() ? "ply" : format);
   if (!fs::exists(r.split_regions)) return files;
-  std::vector<std::string> all = files_of(r);
-  for (const RegionFile& file : files) all.push_back(file.path);
-  check_files(all, r.overwrite);
+  std::vector<NamedFile> all = outputs_of(r);
+  for (const RegionFile& file : files) all.push_back({"--split-regions", file.path});
+  check_output_files(all, inputs_of(r), r.overwrite);
   return files;
 }
 
@@ -252,12 +244,6 @@ void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwri
   const std::string format = format_of_path(file.path);
   record.files.push_back({file.path, format, positions_in_file(region, format, offset).held});
   write_mesh(file.path, region, {format, overwrite, false, offset, true});
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  OutputFile file(path, true);
-  file.write(text);
-  file.commit();
 }
 
 }  // namespace isoshell

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/io/output_files.h"
 #include "isoshell/run/run.h"
 
 namespace isoshell {
@@ -14,9 +15,14 @@ namespace isoshell {
 /// mesh.voronoi.preview.vdb.
 std::string preview_path(const std::string& path);
 
-/// Every file that the run would write can be: its folder exists and is writable, and it does not exist yet unless it
-/// may be replaced. Throws: unwritable_output, also when this build cannot write its format; usage when two results
-/// would share one file.
+constexpr const char* kInput = "INPUT";
+
+/// The files that a run writes and reads, as far as they are known before it.
+std::vector<NamedFile> outputs_of(const RunRequest& request);
+std::vector<NamedFile> inputs_of(const RunRequest& request);
+
+/// Every file that the run would write can be (see check_output_files). Throws: also unwritable_output when this build
+/// cannot write its format.
 void check_outputs(const RunRequest& request);
 
 /// A region's own file.
@@ -44,9 +50,6 @@ void write_output(const TriangleMesh& mesh, bool overwrite, bool curve_edges, co
 /// The region's closed mesh, less the offset of the output, in its folder, which is made where it is not there, and its
 /// file in the record. Throws: as write_mesh().
 void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwrite, RunRecord& record);
-
-/// A file that appears whole, or standard output. It replaces one that is there: checks have refused what it may not.
-void write_text(const std::string& path, const std::string& text);
 
 /// What a run can keep of the features that are asked for, or that the stage file has that it resumes: a Voronoi stage
 /// file holds none. Throws: usage where a threshold, or that borders are kept, is asked for and such a file.

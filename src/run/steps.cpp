@@ -64,8 +64,7 @@ class RunSteps::Run {
       return work();
     } catch (const Error& e) {
       if (e.code() != ErrorCode::interrupted) throw;
-      throw Error(e.code(), e.stage(),
-                  "interrupted; " + (written_.empty() ? "nothing was written" : "written before: " + written_));
+      throw Error(e.code(), e.stage(), "interrupted; " + (written_.empty() ? "nothing was written" : "written before: " + written_));
     }
   }
 
@@ -330,7 +329,8 @@ class RunSteps::Run {
       if (request_.tell) request_.tell(MessageKind::warning, text);
     }
     if (!request_.statistics.empty())
-      around_write(request_.statistics, [&] { write_text(request_.statistics, statistics_json(record)); });
+      around_write(request_.statistics,
+                   [&] { write_text(request_.statistics, statistics_json(record), request_.overwrite); });
     std::vector<std::string> missed = missed_gates(request_.gates, record);
     return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed)};
   }

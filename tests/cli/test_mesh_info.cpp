@@ -50,6 +50,26 @@ TEST_CASE("mesh info: two triangles that cross are one pair", "[cli][mesh_info]"
   CHECK(info_of(folder, "t.off")["topology"]["self_intersecting_pairs"] == 1);
 }
 
+TEST_CASE("mesh info: what cannot be written is refused before anything is read", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kTetrahedron);
+  CHECK(folder.run("gone.off >&-").status == 4);
+  const auto closed = folder.run("t.off --stats - >&-");
+  CHECK(closed.status == 4);
+  CHECK(contains(closed.err, "standard output: is closed"));
+  CHECK(folder.run("gone.off --stats no/s.json").status == 4);
+  CHECK(folder.run("gone.off --stats " + std::string(300, 'a')).status == 4);
+  const auto itself = folder.run("t.off --stats ./t.off --force");
+  CHECK(itself.status == 2);
+  CHECK(contains(itself.err, "--stats ./t.off and MESH t.off are one file"));
+  CHECK(folder.content("t.off") == kTetrahedron);
+  for (const char* option : {"--ref", "--require", "--stats", "--threads", "--max-memory"}) {
+    const auto empty = folder.run("t.off " + std::string(option) + " ''");
+    CHECK(empty.status == 2);
+    CHECK(contains(empty.err, std::string(option) + " has no value"));
+  }
+}
+
 TEST_CASE("mesh info: a gate that is missed ends with 6", "[cli][mesh_info]") {
   cli::Folder folder;
   folder.write("t.off", kTetrahedron);

@@ -76,6 +76,12 @@ void refuse_leftovers(const CLI::App& app) {
   }
 }
 
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0 && option->results()[0].empty())
+      refuse(option->get_name() + " has no value; give one, or leave it out");
+}
+
 }  // namespace
 
 MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv) {
@@ -93,6 +99,7 @@ MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv) {
   if (raw.help) return {std::nullopt, options_text(app) + kExitStatus};
   if (raw.version) return {std::nullopt, "vdb_meshinfo " VDB_MESHINFO_VERSION "\n"};
   refuse_leftovers(app);
+  refuse_empty_values(app);
   if (raw.mesh.empty()) refuse("MESH is missing; see --help");
   if (raw.mesh == "-" && raw.reference == "-") refuse("MESH and --ref cannot both be standard input");
   if (raw.json && !a.statistics.empty() && a.statistics != "-") refuse("--json and --stats exclude each other");

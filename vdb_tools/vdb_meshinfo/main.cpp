@@ -1,14 +1,13 @@
 // vdb_meshinfo: the certificate of any mesh.
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <exception>
 #include <new>
 
 #include "isoshell/error.h"
+#include "isoshell/io/output_files.h"
 #include "vdb_isomesh/console.h"
 #include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
+#include "vdb_isomesh/streams.h"
 #include "vdb_meshinfo/args.h"
 #include "vdb_meshinfo/table.h"
 
@@ -18,9 +17,12 @@ namespace {
 constexpr const char* kProgram = "vdb_meshinfo";
 Context context;
 
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw Error(ErrorCode::unwritable_output, "write", std::string("standard output: ") + std::strerror(errno));
+/// Before anything is read.
+void check_files(const MeshInfoArguments& a) {
+  const auto& reference = a.request.reference;
+  const std::string table = a.statistics != "-" && !a.quiet ? "-" : "";
+  check_output_files({{"--stats", a.statistics}, {"the table", table}},
+                     {{"MESH", a.request.mesh.path}, {"--ref", reference ? reference->path : ""}}, a.overwrite);
 }
 
 void write_statistics(const MeshInfoArguments& a, const MeshInfo& info) {
@@ -41,6 +43,7 @@ int run_command(int argc, const char* const* argv) {
   context.threads = a.threads;
   context.memory_limit_bytes = a.max_memory_bytes > 0 ? a.max_memory_bytes : default_memory_limit_bytes();
   context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
+  check_files(a);
   const MeshInfo info = mesh_info(a.request, context, [&](MessageKind kind, const std::string& text) {
     kind == MessageKind::warning ? console.warn(text) : console.detail(text);
   });
@@ -56,6 +59,7 @@ int report(ErrorCode code, const char* message) {
 }
 
 int command(int argc, const char* const* argv) {
+  fill_closed_streams();
   answer_signals(context, kProgram);
   try {
     return run_command(argc, argv);

@@ -2,42 +2,57 @@
 #include "io/bytes/output_file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
+#include <utility>
 
+#include "io/bytes/temporary_name.h"
 #include "isoshell/error.h"
+#include "isoshell/io/output_files.h"
 
 namespace isoshell {
+namespace {
 
-OutputFile::OutputFile(const std::string& path, bool overwrite) : path_(path), target_(path), overwrite_(overwrite) {
-  if (path == "-") {
-    path_ = "standard output";
+constexpr const char* kUntouched = "; what stood there is untouched";
+
+void refuse_taken(const OutputPlace& place) {
+  place.fail("exists already; ask for it to be replaced, or choose another name");
+}
+
+void refuse_write(const OutputPlace& place, int reason) {
+  place.fail(std::string("cannot be written: ") + std::strerror(reason) +
+             (place.is_replaced_whole() ? kUntouched : ""));
+}
+
+/// Of a file that is on the disk already.
+void give_name(const std::string& finished, const OutputPlace& place, bool overwrite) {
+  const int failed = rename_to(finished, place.target, overwrite);
+  if (failed == EEXIST && !overwrite) refuse_taken(place);
+  if (failed) place.fail(std::string("cannot be put in place: ") + std::strerror(failed) + kUntouched);
+}
+
+void bring_name_to_disk(const OutputPlace& place) {
+  if (const int failed = bring_folder_to_disk(place.folder()))
+    place.fail(std::string("its folder cannot be brought to the disk: ") + std::strerror(failed));
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path, bool overwrite) : place_(output_place(path)), overwrite_(overwrite) {
+  if (place_.is_stream) {
     file_ = STDOUT_FILENO;
-    return;
+  } else if (!place_.is_replaced_whole()) {
+    file_ = open(place_.target.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file_ < 0) place_.fail(std::string("cannot be opened: ") + std::strerror(errno));
+  } else {
+    if (place_.is_there() && !overwrite) refuse_taken(place_);
+    open_temporary();
+    if (place_.mode) (void)!fchmod(file_, *place_.mode & 07777);
   }
-  if (path.empty()) fail("the name is empty; name a file");
-  if (char* const resolved = realpath(path.c_str(), nullptr)) {
-    target_ = resolved;
-    std::free(resolved);
-  }
-  struct stat info;
-  const bool exists = stat(target_.c_str(), &info) == 0;
-  if (exists && S_ISDIR(info.st_mode)) fail("is a folder; name a file in it");
-  if (exists && !S_ISREG(info.st_mode)) {
-    file_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file_ < 0) fail(std::string("cannot be opened: ") + std::strerror(errno));
-    return;
-  }
-  if (exists && !overwrite) fail("exists already; ask for it to be replaced, or choose another name");
-  open_temporary();
-  if (exists) (void)!fchmod(file_, info.st_mode & 07777);
 }
 
 OutputFile::~OutputFile() {
@@ -45,23 +60,18 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
-void OutputFile::fail(const std::string& what) const {
-  throw Error(ErrorCode::unwritable_output, "write", path_ + ": " + what);
-}
-
 void OutputFile::open_temporary() {
-  static std::atomic<uint32_t> serial{0};
-  const size_t slash = target_.rfind('/');
-  const std::string folder = slash == std::string::npos ? "" : target_.substr(0, slash + 1);
   do {
-    // A name of its own length, so that a target with the longest legal name can be written too.
-    temporary_ = folder + ".isoshell-" + std::to_string(getpid()) + "-" + std::to_string(serial++) + ".tmp";
+    temporary_ = place_.folder() + "/" + next_temporary_name();
     file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (file_ < 0 && errno == EEXIST);
-  if (file_ >= 0) return;
+  if (file_ >= 0) {
+    (void)!flock(file_, LOCK_EX | LOCK_NB);  // remove_leftovers() asks for it
+    return;
+  }
   const int reason = errno;
   temporary_.clear();
-  fail(std::string("cannot be made in its folder: ") + std::strerror(reason));
+  place_.fail(std::string("cannot be made in its folder: ") + std::strerror(reason));
 }
 
 void OutputFile::write(const void* data, int64_t bytes) {
@@ -69,33 +79,38 @@ void OutputFile::write(const void* data, int64_t bytes) {
   for (const char* p = static_cast<const char*>(data); bytes > 0;) {
     const ssize_t done = ::write(file_, p, size_t(std::min(bytes, kLargestWrite)));
     if (done < 0 && errno == EINTR) continue;
-    if (done < 0) fail(std::string("cannot be written: ") + std::strerror(errno) + "; what stood there is untouched");
+    if (done < 0) refuse_write(place_, errno);
     p += done;
     bytes -= done;
   }
 }
 
 void OutputFile::commit() {
-  if (file_ > STDOUT_FILENO) {
-    const int failed = close(file_);
-    file_ = -1;
-    if (failed) fail(std::string("cannot be written: ") + std::strerror(errno) + "; what stood there is untouched");
-  }
-  if (!temporary_.empty()) put_in_place();
+  if (!temporary_.empty())
+    if (const int failed = bring_to_disk(file_)) refuse_write(place_, failed);
+  if (file_ > STDOUT_FILENO && close(std::exchange(file_, -1)) != 0) refuse_write(place_, errno);
+  if (temporary_.empty()) return;
+  give_name(temporary_, place_, overwrite_);
+  temporary_.clear();
+  bring_name_to_disk(place_);
 }
 
-void OutputFile::put_in_place() {
-  int failed;
-#ifdef RENAME_NOREPLACE
-  failed = renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), overwrite_ ? 0 : RENAME_NOREPLACE);
-  if (failed && !overwrite_ && (errno == EINVAL || errno == ENOSYS) && access(target_.c_str(), F_OK) != 0)
-    failed = std::rename(temporary_.c_str(), target_.c_str());  // a file system that cannot refuse by itself
-#else
-  failed = !overwrite_ && access(target_.c_str(), F_OK) == 0 ? (errno = EEXIST, -1)
-                                                             : std::rename(temporary_.c_str(), target_.c_str());
-#endif
-  if (failed) fail(std::string("cannot be put in place: ") + std::strerror(errno) + "; what stood there is untouched");
-  temporary_.clear();
+void write_text(const std::string& path, const std::string& text, bool overwrite) {
+  OutputFile file(path, overwrite);
+  file.write(text);
+  file.commit();
+}
+
+void put_in_place(const std::string& finished, const std::string& path, bool overwrite) {
+  const OutputPlace place = output_place(path);
+  if (!place.is_replaced_whole()) place.fail("is not a regular file; name another");
+  if (place.is_there() && !overwrite) refuse_taken(place);
+  const int file = open(finished.c_str(), O_RDONLY | O_CLOEXEC);
+  const int failed = file < 0 ? errno : bring_to_disk(file);
+  if (file >= 0) close(file);
+  if (failed) refuse_write(place, failed);
+  give_name(finished, place, overwrite);
+  bring_name_to_disk(place);
 }
 
 }  // namespace isoshell

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <string>
 
+#include "io/bytes/output_place.h"
+
 namespace isoshell {
 
-/// Written under a temporary name in the same folder; commit() gives it its own. Without commit the temporary goes and
-/// what stood there stays. "-" is standard output; a device or pipe is written as it is.
+/// Written under a temporary name in the same folder; commit() gives it its own, once it is on the disk. Without commit
+/// the temporary goes and what stood there stays. "-" is standard output; a device or pipe is written as it is.
 /// Throws: unwritable_output, from every member but the destructor.
 class OutputFile {
  public:
@@ -23,11 +25,10 @@ class OutputFile {
   void commit();
 
  private:
-  [[noreturn]] void fail(const std::string& what) const;
   void open_temporary();
-  void put_in_place();
 
-  std::string path_, target_, temporary_;  // target_: path_ with symbolic links followed
+  OutputPlace place_;
+  std::string temporary_;
   bool overwrite_;
   int file_ = -1;
 };

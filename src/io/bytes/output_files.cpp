@@ -1,0 +1,52 @@
+// Outputs before any work (see isoshell/io/output_files.h).
+#include "isoshell/io/output_files.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "io/bytes/output_place.h"
+#include "io/bytes/temporary_name.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+void check_place(const OutputPlace& place, bool overwrite) {
+  if (place.is_stream) return;
+  if (!place.is_replaced_whole()) place.fail("is not a regular file; name another, or - for standard output");
+  if (place.is_there() && !overwrite) place.fail("exists already; --force replaces it");
+  if (access(place.folder().c_str(), W_OK | X_OK) != 0)
+    place.fail("cannot write in " + place.folder() + ": " + std::strerror(errno));
+}
+
+[[noreturn]] void refuse_one_file(const NamedFile& a, const NamedFile& b, const char* why) {
+  throw Error(ErrorCode::usage, "write",
+              a.what + " " + a.path + " and " + b.what + " " + b.path + " are one file, which is named twice; " + why);
+}
+
+}  // namespace
+
+void check_output_files(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs, bool overwrite) {
+  std::map<FileId, const NamedFile*> read, written;
+  for (const NamedFile& input : inputs)
+    if (const std::optional<FileId> id = input_id(input.path)) read.emplace(*id, &input);
+  std::set<std::string> folders;
+  for (const NamedFile& output : outputs) {
+    if (output.path.empty()) continue;
+    const OutputPlace place = output_place(output.path);
+    check_place(place, overwrite);
+    if (!place.is_stream) folders.insert(place.folder());
+    if (!place.id) continue;
+    if (const auto same = written.emplace(*place.id, &output); !same.second)
+      refuse_one_file(*same.first->second, output, "every result needs its own");
+    if (const auto same = read.find(*place.id); same != read.end())
+      refuse_one_file(output, *same->second, "a result needs its own");
+  }
+  for (const std::string& folder : folders) remove_leftovers(folder);
+}
+
+}  // namespace isoshell
