@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "isoshell/error.h"
-#include "isoshell/io/mesh_file.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "module/watched.h"
 
@@ -51,16 +50,18 @@ class Frames {
                 });
   }
 
-  void go_on_from(Place& place, const Source& source, const Keywords& keywords, const std::string& mesh,
-                  const std::string& velocity, nb::object tell) {
-    const RequestFromPython requested = request_from_python(source, keywords, "", nb::none(), std::move(tell));
-    work(place, source, requested,
-         [chain = chain(), mesh, read = source.read, velocity_of = velocity_reader(source, velocity)](
-             const RunRequest& request, Context& context) {
-           chain->go_on_from(input_of_run(read, request, context).soup, read_mesh(mesh));
-           chain->set_velocity(velocity_of(request, context));
-           return true;
-         });
+  /// Empty where `output` is the frame, and else what is wrong with it.
+  std::string go_on_from(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
+                         const std::string& velocity, nb::object tell) {
+    const RequestFromPython requested = request_from_python(source, keywords, output, nb::none(), std::move(tell));
+    return work(place, source, requested,
+                [chain = chain(), read = source.read, velocity_of = velocity_reader(source, velocity)](
+                    const RunRequest& request, Context& context) {
+                  const Input input = input_of_run(read, request, context);
+                  const std::string misfit = chain->go_on_from(input, request, context);
+                  if (misfit.empty()) chain->set_velocity(velocity_of(request, context));
+                  return misfit;
+                });
   }
 
  private:
@@ -105,8 +106,8 @@ void bind_sequence(nb::module_& m) {
       .def(nb::init<bool>(), nb::arg("is_coherent"))
       .def("run", &Frames::run, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("output"),
            nb::arg("measure_all"), nb::arg("velocity"), nb::arg("progress").none(), nb::arg("tell"))
-      .def("go_on_from", &Frames::go_on_from, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("mesh"),
-           nb::arg("velocity"), nb::arg("tell"));
+      .def("go_on_from", &Frames::go_on_from, nb::arg("place"), nb::arg("source"), nb::arg("keywords"),
+           nb::arg("output"), nb::arg("velocity"), nb::arg("tell"));
   m.def("check_frames", check_frames, nb::arg("keywords"), nb::arg("source"), nb::arg("output"), nb::arg("frames"),
         nb::arg("keep_going"), nb::arg("resume"));
   m.def("path_of_frame", path_of_frame, nb::arg("pattern"), nb::arg("frame"));

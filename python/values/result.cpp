@@ -36,6 +36,7 @@ std::vector<std::string> save(const RunResult& result, const std::string& path, 
   MeshWriteOptions options;
   options.overwrite = overwrite;
   if (const auto by = offset(result, recenter)) options.offset_world = {(*by)[0], (*by)[1], (*by)[2]};
+  options.made_of = result.made_of;
   write_mesh(path, result.mesh, options);
   const std::string format = named_output(path, "", StopAfter::mesh).format;
   return warnings_of_files({{path, format, positions_in_file(result.mesh, format, options.offset_world).held}},

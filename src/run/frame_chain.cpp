@@ -1,7 +1,21 @@
-// What a frame hands to the next one (see run/sequence.h).
+// What a frame hands to the next one, and by what its file says that it is that frame (see run/sequence.h).
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "core/hash_bytes.h"
+#include "isoshell/advanced/digest.h"
+#include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/options/options_json.h"
+#include "isoshell/readable.h"
 #include "isoshell/run/sequence.h"
 #include "run/measures.h"
+#include "run/outputs.h"
+#include "run/step.h"
 
 namespace isoshell {
 namespace {
@@ -14,6 +28,104 @@ TriangleSoup triangles_alone(std::vector<WorldPoint> vertices, std::vector<std::
   return soup;
 }
 
+uint64_t digest_of(const std::string& text) { return hash_bytes(text.data(), int64_t(text.size())); }
+
+uint64_t digest_of(std::initializer_list<uint64_t> parts) {
+  return hash_bytes(parts.begin(), int64_t(parts.size() * sizeof(uint64_t)));
+}
+
+template <class Row>
+uint64_t digest_of(const std::vector<Row>& rows) {
+  return hash_bytes(rows.data(), int64_t(rows.size() * sizeof(Row)));
+}
+
+/// By digests, each of all that it speaks of: the surface and its attributes, not where they are from.
+struct FrameKey {
+  uint64_t options = 0, input = 0, before = 0;  ///< before: 0 where none went before
+
+  /// As RunRequest::made_of has it.
+  std::string text() const;
+};
+
+uint64_t digest_of(const Attribute& a) {
+  std::string names = a.name;
+  for (const std::string& label : a.labels) names += '\n' + label;
+  return digest_of({digest_of(names), uint64_t(a.type), uint64_t(a.components), uint64_t(a.domain), digest_of(a.values),
+                    digest_of(a.index)});
+}
+
+uint64_t digest_of(const FaceRegions& regions) {
+  std::string names = std::to_string(regions.background);
+  for (const RegionName& region : regions.names) names += '\n' + std::to_string(region.label) + ' ' + region.name;
+  return digest_of({digest_of(regions.labels), digest_of(regions.side), digest_of(names)});
+}
+
+uint64_t digest_of_input(const Input& input) {
+  if (input.stage)
+    return digest_of({digest(input.stage->surface), input.stage->seeds ? digest(*input.stage->seeds) : 0,
+                      digest_of(input.stage->info.options_json)});
+  const TriangleSoup& soup = input.soup;
+  uint64_t sum = digest_of({digest_of(soup.vertices), digest_of(soup.triangles), digest_of(soup.regions)});
+  for (const Attribute& attribute : soup.attributes) sum = digest_of({sum, digest_of(attribute)});
+  return sum;
+}
+
+/// Of files that options name, each read once.
+using FileDigests = std::map<std::string, uint64_t>;
+
+/// Throws: unreadable_input.
+uint64_t digest_of_file(const std::string& path, FileDigests& known) {
+  const auto found = known.find(path);
+  if (found != known.end()) return found->second;
+  std::error_code code;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path, code))
+    throw Error(ErrorCode::unreadable_input, "frames", path + ": cannot be read; correct its name, or restore it");
+  uint64_t sum = 0;
+  std::vector<char> part(1 << 20);
+  while (file.read(part.data(), std::streamsize(part.size())) || file.gcount() > 0)
+    sum = digest_of({sum, hash_bytes(part.data(), file.gcount())});
+  return known[path] = sum;
+}
+
+/// A field in memory by the lengths that it gives the input.
+uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDigests& files) {
+  const RequestedOptions& options = request.options;
+  const std::string text = std::string(ISOSHELL_VERSION) + options_json(options.values) +
+                           (options.lengths_decide() ? " lengths decide" : "");
+  uint64_t sum = digest_of({digest_of(text), uint64_t(request.stop_after)});
+  for (const NamedFile& file : inputs_of(request))
+    if (file.what != kInput && !file.path.empty()) sum = digest_of({sum, digest_of_file(file.path, files)});
+  if (options.values.sizing) sum = digest_of({sum, digest_of(options.values.sizing->lengths_at(input.soup.vertices))});
+  return sum;
+}
+
+uint64_t digest_of_previous(const PreviousFrame& previous) {
+  return digest_of({digest_of(previous.vertices), digest_of(previous.triangles), digest_of(previous.carried)});
+}
+
+std::string FrameKey::text() const {
+  return digest_text(options) + " " + digest_text(input) + " " + digest_text(before);
+}
+
+/// Of a frame that begins with `request.options.values.previous`. Throws: unreadable_input for a sizing field or lines.
+FrameKey key_of_frame(const RunRequest& request, const Input& input, FileDigests& files) {
+  const auto& previous = request.options.values.previous;
+  return {digest_of_options(request, input, files), digest_of_input(input),
+          previous ? digest_of_previous(*previous) : 0};
+}
+
+/// What is another in the key that a file has, as "was made with other options"; empty where they are the same.
+std::string misfit_of(const FrameKey& key, const std::string& found) {
+  std::istringstream words(found);
+  std::string options, input, before;
+  if (!(words >> options >> input >> before)) return "does not say that a sequence made it";
+  if (options != digest_text(key.options)) return "was made with other options or by another version";
+  if (input != digest_text(key.input)) return "was made of another input";
+  if (before != digest_text(key.before)) return "follows another frame than the one that is before it now";
+  return "";
+}
+
 }  // namespace
 
 struct FrameChain::Frame {
@@ -23,19 +135,33 @@ struct FrameChain::Frame {
   std::shared_ptr<const VelocityField> velocity;
 };
 
-FrameChain::FrameChain(bool is_coherent) : is_coherent_(is_coherent) {}
+/// What there is of frames beside the last one.
+struct FrameChain::Written {
+  std::string first, last;  ///< files
+  int64_t count = 0;
+  std::map<std::string, uint64_t> digests;
+};
+
+FrameChain::FrameChain(bool is_coherent) : is_coherent_(is_coherent), written_(std::make_unique<Written>()) {}
 FrameChain::FrameChain(FrameChain&&) noexcept = default;
 FrameChain& FrameChain::operator=(FrameChain&&) noexcept = default;
 FrameChain::~FrameChain() = default;
 
 RunResult FrameChain::run(Input input, RunRequest request, Context& context) {
-  if (!is_coherent_ || request.stop_after != StopAfter::mesh) return isoshell::run(std::move(input), request, context);
-  if (input.stage)
+  if (follows(request) && input.stage)
     throw Error(ErrorCode::usage, "frames",
                 input.facts.path + " is a stage file, which has no surface that vertices could go with");
-  TriangleSoup surface = triangles_alone(input.soup.vertices, input.soup.triangles);
-  if (last_) request.options.values.previous = previous_for(surface, input.facts.kind, context);
+  if (follows(request) && last_) request.options.values.previous = previous_for(input, context);
+  request.made_of = key_of_frame(request, input, written_->digests).text();
+  request.written_before = written();
+  TriangleSoup surface;
+  if (follows(request)) surface = triangles_alone(input.soup.vertices, input.soup.triangles);
   RunResult made = isoshell::run(std::move(input), request, context);
+  if (const std::string& path = request.output.path; !path.empty()) {
+    if (written_->count++ == 0) written_->first = path;
+    written_->last = path;
+  }
+  if (!follows(request)) return made;
   TriangleMesh mesh;
   mesh.vertices = made.mesh.vertices;
   mesh.triangles = made.mesh.triangles;
@@ -43,8 +169,7 @@ RunResult FrameChain::run(Input input, RunRequest request, Context& context) {
   mesh.vertices = positions_in_file(mesh, "ply", offset).vertices;
   move_by(offset, mesh.vertices);
   const FeatureReport& features = made.record.report.features;
-  const bool had_curves = features.kept && features.on_sheet.empty();
-  last_ = std::make_unique<Frame>(Frame{std::move(surface), std::move(mesh), had_curves, nullptr});
+  remember(std::move(surface), std::move(mesh), features.kept && features.on_sheet.empty());
   return made;
 }
 
@@ -52,29 +177,57 @@ void FrameChain::set_velocity(std::shared_ptr<const VelocityField> velocity) {
   if (last_) last_->velocity = std::move(velocity);
 }
 
-void FrameChain::go_on_from(TriangleSoup surface, TriangleSoup mesh) {
-  if (!is_coherent_) return;
-  last_ = std::make_unique<Frame>();
-  last_->surface = triangles_alone(std::move(surface.vertices), std::move(surface.triangles));
-  last_->mesh.vertices = std::move(mesh.vertices);
-  last_->mesh.triangles = std::move(mesh.triangles);
+std::string FrameChain::go_on_from(const Input& input, const RunRequest& request, Context& context) {
+  for (const NamedFile& file : outputs_of(request))
+    if (!file.path.empty() && !std::filesystem::exists(file.path)) return "is there without " + file.path;
+  TriangleSoup there;
+  std::string made_of;
+  try {
+    there = read_mesh(request.output.path, "ply");
+    made_of = made_of_in_ply(request.output.path);
+  } catch (const Error& error) {
+    return std::string("cannot be read (") + error.what() + ")";
+  }
+  if (there.faces_in_file != int64_t(there.triangles.size())) return "has faces that are none";
+  RunRequest one = request;
+  if (follows(request) && last_) one.options.values.previous = previous_for(input, context);
+  const std::string misfit = misfit_of(key_of_frame(one, input, written_->digests), made_of);
+  if (!misfit.empty() || !follows(request)) return misfit;
+  TriangleMesh mesh;
+  mesh.vertices = std::move(there.vertices);
+  move_by(request.output.recenter.offset(), mesh.vertices);
+  mesh.triangles = std::move(there.triangles);
+  remember(triangles_alone(input.soup.vertices, input.soup.triangles), std::move(mesh), false);
+  return "";
 }
 
-std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const TriangleSoup& surface, InputKind kind,
-                                                              Context& context) const {
+std::string FrameChain::written() const {
+  if (written_->count <= 1) return written_->last;
+  return written_->first + " to " + written_->last + ", " + counted(written_->count, "frame");
+}
+
+bool FrameChain::follows(const RunRequest& request) const {
+  return is_coherent_ && request.stop_after == StopAfter::mesh;
+}
+
+void FrameChain::remember(TriangleSoup surface, TriangleMesh mesh, bool had_curves) {
+  last_ = std::make_unique<Frame>(Frame{std::move(surface), std::move(mesh), had_curves, nullptr});
+}
+
+std::shared_ptr<const PreviousFrame> FrameChain::previous_for(const Input& input, Context& context) const {
+  const TriangleSoup& surface = input.soup;
   auto previous = std::make_shared<PreviousFrame>();
   previous->vertices = last_->mesh.vertices;
   previous->triangles = last_->mesh.triangles;
   previous->had_curves = last_->had_curves;
   const bool has_same_triangles = have_same_triangles(last_->surface, surface);
-  previous->has_other_faces = kind != InputKind::mesh || !has_same_triangles;
-  if (has_same_triangles) {
-    previous->carried = carry_with_triangles(last_->mesh, last_->surface, surface, context);
-    return previous;
-  }
-  TriangleMesh moved = last_->mesh;
-  if (last_->velocity) moved.vertices = carry_with_velocity(moved.vertices, *last_->velocity);
-  previous->carried = carry_onto(moved, surface, context);
+  previous->has_other_faces = input.facts.kind != InputKind::mesh || !has_same_triangles;
+  previous->carried = naming_written(written(), [&] {
+    if (has_same_triangles) return carry_with_triangles(last_->mesh, last_->surface, surface, context);
+    TriangleMesh moved = last_->mesh;
+    if (last_->velocity) moved.vertices = carry_with_velocity(moved.vertices, *last_->velocity);
+    return carry_onto(moved, surface, context);
+  });
   return previous;
 }
 

@@ -228,9 +228,10 @@ std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, cons
   return kept;
 }
 
-void write_output(const TriangleMesh& mesh, bool overwrite, bool curve_edges, const OutputRequest& output) {
-  MeshWriteOptions options{output.format, overwrite, curve_edges, output.recenter.offset()};
+void write_output(const TriangleMesh& mesh, const RunRequest& request, bool curve_edges, const OutputRequest& output) {
+  MeshWriteOptions options{output.format, request.overwrite, curve_edges, output.recenter.offset()};
   options.may_lose_triangles = true;  // a gate says it
+  options.made_of = request.made_of;
   write_mesh(output.path, mesh, options);
 }
 

@@ -45,7 +45,7 @@ std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, cons
                                       const std::function<void(const std::string&)>& warn);
 
 /// To the output. Throws: as write_mesh().
-void write_output(const TriangleMesh& mesh, bool overwrite, bool curve_edges, const OutputRequest& output);
+void write_output(const TriangleMesh& mesh, const RunRequest& request, bool curve_edges, const OutputRequest& output);
 
 /// The region's closed mesh, less the offset of the output, in its folder, which is made where it is not there, and its
 /// file in the record. Throws: as write_mesh().

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "isoshell/io/mesh_file.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "isoshell/readable.h"
 #include "run/measures.h"
+#include "run/outputs.h"
+#include "run/step.h"
 
 namespace isoshell {
 namespace {
@@ -36,11 +37,6 @@ class Sequence {
     double kept_sum = 0;
     for (const int64_t frame : frame_numbers(request_.frames)) {
       const RunRequest one = request_of_frame(request_, frame);
-      if (request_.resume && fs::exists(one.output.path)) {
-        found_ = frame;
-        ++result_.found;
-        continue;
-      }
       try {
         make(frame, one, kept_sum);
       } catch (const Error& error) {
@@ -55,7 +51,10 @@ class Sequence {
  private:
   void make(int64_t frame, const RunRequest& one, double& kept_sum) {
     Input input = read(one);
-    if (found_) begin_with_found();
+    if (is_there(one, input)) {
+      ++result_.found;
+      return set_velocity(one);
+    }
     const RunResult made = chain_.run(std::move(input), one, context_);
     ++result_.made;
     if (made.record.options.previous) {
@@ -77,29 +76,27 @@ class Sequence {
     result_.bad.push_back({frame, code, message});
   }
 
-  Input read(const RunRequest& one) const { return read_input_of(one, context_, one.tell); }
+  Input read(const RunRequest& one) const {
+    return naming_written(chain_.written(), [&] { return read_input_of(one, context_, one.tell); });
+  }
+
+  /// Whether the frame need not be made.
+  bool is_there(const RunRequest& one, const Input& input) {
+    if (!request_.resume || !fs::exists(one.output.path)) return false;
+    const std::string misfit = chain_.go_on_from(input, one, context_);
+    if (!misfit.empty() && one.tell)
+      one.tell(MessageKind::warning, one.output.path + " " + misfit + ": it is made again");
+    return misfit.empty();
+  }
 
   void set_velocity(const RunRequest& one) {
     if (!request_.velocity.empty() && request_.is_coherent)
       chain_.set_velocity(read_velocity(one.input.path, request_.velocity, context_.memory_limit_bytes));
   }
 
-  /// The frame that is there already, as if it had been made.
-  void begin_with_found() {
-    const RunRequest one = request_of_frame(request_, *found_);
-    found_.reset();
-    if (!request_.is_coherent) return;
-    Input input = read(one);
-    TriangleSoup mesh = read_mesh(one.output.path);
-    move_by(one.output.recenter.offset(), mesh.vertices);
-    chain_.go_on_from(std::move(input.soup), std::move(mesh));
-    set_velocity(one);
-  }
-
   const SequenceRequest& request_;
   Context& context_;
   FrameChain chain_;
-  std::optional<int64_t> found_;  ///< the last frame that was there, and is not read yet
   SequenceResult result_;
 };
 
@@ -115,6 +112,7 @@ RunRequest request_of_frame(const SequenceRequest& request, int64_t frame) {
   RunRequest one = request.frame;
   for (std::string* path : {&one.input.path, &one.output.path, &one.save_shell, &one.save_voronoi, &one.statistics})
     if (!path->empty() && *path != "-") *path = path_of_frame(*path, frame);
+  one.overwrite |= request.resume;  // what is there and does not fit, and what a frame that was not ended has left
   return one;
 }
 
@@ -130,11 +128,14 @@ void check_sequence(const SequenceRequest& request) {
   if (every.output.recenter.is_asked && !every.output.recenter.offset_world)
     refuse("--recenter auto takes an offset for each frame; give one for all of them, as --recenter 500000,0,0");
   std::vector<std::string> missing, there;
+  std::vector<NamedFile> outputs, inputs;
   for (const int64_t frame : frame_numbers(request.frames)) {
     const RunRequest one = request_of_frame(request, frame);
     const std::string &from = one.input.path, &to = one.output.path;
     if (!from.empty() && !fs::exists(from)) missing.push_back(name_of(frame, from));
-    if (!request.resume && !one.overwrite && fs::exists(to)) there.push_back(name_of(frame, to));
+    if (!one.overwrite && fs::exists(to)) there.push_back(name_of(frame, to));
+    for (const NamedFile& file : outputs_of(one)) outputs.push_back(file);
+    for (const NamedFile& file : inputs_of(one)) inputs.push_back(file);
   }
   if (!missing.empty() && !request.keep_going)
     throw Error(ErrorCode::unreadable_input, "frames",
@@ -143,6 +144,7 @@ void check_sequence(const SequenceRequest& request) {
     throw Error(ErrorCode::unwritable_output, "frames",
                 counted(int64_t(there.size()), "frame exists", "frames exist") + " already: " + some_of(there) +
                     "; --force replaces them, --resume goes on after them");
+  check_output_files(outputs, inputs, every.overwrite || request.resume);
 }
 
 SequenceResult run_sequence(const SequenceRequest& request, Context& context) {

@@ -1,12 +1,25 @@
 // A step of a run, with its progress.
 #pragma once
 
+#include <string>
 #include <type_traits>
 
 #include "isoshell/backend.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
+
+/// What an interruption of the work throws says that these files were written before; empty: none.
+template <class Work>
+std::invoke_result_t<Work> naming_written(const std::string& written, Work work) {
+  try {
+    return work();
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::interrupted) throw;
+    throw Error(e.code(), e.stage(),
+                "interrupted; " + (written.empty() ? "nothing was written" : "written before: " + written));
+  }
+}
 
 /// Runs work between its progress of 0 and of 1. Throws: interrupted, before it begins; what the work throws.
 template <class Work>

@@ -59,13 +59,10 @@ class RunSteps::Run {
     context_ = &context;
     start_ = Clock::now();
     const Book book{*this};
-    try {
+    return naming_written(written_, [&]() -> std::invoke_result_t<Work> {
       if (record_.device.backend.empty()) record_.device = device_info(context);  // no time is lost where there is none
       return work();
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::interrupted) throw;
-      throw Error(e.code(), e.stage(), "interrupted; " + (written_.empty() ? "nothing was written" : "written before: " + written_));
-    }
+    });
   }
 
   void report_to(Tell tell, AroundWrite around_write) {
@@ -167,7 +164,7 @@ class RunSteps::Run {
     if (options_.values.color_features) show_features(mesh);
     if (const std::string& path = record_.output.path; !path.empty())
       write_step("write", path,
-                 [&] { write_output(mesh, request_.overwrite, options_.values.color_features, record_.output); });
+                 [&] { write_output(mesh, request_, options_.values.color_features, record_.output); });
     for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
       write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite, record_); });
     for (const std::string& text : warnings_of_files(record_.files, offset_to_origin(mesh))) warn(text);
@@ -332,7 +329,7 @@ class RunSteps::Run {
       around_write(request_.statistics,
                    [&] { write_text(request_.statistics, statistics_json(record), request_.overwrite); });
     std::vector<std::string> missed = missed_gates(request_.gates, record);
-    return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed)};
+    return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed), request_.made_of};
   }
 
   RunRequest request_;
@@ -345,10 +342,10 @@ class RunSteps::Run {
   std::optional<Relaxed> relaxed_;
   RunRecord record_;
   std::vector<RegionFile> region_files_;
-  std::string left_out_;     ///< of the input, by stage files
-  std::string written_;      ///< files that are whole, for who interrupts
-  Clock::time_point start_;  ///< of the steps that go on
-  double before_ms_ = 0;     ///< of those before them
+  std::string left_out_;                           ///< of the input, by stage files
+  std::string written_ = request_.written_before;  ///< files that are whole, for who interrupts
+  Clock::time_point start_;                        ///< of the steps that go on
+  double before_ms_ = 0;                           ///< of those before them
 };
 
 RunSteps::RunSteps(RunRequest request) : run_(std::make_unique<Run>(std::move(request))) {}

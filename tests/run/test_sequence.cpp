@@ -1,70 +1,11 @@
 // Sequences: vertices keep their numbers, and the files do not depend on how the sequence was run.
-#include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "isoshell/advanced/digest.h"
-#include "isoshell/error.h"
-#include "isoshell/io/mesh_file.h"
 #include "isoshell/mesh_topology.h"
-#include "isoshell/run/sequence.h"
-#include "support/catch.h"
-#include "support/mesh_files.h"
-#include "support/refusals.h"
-#include "support/shapes.h"
-#include "support/test_context.h"
+#include "run/sequences.h"
 
 using namespace isoshell;
-
-namespace {
-
-/// A torus that is twisted about its axis, more from frame to frame.
-TriangleSoup twisted(int frame) {
-  TriangleSoup soup = shapes::torus(2, 0.7, 96, 48);
-  for (WorldPoint& p : soup.vertices) {
-    const double angle = 0.06 * frame * p.x;
-    p = {p.x, p.y * std::cos(angle) - p.z * std::sin(angle), p.y * std::sin(angle) + p.z * std::cos(angle)};
-  }
-  return soup;
-}
-
-TriangleSoup turned(TriangleSoup soup, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  for (WorldPoint& p : soup.vertices) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
-  return soup;
-}
-
-void write_frames(const TemporaryFolder& folder, int frames, TriangleSoup (*frame)(int)) {
-  for (int f = 0; f < frames; ++f) {
-    const TriangleSoup soup = frame(f);
-    write_mesh(path_of_frame(folder / "in.##.ply", f), {soup.vertices, soup.triangles});
-  }
-}
-
-SequenceRequest request_in(const TemporaryFolder& folder, int frames, const std::string& output) {
-  SequenceRequest request;
-  RemeshOptions options;
-  options.vertices = 600;
-  request.frame.options = requested_options(options);
-  request.frame.input = named_input(folder / "in.##.ply");
-  request.frame.output = named_output(folder / output, "", StopAfter::mesh);
-  request.frames = {0, frames - 1, 1};
-  return request;
-}
-
-std::vector<std::string> files_of(const SequenceRequest& request) {
-  std::vector<std::string> bytes;
-  for (int64_t f = request.frames.first; f <= request.frames.last; ++f)
-    bytes.push_back(get_file(path_of_frame(request.frame.output.path, f)));
-  return bytes;
-}
-
-std::string refusal(const SequenceRequest& request, ErrorCode code) {
-  TestContext context;
-  return message_of(code, [&] { run_sequence(request, context); });
-}
-
-}  // namespace
 
 TEST_CASE("sequence: vertices keep their numbers and most edges, and every frame is a mesh of its own", "[sequence]") {
   TestContext context;

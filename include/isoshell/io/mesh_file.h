@@ -25,6 +25,7 @@ struct MeshWriteOptions {
   bool curve_edges = false;             ///< also the edges of the mesh's curves: an element edge, in PLY only
   WorldPoint offset_world = {0, 0, 0};  ///< subtracted from what is written; comments of the file say so
   bool may_lose_triangles = false;      ///< also write what HeldPositions::lost_triangles counts
+  std::string made_of = {};             ///< of a frame of a sequence: a comment that says of what, in PLY only
 };
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted
@@ -61,5 +62,9 @@ FilePositions positions_in_file(const TriangleMesh& mesh, const std::string& for
 /// What to subtract from a mesh far from the origin: the middle of its box, to whole multiples of a power of ten that
 /// is as large as the box; 0 where that is nearer.
 WorldPoint offset_to_origin(const TriangleMesh& mesh);
+
+/// What a PLY file says that it was made of, by MeshWriteOptions::made_of; empty where it says nothing. Throws:
+/// unreadable_input for what is no PLY file.
+std::string made_of_in_ply(const std::string& path);
 
 }  // namespace isoshell

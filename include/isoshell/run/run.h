@@ -38,6 +38,8 @@ struct RunRequest {
   Gates gates;
   Measures measures = Measures::mesh;
   bool overwrite = false;
+  std::string made_of;         ///< of a frame of a sequence: MeshWriteOptions::made_of of its mesh
+  std::string written_before;  ///< what an interruption names beside the run's own files; empty: nothing
 
   Tell tell;
   AroundWrite around_write;  ///< empty: files are just written
@@ -59,6 +61,7 @@ struct RunResult {
   RunRecord record;
   std::vector<std::string> gates;  ///< as they were asked for
   std::vector<std::string> missed_gates;
+  std::string made_of = {};  ///< of a frame: what its PLY file says of that
 };
 
 /// Checks that every file can be written, reads, and goes on from there as the second form. Its steps ("read",

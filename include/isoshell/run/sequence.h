@@ -34,21 +34,29 @@ class FrameChain {
 
   /// run() of the next frame. The vertices of the one before go to where they are in this one: with their triangles
   /// where both have the same, else along the velocities, if there are any, and to the nearest place that faces their
-  /// way. Throws: as run() does, and then the next frame begins with what this one would have begun with; usage for a
-  /// stage file, which has no surface.
+  /// way. Its PLY file says what it was made of. Throws: as run() does, and then the next frame begins with what this
+  /// one would have begun with; an interruption names the frames that were written before; usage for a stage file,
+  /// which has no surface.
   RunResult run(Input input, RunRequest request, Context& context);
   /// The surface of the last frame goes along these until the next.
   void set_velocity(std::shared_ptr<const VelocityField> velocity);
-  /// The last frame is one that was made before, from this surface and with that mesh as its PLY file has it.
-  void go_on_from(TriangleSoup surface, TriangleSoup mesh);
+  /// The next frame is the one that its output holds already, if that is what run() would make. Result: empty then,
+  /// else what is wrong with the file, as "was made of another input": it is the next one to run. Throws: as reading
+  /// what the options name does; interrupted.
+  std::string go_on_from(const Input& input, const RunRequest& request, Context& context);
+  /// As an interruption names the frames that were written: "a.1.ply to a.7.ply, 7 frames"; empty: none.
+  std::string written() const;
 
  private:
   struct Frame;
-  std::shared_ptr<const PreviousFrame> previous_for(const TriangleSoup& surface, InputKind kind,
-                                                    Context& context) const;
+  struct Written;
+  bool follows(const RunRequest& request) const;
+  std::shared_ptr<const PreviousFrame> previous_for(const Input& input, Context& context) const;
+  void remember(TriangleSoup surface, TriangleMesh mesh, bool had_curves);
 
   bool is_coherent_;
   std::unique_ptr<Frame> last_;
+  std::unique_ptr<Written> written_;
 };
 
 /// A frame that is not as it should be.
@@ -64,7 +72,9 @@ struct SequenceRequest {
   std::string velocity;     ///< grid of a volume's file, world units a frame; empty: none
   bool is_coherent = true;  ///< else every frame begins cold
   bool keep_going = false;  ///< past frames that cannot be read or meshed, or miss a gate
-  bool resume = false;      ///< frames whose output is there are not made again; needs PLY
+  /// Frames whose output is there, whole and as this sequence makes it, are not made again; others replace what is
+  /// there. Needs PLY.
+  bool resume = false;
   /// Called after each frame that was made.
   std::function<void(int64_t frame, const RunResult& result)> after_frame;
 };
@@ -86,13 +96,13 @@ RunRequest request_of_frame(const SequenceRequest& request, int64_t frame);
 
 /// What can be told before anything starts; an input without a path is in memory. Throws: usage for files that cannot
 /// be those of a sequence; unreadable_input with every missing frame, unless it is to keep going; unwritable_output
-/// with every frame that is there and may neither be replaced nor left out.
+/// with every frame that is there and may neither be replaced nor left out; and as check_output_files() does.
 void check_sequence(const SequenceRequest& request);
 
 /// A chain of frames that are files, checked before it starts. A frame has the vertex properties `born`, and vx, vy,
 /// vz, world units a frame, when it follows another. Result: the same files whether it was done in one go or resumed.
 /// Throws: as check_sequence() does, and as run() does for the first frame that is not as it should be, named, unless
-/// it is to keep going.
+/// it is to keep going; an interruption names the frames that were written.
 SequenceResult run_sequence(const SequenceRequest& request, Context& context);
 
 }  // namespace isoshell

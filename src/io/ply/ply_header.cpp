@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "io/bytes/text_scan.h"
+#include "isoshell/io/mesh_file.h"
 
 namespace isoshell {
 namespace {
@@ -23,8 +24,8 @@ struct NoteKind {
   const char* name;
   size_t words_before_name;
 };
-constexpr NoteKind kNotes[] = {
-    {kTextureNote, 2}, {kLibraryNote, 2}, {kLabelNote, 4}, {kRegionNote, 3}, {kBackgroundNote, 2}};
+constexpr NoteKind kNotes[] = {{kTextureNote, 2}, {kLibraryNote, 2},    {kLabelNote, 4},
+                               {kRegionNote, 3},  {kBackgroundNote, 2}, {kFrameNote, 2}};
 
 // Reads the header line by line; lines end in \n, \r\n or \r.
 class HeaderReader {
@@ -196,6 +197,12 @@ const PlyElement* PlyHeader::find(const std::string& element) const {
   for (const PlyElement& e : elements)
     if (e.name == element) return &e;
   return nullptr;
+}
+
+std::string made_of_in_ply(const std::string& path) {
+  for (const std::vector<std::string>& note : read_ply_header(MeshSource(path)).notes)
+    if (note[0] == kFrameNote) return note[1];
+  return "";
 }
 
 PlyHeader read_ply_header(const MeshSource& source) {

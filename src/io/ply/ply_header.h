@@ -36,12 +36,13 @@ struct PlyElement {
   bool has_list() const;
 };
 
-/// Comments that hold more than words: names of images, as MeshLab writes them, of libraries of materials, labels
-/// and regions.
+/// Comments that hold more than words: names of images, as MeshLab writes them, of libraries of materials, labels,
+/// regions, and what a frame was made of.
 constexpr const char* kTextureNote = "TextureFile";
 constexpr const char* kLibraryNote = "mtllib";
-constexpr const char* kLabelNote = "label";    ///< followed by the attribute's name, the number and the label
-constexpr const char* kRegionNote = "region";  ///< followed by the region's label and its name
+constexpr const char* kLabelNote = "label";           ///< followed by the attribute's name, the number and the label
+constexpr const char* kRegionNote = "region";         ///< followed by the region's label and its name
+constexpr const char* kFrameNote = "isoshell_frame";  ///< followed by what a frame of a sequence was made of
 constexpr const char* kBackgroundNote = "region_background";  ///< followed by the label of what is no region
 
 struct PlyHeader {

@@ -36,9 +36,9 @@ std::vector<size_t> corners_of(const TriangleMesh& mesh) {
 
 class PlyWriter {
  public:
-  PlyWriter(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, bool with_curve_edges)
-      : file_(file), mesh_(mesh), placement_(placement) {
-    if (with_curve_edges) edges_ = &mesh.features.curve_edges;
+  PlyWriter(OutputFile& file, const TriangleMesh& mesh, const Placement& placement, const MeshWriteOptions& options)
+      : file_(file), mesh_(mesh), placement_(placement), made_of_(options.made_of) {
+    if (options.curve_edges) edges_ = &mesh.features.curve_edges;
     for (const Attribute& a : mesh.attributes)
       (is_of_vertices(a, mesh)               ? of_vertices_
        : a.domain == AttributeDomain::corner ? of_corners_
@@ -68,6 +68,7 @@ class PlyWriter {
       for (size_t i = 0; i < a->labels.size(); ++i)
         text += comment(std::string(kLabelNote) + " " + a->name + " " + std::to_string(i) + " " + a->labels[i]);
     text += region_notes();
+    if (!made_of_.empty()) text += comment(std::string(kFrameNote) + " " + made_of_);
     text += "element vertex " + std::to_string(mesh_.vertices.size()) + "\n";
     std::set<std::string> names;
     for (const char* axis : {"x", "y", "z"}) text += property(type, axis, names);
@@ -165,6 +166,7 @@ class PlyWriter {
   OutputFile& file_;
   const TriangleMesh& mesh_;
   const Placement& placement_;
+  const std::string& made_of_;
   const std::vector<MeshCurveEdge>* edges_ = nullptr;  ///< null: not asked for
   std::vector<const Attribute*> of_vertices_, of_corners_, of_faces_;
   std::vector<size_t> corner_of_vertex_;
@@ -184,7 +186,7 @@ Placement place_in_ply(const TriangleMesh& mesh, const WorldPoint& offset) {
 
 void write_ply(OutputFile& file, const TriangleMesh& mesh, const Placement& placement,
                const MeshWriteOptions& options) {
-  PlyWriter(file, mesh, placement, options.curve_edges).write();
+  PlyWriter(file, mesh, placement, options).write();
 }
 
 }  // namespace isoshell

@@ -1,0 +1,73 @@
+// What a sequence takes for its own when it resumes, what it says when it ends early, and which outputs it refuses.
+#include "run/sequences.h"
+
+using namespace isoshell;
+
+TEST_CASE("sequence: resumed, it makes again what is not whole or not of this run, says so, and keeps the rest",
+          "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 4, twisted);
+  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  request.frame.statistics = folder / "s.##.json";
+  std::vector<std::string> said;
+  request.frame.tell = [&](MessageKind kind, const std::string& text) {
+    if (kind == MessageKind::warning) said.push_back(text);
+  };
+  run_sequence(request, context);
+  const std::vector<std::string> whole = files_of(request);
+  request.resume = true;
+  const auto resumed = [&](const std::string& frame, const std::string& why, int64_t made) {
+    INFO(frame << ": " << why);
+    said.clear();
+    const SequenceResult result = run_sequence(request, context);
+    CHECK(result.made == made);
+    CHECK(result.found == 4 - made);
+    CHECK(said.size() == size_t(made));
+    if (made > 0) CHECK(contains(said.at(0), "out." + frame + ".ply " + why));
+    return files_of(request) == whole;
+  };
+  CHECK(resumed("", "", 0));
+  put_file(folder / "out.01.ply", "");
+  CHECK(resumed("01", "cannot be read", 1));
+  put_file(folder / "out.02.ply", whole[2].substr(0, whole[2].size() - 100));
+  CHECK(resumed("02", "cannot be read", 1));
+  put_file(folder / "out.03.ply", whole[3].substr(0, whole[3].size() - 12) + std::string(12, '\0'));
+  CHECK(resumed("03", "has faces that are none", 1));
+  write_mesh(folder / "out.00.ply", {twisted(0).vertices, twisted(0).triangles}, {"", true});
+  CHECK(resumed("00", "does not say that a sequence made it", 1));
+  std::filesystem::remove(folder / "s.02.json");
+  CHECK(resumed("02", "is there without " + (folder / "s.02.json"), 1));
+  put_file(folder / "out.01.ply", whole[2]);
+  CHECK(resumed("01", "was made of another input", 1));
+  request.frame.options.values.vertices = 500;
+  CHECK_FALSE(resumed("00", "was made with other options", 4));
+  request.frame.options.values.vertices = 600;
+  CHECK(resumed("00", "was made with other options", 4));
+  write_mesh(folder / "in.02.ply", {twisted(3).vertices, twisted(3).triangles}, {"", true});
+  CHECK_FALSE(resumed("02", "was made of another input", 2));
+  CHECK(contains(said.at(1), "out.03.ply follows another frame"));
+}
+
+TEST_CASE("sequence: an interruption names the frames that were written", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 4, twisted);
+  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  request.after_frame = [&](int64_t frame, const RunResult&) { context.cancel = frame == 2; };
+  const std::string said = refusal_in(request, ErrorCode::interrupted, context);
+  CHECK(contains(said, "written before: " + (folder / "out.00.ply") + " to " + (folder / "out.02.ply") + ", 3 frames"));
+}
+
+TEST_CASE("sequence: outputs that are one file, or another frame's input, are refused before any frame", "[sequence]") {
+  const TemporaryFolder folder;
+  write_frames(folder, 2, twisted);
+  std::filesystem::create_symlink("in.01.ply", folder / "out.00.ply");
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  request.frame.overwrite = true;
+  CHECK(contains(refusal(request, ErrorCode::usage), "are one file"));
+  std::filesystem::remove(folder / "out.00.ply");
+  std::filesystem::create_symlink("gone", folder / "out.01.ply");
+  CHECK(contains(refusal(request, ErrorCode::unwritable_output), "which is not there"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out.00.ply"));
+}
