@@ -8,6 +8,7 @@ from typing import Any, List, NamedTuple, Optional, Tuple
 
 from . import _isoshell
 from ._errors import Error
+from ._paths import path_text
 
 Keywords = List[Tuple[str, Optional[str]]]
 
@@ -81,7 +82,7 @@ def text_of(name: str, given: Any) -> str:
     if isinstance(value, (float, int)) and not isinstance(value, bool):
         return repr(value)
     if isinstance(value, (str, os.PathLike)):
-        return os.fsdecode(value)
+        return path_text(value)
     if isinstance(value, Mapping):  # an option of the command that may be given more than once
         return "\n".join(f"{_key(name, key)}={_plain(part)!r}" for key, part in value.items())
     if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
 from . import _isoshell
 from ._arrays import array_of, triple_of
 from ._errors import Error
+from ._paths import path_text
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,7 +55,7 @@ class Labels:
             Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True; of code
                 USAGE for what remesh() refuses.
         """
-        _isoshell.write_labels(os.fsdecode(path), values_of(self), lattice_of(self), overwrite)
+        _isoshell.write_labels(path_text(path), values_of(self), lattice_of(self), overwrite)
 
 
 def values_of(labels: Labels) -> np.ndarray[Any, Any]:

@@ -9,6 +9,7 @@ from . import _isoshell, _report
 from ._context import Context
 from ._errors import Error, note, warn
 from ._keywords import PLACE, READING, Keywords, keywords_of
+from ._paths import path_text
 from ._result import Result, checked
 from ._sources import Mesh, SourceLike, is_true_or_false, opened, sizing_of, source_of
 from ._usd import is_usd
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from ._options import Options
 
+STAGE_FILES = ("save_shell", "save_voronoi")
 OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
 
 
@@ -53,7 +55,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     sizing = sizing_of(given)
     place, progress = settle(context, given)
     keywords = keywords_for(source, given)
-    target = "" if output is None else os.fsdecode(output)
+    target = "" if output is None else path_text(output)
     volumes = stage_files(given)
     is_stage = is_usd(target)
     if is_stage:
@@ -66,8 +68,9 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     result = result_of(made, start, keywords, source, volumes)
     if is_stage:
         result.save(target, overwrite=given.get("force") is True, recenter=given.get("recenter"))
-    if options.get("report"):
-        _report.write(result, source_of(source), os.fsdecode(str(options["report"])))
+    page = options.get("report")
+    if page:
+        _report.write(result, source_of(source), page, given.get("force") is True)
     return checked(result)
 
 
@@ -94,7 +97,7 @@ def takes_stats(options: dict[str, Any]) -> bool:
 
 def stage_files(options: dict[str, Any]) -> list[str]:
     """The stage files that a run is to save."""
-    return [os.fsdecode(options[name]) for name in ("save_shell", "save_voronoi") if options.get(name)]
+    return [path_text(options[name]) for name in STAGE_FILES if options.get(name)]
 
 
 def result_of(made: _isoshell.RunResult, start: _isoshell.Source, keywords: Keywords, source: Any,
@@ -111,7 +114,9 @@ def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> Non
     refused = [name for name in OF_OTHER_OUTPUTS if options.get(name)]
     if refused:
         raise Error(f"{', '.join(refused)}: not where output is {target}", stage="options")
-    check_target(target, options.get("force") is True, volumes)
+    others = [(f"--{name.replace('_', '-')}", path_text(options[name])) for name in ("stats", "report", *STAGE_FILES)
+              if options.get(name)]
+    check_target(target, options.get("force") is True, volumes, others)
 
 
 def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:

@@ -10,6 +10,7 @@ from . import _isoshell
 from ._errors import Error, warn
 from ._keywords import text_of
 from ._labels import label_of
+from ._paths import path_text
 from ._usd import Origin, is_usd
 
 if TYPE_CHECKING:
@@ -163,10 +164,10 @@ class Result:
         if is_usd(path):
             from . import usd
 
-            package = os.fsdecode(path).lower().endswith(".usdz")
+            package = path_text(path).lower().endswith(".usdz")
             usd.write(path, self, volumes=[] if package else self._volumes, overwrite=overwrite, recenter=recenter)
         else:
-            for text in self._made.save(os.fspath(path), overwrite, text_of("recenter", recenter)):
+            for text in self._made.save(path_text(path), overwrite, text_of("recenter", recenter)):
                 warn(text)
 
     def to_trimesh(self) -> trimesh.Trimesh:

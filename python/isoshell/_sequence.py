@@ -11,6 +11,7 @@ from ._context import Context
 from ._errors import Error, warn
 from ._isoshell import ErrorCode
 from ._keywords import keywords_of
+from ._paths import path_text
 from ._remesh import keywords_for, listener, result_of, settle, stage_files, takes_stats
 from ._result import Result, checked
 from ._sources import SourceLike, frame_source_of, opened, sizing_of
@@ -55,7 +56,8 @@ def remesh_sequence(source: Union[Path, Iterable[SourceLike]], *, frames: Option
             next frame. An isoshell.Volume or Mesh has them by itself, and a stage of USD as `velocities`.
         no_coherence: begin every frame anew.
         keep_going: go on after a frame that cannot be read or meshed, or misses a requirement: see Frames.errors.
-        resume: leave out the frames whose output is there, and go on after them, to the same bytes; in PLY.
+        resume: leave out the frames whose output is there, whole and as this call would make it, and go on after them,
+            to the same bytes; others replace what is there, with a warning. In PLY.
         context, options: as remesh() takes them, but for report and split_regions; stats, save_shell and save_voronoi
             are names with #### or %04d.
 
@@ -82,7 +84,7 @@ class Frames(Iterator[Result]):
     Attributes:
         errors: with keep_going what went wrong, by the number of the frame. The result of one that misses a requirement
             is among the others; of any other bad frame there is none.
-        found: with resume the numbers of the frames so far whose output was there.
+        found: with resume the numbers of the frames so far that need not be made.
     """
 
     errors: dict[Number, Error]
@@ -125,7 +127,7 @@ class _Sequence:
         self._velocity = velocity or ""
         self._is_coherent = not flags["no_coherence"]
         self._keep_going, self._resume = flags["keep_going"], flags["resume"]
-        self._target = "" if output is None else os.fsdecode(output)
+        self._target = "" if output is None else path_text(output)
         self._output = "" if is_usd(self._target) else self._target  # what the library writes
         if options.get("split_regions"):
             raise Error("split_regions is for one frame; leave it out: Result.region has the regions of each",
@@ -138,18 +140,14 @@ class _Sequence:
     def results(self) -> Iterator[Result]:
         """The loop."""
         chain = _isoshell.Frames(self._is_coherent)
-        last_found: Optional[Frame] = None
         try:
             for frame, source in self._frames:
-                if self._resume and os.path.exists(_path_at(self._output, frame)):
-                    self.found.append(frame)
-                    last_found = frame, source
-                    continue
                 try:
-                    before, last_found = last_found, None
-                    if before is not None and self._is_coherent:
-                        self._go_on_from(chain, *before)
-                    result = self._made(chain, frame, source())
+                    given = source()
+                    if self._is_there(chain, frame, given):
+                        self.found.append(frame)
+                        continue
+                    result = self._made(chain, frame, given)
                 except Error as error:
                     self._note(frame, error)
                     continue
@@ -160,7 +158,7 @@ class _Sequence:
                 if self._stage is not None:
                     self._stage.add(result)
                 yield result
-                del source, result  # not to be kept while the next is made
+                del source, given, result  # not to be kept while the next is made
             if self._stage is not None:
                 self._stage.finish()
         finally:
@@ -182,12 +180,17 @@ class _Sequence:
                         recenter=options.get("recenter"))
         return result
 
-    def _go_on_from(self, chain: _isoshell.Frames, frame: Number, source: Callable[[], Any]) -> None:
-        """The frame that is there already, as if it had been made."""
+    def _is_there(self, chain: _isoshell.Frames, frame: Number, source: Any) -> bool:
+        """Whether the frame need not be made: then the next one goes on from what is there."""
+        path = _path_at(self._output, frame)
+        if not self._resume or not os.path.exists(path):
+            return False
         options = self._options_of(frame)
-        given = source()
-        chain.go_on_from(self._place, frame_source_of(given), keywords_for(given, options),
-                         _path_at(self._output, frame), self._velocity, listener(options))
+        misfit = chain.go_on_from(self._place, frame_source_of(opened(source), self._sizing),
+                                  keywords_for(source, options), path, self._velocity, listener(options))
+        if misfit and options.get("quiet") is not True:
+            warn(f"{path} {misfit}: it is made again")
+        return not misfit
 
     def _note(self, frame: Number, error: Error) -> None:
         """Names the frame, and ends the sequence unless it is to keep going."""
@@ -200,14 +203,15 @@ class _Sequence:
             warn(str(named))
 
     def _options_of(self, frame: Number) -> dict[str, Any]:
-        return {**self._options, **{name: _path_at(os.fsdecode(self._options[name]), frame)
+        replaced = {"force": True} if self._resume else {}  # what is there and does not fit
+        return {**self._options, **replaced, **{name: _path_at(path_text(self._options[name]), frame)
                                     for name in PATTERNS if self._options.get(name)}}
 
     def _frames_of(self, source: Any, frames: Optional[str]) -> Iterator[Frame]:
         """The frames, checked as far as it can be done before they start."""
         if not isinstance(source, (str, os.PathLike)):
             return self._frames_of_iterable(source, frames)
-        name = os.fsdecode(source)
+        name = path_text(source)
         if is_usd(name) and not _is_pattern(name):
             return self._frames_of_stage(name, frames)
         if frames is None:
@@ -262,7 +266,7 @@ class _Sequence:
         check_stage(target, self._options, [])
         if self._options.get("recenter") is not None:
             raise Error(f"recenter: not where all frames are {target}, whose mesh has a transform", stage="options")
-        return SampledStage(target)
+        return SampledStage(target, self._options.get("force") is True)
 
 
 def _numbered(sources: Iterator[Any], numbers: Optional[list[int]]) -> Iterator[Frame]:

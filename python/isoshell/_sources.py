@@ -9,6 +9,7 @@ from ._arrays import array_of, triple_of
 from ._errors import Error
 from ._isoshell import RunResult, Source
 from ._labels import Labels, lattice_of, values_of
+from ._paths import path_text
 from ._result import Result
 from ._usd import Origin, is_usd
 
@@ -157,7 +158,7 @@ def _vectors_of(velocities: Any, of_shape: Tuple[int, ...]) -> np.ndarray[Any, A
 
 def _source_of(given: Any) -> Source:
     if isinstance(given, (str, os.PathLike)):
-        return Source.file(os.fspath(given))
+        return Source.file(path_text(given))
     if isinstance(given, Points):
         normals = None if given.normals is None else array_of("normals", given.normals)
         return Source.points(array_of("points", given.positions), normals)

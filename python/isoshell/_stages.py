@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 from . import _isoshell
 from ._context import Context
 from ._errors import Error
+from ._paths import path_text
 from ._remesh import keywords_for, listener, settle
 from ._result import Result
 from ._sources import SourceLike, sizing_of, source_of
@@ -84,8 +85,8 @@ class Stages:
 
     def save_shell(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write the stage file of the shell, from which remesh() and the command resume."""
-        self._run.save_shell(os.fsdecode(path), overwrite)
+        self._run.save_shell(path_text(path), overwrite)
 
     def save_voronoi(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write the stage file of the Voronoi volume, and its preview. Surfaces with creases or borders that are kept have none."""
-        self._run.save_voronoi(os.fsdecode(path), overwrite)
+        self._run.save_voronoi(path_text(path), overwrite)

@@ -10,6 +10,7 @@
 #include "module/stages.h"
 #include "values/device_arrays.h"
 #include "values/errors.h"
+#include "values/files.h"
 #include "values/keywords.h"
 #include "values/labels.h"
 #include "values/result.h"
@@ -22,6 +23,7 @@ NB_MODULE(_isoshell, m) {
   m.attr("VERSION") = ISOSHELL_VERSION;
   bind_errors(m);
   bind_keywords(m);
+  bind_files(m);
   bind_device_arrays(m);
   bind_labels(m);
   bind_source(m);

@@ -11,6 +11,7 @@ from .. import _isoshell
 from .._context import Context
 from .._errors import Error
 from .._keywords import Keywords
+from .._paths import path_text
 from .._result import Result
 from .._sources import SourceLike, source_of
 
@@ -40,8 +41,8 @@ def report(result: Result, path: str | os.PathLike[str], *, source: Optional[Sou
             cannot be written, or is there and overwrite is not True; what reading a file raises.
     """
     require_k3d()
-    _refuse_existing(Path(path), overwrite)
-    write(result, source_of(source) if source is not None else result._source, path)
+    _refuse_existing(Path(path_text(path)), overwrite)
+    write(result, source_of(source) if source is not None else result._source, path, overwrite)
 
 
 def require_k3d() -> Path:
@@ -62,26 +63,18 @@ def has_k3d() -> bool:
     return True
 
 
-def write(result: Result, source: Optional[_isoshell.Source], path: str | os.PathLike[str]) -> None:
-    """The page of a result and what it was made from, which replaces a file that is there."""
+def write(result: Result, source: Optional[_isoshell.Source], path: str | os.PathLike[str], overwrite: bool) -> None:
+    """The page of a result and what it was made from."""
     from ._page import page
 
     surface = None if source is None else _surface_of(source, result._reading)
-    text = page(result, surface, require_k3d())
-    target = Path(path)
-    part = target.with_name(f".{target.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(target)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise Error(f"{os.fspath(path)}: {error.strerror}", _isoshell.ErrorCode.UNWRITABLE_OUTPUT, "report") from error
+    _isoshell.write_text(path_text(path), page(result, surface, require_k3d()), overwrite)
 
 
 def write_of_command(made: _isoshell.RunResult, source: _isoshell.Source, path: str, overwrite: bool) -> str:
     """The same for the command, which has looked at the path already; why it could not, if so."""
     try:
-        write(Result(made), source, path)
+        write(Result(made), source, path, overwrite)
     except Error as error:
         return str(error)
     return ""

@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 from .._errors import Error
 from .._isoshell import ErrorCode
+from .._paths import path_text
 
 ENDINGS = (".usd", ".usda", ".usdc", ".usdz")
 NAMED = re.compile(r"(?P<file>.*\.usd[acz]?)(?::(?P<prim>[^:\\]*))?", re.IGNORECASE | re.DOTALL)
@@ -45,14 +46,14 @@ class Origin:
 
 def is_usd(path: Any) -> bool:
     """Whether a path names a USD file, perhaps with a prim in it."""
-    return isinstance(path, (str, os.PathLike)) and NAMED.fullmatch(os.fsdecode(path)) is not None
+    return isinstance(path, (str, os.PathLike)) and NAMED.fullmatch(path_text(path)) is not None
 
 
 def split_name(path: str | os.PathLike[str]) -> tuple[str, Optional[str]]:
     """FILE.usd:/PRIM as file and prim, or None without one."""
-    found = NAMED.fullmatch(os.fsdecode(path))
+    found = NAMED.fullmatch(path_text(path))
     if found is None:
-        raise Error(f"{os.fsdecode(path)}: the ending must be one of {', '.join(ENDINGS)}")
+        raise Error(f"{path_text(path)}: the ending must be one of {', '.join(ENDINGS)}")
     return found["file"], found["prim"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import sys
 import time
@@ -9,7 +10,7 @@ import warnings
 from typing import Any, Optional
 
 from .._errors import Error, RunWarning
-from .._isoshell import ErrorCode
+from .._isoshell import VERSION, ErrorCode
 from .._keywords import kinds
 from .._remesh import estimate, remesh
 from .._result import Result
@@ -89,7 +90,10 @@ def _run(places: list[str], options: dict[str, Any]) -> None:
     start = time.perf_counter()
     options.setdefault("progress", "auto")
     if options.pop("dry_run", False):
-        _tell("estimate: " + ", ".join(f"{name} {value}" for name, value in estimate(places[0], **options).items()))
+        found = estimate(places[0], **options)
+        _tell("estimate: " + ", ".join(f"{name} {value}" for name, value in found.items()))
+        if options.get("stats") == "-":
+            print(json.dumps({"schema": 1, "version": VERSION, "estimate": found}, indent=2))
         return
     result: Optional[Result] = None
     try:

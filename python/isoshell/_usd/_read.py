@@ -7,6 +7,7 @@ from typing import Any, Optional, Sequence, Union
 
 from .._errors import Error, note, warn
 from .._isoshell import ErrorCode
+from .._paths import path_text
 from .._sources import Mesh
 from . import Origin, library, split_name
 from ._faces import Triangles, rows_of, triangles_of
@@ -24,7 +25,7 @@ class Scene:
                  purposes: Sequence[str] = PURPOSES) -> None:
         self._pxr = library()
         self._file, named = split_name(path)
-        self._name = os.fsdecode(path) if prim is None else f"{self._file}:{prim}"
+        self._name = path_text(path) if prim is None else f"{self._file}:{prim}"
         self._purposes = purposes
         self._has_warned = False
         with reading(self._pxr, self._file):

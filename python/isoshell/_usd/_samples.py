@@ -29,9 +29,10 @@ class SampledStage:
     What was added lies in that file, so that the length of a sequence takes no memory.
     """
 
-    def __init__(self, target: str) -> None:
+    def __init__(self, target: str, overwrite: bool) -> None:
         self._pxr = library()
         self._target = target
+        self._overwrite = overwrite
         self._folder = ""
         self._stage: Any = None
         self._mesh: Any = None
@@ -66,7 +67,7 @@ class SampledStage:
     def finish(self) -> None:
         """Writes the stage, if it has a sample."""
         if self._stage is not None:
-            save_stage(self._pxr, self._stage, self._target)
+            save_stage(self._pxr, self._stage, self._target, self._overwrite)
 
     def discard(self) -> None:
         """Lets go of what was added."""

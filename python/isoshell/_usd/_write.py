@@ -7,9 +7,11 @@ import os
 import tempfile
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Sequence, Union
 
+from .. import _isoshell
 from .._errors import Error, warn
 from .._isoshell import VERSION, ErrorCode
 from .._keywords import text_of
+from .._paths import path_text
 from .._result import Result
 from . import Origin, library, reason_of, split_name
 from ._attributes import PrimvarWriter
@@ -30,8 +32,9 @@ MATERIALS = "Materials"  # below the root
 FAR = 64  # sizes of itself from the origin: beyond, single precision takes more than a millionth of the size
 
 
-def check_target(path: str, overwrite: bool, volumes: Iterable[str] = ()) -> None:
-    """Before a run: whether its result could be written there.
+def check_target(path: str, overwrite: bool, volumes: Iterable[str] = (),
+                 others: Iterable[tuple[str, str]] = ()) -> None:
+    """Before a run: whether its result could be written there, beside its other files.
 
     Raises:
         Error: of code UNWRITABLE_OUTPUT or USAGE.
@@ -40,12 +43,7 @@ def check_target(path: str, overwrite: bool, volumes: Iterable[str] = ()) -> Non
     file, prim = split_name(path)
     if prim is not None:
         raise Error(f"{path}: a prim is named; give the file alone", stage="write")
-    if os.path.isdir(file):
-        raise _unwritable(file, "is a directory")
-    if os.path.exists(file) and not overwrite:
-        raise _unwritable(file, "exists; overwrite=True (force of a run) replaces it")
-    if not os.path.isdir(os.path.dirname(file) or "."):
-        raise _unwritable(file, "its folder does not exist")
+    _isoshell.check_output_files([("OUTPUT", file), *others], [], overwrite)
     if file.lower().endswith(".usdz") and list(volumes):
         raise Error(f"{file}: packages hold no volumes; give a .usda or .usdc", stage="write")
 
@@ -75,8 +73,8 @@ def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str
     import numpy as np
 
     pxr = library()
-    target = os.fsdecode(path)
-    files = [os.fsdecode(volume) for volume in volumes]
+    target = path_text(path)
+    files = [path_text(volume) for volume in volumes]
     check_target(target, overwrite, files)
     origin = result.origin or Origin()
     axis = origin.up_axis if up_axis is None else up_axis
@@ -105,7 +103,7 @@ def write(path: str | os.PathLike[str], result: Result, *, volumes: Iterable[str
     for file, of_file in zip(files, grids):
         name = os.path.basename(file).removesuffix(".vdb").split(".")[-1]
         _write_volume(pxr, stage, _free(pxr, root, name, names), file, of_file, folder)
-    save_stage(pxr, stage, target)
+    save_stage(pxr, stage, target, overwrite)
 
 
 def begin_stage(pxr: Any, stage: Any, origin: Origin, up_axis: str, meters_per_unit: float) -> Any:
@@ -246,7 +244,7 @@ def _extent_of(boxes: list[Box]) -> Array:
     return np.array([np.where(ends[0] > low, down, ends[0]), np.where(ends[1] < high, up, ends[1])], np.float32)
 
 
-def save_stage(pxr: Any, stage: Any, target: str) -> None:
+def save_stage(pxr: Any, stage: Any, target: str, overwrite: bool) -> None:
     """Under another name first, so that nothing half-written is left. A stage that lies in a binary file gives it away
     where the target is one, too."""
     folder = os.path.dirname(os.path.abspath(target))
@@ -268,7 +266,7 @@ def save_stage(pxr: Any, stage: Any, target: str) -> None:
             if not pxr.UsdUtils.CreateNewUsdzPackage(pxr.Sdf.AssetPath(made), packed):
                 raise _unwritable(target, "USD could not pack it")
             made = packed
-        os.replace(made, target)
+        _isoshell.put_in_place(made, target, overwrite)
 
 
 @contextlib.contextmanager
