@@ -1,6 +1,8 @@
 // What a run will take, before it allocates anything.
 #pragma once
 
+#include <string>
+
 #include "isoshell/remesh.h"
 
 namespace isoshell {
@@ -11,8 +13,12 @@ struct RunEstimate {
   int64_t vertices = 0;                  ///< of the result
   int64_t sites = 0, active_voxels = 0;  ///< none where walls between regions are meshed
   int64_t sheet_vertices = 0;            ///< of those walls: of the finer surface that they become
+  int64_t vertex_bytes = 0;              ///< of `bytes`, what the vertices of the result take, on any grid
   int64_t bytes = 0;  ///< memory of the library's products and scratch at their peak, the input included
 };
+
+/// What needs more than the limit, and which option helps: "the 1,000,000,000 vertices ... need about ...".
+std::string over_memory_limit(const RunEstimate& estimate, int64_t limit_bytes);
 
 /// From the area of the surface alone, on the grid the run would start with; `resolution` > 0 overrules the options.
 /// Meant to be high rather than low: a plane in the worst direction meets sqrt(3) voxels a voxel of area. Of a surface

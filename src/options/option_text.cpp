@@ -76,6 +76,7 @@ std::string OptionRange::refusal(const std::string& option, double value) const 
     text += above ? "" : " or more";
   else
     text += (above ? " and at most " : " to ") + number_text(high, kShownDigits);
+  if (!std::isfinite(value)) text += " and finite";
   return text;
 }
 

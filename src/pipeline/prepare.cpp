@@ -24,8 +24,6 @@
 namespace isoshell {
 namespace {
 
-constexpr int32_t kCoarsestGrid = 8;
-
 /// None when the run finds it.
 std::optional<int32_t> requested_closing(const Plan& plan, const LatticeFrame& frame) {
   const RemeshOptions& options = plan.options;
@@ -57,14 +55,8 @@ bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& rep
     report.grid.memory_estimate_bytes = std::max(report.grid.memory_estimate_bytes, estimate.bytes);
     return true;
   }
-  const std::string what = "resolution " + std::to_string(estimate.resolution) + " needs about " +
-                           std::to_string(estimate.bytes >> 20) + " MiB, more than the limit of " +
-                           std::to_string(context.memory_limit_bytes >> 20) + " MiB";
-  if (!refining) {
-    const char* remedy = estimate.resolution > kCoarsestGrid ? "; lower --resolution or raise --max-memory"
-                                                             : ", which its faces take; raise --max-memory";
-    throw Error(ErrorCode::out_of_memory, "memory", what + remedy);
-  }
+  const std::string what = over_memory_limit(estimate, context.memory_limit_bytes);
+  if (!refining) throw Error(ErrorCode::out_of_memory, "memory", what);
   report.warnings.push_back("the grid was not refined further: " + what);
   return false;
 }

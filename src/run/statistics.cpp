@@ -348,4 +348,16 @@ std::string statistics_json(const RunRecord& r) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string estimate_json(const RunEstimate& e, int64_t memory_limit_bytes) {
+  Json j;
+  j["schema"] = 1;
+  j["version"] = ISOSHELL_VERSION;
+  j["estimate"] = {{"resolution", e.resolution},       {"voxel_size", e.voxel_size_world},
+                   {"vertices", known(e.vertices)},    {"sites", e.sites},
+                   {"active_voxels", e.active_voxels}, {"sheet_vertices", e.sheet_vertices},
+                   {"memory_bytes", e.bytes}};
+  j["memory_limit_bytes"] = memory_limit_bytes > 0 ? Json(memory_limit_bytes) : Json();
+  return j.dump(2) + "\n";
+}
+
 }  // namespace isoshell

@@ -208,6 +208,13 @@ TEST_CASE("args: an option by a name that does not exist is refused with the nea
   CHECK(contains(given_refusal("vertices", "x"), "--vertices is 'x'"));
 }
 
+TEST_CASE("args: an option whose value is empty is refused, whichever it is", "[cli][args]") {
+  for (const OptionEntry& option : option_table())
+    if (!option.value.empty())
+      CHECK(contains(refusal({"a.obj", "b.ply", ("--" + option.name).c_str(), ""}),
+                     "--" + option.name + " has no value"));
+}
+
 TEST_CASE("args: what is for sequences needs frames", "[cli][args]") {
   const Arguments a = *parse({"in.####.obj", "out.####.ply", "--frames", "3-9x2", "--velocity", "v", "--resume"}).run;
   REQUIRE(a.frames);

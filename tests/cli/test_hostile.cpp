@@ -145,6 +145,20 @@ TEST_CASE("hostile: absurd sizes are refused with a size that would do", "[cli][
     CHECK(contains(tiny.err, "2147483647"));
     CHECK(contains(tiny.err, "use at least"));
   }
+  for (const char* length : {"1e300", "1.7976931348623157e308", "3"}) {
+    const auto huge = folder.run("ball.off out.ply --edge-length " + std::string(length));
+    INFO(huge.err);
+    CHECK(huge.status == 2);
+    CHECK(contains(huge.err, "asks for fewer than 4 vertices; use at most 1.89"));
+  }
+  CHECK(folder.run("ball.off most.ply --edge-length 1.89").status == 0);
+  for (const char* length : {"inf", "nan"})
+    CHECK(contains(folder.run("ball.off out.ply --edge-length " + std::string(length)).err,
+                   std::string("is ") + length + "; it must be more than 0 and finite"));
+  const auto many = folder.run("ball.off out.ply --vertices 1000000000 --max-memory 4G");
+  CHECK(many.status == 7);
+  CHECK(contains(many.err, "a result of 1,000,000,000 vertices needs about"));
+  CHECK(contains(many.err, "ask for fewer by --vertices or longer edges, or raise --max-memory"));
   const auto fine = folder.run("ball.off out.ply --voxel-size 1e-9");
   CHECK(fine.status == 2);
   CHECK(contains(fine.err, "a voxel size of 1e-09 gives more than 8192 voxels"));

@@ -60,6 +60,8 @@ class Parser {
       if (app_.get_option("--" + name)->count() == 0) continue;
       a.run.options.given.push_back(name);
       const bool is_flag = option.entry.value.empty();
+      if (!is_flag && texts_.at(name).empty())
+        refuse("--" + name + " has no value; give " + option.entry.value + ", or leave it out");
       if (!is_flag || flags_.at(name)) option.set(is_flag ? "" : texts_.at(name), a);
     }
   }
@@ -92,7 +94,6 @@ Arguments checked_arguments(const Parser& parser, const std::string& output) {
   Arguments a;
   RunRequest& run = a.run;
   parser.set_options(a);
-  if (run.options.was_given("sizing") && run.options.sizing.empty()) refuse("--sizing needs the name of a .vdb file");
   check_sequence(a);
   if (parser.has_flag("verbose") && parser.has_flag("quiet")) refuse("--verbose and --quiet exclude each other");
   if (a.verbosity == 0) run.measures = Measures::none;

@@ -7,8 +7,10 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <string>
 
 #include "isoshell/error.h"
+#include "isoshell/readable.h"
 
 namespace isoshell::tool {
 namespace {
@@ -17,6 +19,7 @@ constexpr suseconds_t kPatienceUs = 250000, kAgainUs = 20000;
 
 std::atomic<Context*> cancelled_by_signal{nullptr};
 std::atomic<const char*> speaker{""};
+std::atomic<const char*> written{"nothing was written"};
 std::atomic<int> writing{0};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Context*>::is_always_lock_free,
               "handlers of signals may use them");
@@ -28,11 +31,8 @@ void wake_in(suseconds_t us) {
 
 extern "C" void end_unless_writing(int) {
   if (writing > 0) return wake_in(kAgainUs);
-  constexpr char kText[] = ": error: interrupted\n";
-  const char* const program = speaker;
-  if (write(STDERR_FILENO, program, std::strlen(program)) < 0 ||
-      write(STDERR_FILENO, kText, sizeof kText - 1) < 0) {  // nobody to tell
-  }
+  for (const char* text : {speaker.load(), ": error: interrupted; ", written.load(), "\n"})
+    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;  // nobody to tell
   _exit(int(ErrorCode::interrupted));
 }
 
@@ -54,5 +54,14 @@ void answer_signals(Context& context, const char* program) {
 
 WhileWriting::WhileWriting() { ++writing; }
 WhileWriting::~WhileWriting() { --writing; }
+
+void note_written(const std::string& path) {
+  static std::string first, texts[2];  // no handler looks at them meanwhile: it waits for what is being written
+  static int64_t count = 0;
+  if (count++ == 0) first = path;
+  std::string& text = texts[count % 2];
+  text = "written before: " + (count == 1 ? first : first + " to " + path + ", " + counted(count, "file"));
+  written = text.c_str();
+}
 
 }  // namespace isoshell::tool

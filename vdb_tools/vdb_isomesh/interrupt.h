@@ -1,6 +1,8 @@
 // Answers to signals: the run is asked to stop, and stopped where it does not hear in time.
 #pragma once
 
+#include <string>
+
 #include "isoshell/backend.h"
 
 namespace isoshell::tool {
@@ -19,5 +21,8 @@ class WhileWriting {
   WhileWriting(const WhileWriting&) = delete;
   WhileWriting& operator=(const WhileWriting&) = delete;
 };
+
+/// A file is there for good: the last words of a process that is ended name it. Called while it is still written.
+void note_written(const std::string& path);
 
 }  // namespace isoshell::tool

@@ -86,17 +86,9 @@ Set verbosity(int value) {
 
 void nothing(const std::string&, Arguments&) {}
 
-/// An option without text is as if it were not given.
-Set unless_empty(Set set) {
-  return [set = std::move(set)](const std::string& text, Arguments& a) {
-    if (!text.empty()) set(text, a);
-  };
-}
-
 CommandOption of_run(const OptionRow& row) {
   return {{row.group, row.name, row.value_name, row.text, row.fallback, row.is_real(), false, row.range, row.repeats()},
           [&row](const std::string& text, Arguments& a) {
-            if (row.is_text() && text.empty()) return;  // as if it were not given
             set_from_text(row, std::string("--") + row.name, text, a.run.options);
           },
           "",
@@ -132,9 +124,8 @@ std::vector<CommandOption> file_options() {
       {{group, "recenter", "auto|X,Y,Z",
         "write meshes with this place at the origin, auto: round numbers near the middle of the result; for formats "
         "whose numbers are too coarse far from the origin, as STL"},
-       unless_empty([](const std::string& text, Arguments& a) { a.run.output.recenter = parse_recenter(text); })},
-      {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"},
-       unless_empty(set_stop_after)},
+       [](const std::string& text, Arguments& a) { a.run.output.recenter = parse_recenter(text); }},
+      {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"}, set_stop_after},
       {{group, "stats", "F.json", "write all statistics as JSON; - writes to standard output"},
        text_of(&RunRequest::statistics)},
       {{group, "report", "F.html",
@@ -152,7 +143,7 @@ std::vector<CommandOption> sequence_options() {
       {{group, "frames", "A-B[xSTEP]",
         "mesh the frames from A to B, every STEP-th, each beginning with the one before, so that vertices keep their "
         "numbers; INPUT, OUTPUT and --stats have #### or %04d where the number is"},
-       unless_empty([](const std::string& text, Arguments& a) { a.frames = parse_frames(text); })},
+       [](const std::string& text, Arguments& a) { a.frames = parse_frames(text); }},
       {{group, "velocity", "GRID",
         "grid of velocities in the .vdb file of a frame, in world units a frame: where its surface goes until the "
         "next"},
@@ -160,7 +151,9 @@ std::vector<CommandOption> sequence_options() {
       {{group, "no-coherence", "", "begin every frame anew"}, flag_of(&Arguments::is_coherent, false)},
       {{group, "keep-going", "", "go on after a frame that cannot be read or meshed, or misses a gate"},
        flag_of(&Arguments::keep_going)},
-      {{group, "resume", "", "leave out the frames whose OUTPUT is there, and go on after them; in PLY"},
+      {{group, "resume", "",
+        "leave out the frames whose OUTPUT is there, whole and as this run would make it, and go on after them; in "
+        "PLY"},
        flag_of(&Arguments::resume)},
   };
   for (CommandOption& option : options) option.entry.of_command = true;
@@ -176,16 +169,16 @@ std::vector<CommandOption> process_options() {
        set_requirements},
       {{group, "allow-intersections", "", "exit with status 0, not 6, where the result intersects itself"},
        [](const std::string&, Arguments& a) { a.run.gates.allow_intersections = true; }},
-      {{group, "device", "auto|cpu|cuda[:N]", "device to run on", "auto"}, unless_empty(set_device)},
+      {{group, "device", "auto|cpu|cuda[:N]", "device to run on", "auto"}, set_device},
       {{group, "threads", "N", "number of CPU threads", "all"}, set_threads},
       {{group, "max-memory", "SIZE",
         "refuse a run that would need more memory than this (of the device, for a run there), as 512M or 8G",
         "80 % of the free memory"},
-       unless_empty([](const std::string& text, Arguments& a) { a.max_memory_bytes = parse_size_bytes(text); })},
-      {{group, "dry-run", "", "print the grid and the memory estimate, and exit", "", false, true},
+       [](const std::string& text, Arguments& a) { a.max_memory_bytes = parse_size_bytes(text); }},
+      {{group, "dry-run", "", "print the grid and the memory estimate, with --stats - also as JSON, and exit", "",
+        false, true},
        flag_of(&Arguments::dry_run)},
-      {{group, "progress", "auto|always|never|json", "report progress on standard error", "auto"},
-       unless_empty(set_progress)},
+      {{group, "progress", "auto|always|never|json", "report progress on standard error", "auto"}, set_progress},
       {{group, "verbose", "", "print more messages"}, verbosity(2), "v"},
       {{group, "quiet", "", "print errors only"}, verbosity(0), "q"},
       {{group, "help", "", "print this help and exit", "", false, true}, nothing, "h"},

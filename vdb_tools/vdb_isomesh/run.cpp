@@ -6,6 +6,7 @@
 
 #include "isoshell/device_info.h"
 #include "isoshell/error.h"
+#include "isoshell/io/output_files.h"
 #include "isoshell/readable.h"
 #include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
@@ -29,6 +30,16 @@ void write_undisturbed(const std::string& path, const std::function<void()>& wri
   std::optional<WhileWriting> writing;
   if (path != "-") writing.emplace();
   write();
+  if (path != "-") note_written(path);
+}
+
+/// A dry run writes to standard output alone.
+void write_estimate(const RunRequest& request, RunEstimate e, int64_t limit_bytes, Console& console) {
+  if (request.options.lengths_decide()) e.vertices = -1;  // not known
+  if (request.statistics == "-")
+    write_text("-", estimate_json(e, limit_bytes), false);
+  else if (!request.statistics.empty())
+    console.warn("a dry run writes no files, and so no " + request.statistics + "; --stats - prints the estimate");
 }
 
 void tell_estimate(const RunRequest& request, const RunEstimate& e, int64_t limit_bytes, Console& console) {
@@ -42,10 +53,9 @@ void tell_estimate(const RunRequest& request, const RunEstimate& e, int64_t limi
   if (!requested.sizing.empty() || !requested.values.region_edge_lengths.empty() || requested.values.adaptivity > 0)
     text << "; edges that vary may take a finer grid, and more";
   console.result(text.str());
+  write_estimate(request, e, limit_bytes, console);
   if (limit_bytes > 0 && e.bytes > limit_bytes)
-    throw Error(ErrorCode::out_of_memory, "memory",
-                "the run needs about " + readable_bytes(e.bytes) + ", more than the limit of " +
-                    readable_bytes(limit_bytes) + "; lower --resolution or raise --max-memory");
+    throw Error(ErrorCode::out_of_memory, "memory", over_memory_limit(e, limit_bytes));
 }
 
 void tell_times(const RunRecord& record, Console& console) {

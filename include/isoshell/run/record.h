@@ -11,6 +11,7 @@
 #include "isoshell/distance.h"
 #include "isoshell/io/input.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/memory_estimate.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/quality.h"
 #include "isoshell/region_census.h"
@@ -76,5 +77,8 @@ std::optional<RegionChanges> region_changes_of(const RunRecord& record);
 
 /// The statistics of a run as JSON, schema 1; what was not measured is null.
 std::string statistics_json(const RunRecord& record);
+
+/// The same of a dry run, under the names that the Python module has; without a limit (0) that is null.
+std::string estimate_json(const RunEstimate& estimate, int64_t memory_limit_bytes);
 
 }  // namespace isoshell

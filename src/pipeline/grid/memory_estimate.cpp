@@ -4,6 +4,9 @@
 #include "pipeline/grid/memory_estimate.h"
 
 #include <algorithm>
+#include <string>
+
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
@@ -36,11 +39,22 @@ RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t re
   e.sites = int64_t(sites);
   e.sheet_vertices = input.closed ? int64_t(sites) : int64_t(2 * sites);
   e.active_voxels = int64_t(active);
-  e.bytes = int64_t(kFixedBytes + kBytesPerSheetVertex * double(e.sheet_vertices) +
-                    (options.want_shell ? kBytesPerKeptVoxel : kBytesPerActiveVoxel) * active +
-                    kBytesPerTriangle * double(soup.triangles.size() + soup.vertices.size()) +
-                    kBytesPerSeed * double(e.vertices));
+  e.vertex_bytes = int64_t(kBytesPerSeed * double(e.vertices));
+  e.bytes = e.vertex_bytes + int64_t(kFixedBytes + kBytesPerSheetVertex * double(e.sheet_vertices) +
+                                     (options.want_shell ? kBytesPerKeptVoxel : kBytesPerActiveVoxel) * active +
+                                     kBytesPerTriangle * double(soup.triangles.size() + soup.vertices.size()));
   return e;
+}
+
+std::string over_memory_limit(const RunEstimate& e, int64_t limit_bytes) {
+  const bool is_of_vertices = 2 * e.vertex_bytes > e.bytes;
+  const std::string who = is_of_vertices ? "a result of " + counted(e.vertices, "vertex", "vertices")
+                                         : "resolution " + std::to_string(e.resolution);
+  const char* const remedy = is_of_vertices                 ? "; ask for fewer by --vertices or longer edges, or "
+                             : e.resolution > kCoarsestGrid ? "; lower --resolution or "
+                                                            : ", which its faces take; ";
+  return who + " needs about " + readable_bytes(e.bytes) + ", more than the limit of " + readable_bytes(limit_bytes) +
+         remedy + "raise --max-memory";
 }
 
 }  // namespace isoshell

@@ -6,6 +6,8 @@
 
 namespace isoshell {
 
+constexpr int32_t kCoarsestGrid = 8;
+
 /// As estimate_run, of a surface that parts no regions.
 RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t resolution);
 

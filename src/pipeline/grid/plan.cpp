@@ -20,7 +20,7 @@ constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the e
 
 constexpr int64_t kUsualVertices = 10000;
 constexpr int32_t kMinResolution = 8;
-constexpr int64_t kMaxVertices = 2147483647;
+constexpr int64_t kMinVertices = 4, kMaxVertices = 2147483647;
 
 int32_t resolution_for_voxel(double longest, double voxel_size) {
   return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
@@ -44,13 +44,15 @@ int32_t requested_voxel_resolution(double longest, double voxel_size) {
 
 int64_t vertices_of_edge(double edge_world, double area_world) {
   const double vertices = area_world / (kAreaPerEdgeSq * edge_world * edge_world);
-  if (!(vertices <= double(kMaxVertices))) {  // a tiny length squares to 0
+  const bool is_too_short = !(vertices <= double(kMaxVertices));  // a tiny length squares to 0
+  if (is_too_short || vertices < kMinVertices - 0.5) {
     std::ostringstream text;
-    text << "an edge length of " << edge_world << " asks for more than " << kMaxVertices << " vertices; use at least "
-         << std::sqrt(area_world / double(kMaxVertices) / kAreaPerEdgeSq);
+    text << "an edge length of " << edge_world << " asks for " << (is_too_short ? "more than " : "fewer than ")
+         << (is_too_short ? kMaxVertices : kMinVertices) << " vertices; use at " << (is_too_short ? "least " : "most ")
+         << target_of(is_too_short ? kMaxVertices : kMinVertices, area_world).edge_length_world;
     throw Error(ErrorCode::usage, "grid", text.str());
   }
-  return std::max<int64_t>(4, std::llround(vertices));
+  return std::max(kMinVertices, int64_t(std::llround(vertices)));
 }
 
 Target target_of(int64_t vertices, double area_world) {

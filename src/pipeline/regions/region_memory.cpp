@@ -50,6 +50,7 @@ RunEstimate estimate_walls(const Plan& plan, const TriangleSoup& walls, const st
   e.voxel_size_world = frame.voxel_size;
   const LengthsOnWalls lengths(walls, plan, of_face_world);
   e.vertices = std::llround(lengths.vertices());
+  e.vertex_bytes = int64_t(kBytesPerSeed * double(e.vertices));
   const double parts = walls.regions.are_of_voxels ? kPartsOfRoughEdge : kPartsOfEdge;
   const int64_t twice_inside =
       sum_over_ranges(int64_t(walls.triangles.size()), kTrianglesOfTask, [&](int64_t begin, int64_t end) {
