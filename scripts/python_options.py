@@ -18,6 +18,7 @@ from __future__ import annotations
 import os
 from typing import Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
+from ._context import Progress
 from ._sources import Volume
 
 Path = Union[str, "os.PathLike[str]"]
@@ -56,7 +57,7 @@ def type_of(option: _isoshell.OptionEntry) -> str:
     if "|" in option.value:
         words = ", ".join(f'"{word}"' for word in option.value.split("|"))
         words = f"Literal[{words}]"
-        return f"Union[{words}, Callable[[str, float], object]]" if option.name == "progress" else words
+        return f"Union[{words}, Callable[[str, Progress], object]]" if option.name == "progress" else words
     return "int"
 
 

@@ -12,7 +12,7 @@ import atexit as _atexit
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from . import _isoshell
-from ._context import Context
+from ._context import Context, Progress
 from ._errors import Error, RunWarning
 from ._isoshell import VERSION as __version__
 from ._isoshell import ErrorCode
@@ -30,11 +30,11 @@ from ._stages import Stages
 if _TYPE_CHECKING:
     from . import usd as usd
 
-__all__ = ["Context", "Error", "ErrorCode", "Frames", "Labels", "Mesh", "Options", "Points", "Result", "RunWarning",
+__all__ = ["Context", "Error", "ErrorCode", "Frames", "Labels", "Mesh", "Options", "Points", "Progress", "Result", "RunWarning",
            "Stages", "Volume", "__version__", "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence",
            "report"]
 
-for _name in ("Context", "Error", "Frames", "Labels", "Mesh", "Points", "Result", "RunWarning", "Stages", "Volume",
+for _name in ("Context", "Error", "Frames", "Labels", "Mesh", "Points", "Progress", "Result", "RunWarning", "Stages", "Volume",
               "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence", "report"):
     globals()[_name].__module__ = __name__
 

@@ -8,7 +8,28 @@ from typing import Callable, Optional, Union
 from . import _isoshell
 from ._keywords import keywords_of
 
-Progress = Callable[[str, float], object]
+
+class Progress(float):
+    """How far a call is: the fraction of all of it that is done, from 0 to 1. It never goes back.
+
+    Attributes:
+        stage_fraction: of the stage that goes on, likewise.
+        seconds_left: about.
+    """
+
+    stage_fraction: float
+    seconds_left: float
+
+    def __new__(cls, fraction: float, stage_fraction: float, seconds_left: float) -> Progress:
+        progress = super().__new__(cls, fraction)
+        progress.stage_fraction, progress.seconds_left = stage_fraction, seconds_left
+        return progress
+
+    def __getnewargs__(self) -> tuple[float, float, float]:  # type: ignore[override]
+        return float(self), self.stage_fraction, self.seconds_left
+
+
+OnProgress = Callable[[str, Progress], object]
 
 
 class Context:
@@ -20,17 +41,17 @@ class Context:
         device: "auto", "cpu", "cuda" or "cuda:N".
         threads: number of CPU threads; all without it.
         max_memory: refuse a run that would need more, as "512M", "8G" or bytes; without it 80 % of what is free.
-        progress: called as progress(stage, fraction) by the thread that asked for the run. What it raises stops the
-            run, and is raised there.
+        progress: called as progress(stage, fraction) by the thread that asked for the run, a few times a second. The
+            fraction is a Progress, of the whole run or sequence. What it raises stops the run, and is raised there.
 
     Raises:
         Error: of code USAGE for a value that cannot be.
     """
 
-    progress: Optional[Progress]
+    progress: Optional[OnProgress]
 
     def __init__(self, *, device: Optional[str] = None, threads: Optional[int] = None,
-                 max_memory: Optional[Union[int, str]] = None, progress: Optional[Progress] = None) -> None:
+                 max_memory: Optional[Union[int, str]] = None, progress: Optional[OnProgress] = None) -> None:
         self._place = _isoshell.Place(keywords_of({"device": device, "threads": threads, "max_memory": max_memory}))
         self.progress = progress
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from collections import deque
 from itertools import islice
-from typing import TYPE_CHECKING, Any, Generator, Iterable, Iterator, Literal, Optional, Union, overload
+from typing import (TYPE_CHECKING, Any, Generator, Generic, Iterable, Iterator, Literal, Optional, Sized, TypeVar, Union,
+                    overload)
 
 from . import _isoshell
 from ._errors import Error
@@ -15,6 +16,8 @@ from ._result import Result, checked
 from ._sources import SourceLike, opened, sizing_of, source_of
 
 if TYPE_CHECKING:
+    from types import TracebackType
+
     from typing_extensions import Unpack
 
     from ._options import Options
@@ -24,18 +27,58 @@ MOST_WORKERS = 4096
 MOST_OF_A_WORKER = 4  # sources that were read and whose results were not handed out yet
 
 
+Outcome = TypeVar("Outcome", bound=Union[Result, Error])
+
+
+class Results(Iterator[Outcome], Generic[Outcome]):
+    """The results of remesh_many(), in the order of the sources; a progress bar such as tqdm's counts them.
+
+    Closing it, or letting go of it, stops the workers. It is a context manager, which closes it.
+    """
+
+    def __init__(self, results: Generator[Outcome, None, None], count: Optional[int]) -> None:
+        self._results = results
+        self._count = count
+
+    def __iter__(self) -> Results[Outcome]:
+        return self
+
+    def __next__(self) -> Outcome:
+        return next(self._results)
+
+    def __len__(self) -> int:
+        """How many sources there are. TypeError where they do not say it, as a generator's."""
+        if self._count is None:
+            raise TypeError("nobody knows how many sources there are; give a list of them")
+        return self._count
+
+    def __bool__(self) -> bool:
+        return True
+
+    def close(self) -> None:
+        """Stop the workers."""
+        self._results.close()
+
+    def __enter__(self) -> Results[Outcome]:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self.close()
+
+
 @overload
 def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None, on_error: Literal["raise"] = "raise",
-                **options: Unpack[Options]) -> Generator[Result, None, None]: ...
+                **options: Unpack[Options]) -> Results[Result]: ...
 
 
 @overload
 def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None, on_error: Literal["return"],
-                **options: Unpack[Options]) -> Generator[Union[Result, Error], None, None]: ...
+                **options: Unpack[Options]) -> Results[Union[Result, Error]]: ...
 
 
 def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None, on_error: str = "raise",
-                **options: Unpack[Options]) -> Generator[Union[Result, Error], None, None]:
+                **options: Unpack[Options]) -> Results[Any]:
     """Remesh many sources side by side: the results of remesh(), in the order of the sources.
 
         for result in isoshell.remesh_many(paths, vertices=4000):
@@ -57,7 +100,7 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
             max_memory is of each run.
 
     Returns:
-        An iterator of the results.
+        An iterator of the results, with a length where the sources have one.
 
     Raises:
         Error: for an argument that cannot be, by this call; otherwise as remesh() does, where a result is asked for.
@@ -78,7 +121,7 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
     crew = _isoshell.RunWorkers(keywords_of(given), workers or 0)
 
     runs = (_Run(crew, source, sizing, given, measure_all) for source in sources)
-    return _results(crew, runs, on_error == "raise")
+    return Results(_results(crew, runs, on_error == "raise"), len(sources) if isinstance(sources, Sized) else None)
 
 
 class _Run:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
+from ._context import Progress
 from ._sources import Volume
 
 Path = Union[str, "os.PathLike[str]"]
@@ -131,6 +132,6 @@ class Options(TypedDict, total=False):
     device: Optional[str]
     threads: Optional[int]
     max_memory: Optional[Union[int, str]]
-    progress: Optional[Union[Literal["auto", "always", "never", "json"], Callable[[str, float], object]]]
+    progress: Optional[Union[Literal["auto", "always", "never", "json"], Callable[[str, Progress], object]]]
     verbose: bool
     quiet: bool

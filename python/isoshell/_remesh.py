@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 from . import _isoshell, _report
-from ._context import Context
+from ._context import Context, OnProgress, Progress
 from ._errors import Error, note, warn
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._paths import path_text
@@ -39,7 +39,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
             save_shell and save_voronoi as volumes.
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
-            what these say, progress may be a function, called as progress(stage, fraction), stats may be True, to
+            what these say, progress may be a function, called as progress(stage, fraction) with a Progress of the whole run, stats may be True, to
             measure everything without writing a file, and sizing may be an isoshell.Volume of edge lengths.
 
     Returns:
@@ -129,7 +129,15 @@ def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, An
     progress = context.progress
     if callable(options.get("progress")):
         progress = options.pop("progress")
-    return context._place, progress
+    return context._place, None if progress is None else teller(progress)
+
+
+def teller(progress: OnProgress) -> Callable[[str, float, float, float], None]:
+    """What the module calls."""
+    def tell(stage: str, *numbers: float) -> None:
+        progress(stage, Progress(*numbers))
+
+    return tell
 
 
 def keywords_for(source: Any, options: dict[str, Any]) -> Keywords:

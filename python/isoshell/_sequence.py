@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from itertools import count
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Optional, Sized, Tuple, Union
 
 from . import _isoshell
 from ._context import Context
@@ -93,10 +93,20 @@ class Frames(Iterator[Result]):
     def __init__(self, sequence: _Sequence) -> None:
         self.errors = sequence.errors
         self.found = sequence.found
+        self._count = sequence.count
         self._results = sequence.results()
 
     def __iter__(self) -> Frames:
         return self
+
+    def __len__(self) -> int:
+        """How many frames there are, made or not. TypeError where the sources do not say it."""
+        if self._count is None:
+            raise TypeError("nobody knows how many frames there are; give frames")
+        return self._count
+
+    def __bool__(self) -> bool:
+        return True
 
     def __next__(self) -> Result:
         return next(self._results)
@@ -120,6 +130,7 @@ class _Sequence:
                  flags: dict[str, bool], context: Optional[Context], options: dict[str, Any]) -> None:
         self.errors: dict[Number, Error] = {}
         self.found: list[Number] = []
+        self.count: Optional[int] = None  # of frames
         self._measure_all = takes_stats(options)
         self._sizing = sizing_of(options)
         self._place, self._progress = settle(context, options)
@@ -139,15 +150,15 @@ class _Sequence:
 
     def results(self) -> Iterator[Result]:
         """The loop."""
-        chain = _isoshell.Frames(self._is_coherent)
+        chain = _isoshell.Frames(self._is_coherent, self.count or 0)
         try:
-            for frame, source in self._frames:
+            for index, (frame, source) in enumerate(self._frames):
                 try:
                     given = source()
                     if self._is_there(chain, frame, given):
                         self.found.append(frame)
                         continue
-                    result = self._made(chain, frame, given)
+                    result = self._made(chain, index, frame, given)
                 except Error as error:
                     self._note(frame, error)
                     continue
@@ -165,13 +176,13 @@ class _Sequence:
             if self._stage is not None:
                 self._stage.discard()
 
-    def _made(self, chain: _isoshell.Frames, frame: Number, source: Any) -> Result:
+    def _made(self, chain: _isoshell.Frames, index: int, frame: Number, source: Any) -> Result:
         options = self._options_of(frame)
         keywords = keywords_for(source, options)
         source = opened(source)
         start = frame_source_of(source, self._sizing)
         path = _path_at(self._output, frame)
-        made = chain.run(self._place, start, keywords, path, self._measure_all, self._velocity, self._progress,
+        made = chain.run(self._place, start, keywords, index, path, self._measure_all, self._velocity, self._progress,
                          listener(options))
         result = result_of(made, start, keywords, source, stage_files(options))
         result.frame = frame
@@ -217,6 +228,7 @@ class _Sequence:
         if frames is None:
             raise Error(f"which frames of {name}? Give frames, as '1-240'", stage="frames")
         numbers = self._checked_numbers(split_name(name)[0] if is_usd(name) else name, frames)
+        self.count = len(numbers)
         return ((n, lambda n=n: _isoshell.path_of_frame(name, n)) for n in numbers)  # type: ignore[misc]
 
     def _frames_of_stage(self, name: str, frames: Optional[str]) -> Iterator[Frame]:
@@ -231,6 +243,7 @@ class _Sequence:
                         "isoshell.remesh", stage="frames")
         if not frames:
             self._checked_numbers("", "1")
+        self.count = len(times)
         return ((t, lambda t=t, until=until: scene.mesh_at(t, until))  # type: ignore[misc]
                 for t, until in zip(times, [*times[1:], None]))
 
@@ -241,6 +254,7 @@ class _Sequence:
             raise Error("source must be a name of files with #### for the number, a stage of USD or an iterable of "
                         f"sources, one for each frame, and is {type(source).__name__}", stage="frames") from None
         numbers = self._checked_numbers("", frames or "1")
+        self.count = len(numbers) if frames else len(source) if isinstance(source, Sized) else None
         return _numbered(sources, numbers if frames else None)
 
     def _checked_numbers(self, files: str, frames: str) -> list[int]:

@@ -36,8 +36,8 @@ void check_signals() {
 void deliver(const Mail& mail, const Listener& listener) {
   for (const Mail::Message& m : mail.messages)
     if (listener.tell) listener.tell(m.kind, m.text);
-  for (const Mail::Progress& p : mail.progress)
-    if (listener.progress) listener.progress(p.stage, p.fraction);
+  for (const Progress& progress : mail.progress)
+    if (listener.progress) listener.progress(progress);
 }
 
 }  // namespace
@@ -62,12 +62,13 @@ void Job::start(std::function<void()> work) {
   });
 }
 
-void Job::post_progress(const char* stage, double fraction) {
+void Job::post_progress(const Progress& progress) {
   const std::lock_guard lock(mutex_);
-  if (!mail_.progress.empty() && mail_.progress.back().stage == stage && mail_.progress.back().fraction > 0)
-    mail_.progress.back().fraction = fraction;
+  std::vector<Progress>& posted = mail_.progress;
+  if (!posted.empty() && std::string(posted.back().stage) == progress.stage && posted.back().stage_fraction > 0)
+    posted.back() = progress;
   else
-    mail_.progress.push_back({stage, fraction});
+    posted.push_back(progress);
 }
 
 void Job::post(MessageKind kind, const std::string& text) {

@@ -20,16 +20,12 @@ namespace isoshell::python {
 
 /// Who hears what happens meanwhile; called by the thread that waits, with the interpreter's lock held.
 struct Listener {
-  std::function<void(const std::string& stage, double fraction)> progress;  ///< empty: nobody
+  TellProgress progress;  ///< empty: nobody
   Tell tell;
 };
 
 /// What came from the work since the last look. Of a stage's progress only the latest is kept.
 struct Mail {
-  struct Progress {
-    std::string stage;
-    double fraction;
-  };
   struct Message {
     MessageKind kind;
     std::string text;
@@ -49,7 +45,7 @@ class Job {
   void start(std::function<void()> work);
 
   // For the work.
-  void post_progress(const char* stage, double fraction);
+  void post_progress(const Progress& progress);
   void post(MessageKind kind, const std::string& text);
   /// A file that is being written is finished, or removed, before the job is left alone.
   void write_undisturbed(const std::function<void()>& write);

@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -38,16 +39,15 @@ nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywo
       watched(place, both, requested,
               [read = source.read, of_reference, read_reference = reference ? reference->read : ReadMemory()](
                   const RunRequest& request, Context& context) {
-                if (context.progress) context.progress("read", 0);
-                Input mesh = input_of_run(read, request, context);
-                std::optional<Input> other;
-                if (of_reference) {
-                  RunRequest again = *of_reference;
-                  again.tell = request.tell;
-                  other = input_of_run(read_reference, again, context);
-                }
-                if (context.progress) context.progress("read", 1);
-                return mesh_info(std::move(mesh), std::move(other), request.gates, context);
+                std::function<Input()> read_other;
+                if (of_reference)
+                  read_other = [&] {
+                    RunRequest again = *of_reference;
+                    again.tell = request.tell;
+                    return input_of_run(read_reference, again, context);
+                  };
+                return mesh_info([&] { return input_of_run(read, request, context); }, read_other, request.gates,
+                                 context, request.progress);
               });
   return nb::make_tuple(mesh_info_json(info), info.missed_gates);
 }

@@ -35,12 +35,16 @@ ReadVelocity velocity_reader(const Source& source, const std::string& grid) {
 /// The chain is shared with the thread that works on it.
 class Frames {
  public:
-  explicit Frames(bool is_coherent) : chain_(std::make_shared<FrameChain>(is_coherent)) {}
+  /// Of so many frames; 0: nobody knows.
+  Frames(bool is_coherent, int64_t count)
+      : chain_(std::make_shared<FrameChain>(is_coherent)), progress_(std::make_shared<SequenceProgress>(count)) {}
 
-  RunResult run(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
+  RunResult run(Place& place, const Source& source, const Keywords& keywords, int64_t index, const std::string& output,
                 bool measure_all, const std::string& velocity, nb::object progress, nb::object tell) {
     RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
     if (measure_all) requested.arguments.run.measures = Measures::all;
+    progress_->begin(index);
+    requested.in_whole = [sequence = progress_](const Progress& frame) { return sequence->of(frame); };
     return work(place, source, requested,
                 [chain = chain(), read = source.read, velocity_of = velocity_reader(source, velocity)](
                     const RunRequest& request, Context& context) {
@@ -83,6 +87,7 @@ class Frames {
   }
 
   std::shared_ptr<FrameChain> chain_;
+  std::shared_ptr<SequenceProgress> progress_;
 };
 
 /// The numbers of frames, when all that can be checked before they start is as it should be. `source` is a pattern, or
@@ -103,9 +108,9 @@ std::vector<int64_t> check_frames(const Keywords& keywords, const std::string& s
 
 void bind_sequence(nb::module_& m) {
   nb::class_<Frames>(m, "Frames", "Frames one after the other, each beginning with the last that was made.")
-      .def(nb::init<bool>(), nb::arg("is_coherent"))
-      .def("run", &Frames::run, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("output"),
-           nb::arg("measure_all"), nb::arg("velocity"), nb::arg("progress").none(), nb::arg("tell"))
+      .def(nb::init<bool, int64_t>(), nb::arg("is_coherent"), nb::arg("count"))
+      .def("run", &Frames::run, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("index"),
+           nb::arg("output"), nb::arg("measure_all"), nb::arg("velocity"), nb::arg("progress").none(), nb::arg("tell"))
       .def("go_on_from", &Frames::go_on_from, nb::arg("place"), nb::arg("source"), nb::arg("keywords"),
            nb::arg("output"), nb::arg("velocity"), nb::arg("tell"));
   m.def("check_frames", check_frames, nb::arg("keywords"), nb::arg("source"), nb::arg("output"), nb::arg("frames"),

@@ -47,10 +47,9 @@ class StageRun {
   const Prepared& prepare() {
     if (!prepared_)
       prepared_ = add([read = source_.read](RunSteps& steps, const RunRequest& request, Context& context) {
-        if (read)
-          steps.take(read(request, context), context);
-        else
-          steps.read(context);
+        std::function<Input()> from_memory;
+        if (read) from_memory = [&] { return read(request, context); };
+        steps.read(context, from_memory);
         if (steps.input().stage)
           refuse(steps.input().facts.name() + " is a stage file; isoshell.remesh resumes from it");
         return &steps.prepare(context);
@@ -146,7 +145,7 @@ class StageRun {
   template <class Work>
   Made<Work> done_by_steps(Work stage) {
     return watched(*place_, source_, requested_, [steps = steps_, stage](const RunRequest& request, Context& context) {
-      steps->report_to(request.tell, request.around_write);
+      steps->report_to(request.tell, request.around_write, request.progress);
       return stage(*steps, request, context);
     });
   }

@@ -39,9 +39,11 @@ RequestFromPython request_from_python(const Source& source, const Keywords& keyw
 Listener listener_of(const RequestFromPython& requested, tool::Console& console) {
   Listener listener;
   if (!requested.progress.is_none())
-    listener.progress = [&](const std::string& stage, double fraction) { requested.progress(stage, fraction); };
+    listener.progress = [&](const Progress& p) {
+      requested.progress(p.stage, p.fraction, p.stage_fraction, p.seconds_left);
+    };
   else if (requested.arguments.run.options.was_given("progress"))
-    listener.progress = [&](const std::string& stage, double fraction) { console.progress(stage, fraction); };
+    listener.progress = [&](const Progress& progress) { console.progress(progress); };
   listener.tell = [&](MessageKind kind, const std::string& text) {
     if (kind == MessageKind::note) console.detail(text);
     requested.tell(kind == MessageKind::warning, in_keywords(text));

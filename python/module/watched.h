@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +22,9 @@ namespace isoshell::python {
 /// What one call of Python asks for.
 struct RequestFromPython {
   tool::Arguments arguments;
-  nanobind::object progress;  ///< callable(stage, fraction), or none
+  nanobind::object progress;  ///< callable(stage, fraction, stage_fraction, seconds_left), or none
   nanobind::object tell;      ///< callable(is_warning, text)
+  std::function<Progress(const Progress&)> in_whole = {};  ///< of what the call is a part of; empty: it is all
 };
 
 /// Throws: usage.
@@ -48,9 +50,10 @@ auto watched(Place& place, const Source& source, const RequestFromPython& reques
   request.around_write = [posts](const std::string&, const std::function<void()>& write) {
     posts->write_undisturbed(write);
   };
-  context->progress = {};
   if (listener.progress)
-    context->progress = [posts](const char* stage, double fraction) { posts->post_progress(stage, fraction); };
+    request.progress = [posts, in_whole = requested.in_whole](const Progress& progress) {
+      posts->post_progress(in_whole ? in_whole(progress) : progress);
+    };
   job->start([request = std::move(request), context, product, work = std::move(work)] {
     tool::limit_memory(*context, device_info(*context));
     product->emplace(work(request, *context));

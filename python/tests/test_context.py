@@ -2,6 +2,7 @@
 
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -75,7 +76,28 @@ def test_progress_is_called_by_the_thread_that_asked(ball):
     assert {"prepare", "relax", "triangulate", "measure"} <= set(stages)
     assert stages.index("prepare") < stages.index("relax") < stages.index("triangulate")
     assert {thread for _, _, thread in heard} == {threading.get_ident()}
-    assert all(0 <= fraction <= 1 for _, fraction, _ in heard)
+
+
+def test_progress_is_of_the_whole_run_and_never_goes_back(ball):
+    heard = []
+    isoshell.remesh(ball, progress=lambda stage, fraction: heard.append(fraction), **SMALL)
+    assert heard[0] == 0 and heard[-1] == 1
+    assert heard == sorted(heard)
+    assert all(isinstance(fraction, isoshell.Progress) for fraction in heard)
+    assert all(0 <= fraction.stage_fraction <= 1 and fraction.seconds_left >= 0 for fraction in heard)
+    assert heard[-1].seconds_left == 0
+    copied = pickle.loads(pickle.dumps(heard[-1]))
+    assert copied == heard[-1] and copied.stage_fraction == heard[-1].stage_fraction
+
+
+def test_progress_of_stages_is_of_all_of_them(ball):
+    heard = []
+    stages = isoshell.Stages(ball, progress=lambda stage, fraction: heard.append(fraction), **SMALL)
+    stages.prepare()
+    assert 0 < heard[-1] < 1
+    stages.relax()
+    stages.triangulate()
+    assert heard[0] == 0 and heard[-1] == 1 and heard == sorted(heard)
 
 
 def test_what_progress_raises_stops_the_run(nefertiti):

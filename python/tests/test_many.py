@@ -39,6 +39,19 @@ def test_no_sources_give_no_results():
     assert list(isoshell.remesh_many([], **SMALL)) == []
 
 
+def test_results_have_a_length_where_the_sources_have_one():
+    with isoshell.remesh_many([ball_at(i) for i in range(3)], **SMALL) as made:
+        assert len(made) == 3 and made
+        next(made)
+        assert len(made) == 3  # what a progress bar asks for
+    assert list(made) == []
+    none = isoshell.remesh_many(iter([ball_at(0)]), **SMALL)
+    assert none
+    with pytest.raises(TypeError, match="give a list"):
+        len(none)
+    assert len(list(none)) == 1
+
+
 def test_sources_are_whatever_remesh_takes(tmp_path):
     vertices, faces = make_ball()
     labels = np.linalg.norm(np.indices((12, 12, 12)) - 5.5, axis=0) < 4

@@ -268,6 +268,20 @@ def test_an_interruption_ends_the_sequence_and_leaves_the_context_to_others():
     assert len(isoshell.remesh(twisted(0), context=context, **SMALL).vertices) == 200
 
 
+def test_progress_is_of_all_frames_and_never_goes_back():
+    heard = []
+    made = isoshell.remesh_sequence([twisted(0), twisted(1), twisted(2)], **SMALL,
+                                    progress=lambda stage, fraction: heard.append(fraction))
+    assert len(made) == 3 and made
+    for number, _ in enumerate(made, 1):
+        assert heard[-1] == pytest.approx(number / 3)
+    assert heard[0] == 0 and heard[-1] == 1 and heard == sorted(heard)
+    unknown = isoshell.remesh_sequence(map(twisted, range(2)), **SMALL)
+    with pytest.raises(TypeError, match="give frames"):
+        len(unknown)
+    assert len(list(unknown)) == 2
+
+
 def test_any_number_of_threads_gives_the_same_bytes():
     once = [r.digest for r in isoshell.remesh_sequence(map(twisted, range(3)), threads=1, **SMALL)]
     assert [r.digest for r in isoshell.remesh_sequence(map(twisted, range(3)), threads=2, **SMALL)] == once

@@ -17,6 +17,7 @@
 #include "isoshell/io/memory_input.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/velocity_vdb.h"
+#include "isoshell/run/steps.h"
 #include "isoshell/triangle_mesh.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
@@ -176,7 +177,9 @@ Input input_of_run(const ReadMemory& read, const RunRequest& request, const Cont
 }
 
 RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context) {
-  return read ? run(read(request, context), request, context) : run(request, context);
+  RunSteps steps(request);
+  if (read) steps.read(context, [&] { return read(request, context); });
+  return steps.finish(context);
 }
 
 void bind_source(nb::module_& m) {

@@ -55,6 +55,12 @@ void move_by(const WorldPoint& offset, std::vector<WorldPoint>& positions) {
   for (WorldPoint& p : positions) p = {p.x + offset.x, p.y + offset.y, p.z + offset.z};
 }
 
+bool measures_all(const RunRequest& request) {
+  return request.measures == Measures::all || !request.statistics.empty() || !request.report.empty();
+}
+
+bool measures_distance(const RunRequest& request) { return measures_all(request) || request.gates.needs_distance(); }
+
 std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context) {
   record.topology = check_mesh(mesh);
   record.quality = measure_quality(mesh);

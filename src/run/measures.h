@@ -4,9 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "isoshell/run/record.h"
+#include "isoshell/run/run.h"
 
 namespace isoshell {
+
+/// Whether everything is measured, and whether distances are: what is written and gates want some of it, too.
+bool measures_all(const RunRequest& request);
+bool measures_distance(const RunRequest& request);
 
 /// Puts the vertices where the file of the output has them, less its offset, and notes that file in the record, and how
 /// many vertices and triangles there are. Result: where they were. Throws: as positions_in_file().

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "isoshell/error.h"
-#include "run/step.h"
+#include "progress/expected_work.h"
+#include "progress/metered.h"
+#include "progress/step.h"
 
 namespace isoshell {
 namespace {
@@ -51,8 +53,20 @@ std::vector<std::string> missed_of(const MeshInfo& info, const TriangleMesh& mes
 
 }  // namespace
 
-MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gates, Context& context) {
-  check_gates_of_mesh(gates, reference.has_value());
+MeshInfo mesh_info(const std::function<Input()>& read_mesh, const std::function<Input()>& read_reference,
+                   const Gates& gates, Context& context, const TellProgress& progress) {
+  check_gates_of_mesh(gates, bool(read_reference));
+  ProgressMeter meter(progress);
+  meter.expect(expected_work_of_info(0, 0));
+  const Metered metered(meter, context);
+  Input mesh;
+  std::optional<Input> reference;
+  step("read", context, meter, [&] {
+    mesh = read_mesh();
+    if (read_reference) reference = read_reference();
+  });
+  meter.expect(expected_work_of_info(double(mesh.soup.triangles.size()),
+                                     reference ? double(reference->soup.triangles.size()) : 0));
   if (mesh.facts.kind != InputKind::mesh)
     refuse(mesh.facts.name() + " is no mesh but " + kind_name(mesh.facts.kind) + "; make a mesh of it by vdb_isomesh");
   if (reference && reference->stage)
@@ -61,28 +75,27 @@ MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gate
   info.mesh = mesh.facts;
   info.dirt = mesh.soup.dirt;
   const TriangleMesh measured = mesh_of(std::move(mesh.soup));
-  step("census", context, [&] { info.census = take_census(measured, context, info.dirt.degenerate_faces); });
+  step("census", context, meter, [&] { info.census = take_census(measured, context, info.dirt.degenerate_faces); });
   if (!measured.regions.empty())
-    step("regions", context,
+    step("regions", context, meter,
          [&] { info.regions = take_region_census(measured, context, info.census.intersecting_pairs); });
   if (reference) {
     info.reference = reference->facts;
     const TriangleMesh other = mesh_of(std::move(reference->soup));
-    step("distance", context, [&] { info.distance = measure_distance(measured, other, context, {kSamples, true}); });
+    step("distance", context, meter, [&] {
+      info.distance = measure_distance(measured, other, context, {kSamples, true});
+    });
   }
   info.missed_gates = missed_of(info, measured, gates);
+  meter.finish();
   return info;
 }
 
-MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell) {
-  check_gates_of_mesh(request.gates, request.reference.has_value());
-  Input mesh;
-  std::optional<Input> reference;
-  step("read", context, [&] {
-    mesh = read_input(request.mesh, context, tell);
-    if (request.reference) reference = read_input(*request.reference, context, tell);
-  });
-  return mesh_info(std::move(mesh), std::move(reference), request.gates, context);
+MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell, const TellProgress& progress) {
+  std::function<Input()> read_reference;
+  if (request.reference) read_reference = [&] { return read_input(*request.reference, context, tell); };
+  return mesh_info([&] { return read_input(request.mesh, context, tell); }, read_reference, request.gates, context,
+                   progress);
 }
 
 }  // namespace isoshell

@@ -28,15 +28,22 @@ std::string some_of(const std::vector<std::string>& names) {
 class Sequence {
  public:
   Sequence(const SequenceRequest& request, Context& context)
-      : request_(request), context_(context), chain_(request.is_coherent) {
+      : request_(request),
+        context_(context),
+        chain_(request.is_coherent),
+        numbers_(frame_numbers(request.frames)),
+        progress_(int64_t(numbers_.size())) {
     check_request(request_.frame);
     check_sequence(request_);
   }
 
   SequenceResult result() {
     double kept_sum = 0;
-    for (const int64_t frame : frame_numbers(request_.frames)) {
-      const RunRequest one = request_of_frame(request_, frame);
+    for (size_t i = 0; i < numbers_.size(); ++i) {
+      const int64_t frame = numbers_[i];
+      RunRequest one = request_of_frame(request_, frame);
+      if (one.progress) one.progress = [this](const Progress& p) { request_.frame.progress(progress_.of(p)); };
+      progress_.begin(int64_t(i));
       try {
         make(frame, one, kept_sum);
       } catch (const Error& error) {
@@ -44,6 +51,7 @@ class Sequence {
         note_bad(frame, error.code(), std::string(error.what()));
       }
     }
+    if (request_.frame.progress) request_.frame.progress({"write", 1, 1, 0});  // the last ones may have been there
     if (result_.followed > 0) result_.kept_edges_mean_pct = kept_sum / double(result_.followed);
     return std::move(result_);
   }
@@ -77,6 +85,7 @@ class Sequence {
   }
 
   Input read(const RunRequest& one) const {
+    if (one.progress) one.progress({"read", 0, 0, 0});
     return naming_written(chain_.written(), [&] { return read_input_of(one, context_, one.tell); });
   }
 
@@ -97,10 +106,26 @@ class Sequence {
   const SequenceRequest& request_;
   Context& context_;
   FrameChain chain_;
+  const std::vector<int64_t> numbers_;
+  SequenceProgress progress_;
   SequenceResult result_;
 };
 
 }  // namespace
+
+void SequenceProgress::begin(int64_t index) {
+  index_ = index;
+  if (begun_++ == 0) start_ = Clock::now();
+}
+
+Progress SequenceProgress::of(const Progress& frame) const {
+  if (frames_ == 0) return frame;
+  Progress whole = frame;
+  whole.fraction = (double(index_) + frame.fraction) / double(frames_);
+  const double till_next = std::chrono::duration<double>(Clock::now() - start_).count() + frame.seconds_left;
+  whole.seconds_left += till_next / double(begun_) * double(frames_ - 1 - index_);
+  return whole;
+}
 
 std::vector<int64_t> frame_numbers(const FrameRange& frames) {
   std::vector<int64_t> numbers;

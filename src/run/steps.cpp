@@ -12,6 +12,7 @@
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/transfer_attributes.h"
+#include "progress/step.h"
 #include "run/choose_attributes.h"
 #include "run/color_features.h"
 #include "run/measures.h"
@@ -20,8 +21,8 @@
 #include "run/part_walls.h"
 #include "run/process_memory.h"
 #include "run/resume.h"
+#include "run/run_progress.h"
 #include "run/stage_files.h"
-#include "run/step.h"
 #include "run/warnings.h"
 
 namespace isoshell {
@@ -46,7 +47,7 @@ class RunSteps::Run {
     record_.output = request_.output;
     record_.output.format = named_output(request_.output.path, request_.output.format, request_.stop_after).format;
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();
-    options_.values.want_digests |= measures_all();
+    options_.values.want_digests |= measures_all(request_);
   }
 
   /// Runs steps in a context, and says what was written before an interruption.
@@ -59,20 +60,22 @@ class RunSteps::Run {
     context_ = &context;
     start_ = Clock::now();
     const Book book{*this};
+    const Metered metered(progress_.meter, context);
     return naming_written(written_, [&]() -> std::invoke_result_t<Work> {
       if (record_.device.backend.empty()) record_.device = device_info(context);  // no time is lost where there is none
       return work();
     });
   }
 
-  void report_to(Tell tell, AroundWrite around_write) {
+  void report_to(Tell tell, AroundWrite around_write, TellProgress progress) {
     request_.tell = std::move(tell);
     request_.around_write = std::move(around_write);
+    progress_.meter.tell_to(std::move(progress));
   }
 
-  void read() {
-    if (input_) return;
-    take(timed("read", [&] { return read_input_of(request_, *context_, teller()); }));
+  void read(const std::function<Input()>& another_way = {}) {
+    const auto own_way = [&] { return read_input_of(request_, *context_, teller()); };
+    if (!input_) take(timed("read", another_way ? another_way : own_way));
   }
 
   void take(Input input) {
@@ -91,7 +94,6 @@ class RunSteps::Run {
   }
 
   const Input& input() const { return input_.value(); }
-
   RunEstimate estimate() {
     read();
     read_sizing_field();
@@ -105,6 +107,7 @@ class RunSteps::Run {
     check_files();
     read();
     find_walls();
+    progress_.expect(surface(), options_.values, *context_);
     const bool has_regions = !surface().regions.empty();  // then distances are from the walls as they came
     region_files_ = checked_region_files(request_, surface().regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
@@ -119,11 +122,12 @@ class RunSteps::Run {
     read_sizing_field();
     read_lines();
     prepared_ = timed("prepare", [&] { return prepared_from(*input_); });
+    progress_.expect(*prepared_);
     if (!attributes.empty()) input_->soup.attributes = std::move(attributes);
-    if (input_->soup.attributes.empty() && !(has_regions && measures_distance())) free_soup();
+    if (input_->soup.attributes.empty() && !(has_regions && measures_distance(request_))) free_soup();
     record_.report = prepared_->report();
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name(), has_regions)) warn(text);
-    if (measures_all() && !has_regions)
+    if (measures_all(request_) && !has_regions)
       timed("risks", [&] { record_.risky_sites = count_risky_sites(*prepared_, *context_); });
     return *prepared_;
   }
@@ -152,7 +156,7 @@ class RunSteps::Run {
     std::vector<WorldPoint> positions = put_as_in_file(mesh, record_);
     timed("measure", [&] { measure(mesh); });
     if (!record_.files.empty()) move_by(record_.output.recenter.offset(), mesh.vertices);
-    if (measures_distance())
+    if (measures_distance(request_))
       timed("distance", [&] { measure_distances(*prepared_, surface(), mesh, record_, *context_); });
     mesh.vertices = std::move(positions);
     TriangleSoup& soup = input_->soup;
@@ -204,11 +208,6 @@ class RunSteps::Run {
 
   const TriangleSoup& surface() const { return walls_ ? *walls_ : input_->soup; }
   bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
-  bool measures_all() const {
-    return request_.measures == Measures::all || !request_.statistics.empty() || !request_.report.empty();
-  }
-
-  bool measures_distance() const { return measures_all() || request_.gates.needs_distance(); }
 
   template <class Work>
   std::invoke_result_t<Work> timed(const char* name, Work work) {
@@ -218,7 +217,7 @@ class RunSteps::Run {
       Clock::time_point start = Clock::now();
       ~Book() { run.record_.times.push_back({name, ms_since(start)}); }
     };
-    return step(name, *context_, [&] {
+    return step(name, *context_, progress_.meter, [&] {
       Book book{*this, name};
       return work();
     });
@@ -258,8 +257,8 @@ class RunSteps::Run {
   Prepared prepared_from(Input& input) {
     RemeshOptions options = options_.values;
     options.features = possible_features(options, request_);
-    options.want_samples = measures_all();  // by find_risks
-    options.regions.clear();                // surface() has them
+    options.want_samples = measures_all(request_);  // by find_risks
+    options.regions.clear();                        // surface() has them
     if (!input.stage) return isoshell::prepare(surface(), options, *context_);
     if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
     return isoshell::prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, *context_);
@@ -296,7 +295,7 @@ class RunSteps::Run {
   }
 
   void measure(const TriangleMesh& mesh) {
-    const bool is_asked = request_.measures != Measures::none || measures_all() || request_.gates.any();
+    const bool is_asked = request_.measures != Measures::none || measures_all(request_) || request_.gates.any();
     if (!is_asked && !is_coarse(record_)) return;
     for (const std::string& text : measure_mesh(mesh, record_, *context_)) warn(text);
   }
@@ -329,10 +328,12 @@ class RunSteps::Run {
       around_write(request_.statistics,
                    [&] { write_text(request_.statistics, statistics_json(record), request_.overwrite); });
     std::vector<std::string> missed = missed_gates(request_.gates, record);
+    progress_.meter.finish();
     return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed), request_.made_of};
   }
 
   RunRequest request_;
+  RunProgress progress_{request_};
   RequestedOptions options_;  ///< of the request, or of the stage file's run where the request leaves them open
   Context* context_ = nullptr;
   bool has_checked_files_ = false, is_over_ = false;
@@ -353,10 +354,10 @@ RunSteps::RunSteps(RunSteps&&) noexcept = default;
 RunSteps& RunSteps::operator=(RunSteps&&) noexcept = default;
 RunSteps::~RunSteps() = default;
 
-void RunSteps::read(Context& context) {
+void RunSteps::read(Context& context, const std::function<Input()>& another_way) {
   run_->in(context, [&] {
     run_->check_files();
-    run_->read();
+    run_->read(another_way);
   });
 }
 
@@ -390,8 +391,8 @@ RunResult RunSteps::finish(Context& context, bool keeps_seeds) {
   return run_->in(context, [&] { return run_->finish(keeps_seeds); });
 }
 
-void RunSteps::report_to(Tell tell, AroundWrite around_write) {
-  run_->report_to(std::move(tell), std::move(around_write));
+void RunSteps::report_to(Tell tell, AroundWrite around_write, TellProgress progress) {
+  run_->report_to(std::move(tell), std::move(around_write), std::move(progress));
 }
 
 }  // namespace isoshell

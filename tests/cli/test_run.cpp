@@ -1,6 +1,8 @@
 // Whole runs of the command: meshes, statistics, gates, pipes, interruption.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/quick_ball.h"
@@ -261,11 +263,18 @@ TEST_CASE("run: progress is lines of JSON when asked, and none without a termina
   const auto r = folder.run("ball.off out.ply -q --progress json" + kQuick);
   REQUIRE(r.status == 0);
   std::istringstream lines(r.err);
-  std::set<std::string> stages;
-  for (std::string line; std::getline(lines, line);) stages.insert(Json::parse(line)["stage"].get<std::string>());
-  CHECK(stages.count("read"));
-  CHECK(stages.count("relax"));
-  CHECK(stages.count("write"));
+  std::vector<std::string> stages;
+  std::vector<double> fractions;
+  for (std::string line; std::getline(lines, line);) {
+    const Json j = Json::parse(line);
+    if (stages.empty() || stages.back() != j["stage"]) stages.push_back(j["stage"]);
+    fractions.push_back(j["fraction"]);
+    CHECK((j["stage_fraction"] >= 0 && j["stage_fraction"] <= 1));
+    CHECK(j["seconds_left"] >= 0);
+  }
+  CHECK(stages == std::vector<std::string>{"read", "prepare", "relax", "triangulate", "measure", "write"});
+  CHECK((fractions.front() == 0 && fractions.back() == 1));
+  CHECK(std::is_sorted(fractions.begin(), fractions.end()));
   CHECK_FALSE(contains(folder.run("ball.off out2.ply" + kQuick).err, "["));
 }
 

@@ -17,7 +17,7 @@ MeshInfo info_of(TriangleMesh mesh, const std::string& gates = "") {
   soup.triangles = std::move(mesh.triangles);
   soup.regions = std::move(mesh.regions);
   Context context;
-  return mesh_info(input_of(std::move(soup), "cubes"), std::nullopt, parse_gates(gates), context);
+  return mesh_info([&] { return input_of(std::move(soup), "cubes"); }, {}, parse_gates(gates), context);
 }
 
 std::vector<std::string> missed_of(TriangleMesh mesh, const std::string& gates) {

@@ -28,7 +28,6 @@ int run_command(int argc, const char* const* argv, const WriteReport& write_repo
   context.device = a.device;
   context.threads = a.threads;
   context.memory_limit_bytes = a.max_memory_bytes;
-  context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
   return run(a, context, console, write_report);
 }
 

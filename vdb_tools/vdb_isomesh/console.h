@@ -2,8 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
 
+#include "isoshell/message.h"
 #include "vdb_isomesh/args.h"
 
 namespace isoshell::tool {
@@ -21,22 +23,21 @@ class Console {
   void result(const std::string& message);
   void detail(const std::string& message);
 
-  /// A stage began (fraction 0), goes on, or is done (1). A bar on a terminal, lines of JSON with --progress json.
-  void progress(const std::string& stage, double fraction);
+  /// A bar on a terminal, lines of JSON with --progress json. From any thread.
+  void progress(const Progress& progress);
 
  private:
   void print(const char* label, const char* colour, const std::string& message);
   void clear_bar();
-  void draw_bar(const std::string& stage, double fraction);
+  void draw_bar(const Progress& progress);
 
   ProgressMode progress_;
   int verbosity_;
   const char* program_;
   bool colour_;
+  std::mutex mutex_;  ///< of what is written
   bool bar_drawn_ = false;
-  std::string last_stage_;
-  double last_fraction_ = -1;
-  std::chrono::steady_clock::time_point start_, last_drawn_;
+  std::chrono::steady_clock::time_point start_;
 };
 
 }  // namespace isoshell::tool

@@ -144,6 +144,7 @@ int run(const Arguments& arguments, Context& context, Console& console, const Wr
     kind == MessageKind::warning ? console.warn(text) : console.detail(text);
   };
   request.around_write = write_undisturbed;
+  if (!arguments.dry_run) request.progress = [&](const Progress& progress) { console.progress(progress); };
   if (arguments.frames && arguments.dry_run)
     throw Error(ErrorCode::usage, "command line", "--dry-run estimates one frame; leave out --frames and name it");
   if (arguments.frames) return run_frames(arguments, request, context, console);

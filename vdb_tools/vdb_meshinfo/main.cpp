@@ -42,11 +42,12 @@ int run_command(int argc, const char* const* argv) {
   context.backend = Backend::cpu;
   context.threads = a.threads;
   context.memory_limit_bytes = a.max_memory_bytes > 0 ? a.max_memory_bytes : default_memory_limit_bytes();
-  context.progress = [&](const char* stage, double fraction) { console.progress(stage, fraction); };
   check_files(a);
-  const MeshInfo info = mesh_info(a.request, context, [&](MessageKind kind, const std::string& text) {
+  const Tell tell = [&](MessageKind kind, const std::string& text) {
     kind == MessageKind::warning ? console.warn(text) : console.detail(text);
-  });
+  };
+  const MeshInfo info =
+      mesh_info(a.request, context, tell, [&](const Progress& progress) { console.progress(progress); });
   if (!a.statistics.empty()) write_statistics(a, info);
   if (a.statistics != "-" && !a.quiet) print(mesh_info_table(info));
   for (const std::string& text : info.missed_gates) console.error("gate failed: " + text);

@@ -1,6 +1,7 @@
 // A certificate for any mesh, whoever made it: what vdb_meshinfo says.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "isoshell/distance.h"
 #include "isoshell/io/input.h"
 #include "isoshell/mesh_census.h"
+#include "isoshell/message.h"
 #include "isoshell/region_census.h"
 #include "isoshell/run/gates.h"
 
@@ -29,13 +31,15 @@ struct MeshInfo {
   std::vector<std::string> missed_gates;
 };
 
-/// Reads, counts and measures; nothing is repaired or snapped. Its steps ("read", "census", "regions", "distance") are
-/// progress of the context. Result: the same for every number of threads. Throws: usage for a gate of curves, a gate of
+/// Reads, counts and measures; nothing is repaired or snapped. Its stages are "read", "census", "regions", "distance".
+/// Result: the same for every number of threads. Throws: usage for a gate of curves, a gate of
 /// distances without a reference, a mesh that is no mesh and a reference that is a stage file; and as read_input,
 /// take_census, take_region_census and measure_distance do.
-MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell = {});
-/// The same of what is read already, or came from memory.
-MeshInfo mesh_info(Input mesh, std::optional<Input> reference, const Gates& gates, Context& context);
+MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell = {},
+                   const TellProgress& progress = {});
+/// The same, with other ways of reading; the reference's is empty where there is none.
+MeshInfo mesh_info(const std::function<Input()>& read_mesh, const std::function<Input()>& read_reference,
+                   const Gates& gates, Context& context, const TellProgress& progress = {});
 
 /// As JSON, schema 1; what was not measured is null.
 std::string mesh_info_json(const MeshInfo& info);

@@ -43,6 +43,7 @@ struct RunRequest {
 
   Tell tell;
   AroundWrite around_write;  ///< empty: files are just written
+  TellProgress progress;     ///< of the whole run, whose steps are its stages; empty: nobody waits
 };
 
 /// The output that a person's words mean: its format is the path's unless one is given. Throws: usage when nothing says
@@ -64,10 +65,10 @@ struct RunResult {
   std::string made_of = {};  ///< of a frame: what its PLY file says of that
 };
 
-/// Checks that every file can be written, reads, and goes on from there as the second form. Its steps ("read",
-/// "sizing", "prepare", "risks", "relax", "flood", "triangulate", "measure", "distance", "write", ...) are progress of
-/// the context beside the stages' own. Result: the same bytes for the same input and options. Throws: as every part
-/// does; an interruption says which files were written before.
+/// Checks that every file can be written, reads, and goes on from there as the second form. Its steps are "read",
+/// "sizing", "prepare", "risks", "relax", "flood", "triangulate", "measure", "distance", "write", .... The context's
+/// progress hears of them, too, beside the stages' own. Result: the same bytes for the same input and options. Throws:
+/// as every part does; an interruption says which files were written before.
 RunResult run(const RunRequest& request, Context& context);
 /// From what was read already, or came from memory: prepares, relaxes, triangulates, measures, writes.
 RunResult run(Input input, const RunRequest& request, Context& context);

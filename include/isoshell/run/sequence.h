@@ -1,6 +1,7 @@
 // Runs over the frames of a sequence: what run() does, frame by frame, each beginning with the one before.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -57,6 +58,23 @@ class FrameChain {
   bool is_coherent_;
   std::unique_ptr<Frame> last_;
   std::unique_ptr<Written> written_;
+};
+
+/// How far a sequence is, from how far its frame is.
+class SequenceProgress {
+ public:
+  /// Of so many frames; 0: nobody knows, and then each frame is all that there is.
+  explicit SequenceProgress(int64_t frames) : frames_(frames) {}
+
+  /// A frame that is made; 0 is the first of all.
+  void begin(int64_t index);
+  Progress of(const Progress& frame) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  int64_t frames_, index_ = 0, begun_ = 0;
+  Clock::time_point start_;  ///< of the first that is made
 };
 
 /// A frame that is not as it should be.

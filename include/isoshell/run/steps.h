@@ -1,6 +1,7 @@
 // A run step by step, for who keeps, looks at or writes what is between the steps. run() is all of them in their order.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -19,8 +20,8 @@ class RunSteps {
   RunSteps& operator=(RunSteps&&) noexcept;
   ~RunSteps();
 
-  /// Checks that every file can be written, and reads the input.
-  void read(Context& context);
+  /// Checks that every file can be written, and reads the input, or takes what another way of reading gives.
+  void read(Context& context, const std::function<Input()>& another_way = {});
   /// The same with an input that was read already, or came from memory; prepare() then checks the files.
   void take(Input input, Context& context);
   const Input& input() const;  ///< once it is there; when prepared without triangles, unless attributes are on them
@@ -37,8 +38,8 @@ class RunSteps {
   /// those of relax() are there still.
   RunResult finish(Context& context, bool keeps_seeds = false);
 
-  /// Who is told from now on, and called around each writing of a file: as in a request.
-  void report_to(Tell tell, AroundWrite around_write);
+  /// Who is told from now on, called around each writing of a file, and waits: as in a request.
+  void report_to(Tell tell, AroundWrite around_write, TellProgress progress);
 
  private:
   class Run;

@@ -1,10 +1,11 @@
-// How long stages take, and what their products are, into the report of a run.
+// How long stages take, and what their products are, into the report of a run; who waits hears of each.
 #pragma once
 
 #include <chrono>
 #include <type_traits>
 
 #include "isoshell/advanced/digest.h"
+#include "isoshell/error.h"
 #include "isoshell/remesh.h"
 
 namespace isoshell {
@@ -18,7 +19,8 @@ inline void book_time(RemeshReport& report, const char* stage, double ms) {
   report.times.push_back({stage, ms});
 }
 
-/// Runs one stage, with all that it leaves to a device, and books its time under its name.
+/// Runs one stage, with all that it leaves to a device, books its time under its name, and tells its begin and its end,
+/// though it fails: there may be another way.
 template <class Work>
 auto timed(RemeshReport& report, const char* stage, Context& context, Work work) {
   using Clock = std::chrono::steady_clock;
@@ -28,13 +30,24 @@ auto timed(RemeshReport& report, const char* stage, Context& context, Work work)
     Clock::time_point start = Clock::now();
     ~Book() { book_time(report, stage, std::chrono::duration<double, std::milli>(Clock::now() - start).count()); }
   } book{report, stage};
-  if constexpr (std::is_void_v<decltype(work())>) {
-    work();
-    finish_stages(context);
-  } else {
-    auto product = work();
-    finish_stages(context);
-    return product;
+  const auto tell = [&](double fraction) {
+    if (context.progress) context.progress(stage, fraction);
+  };
+  tell(0);
+  try {
+    if constexpr (std::is_void_v<decltype(work())>) {
+      work();
+      finish_stages(context);
+      tell(1);
+    } else {
+      auto product = work();
+      finish_stages(context);
+      tell(1);
+      return product;
+    }
+  } catch (const Error&) {
+    tell(1);
+    throw;
   }
 }
 

@@ -1,7 +1,9 @@
 // relax_in_patches and relax_in_patches_again (see patches.h).
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "core/stage_share.h"
 #include "features/cutting/coarser_surface.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_piece.h"
@@ -49,14 +51,31 @@ class PatchLevels {
   }
 
   RelaxedSeeds relax() {
-    for (size_t level = coarser_.size(); level > 0; --level) relax_coarse(level);
-    if (finest_) relax_finest();
+    StageParts parts(context_, weights_of_levels());
+    for (size_t level = coarser_.size(); level > 0; --level) {
+      const StageShare part = parts.next();
+      relax_coarse(level);
+    }
+    if (finest_) {
+      const StageShare part = parts.next();
+      relax_finest();
+    }
+    const StageShare part = parts.next();
     RelaxOptions last = made_ ? for_finest_patches(options_) : options_.relax;
     if (finest_ && !options_.tolerance_requested) last.max_passes = std::min(last.max_passes, kLastPasses);
     return relax_on_sheet(cut_.surface, seeds_on(cut_, free_seeds_, 0, 0), last, context_);
   }
 
  private:
+  /// How long levels take beside one another, in the order in which they are relaxed.
+  std::vector<double> weights_of_levels() const {
+    std::vector<double> weights;
+    for (size_t level = coarser_.size(); level > 0; --level) weights.push_back(2 * std::pow(.25, level));
+    if (finest_) weights.push_back(1);
+    weights.push_back(finest_ ? .25 : 2);
+    return weights;
+  }
+
   const CutSurface& surface(size_t level) const {
     return level > 0 ? coarser_[level - 1].cut : finest_ ? finest_->cut : cut_;
   }

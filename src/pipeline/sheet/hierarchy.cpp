@@ -7,6 +7,7 @@
 
 #include "core/copy_product.h"
 #include "core/seed_count.h"
+#include "core/stage_share.h"
 #include "isoshell/advanced/to_host.h"
 #include "pipeline/grid/thin_walls.h"
 #include "pipeline/sheet/relax_level.h"
@@ -36,6 +37,14 @@ std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
   }
   std::reverse(counts.begin(), counts.end());
   return counts;
+}
+
+/// How long levels take beside one another. The finest one makes fewer passes, and is improved later.
+std::vector<double> weights_of_levels(const std::vector<int64_t>& counts) {
+  constexpr double kCoarse = 2;
+  std::vector<double> weights(counts.begin(), counts.end());
+  for (size_t level = 0; level + 1 < weights.size(); ++level) weights[level] *= kCoarse;
+  return weights;
 }
 
 /// How many cells of the smallest size would cover the sheet, over the number of its cells.
@@ -110,9 +119,11 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
   CoarseProxies proxies(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
+  StageParts parts(context, weights_of_levels(counts));
   SeedSet seeds;
   for (size_t level = 0; level + 1 < counts.size(); ++level) {
     if (is_in_vain()) return {};
+    const StageShare part = parts.next();
     const Sheet& sheet = proxies.sheet(level);
     if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seeds.seed}, context);
     const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
@@ -128,6 +139,7 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
     finest = for_finest_level(finest, options.tolerance_requested);
   else
     seeds = place_seeds(prepared.sheet, options.seeds, context);
+  const StageShare part = parts.next();
   return relax_on_sheet(prepared.sheet, std::move(seeds), finest, context);
 }
 

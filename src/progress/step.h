@@ -6,6 +6,7 @@
 
 #include "isoshell/backend.h"
 #include "isoshell/error.h"
+#include "progress/progress_meter.h"
 
 namespace isoshell {
 
@@ -23,18 +24,20 @@ std::invoke_result_t<Work> naming_written(const std::string& written, Work work)
 
 /// Runs work between its progress of 0 and of 1. Throws: interrupted, before it begins; what the work throws.
 template <class Work>
-std::invoke_result_t<Work> step(const char* name, const Context& context, Work work) {
-  const auto tell_progress = [&](double fraction) {
-    if (context.progress) context.progress(name, fraction);
+std::invoke_result_t<Work> step(const char* name, const Context& context, ProgressMeter& meter, Work work) {
+  const auto tell_end = [&] {
+    if (context.progress) context.progress(name, 1);
+    meter.end(name);
   };
   if (context.cancel) throw Error(ErrorCode::interrupted, name, "interrupted");
-  tell_progress(0);
+  meter.begin(name);
+  if (context.progress) context.progress(name, 0);
   if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
     work();
-    tell_progress(1);
+    tell_end();
   } else {
     auto product = work();
-    tell_progress(1);
+    tell_end();
     return product;
   }
 }
