@@ -3,6 +3,7 @@
 
 #include "isoshell/advanced/device_memory.h"
 #include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/own_thread.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/boolean_union.h"

@@ -7,11 +7,11 @@
 #include <future>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "isoshell/advanced/own_thread.h"
 #include "isoshell/backend.h"
 
 namespace isoshell {
@@ -21,7 +21,8 @@ class Workers {
  public:
   /// Contexts with the backend, device, threads and memory limit of this one; its progress is not theirs, and it may
   /// end before them. On the CPU a worker has one thread unless the context says more. Without a count there are as
-  /// many workers as fill the cores, and on a device eight, which keep it busy. Throws: no_device.
+  /// many workers as fill the cores, and on a device eight, which keep it busy. Throws: no_device; out_of_memory where
+  /// the system gives no more threads.
   explicit Workers(const Context& like, int count = 0);
   /// Cancels what is under way, drops what was not taken yet, and returns when all workers have ended.
   ~Workers();
@@ -45,7 +46,7 @@ class Workers {
   void end();
 
   std::deque<Context> contexts_;
-  std::vector<std::thread> threads_;
+  std::vector<OwnThread> threads_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void(Context&)>> waiting_;

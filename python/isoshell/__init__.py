@@ -11,6 +11,7 @@
 import atexit as _atexit
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
+from . import _enough_threads as _enough_threads  # before what it looks ahead for
 from . import _isoshell
 from ._context import Context, Progress
 from ._errors import Error, RunWarning

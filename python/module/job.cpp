@@ -47,7 +47,7 @@ Job::~Job() {
 }
 
 void Job::start(std::function<void()> work) {
-  thread_ = std::thread([this, work = std::move(work)]() mutable {
+  thread_ = OwnThread([this, work = std::move(work)]() mutable {
     std::exception_ptr thrown;
     try {
       with_errors([&] { work(); });

@@ -10,9 +10,9 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "isoshell/advanced/own_thread.h"
 #include "isoshell/backend.h"
 #include "isoshell/message.h"
 
@@ -61,7 +61,7 @@ class Job {
 
  private:
   std::shared_ptr<Context> context_;
-  std::thread thread_;
+  OwnThread thread_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool ended_ = false;

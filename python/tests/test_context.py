@@ -194,3 +194,35 @@ def test_a_warning_reaches_a_program_that_calls_from_a_function(tmp_path):
     program.write_text("from isoshell._errors import warn\ndef call():\n    warn('look')\ncall()\n")
     done = subprocess.run([sys.executable, program], capture_output=True, text=True)
     assert done.returncode == 0 and f"{program}:3: RunWarning: look" in done.stderr
+
+
+@pytest.mark.parametrize("form", ["ply", "obj", "glb"])
+def test_a_source_that_never_ends_is_refused_at_the_limit_of_memory(form):
+    with pytest.raises(isoshell.Error, match="raise max_memory, or split the file") as refused:
+        isoshell.remesh("/dev/zero", input_format=form, max_memory="64M")
+    assert refused.value.code == ErrorCode.OUT_OF_MEMORY
+
+
+def test_a_small_stack_of_the_process_is_enough(tmp_path):
+    script = tmp_path / "small_stack.py"
+    script.write_text("import isoshell, numpy as np\n"
+                      "corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.]])\n"
+                      "faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])\n"
+                      "result, = isoshell.remesh_many([(corners, faces)], vertices=60)\n"
+                      "print(len(result.vertices), len(isoshell.remesh((corners, faces), vertices=60).vertices))\n")
+    run = subprocess.run(["sh", "-c", f"ulimit -s 128; exec '{sys.executable}' '{script}'"], capture_output=True,
+                         text=True)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.split() == ["60", "60"]
+
+
+def test_where_the_system_gives_no_threads_the_import_says_so(tmp_path):
+    script = tmp_path / "no_threads.py"
+    script.write_text("import os, resource\n"
+                      "from isoshell._enough_threads import STARTED_BY_LIBRARIES, require_threads\n"
+                      "if os.geteuid() == 0:  # the limit does not hold for the superuser\n"
+                      "    os.setuid(65534)\n"
+                      "resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))\n"
+                      "require_threads(STARTED_BY_LIBRARIES)\n")
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True)
+    assert run.returncode == 1 and "ImportError: isoshell: the system gives no more threads" in run.stderr, run.stderr

@@ -61,7 +61,7 @@ void Workers::end() {
   }
   for (Context& context : contexts_) context.cancel = true;
   changed_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  for (OwnThread& thread : threads_) thread.join();
 }
 
 }  // namespace isoshell

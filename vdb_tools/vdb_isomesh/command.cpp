@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "isoshell/advanced/own_thread.h"
 #include "isoshell/error.h"
 #include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/streams.h"
@@ -42,11 +43,11 @@ int command(int argc, const char* const* argv, const WriteReport& write_report) 
   fill_closed_streams();
   answer_signals(context);
   try {
-    return run_command(argc, argv, write_report);
+    return on_own_thread([&] { return run_command(argc, argv, write_report); });
   } catch (const Error& e) {
     return report(e.code(), e.what());
   } catch (const std::bad_alloc&) {
-    return report(ErrorCode::out_of_memory, "out of memory; lower --resolution");
+    return report(ErrorCode::out_of_memory, "out of memory; free some, split the input, or lower --resolution");
   } catch (const std::exception& e) {
     return report(ErrorCode::internal, e.what());
   }

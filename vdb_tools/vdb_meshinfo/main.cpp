@@ -2,11 +2,13 @@
 #include <exception>
 #include <new>
 
+#include "isoshell/advanced/own_thread.h"
 #include "isoshell/error.h"
 #include "isoshell/io/output_files.h"
 #include "vdb_isomesh/console.h"
 #include "vdb_isomesh/interrupt.h"
 #include "vdb_isomesh/memory.h"
+#include "vdb_isomesh/missing_threads.h"
 #include "vdb_isomesh/streams.h"
 #include "vdb_meshinfo/args.h"
 #include "vdb_meshinfo/table.h"
@@ -63,7 +65,7 @@ int command(int argc, const char* const* argv) {
   fill_closed_streams();
   answer_signals(context, kProgram);
   try {
-    return run_command(argc, argv);
+    return on_own_thread([&] { return run_command(argc, argv); });
   } catch (const Error& e) {
     return report(e.code(), e.what());
   } catch (const std::bad_alloc&) {
@@ -75,5 +77,7 @@ int command(int argc, const char* const* argv) {
 
 }  // namespace
 }  // namespace isoshell::tool
+
+ISOSHELL_ANSWERS_MISSING_THREADS("vdb_meshinfo");
 
 int main(int argc, char* argv[]) { return isoshell::tool::command(argc, argv); }

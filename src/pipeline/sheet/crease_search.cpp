@@ -2,7 +2,6 @@
 #include "pipeline/sheet/crease_search.h"
 
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "core/watched.h"
@@ -78,14 +77,17 @@ CreaseSearch::CreaseSearch(const LatticeSurface& surface, const CurveOptions& op
   std::promise<void> copied;
   copied_ = copied.get_future();
   const SurfaceOnDevice on_device(surface);
-  result_ = std::async(std::launch::async, [this, copied = std::move(copied), on_device, options, &context]() mutable {
+  auto search = [this, copied = std::move(copied), on_device, options, &context]() mutable {
     const LatticeSurface here = on_device.copy(std::move(copied));
     SearchedSurface found{feature_mesh_of(here, context), {}};
     check_cancel(context, "features");
     found.creases = run_with_threads(context, [&] { return creases_unless_refused(found.mesh, options); });
     has_found_curves_ = found.creases && !found.creases->curve_edges.empty();
     return found;
-  });
+  };
+  const auto task = std::make_shared<std::packaged_task<SearchedSurface()>>(std::move(search));
+  result_ = task->get_future();
+  thread_ = OwnThread([task] { (*task)(); });
 }
 
 void CreaseSearch::free_meanwhile(SearchedSurface found) {
@@ -99,12 +101,8 @@ std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, Reme
   const bool is_known = !options.features.lines && !wants_lengths(options);
   if (p.surface.points.space() == MemorySpace::host || !is_wanted || !is_known) return nullptr;
   const double edge_world = p.target_of_input.edge_length_world;
-  return timed(report, "features", context, [&]() -> std::shared_ptr<CreaseSearch> {
-    try {
-      return std::make_shared<CreaseSearch>(p.surface, curve_options(options, p.previous.get(), edge_world), context);
-    } catch (const std::system_error&) {
-      return nullptr;
-    }
+  return timed(report, "features", context, [&] {
+    return std::make_shared<CreaseSearch>(p.surface, curve_options(options, p.previous.get(), edge_world), context);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "features/curves/find_curves.h"
+#include "isoshell/advanced/own_thread.h"
 #include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
@@ -27,8 +28,8 @@ struct SearchedSurface {
 /// A search on a thread of its own. Its end waits for it.
 class CreaseSearch {
  public:
-  /// The surface lies on a device, and its buffers stay until wait_until_copied(). Throws std::system_error where there
-  /// is no thread.
+  /// The surface lies on a device, and its buffers stay until wait_until_copied(). Throws out_of_memory where there is
+  /// no thread.
   CreaseSearch(const LatticeSurface& surface, const CurveOptions& options, const Context& context);
   void wait_until_copied() const { copied_.wait(); }
   /// Whether it goes on, on a thread of its own.
@@ -47,13 +48,13 @@ class CreaseSearch {
  private:
   std::future<void> copied_;
   std::atomic<bool> has_found_curves_{false};
-  std::future<SearchedSurface> result_;  // ends before what it writes to
+  std::future<SearchedSurface> result_;
+  OwnThread thread_;  // ends before what it writes to
   std::future<void> freed_;
 };
 
 /// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a
-/// device. Null elsewhere, where the edge length depends on the sheet, and where there is no thread. Reports the time
-/// of the beginning alone.
+/// device. Null elsewhere, and where the edge length depends on the sheet. Reports the time of the beginning alone.
 std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, RemeshReport& report, Context& context);
 
 }  // namespace isoshell
