@@ -172,6 +172,22 @@ def test_names_of_files_are_text(tmp_path, ball):
     assert "<img" not in text.split('<script type="application/json"')[0] and html.escape(name) in text
 
 
+@pytest.mark.parametrize("name", ["<!--<script>", "</script>", "<!--"])
+def test_a_name_that_begins_a_script_or_a_comment_is_text(tmp_path, name):
+    vertices, faces = make_box()
+    path = tmp_path / "boxes.obj"
+    lines = [f"v {x} {y} {z}" for x, y, z in np.concatenate([vertices, vertices + [1, 0, 0]]).tolist()]
+    for group, first in ((name, 1), ("plain", 1 + len(vertices))):
+        lines += [f"g {group}"] + ["f " + " ".join(str(corner + first) for corner in face) for face in faces.tolist()]
+    path.write_text("\n".join(lines) + "\n")
+    isoshell.remesh(path, vertices=300, regions="groups", report=tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text()
+    # As a browser reads it: a script that holds <!-- and <script goes on behind the next </script>.
+    of_data = re.findall(r'<script type="[a-z/]+" id="\w+">(.*?)</script>', text, re.S)
+    assert of_data and not any("<" in content for content in of_data)
+    assert {region["words"].rsplit(" (", 1)[0] for region in json_of(text, "data")["regions"]} >= {name, "plain"}
+
+
 def test_a_page_that_is_there_stays_unless_it_may_be_replaced(tmp_path, ball):
     path = tmp_path / "page.html"
     path.write_text("mine")

@@ -234,4 +234,5 @@ def _packed(values: Any) -> str:
 
 
 def _script(name: str, content: str, kind: str = "text/plain") -> str:
-    return f'<script type="{kind}" id="{name}">{content.replace("</", "<" + chr(92) + "/")}</script>\n'
+    """A browser ends, or goes on behind, a script by what begins with < in it: JSON may write that letter otherwise."""
+    return f'<script type="{kind}" id="{name}">{content.replace("<", chr(92) + "u003c")}</script>\n'
