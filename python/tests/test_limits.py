@@ -301,7 +301,9 @@ def test_numbers_that_are_none(value, claim):
 
 
 @claims("options out of their range | 2 |", "input without a face or point that can be used | 5 |",
-        "a run whose estimate is above `--max-memory` | 7 |", "a device that is not there or too old | 8 |",
+        "a run whose estimate is above `--max-memory` | 7 |",
+        "an input whose reading takes more than `--max-memory`, as standard input that never ends | 7 |",
+        "a device that is not there or too old | 8 |",
         "A failed run leaves no half-written file")
 def test_what_is_refused(run, tmp_path, claim):
     source = write_obj(tmp_path / "ball.obj", *make_ball())
@@ -310,6 +312,7 @@ def test_what_is_refused(run, tmp_path, claim):
     refused(run, tmp_path, 2, source, "--resolution", 7)
     refused(run, tmp_path, 5, tmp_path / "empty.obj")
     refused(run, tmp_path, 7, source, "--max-memory", "1M")
+    refused(run, tmp_path, 7, "/dev/zero", "--input-format", "ply", "--max-memory", "64M")
     refused(run, tmp_path, 8, source, device="cuda:99")
 
 

@@ -115,9 +115,9 @@ class Reader {
     if (known->reads_mesh && known->reads_points)
       read_ply(request.creases);
     else if (known->reads_mesh)
-      hold(read_mesh(path, format));
+      hold(read_mesh(path, format, context_.memory_limit_bytes));
     else if (known->reads_points)
-      hold(read_points(path, format), request.creases);
+      hold(read_points(path, format, context_.memory_limit_bytes), request.creases);
     else if (format == "vdb" && path != "-" && is_stage_file(path))
       read_stage_file();
     else
@@ -192,7 +192,7 @@ class Reader {
 
  private:
   void read_ply(VolumeCreases creases) {
-    PlyContent content = read_ply_content(input_.facts.path);
+    PlyContent content = read_ply_content(input_.facts.path, context_.memory_limit_bytes);
     if (!content.is_points) return hold(std::move(content.mesh));
     if (content.unusable_faces > 0)
       warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
@@ -200,7 +200,8 @@ class Reader {
   }
 
   void read_volume_file(const InputRequest& request) {
-    const MeshSource source(request.path);
+    ReadingBudget budget(context_.memory_limit_bytes);
+    const MeshSource source(request.path, budget);
     if (holds_labels(source, request.grid)) return read_label_file(source, request);
     hold_volume([&](VolumeInfo& volume) {
       return read_volume(source, {request.grid, request.iso, context_.memory_limit_bytes, request.creases}, volume);

@@ -57,15 +57,17 @@ double shortest_edge_world(const TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleSoup read_mesh(const std::string& path, const std::string& format) {
+TriangleSoup read_mesh(const std::string& path, const std::string& format, int64_t memory_limit_bytes) {
   const FormatRow& row = row_of(path, format, reads_mesh, "read_mesh");
-  const MeshSource source(path);
+  ReadingBudget budget(memory_limit_bytes);
+  const MeshSource source(path, budget);
   if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with faces");
   try {
     return row.read(source);
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::out_of_memory, "read_mesh",
-                source.name() + ": " + std::to_string(source.size()) + " bytes do not fit into memory as a mesh");
+                source.name() + ": " + std::to_string(source.size()) +
+                    " bytes do not fit into memory as a mesh; split the file");
   }
 }
 

@@ -104,7 +104,8 @@ PointCloud read_xyz(const MeshSource& source) {
   const char* const sample = rows.find(head);
   const int columns = count_columns(sample, line_end(sample, text.end()));
   if (columns < 3) text.refuse(sample, "a point needs three numbers; found " + quoted_token(sample, text.end()));
-  std::vector<double> numbers(size_t(count) * size_t(columns));
+  std::vector<double> numbers;
+  resize_counted(source, numbers, size_t(count) * size_t(columns));
   rows.for_each(head, rows.count(), [&](int64_t row, const char* p, const char* end, int64_t) {
     for (int c = 0; c < columns; ++c) {
       p = skip_blanks(p, end);
@@ -118,6 +119,8 @@ PointCloud read_xyz(const MeshSource& source) {
   for (const int column : {3, 6, 7})
     if (normals < 0 && holds_normals(numbers, columns, column)) normals = column;
   PointCloud cloud;
+  make_room(source, cloud.position, size_t(count));
+  if (normals > 0) make_room(source, cloud.normal, size_t(count));
   for (int64_t i = 0; i < count; ++i) {
     const double* row = &numbers[size_t(i) * size_t(columns)];
     cloud.position.push_back({row[0], row[1], row[2]});
@@ -171,17 +174,19 @@ auto read_or_say_why(const MeshSource& source, const char* what, Read read) {
 
 }  // namespace
 
-PointCloud read_points(const std::string& path, const std::string& format) {
+PointCloud read_points(const std::string& path, const std::string& format, int64_t memory_limit_bytes) {
   const FormatRow* row = find_row(format.empty() ? format_of_path(path) : format_name(format));
   if (!row || !row->read_points)
     throw Error(ErrorCode::usage, "read",
                 path + ": the format of points must be one of " + listed_formats(reads_points));
-  const MeshSource source(path);
+  ReadingBudget budget(memory_limit_bytes);
+  const MeshSource source(path, budget);
   return read_or_say_why(source, "points", [&] { return finished(source, row->read_points(source)); });
 }
 
-PlyContent read_ply_content(const std::string& path) {
-  const MeshSource source(path);
+PlyContent read_ply_content(const std::string& path, int64_t memory_limit_bytes) {
+  ReadingBudget budget(memory_limit_bytes);
+  const MeshSource source(path, budget);
   return read_or_say_why(source, "faces or points", [&] {
     const PlyHeader header = read_ply_header(source);
     if (!holds_rows(header, "vertex")) return PlyContent{false, read_ply(source), {}, 0};

@@ -17,15 +17,22 @@ namespace {
 /// Takes segments, and leaves out those that join nothing or are there.
 class SegmentCollector {
  public:
-  explicit SegmentCollector(Polylines& lines) : lines_(lines) {}
+  SegmentCollector(const MeshSource& source, Polylines& lines) : source_(source), lines_(lines) {}
 
   void add(uint32_t from, uint32_t to, int64_t line) {
-    if (from == to || !known_.insert(edge_key(from, to)).second) return;
+    if (from == to || known_.count(edge_key(from, to)) > 0) return;
+    source_.take(kKnownBytes);
+    known_.insert(edge_key(from, to));
+    make_room(source_, lines_.segments, 1);
+    make_room(source_, lines_.lines, 1);
     lines_.segments.push_back({from, to});
     lines_.lines.push_back(line);
   }
 
  private:
+  static constexpr int64_t kKnownBytes = 48;  ///< an element of the set
+
+  const MeshSource& source_;
   Polylines& lines_;
   std::unordered_set<uint64_t> known_;
 };
@@ -42,13 +49,15 @@ WorldPoint read_point(const Text& text, const char* p, const char* end) {
 }
 
 /// The vertices of one line, as 7 or 7/2, from 1 on or, when negative, back from the last one.
-std::vector<uint32_t> read_line(const Text& text, const char* p, const char* end, int64_t so_far, int64_t count) {
+std::vector<uint32_t> read_line(const MeshSource& source, const Text& text, const char* p, const char* end,
+                                int64_t so_far, int64_t count) {
   std::vector<uint32_t> vertices;
   for (p = skip_blanks(p, end); p < end && *p != '\n' && *p != '#'; p = skip_blanks(p, end)) {
     const char* const token = p;
     int64_t index = 0;
     if (!parse_integer(p, end, index) || !(ends_token(p, end) || *p == '/'))
       text.refuse(token, "a line names the vertex " + quoted_token(token, end) + "; give its number");
+    make_room(source, vertices, 1);
     vertices.push_back(resolve(text, token, {"a line", "vertex", "vertices"}, index, so_far, count));
     p = skip_token(p, end);
   }
@@ -69,14 +78,16 @@ Polylines parse_obj(const MeshSource& source) {
     }
   };
   each_line([&](ObjLine kind, const char* p, int64_t) {
-    if (kind == ObjLine::vertex) lines.points.push_back(read_point(text, p, end));
+    if (kind != ObjLine::vertex) return;
+    make_room(source, lines.points, 1);
+    lines.points.push_back(read_point(text, p, end));
   });
-  SegmentCollector segments(lines);
+  SegmentCollector segments(source, lines);
   int64_t so_far = 0;
   each_line([&](ObjLine kind, const char* p, int64_t number) {
     so_far += kind == ObjLine::vertex;
     if (kind != ObjLine::line) return;
-    const std::vector<uint32_t> along = read_line(text, p, end, so_far, int64_t(lines.points.size()));
+    const std::vector<uint32_t> along = read_line(source, text, p, end, so_far, int64_t(lines.points.size()));
     for (size_t i = 0; i + 1 < along.size(); ++i) segments.add(along[i], along[i + 1], number);
   });
   return lines;
@@ -110,7 +121,7 @@ Polylines parse_ply(const MeshSource& source) {
   const PlyHeader header = read_ply_header(source);
   lines.points = read_numbers(source, header, "vertex", {"x", "y", "z"});
   const std::vector<WorldPoint> ends = read_numbers(source, header, "edge", {"vertex1", "vertex2", "vertex2"});
-  SegmentCollector segments(lines);
+  SegmentCollector segments(source, lines);
   for (size_t e = 0; e < ends.size(); ++e) {
     uint32_t vertex[2];
     const double index[2] = {ends[e].x, ends[e].y};
@@ -146,12 +157,13 @@ Polylines read_ply_edges(const MeshSource& source) {
   return lines;
 }
 
-std::shared_ptr<const Polylines> read_polylines(const std::string& path) {
+std::shared_ptr<const Polylines> read_polylines(const std::string& path, int64_t memory_limit_bytes) {
   const std::string format = format_of_path(path);
   if (format != "obj" && format != "ply")
     throw Error(ErrorCode::usage, "features",
                 path + ": lines are read from OBJ and PLY files; give a name that ends in .obj or .ply");
-  const MeshSource source(path);
+  ReadingBudget budget(memory_limit_bytes);
+  const MeshSource source(path, budget);
   return std::make_shared<Polylines>(format == "obj" ? read_obj_lines(source) : read_ply_edges(source));
 }
 

@@ -98,7 +98,9 @@ void check_map(const ScalarField& field) {
 }  // namespace
 
 TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info) {
-  return read_volume(MeshSource(path), options, info);
+  ReadingBudget budget(options.memory_limit_bytes);
+  const MeshSource source(path, budget);
+  return read_volume(source, options, info);
 }
 
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {

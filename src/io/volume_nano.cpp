@@ -161,7 +161,7 @@ std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const Vo
     throw_unreadable_vdb(source.name(), "grid \"" + span.grid.name + "\" says that its " +
                                             std::to_string(span.file_bytes) + " bytes hold " +
                                             std::to_string(span.grid_bytes) + ": the file is damaged");
-  check_volume_memory(source.name(), span.grid, span.grid_bytes, options);
+  check_volume_memory(source, span.grid, span.grid_bytes, options);
   return std::make_unique<NanoField>(source, span);
 }
 

@@ -183,7 +183,7 @@ std::string FrameChain::go_on_from(const Input& input, const RunRequest& request
   TriangleSoup there;
   std::string made_of;
   try {
-    there = read_mesh(request.output.path, "ply");
+    there = read_mesh(request.output.path, "ply", context.memory_limit_bytes);
     made_of = made_of_in_ply(request.output.path);
   } catch (const Error& error) {
     return std::string("cannot be read (") + error.what() + ")";

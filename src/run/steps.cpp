@@ -250,7 +250,7 @@ class RunSteps::Run {
   void read_lines() {
     Features& features = options_.values.features;
     if (features.line_file.empty()) return;
-    features.lines = timed("lines", [&] { return read_polylines(features.line_file); });
+    features.lines = timed("lines", [&] { return read_polylines(features.line_file, context_->memory_limit_bytes); });
     tell(MessageKind::note, "lines to keep: " + features.line_file);
   }
 

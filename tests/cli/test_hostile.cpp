@@ -1,5 +1,10 @@
 // What a hostile or unlucky user gives the command: damaged files, surfaces that are hardly surfaces, absurd sizes.
+#include <sys/resource.h>
+
+#include <sstream>
+
 #include "cli/command.h"
+#include "isoshell/io/file_format.h"
 #include "support/catch.h"
 #include "support/refusals.h"
 
@@ -198,4 +203,106 @@ TEST_CASE("hostile: a folder that is full or vanishes leaves the old file as it 
       folder.shell("mkdir gone; '" + command_path() +
                    "' ball.off gone/out.ply --vertices 400 --resolution 60 & sleep 0.05; rmdir gone; wait $!");
   CHECK(gone.status == 4);
+}
+
+namespace {
+
+struct Ended {
+  int status;
+  int64_t most_bytes;  ///< of memory, of the largest process
+};
+
+/// Runs a line of the shell, its standard error into err.txt.
+Ended measured(Folder& folder, const std::string& line) {
+  const std::string whole = "cd '" + (folder / "").string() + "' && ( " + line + " ) 2>err.txt";
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", whole.c_str(), nullptr);
+    _exit(127);
+  }
+  int ended = 0;
+  rusage used{};
+  wait4(child, &ended, 0, &used);
+  return {WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended), int64_t(used.ru_maxrss) * 1024};
+}
+
+std::string listed_inputs() {
+  std::string words;
+  for (const FileFormat& format : file_formats()) words += " " + format.name;
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("hostile: standard input that never ends is refused at the limit of memory", "[cli][hostile]") {
+  Folder folder;
+  std::istringstream formats(listed_inputs());
+  for (std::string format; formats >> format;) {
+    const Ended ended = measured(
+        folder, "cat /dev/zero | '" + command_path() + "' - out.ply --input-format " + format + " --max-memory 100M");
+    INFO(format << ": " << folder.content("err.txt"));
+    CHECK(ended.status == 7);
+    CHECK(contains(folder.content("err.txt"), "standard input: needs at least 100"));
+    CHECK(contains(folder.content("err.txt"), "raise --max-memory, or split the file"));
+    CHECK(ended.most_bytes < int64_t(200) << 20);
+    CHECK(!folder.has("out.ply"));
+  }
+}
+
+TEST_CASE("hostile: a small stack is enough", "[cli][hostile]") {
+  Folder folder;
+  folder.write_off("ball.off", ball_at({0, 0, 0}, 1));
+  folder.write("box.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 "
+               "5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  for (const char* input : {"ball.off", "box.obj"}) {
+    const auto r = folder.shell("ulimit -s 128; '" + command_path() + "' " + input + " out.ply" + kSmall);
+    INFO(input << ": " << r.err);
+    CHECK(r.status == 0);
+  }
+}
+
+TEST_CASE("hostile: where the system gives no threads, that is said", "[cli][hostile]") {
+  Folder folder;
+  folder.write_off("ball.off", ball_at({0, 0, 0}, 1));
+  fs::permissions(folder / "", fs::perms::all);
+  // Limits of processes do not hold for the superuser.
+  const std::string other = geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+  if (folder.shell(other + "'" + command_path() + "' --version").status != 0) return;
+  for (const char* most : {"1", "2"}) {
+    const auto r = folder.shell(other + "sh -c \"ulimit -u " + most + "; exec '" + command_path() +
+                                "' ball.off out.ply" + kSmall + "\"");
+    INFO(r.err);
+    CHECK(r.status == 7);
+    CHECK(contains(r.err, "the system gives no more threads"));
+    CHECK(contains(r.err, "ulimit -u"));
+    CHECK(!folder.has("out.ply"));
+  }
+}
+
+TEST_CASE("hostile: buffers of glTF outside of its folder are refused, though a link leads there", "[cli][hostile]") {
+  Folder folder;
+  fs::create_directories(folder / "in/below");
+  folder.write("a.bin", std::string(36, '\0'));
+  folder.write("in/below/a.bin", std::string(36, '\0'));
+  fs::create_symlink("../a.bin", folder / "in/link.bin");
+  fs::create_symlink("..", folder / "in/up");
+  fs::create_symlink("below/a.bin", folder / "in/stays.bin");
+  const auto gltf_of = [](const std::string& uri) {
+    return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":")" + uri +
+           R"("}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,)"
+           R"("count":3,"type":"VEC3"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]})";
+  };
+  for (const std::string uri : {"link.bin", "up/a.bin"}) {
+    folder.write("in/part.gltf", gltf_of(uri));
+    const auto r = folder.run("in/part.gltf out.ply" + kSmall);
+    INFO(r.err);
+    CHECK(r.status == 3);
+    CHECK(contains(r.err, "buffers[0].uri names in/" + uri + ", which leads by a link to " +
+                              fs::canonical(folder / "a.bin").string()));
+  }
+  for (const std::string uri : {"below/a.bin", "stays.bin"}) {
+    folder.write("in/part.gltf", gltf_of(uri));
+    CHECK(folder.run("in/part.gltf out.ply" + kSmall).status == 5);  // it is read, and has no area
+  }
 }

@@ -1,4 +1,4 @@
-// Mesh files: OBJ, PLY, STL, OFF and glTF in and out. Parallel, memory-mapped; no count in a file is trusted.
+// Mesh files: OBJ, PLY, STL, OFF and glTF in and out. Parallel; no count in a file is trusted.
 #pragma once
 
 #include <string>
@@ -16,8 +16,9 @@ namespace isoshell {
 /// region_outside of PLY's faces are regions, where both differ on every face; such faces are turned where FaceRegions
 /// wants it. The meshes of a glTF file stand where its nodes put them, and its up axis stays. Dirty geometry is dropped
 /// and counted in the result, a file that lies throws. Throws: unreadable_input (names file and line, element or byte,
-/// the value and the remedy), nothing_to_mesh when the file is sound but holds no usable triangle.
-TriangleSoup read_mesh(const std::string& path, const std::string& format = "");
+/// the value and the remedy), nothing_to_mesh when the file is sound but holds no usable triangle, out_of_memory before
+/// reading takes more than `memory_limit_bytes`, if above 0.
+TriangleSoup read_mesh(const std::string& path, const std::string& format = "", int64_t memory_limit_bytes = 0);
 
 struct MeshWriteOptions {
   std::string format = {};  ///< a name of file_format.h; empty: by the path

@@ -17,8 +17,9 @@ struct PointCloud {
 
 /// Reads points. `format` is "ply", "xyz" or "pcd", empty: by the path: PLY whatever its faces, text rows of x y z and
 /// perhaps a normal (.xyz), and PCD as text, binary or packed. Colours and other columns are passed over. `path` "-"
-/// reads standard input. Throws: unreadable_input, nothing_to_mesh when there is no point.
-PointCloud read_points(const std::string& path, const std::string& format = "");
+/// reads standard input. Throws: unreadable_input, nothing_to_mesh when there is no point, out_of_memory before reading
+/// takes more than `memory_limit_bytes`, if above 0.
+PointCloud read_points(const std::string& path, const std::string& format = "", int64_t memory_limit_bytes = 0);
 
 /// A PLY file holds a mesh, or points: vertices of which no face makes a triangle with area.
 struct PlyContent {
@@ -29,7 +30,7 @@ struct PlyContent {
 };
 
 /// Reads either, once, so that pipes and standard input ("-") do. Throws: as read_mesh and read_points.
-PlyContent read_ply_content(const std::string& path);
+PlyContent read_ply_content(const std::string& path, int64_t memory_limit_bytes = 0);
 
 /// What the surface was made with.
 struct PointSurfaceInfo {

@@ -12,6 +12,6 @@ namespace isoshell {
 /// are passed over. A segment from a point to itself, and one that is there before, is left out. Throws:
 /// unreadable_input (names file, line or row, value and remedy), also for a file without lines; usage for a name that
 /// ends otherwise.
-std::shared_ptr<const Polylines> read_polylines(const std::string& path);
+std::shared_ptr<const Polylines> read_polylines(const std::string& path, int64_t memory_limit_bytes = 0);
 
 }  // namespace isoshell

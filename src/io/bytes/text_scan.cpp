@@ -74,6 +74,7 @@ Text::Text(const MeshSource& source, Continuation continuation)
 
 void Text::own() {
   if (!owned_.empty()) return;
+  source_.take(source_.size());
   owned_.assign(base_, end_);
   base_ = begin_ = owned_.data();
   end_ = base_ + owned_.size();

@@ -12,6 +12,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kGrain = 1 << 14;
+constexpr int64_t kSplittingBytes = 200;  // of a corner of the largest polygon, while its ears are clipped
 
 template <class Test>
 int64_t count_where(int64_t count, Test test) {
@@ -43,11 +44,11 @@ std::string nothing_left(const TriangleSoup& soup) {
 
 }  // namespace
 
-VertexTable::VertexTable(const MeshSource& source, int64_t count) {
+VertexTable::VertexTable(const MeshSource& from, int64_t count) : source(&from) {
   if (count > kMaxSoupVertices)
-    source.refuse("holds " + std::to_string(count) + " vertices; at most " + std::to_string(kMaxSoupVertices) +
-                  " can be read, split the file");
-  points.resize(size_t(count));
+    from.refuse("holds " + std::to_string(count) + " vertices; at most " + std::to_string(kMaxSoupVertices) +
+                " can be read, split the file");
+  resize_counted(from, points, size_t(count));
 }
 
 void VertexTable::count_nonfinite() {
@@ -65,6 +66,9 @@ void FaceCollector::add_polygon(const uint32_t* corners, int64_t count) {
     ++dirt_.dropped_faces_nonfinite;
     return;
   }
+  reserve(count - 2);
+  if (count > int64_t(corners_.capacity()))
+    vertices_->source->take((count - int64_t(corners_.capacity())) * kSplittingBytes);
   corners_.assign(corners, corners + count);
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
   while (corners_.size() > 1 && corners_.back() == corners_.front()) corners_.pop_back();
@@ -84,7 +88,7 @@ void FaceCollector::adopt(std::vector<Triangle> triangles) {
     faces_ += int64_t(triangles.size());
     triangles_ = std::move(triangles);
     if (keeps_faces_) {
-      face_of_.resize(triangles_.size());
+      resize_counted(*vertices_->source, face_of_, triangles_.size());
       std::iota(face_of_.begin(), face_of_.end(), 0);
     }
   } else {
@@ -101,15 +105,16 @@ void FaceCollector::add_strip(const uint32_t* corners, int64_t count) {
     if (vertices_->nonfinite && !(finite(a) && finite(b) && finite(c))) {
       ++dirt_.dropped_faces_nonfinite;
     } else if (i % 2 == 0) {
-      triangles_.push_back({a, b, c});
+      push({a, b, c});
     } else {
-      triangles_.push_back({b, a, c});
+      push({b, a, c});
     }
   }
-  if (keeps_faces_) face_of_.resize(triangles_.size(), uint32_t(faces_ - 1));
+  if (keeps_faces_) resize_counted(*vertices_->source, face_of_, triangles_.size(), uint32_t(faces_ - 1));
 }
 
 TriangleSoup join_parts(VertexTable vertices, std::vector<FaceCollector>& parts) {
+  const MeshSource& source = *vertices.source;
   TriangleSoup soup;
   std::vector<size_t> start(parts.size() + 1, 0);
   for (size_t i = 0; i < parts.size(); ++i) {
@@ -124,13 +129,14 @@ TriangleSoup join_parts(VertexTable vertices, std::vector<FaceCollector>& parts)
   if (parts.size() == 1) {
     soup.triangles = std::move(parts[0].triangles_);
   } else {
-    soup.triangles.resize(start.back());
+    resize_counted(source, soup.triangles, start.back());
     for_each_index(size_t(0), parts.size(), [&](size_t i) {
       std::copy(parts[i].triangles_.begin(), parts[i].triangles_.end(), soup.triangles.begin() + int64_t(start[i]));
-      std::vector<Triangle>().swap(parts[i].triangles_);
+      release(source, parts[i].triangles_);
     });
   }
   soup.dirt.nonfinite_vertices = vertices.nonfinite;
+  const HeldBytes flags(source, int64_t(soup.vertices.size()));
   soup.dirt.unreferenced_vertices = count_unreferenced(soup.vertices, soup.triangles) - vertices.nonfinite;
   return soup;
 }

@@ -18,8 +18,9 @@ constexpr int64_t kMaxSoupVertices = 0xfffffffe;
 struct VertexTable {
   std::vector<WorldPoint> points;
   int64_t nonfinite = 0;
+  const MeshSource* source;  ///< counts what is held of faces, too
 
-  /// Throws unreadable_input when 32-bit indices cannot name that many.
+  /// Throws unreadable_input when 32-bit indices cannot name that many, and out_of_memory.
   VertexTable(const MeshSource& source, int64_t count);
   /// Counts in parallel; call it once all positions are set.
   void count_nonfinite();
@@ -39,7 +40,7 @@ class FaceCollector {
     } else if (vertices_->nonfinite && !(finite(a) && finite(b) && finite(c))) {
       ++dirt_.dropped_faces_nonfinite;
     } else {
-      triangles_.push_back({a, b, c});
+      push({a, b, c});
       if (keeps_faces_) face_of_.push_back(uint32_t(faces_ - 1));
     }
   }
@@ -49,9 +50,14 @@ class FaceCollector {
   /// A triangle strip; every second triangle is turned. Triangles with equal corners are the strip's way to turn a
   /// corner, not dirt.
   void add_strip(const uint32_t* corners, int64_t count);
-  /// Many triangles at once, to a collector that holds none. Cost: no copy when all of them are clean.
+  /// Many triangles at once that are counted already, to a collector that holds none. Cost: no copy when all of them
+  /// are clean.
   void adopt(std::vector<Triangle> triangles);
-  void reserve(int64_t triangles) { triangles_.reserve(size_t(triangles)); }
+  /// For so many more. Throws: out_of_memory, as all that adds does.
+  void reserve(int64_t triangles) {
+    make_room(*vertices_->source, triangles_, size_t(triangles));
+    if (keeps_faces_) make_room(*vertices_->source, face_of_, size_t(triangles));
+  }
 
   /// Per triangle, if that is kept, which of the faces and strips that were added it is of. Stays when parts are
   /// joined.
@@ -60,6 +66,10 @@ class FaceCollector {
  private:
   friend TriangleSoup join_parts(VertexTable, std::vector<FaceCollector>&);
   bool finite(uint32_t i) const { return is_finite(vertices_->points[i]); }
+  void push(const Triangle& triangle) {
+    if (triangles_.size() == triangles_.capacity()) reserve(1);
+    triangles_.push_back(triangle);
+  }
 
   const VertexTable* vertices_;
   bool keeps_faces_;

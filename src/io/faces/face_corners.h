@@ -64,7 +64,8 @@ class CornerFinder {
 };
 
 /// Makes values of vertices values of corners, which share them.
-inline void spread_to_corners(const std::vector<Triangle>& triangles, Attribute& attribute) {
+inline void spread_to_corners(const MeshSource& source, const std::vector<Triangle>& triangles, Attribute& attribute) {
+  make_room(source, attribute.index, 3 * triangles.size());
   attribute.domain = AttributeDomain::corner;
   const auto* const corners = reinterpret_cast<const uint32_t*>(triangles.data());
   attribute.index.assign(corners, corners + 3 * triangles.size());

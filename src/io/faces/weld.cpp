@@ -91,6 +91,10 @@ class RecentCorners {
   std::vector<Slot> slots_;
 };
 
+// At most, while corners are welded: their earlier ones, those that were dealt, and their entries with tables.
+template <class Real>
+constexpr int64_t kBytesPerCorner = 12 + int64_t(sizeof(Entry<Real>)) + 4;
+
 // Corners by part, ascending within one: entries of part k are [start[k], start[k + 1]).
 template <class Real>
 struct Parts {
@@ -207,6 +211,7 @@ void weld_corners(const MeshSource& source, int64_t count, Corners corners, Vert
   if (count > kMaxSoupVertices)
     source.refuse("holds " + std::to_string(count) + " face corners; at most " + std::to_string(kMaxSoupVertices) +
                   " can be read, split the file");
+  const HeldBytes held(source, count * kBytesPerCorner<typename Corners::Real>);
   const EarlierCorners earlier = earlier_corners(count, corners);
   const int64_t block_count = block_count_of(count);
   std::vector<int64_t> start(size_t(block_count) + 1, int64_t(vertices.points.size()));
@@ -217,7 +222,7 @@ void weld_corners(const MeshSource& source, int64_t count, Corners corners, Vert
                                      [&](const DealtCorner& d) { return earlier.of[d.corner] == d.corner; });
   });
   std::partial_sum(start.begin(), start.end(), start.begin());
-  vertices.points.resize(size_t(start.back()));
+  resize_counted(source, vertices.points, size_t(start.back()));
   std::vector<std::vector<uint32_t>> later(start.size() - 1);  // corners whose first one is of another block
   for_each_index(int64_t(0), block_count, [&](int64_t block) {
     int64_t vertex = start[size_t(block)];
@@ -243,7 +248,8 @@ void weld_corners(const MeshSource& source, int64_t count, Corners corners, Vert
 
 template <class Corners>
 WeldedCorners weld_corners(const MeshSource& source, int64_t count, Corners corners) {
-  WeldedCorners welded{VertexTable(source, 0), std::vector<Triangle>(size_t((count + 2) / 3))};
+  WeldedCorners welded{VertexTable(source, 0), {}};
+  resize_counted(source, welded.index, size_t((count + 2) / 3));
   weld_corners(source, count, corners, welded.vertices, reinterpret_cast<uint32_t*>(welded.index.data()));
   return welded;
 }

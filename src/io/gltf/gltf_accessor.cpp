@@ -48,7 +48,8 @@ void convert_all(const GltfElements& e, Convert convert, Out* out) {
 
 /// Which elements a sparse accessor replaces, all in range.
 std::vector<uint32_t> replaced_of(const GltfDocument& document, const GltfAccessor& a) {
-  std::vector<uint32_t> replaced(size_t(a.replaced.count));
+  std::vector<uint32_t> replaced;
+  resize_counted(document.source(), replaced, size_t(a.replaced.count));
   convert_all(
       a.replaced, [](auto value) { return uint32_t(value); }, replaced.data());
   for (const uint32_t i : replaced)
@@ -63,12 +64,15 @@ void read(const GltfDocument& document, const GltfAccessor& a, Convert convert, 
   const auto components = size_t(a.components);
   if (!a.data) std::fill_n(out, size_t(a.count) * components, Out(0));
   convert_all(a, convert, out);
-  const std::vector<uint32_t> replaced = replaced_of(document, a);
-  std::vector<Out> values(replaced.size() * components);
+  std::vector<uint32_t> replaced = replaced_of(document, a);
+  std::vector<Out> values;
+  resize_counted(document.source(), values, replaced.size() * components);
   convert_all(a.replacements, convert, values.data());
   // One after another: a file may name an element twice.
   for (size_t i = 0; i < replaced.size(); ++i)
     std::copy_n(&values[i * components], components, out + replaced[i] * components);
+  release(document.source(), replaced);
+  release(document.source(), values);
 }
 
 }  // namespace

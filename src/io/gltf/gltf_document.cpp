@@ -6,6 +6,7 @@
 #include "core/number_type.h"
 #include "io/bytes/byte_order.h"
 #include "io/gltf/gltf_uri.h"
+#include "io/gltf/json_size.h"
 
 namespace isoshell {
 namespace {
@@ -19,33 +20,6 @@ constexpr int64_t kLargestStride = 252;
 constexpr int kMostNesting = 256;                      // deeper values could exhaust the stack where they are copied
 constexpr size_t kMostMessage = 200;                   // of a message that may cite the file
 constexpr int64_t kLargestInteger = int64_t(1) << 53;  // that JSON readers agree on; sums of a few do not overflow
-
-const char* find_char(const char* p, const char* end, char c) {
-  const void* const at = std::memchr(p, c, size_t(end - p));
-  return at ? static_cast<const char*>(at) : end;
-}
-
-/// The quote that ends a string of JSON, or `end`; p is behind the quote that begins it.
-const char* end_of_string(const char* p, const char* end) {
-  for (const char* quote = p;; quote = std::max(quote, p)) {
-    if (quote == p) quote = find_char(p, end, '"');
-    const char* const escape = find_char(p, quote, '\\');
-    if (escape == quote) return quote;
-    if (end - escape <= 2) return end;
-    p = escape + 2;  // what follows a backslash is no end
-  }
-}
-
-/// Whether lists and objects of JSON lie too deep in each other; its parser would not mind.
-bool is_nested_deeply(View<const char> text) {
-  int depth = 0;
-  for (const char* p = text.begin(); p < text.end() && depth <= kMostNesting; ++p) {
-    depth += (*p == '[' || *p == '{') - (*p == ']' || *p == '}');
-    if (*p == '"') p = end_of_string(p + 1, text.end());
-    if (p == text.end()) break;
-  }
-  return depth > kMostNesting;
-}
 
 std::string short_dump(const Json& value) {
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
@@ -143,8 +117,10 @@ void GltfDocument::read_container() {
       at += kChunkHeaderBytes + bytes;
     }
   }
-  if (is_nested_deeply(text))
+  const JsonSize size = json_size_of(text, kMostNesting);
+  if (size.depth > kMostNesting)
     source_.refuse("its JSON is nested more than " + std::to_string(kMostNesting) + " deep, the most that is read");
+  source_.take(size.bytes);
   try {
     json_ = Json::parse(text.data, text.data + text.size);
   } catch (const Json::exception& error) {
@@ -252,6 +228,7 @@ void GltfDocument::read_buffers() {
 
 View<const char> GltfDocument::bytes_of_uri(const std::string& uri, const std::string& place) {
   if (uri.rfind("data:", 0) == 0) {
+    source_.take(int64_t(uri.size()) / 4 * 3);
     std::optional<std::vector<char>> decoded = decoded_data(uri);
     if (!decoded) refuse(place, " is not sound base64 data; restore the file");
     decoded_.push_back(std::move(*decoded));
@@ -260,10 +237,14 @@ View<const char> GltfDocument::bytes_of_uri(const std::string& uri, const std::s
   const std::optional<std::string> name = file_name_of(uri);
   if (!name)
     refuse(place, " is " + short_dump(uri) + "; only files in the folder of the glTF file, or below it, are read");
-  const fs::path path = fs::path(source_.name()).parent_path() / *name;
+  const fs::path folder = fs::path(source_.name()).parent_path();
+  const fs::path path = folder / *name;
   std::error_code code;
   if (!fs::is_regular_file(path, code)) refuse(place, " names " + path.string() + ", where there is no file");
-  files_.push_back(std::make_unique<MeshSource>(path.string()));
+  if (!lies_below(folder.string(), path.string()))
+    refuse(place, " names " + path.string() + ", which leads by a link to " + fs::canonical(path, code).string() +
+                      "; only files in the folder of the glTF file, or below it, are read; copy it there");
+  files_.push_back(std::make_unique<MeshSource>(path.string(), source_.budget()));
   return {files_.back()->begin(), files_.back()->size()};
 }
 

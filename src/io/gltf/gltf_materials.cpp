@@ -34,6 +34,7 @@ void free_of_buffers(const GltfDocument& document, const std::string& place, Jso
   const auto type = image.find(kMimeType);
   if (type == image.end() || !type->is_string())
     document.refuse(place, " is in a buffer view and has no mimeType; restore the file");
+  document.source().take(3 * bytes.size);  // as text, here and in what is kept
   image["uri"] = "data:" + type->get<std::string>() + ";base64," + base64_of(bytes);
   image.erase("bufferView");
 }

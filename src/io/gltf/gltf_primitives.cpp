@@ -12,6 +12,7 @@ namespace {
 using Json = GltfDocument::Json;
 
 constexpr int64_t kGrain = 1 << 14;
+constexpr int64_t kBytesPerPlace = 128;                // of the texts that say where something stands
 constexpr int64_t kMaxSoupTriangles = 0xffffffff / 3;  // corners have 32-bit numbers
 
 enum Mode : int64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
@@ -44,6 +45,8 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
         document.refuse(a.place,
                         " holds no positions; they are VEC3, of componentType 5126 or quantised to 5120 to 5123");
       const int64_t first = content.first_vertex.back();
+      document.source().take(kBytesPerPlace);
+      make_room(document.source(), content.vertices, 1);
       if (a.count > kMaxSoupVertices - first)
         document.source().refuse("holds more than " + std::to_string(kMaxSoupVertices) +
                                  " vertices, the most that can be read; split the file");
@@ -53,6 +56,8 @@ void add_instance(const GltfDocument& document, const GltfInstance& instance, Gl
     }
     is_posed |= primitive.contains("targets");
     const auto indices = document.integer(primitive, "indices", place);
+    document.source().take(kBytesPerPlace);
+    make_room(document.source(), content.primitives, 1);
     content.primitives.push_back({at->second, mode, indices, document.integer(primitive, "material", place), place});
     content.claimed_corners += indices ? document.claimed_count(*indices) : content.vertices[at->second].count;
   }
@@ -105,7 +110,7 @@ class TriangleCollector {
       triangles_.count += count;
       return;
     }
-    triangles_.write_out();
+    triangles_.write_out(document_.source());
     if (is_list)
       add_list(vertices, indices, count, mirrors);
     else
@@ -116,7 +121,7 @@ class TriangleCollector {
  private:
   void add_list(const GltfVertices& vertices, const std::optional<GltfAccessor>& indices, int64_t count, bool mirrors) {
     const size_t first = out_.size();
-    out_.resize(first + size_t(count));
+    resize_counted(document_.source(), out_, first + size_t(count));
     auto* const corner = reinterpret_cast<uint32_t*>(out_.data() + first);
     if (indices)
       read_checked_indices(document_, *indices, vertices.count, corner);
@@ -132,7 +137,9 @@ class TriangleCollector {
   /// Of a strip or fan.
   void add_run(const GltfVertices& vertices, const std::optional<GltfAccessor>& indices, int64_t corners, int64_t mode,
                bool mirrors) {
+    const HeldBytes held(document_.source(), 4 * corners);
     std::vector<uint32_t> index(static_cast<size_t>(corners));
+    make_room(document_.source(), out_, size_t(std::max<int64_t>(corners - 2, 0)));
     if (indices)
       read_checked_indices(document_, *indices, vertices.count, index.data());
     else
@@ -175,9 +182,9 @@ GltfContent content_of(const GltfDocument& document) {
   return content;
 }
 
-void GltfTriangles::write_out() {
+void GltfTriangles::write_out(const MeshSource& source) {
   if (!corners.empty()) return;
-  corners.resize(size_t(count));
+  resize_counted(source, corners, size_t(count));
   auto* const first = reinterpret_cast<uint32_t*>(corners.data());
   std::iota(first, first + 3 * count, 0);
 }
@@ -187,14 +194,16 @@ GltfTriangles triangles_of(const GltfDocument& document, const GltfContent& cont
   bool has_material = false;
   const bool has_indices = std::any_of(content.primitives.begin(), content.primitives.end(),
                                        [](const GltfPrimitive& primitive) { return primitive.indices.has_value(); });
-  if (has_indices) triangles.corners.reserve(size_t(std::min(content.claimed_corners, document.bytes()) / 3));
+  if (has_indices)
+    make_room(document.source(), triangles.corners, size_t(std::min(content.claimed_corners, document.bytes()) / 3));
   for (const GltfPrimitive& primitive : content.primitives) has_material |= primitive.material.has_value();
   TriangleCollector collector(document, content, triangles);
   for (const GltfPrimitive& primitive : content.primitives) {
     collector.add(primitive);
     if (primitive.material) document.element("materials", *primitive.material, primitive.place + ".material");
     if (has_material)
-      triangles.material.resize(size_t(triangles.count), primitive.material ? double(*primitive.material) : -1);
+      resize_counted(document.source(), triangles.material, size_t(triangles.count),
+                     primitive.material ? double(*primitive.material) : -1.0);
   }
   return triangles;
 }

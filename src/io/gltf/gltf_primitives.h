@@ -53,7 +53,7 @@ struct GltfTriangles {
     return corners.empty() ? Triangle{first, first + 1, first + 2} : corners[t];
   }
   /// So that `corners` is not empty.
-  void write_out();
+  void write_out(const MeshSource& source);
 };
 GltfTriangles triangles_of(const GltfDocument& document, const GltfContent& content);
 

@@ -39,6 +39,7 @@ void weld_instance(const GltfDocument& document, View<const GltfVertices> parts,
   }
   int64_t count = 0;
   for (const GltfVertices& part : parts) count += part.count;
+  const HeldBytes held(document.source(), count * int64_t(sizeof(RawPosition<float>)));
   Buffer<RawPosition<float>> stored(count);
   for (const GltfVertices& part : parts)
     read_values(document, part.position, true, &(stored.data() + (part.first - parts[0].first))->x);
@@ -48,8 +49,8 @@ void weld_instance(const GltfDocument& document, View<const GltfVertices> parts,
 /// Equal positions of an instance become one vertex; those of two instances stay apart. `index` is empty where all
 /// vertices of the content are vertices of the result.
 WeldedCorners weld(const GltfDocument& document, const GltfContent& content) {
-  WeldedCorners all{VertexTable(document.source(), 0),
-                    std::vector<Triangle>(size_t(content.first_vertex.back() + 2) / 3)};
+  WeldedCorners all{VertexTable(document.source(), 0), {}};
+  resize_counted(document.source(), all.index, size_t(content.first_vertex.back() + 2) / 3);
   auto* const index = reinterpret_cast<uint32_t*>(all.index.data());
   std::vector<WorldPoint>& points = all.vertices.points;
   bool is_moved = false;
@@ -62,15 +63,17 @@ WeldedCorners weld(const GltfDocument& document, const GltfContent& content) {
     for_each_index(int64_t(points.size()) - base,
                    [&](int64_t v) { points[size_t(base + v)] = to_world.point(points[size_t(base + v)]); });
   }
-  if (int64_t(points.size()) == content.first_vertex.back()) all.index.clear();
+  if (int64_t(points.size()) == content.first_vertex.back()) release(document.source(), all.index);
   if (is_moved) all.vertices.count_nonfinite();
   return all;
 }
 
 /// Those of all triangles, in vertices of the result. What is no longer needed, unless it `is_kept`, is moved.
-std::vector<Triangle> triangles_of_vertices(GltfTriangles& triangles, WeldedCorners& welded, bool is_kept) {
+std::vector<Triangle> triangles_of_vertices(const MeshSource& source, GltfTriangles& triangles, WeldedCorners& welded,
+                                            bool is_kept) {
+  if (is_kept) source.take(triangles.count * int64_t(sizeof(Triangle)));
   if (!welded.index.empty() && triangles.corners.empty()) return is_kept ? welded.index : std::move(welded.index);
-  triangles.write_out();
+  triangles.write_out(source);
   std::vector<Triangle> result = is_kept ? triangles.corners : std::move(triangles.corners);
   if (welded.index.empty()) return result;
   const auto* const vertex_of = reinterpret_cast<const uint32_t*>(welded.index.data());
@@ -161,7 +164,7 @@ class AttributeReader {
   void fill(const std::vector<std::optional<GltfAccessor>>& accessors, bool scaled, double missing,
             Attribute& attribute) const {
     const auto components = size_t(attribute.components);
-    attribute.values.assign(size_t(content_.first_vertex.back()) * components, missing);
+    resize_counted(document_.source(), attribute.values, size_t(content_.first_vertex.back()) * components, missing);
     for (size_t i = 0; i < accessors.size(); ++i) {
       if (!accessors[i]) continue;
       double* const out = attribute.values.data() + size_t(content_.vertices[i].first) * components;
@@ -170,6 +173,7 @@ class AttributeReader {
         read_values(document_, *accessors[i], scaled, out);
         continue;
       }
+      const HeldBytes held(document_.source(), accessors[i]->count * int64_t(have * sizeof(double)));
       std::vector<double> values(size_t(accessors[i]->count) * have);
       read_values(document_, *accessors[i], scaled, values.data());
       for_each_index(accessors[i]->count,
@@ -192,16 +196,18 @@ class AttributeReader {
     if (welded_.empty()) return;
     const auto* const vertex_of = reinterpret_cast<const uint32_t*>(welded_.data());
     const auto components = size_t(attribute.components);
-    std::vector<double> values(soup_.vertices.size() * components);
+    std::vector<double> values;
+    resize_counted(document_.source(), values, soup_.vertices.size() * components);
     for (auto v = size_t(content_.first_vertex.back()); v-- > 0;)
       std::copy_n(&attribute.values[v * components], components, &values[vertex_of[v] * components]);
-    attribute.values = std::move(values);
+    attribute.values.swap(values);
+    release(document_.source(), values);
   }
 
   /// By the vertices of the content, which are those of the triangles where none were welded.
   void name_corners(Attribute& attribute) const {
-    if (welded_.empty()) return spread_to_corners(soup_.triangles, attribute);
-    attribute.index.resize(3 * face_of_.size());
+    if (welded_.empty()) return spread_to_corners(document_.source(), soup_.triangles, attribute);
+    resize_counted(document_.source(), attribute.index, 3 * face_of_.size());
     for_each_index(int64_t(face_of_.size()), [&](int64_t t) {
       const Triangle corners = triangles_.at(face_of_[size_t(t)]);
       std::copy(corners.begin(), corners.end(), attribute.index.begin() + 3 * t);
@@ -227,7 +233,7 @@ void add_materials(const GltfDocument& document, const std::vector<double>& of_c
     const bool is_named = name != object.end() && name->is_string() && !name->get_ref<const std::string&>().empty();
     material.labels.push_back(is_named ? name->get<std::string>() : "material_" + std::to_string(i));
   }
-  material.values.resize(face_of.size());
+  resize_counted(document.source(), material.values, face_of.size());
   for_each_index(int64_t(face_of.size()),
                  [&](int64_t t) { material.values[size_t(t)] = of_corners[face_of[size_t(t)]]; });
   soup.attributes.push_back(std::move(material));
@@ -251,7 +257,7 @@ TriangleSoup read_gltf(const MeshSource& source) {
   const auto keep =
       keeps_corners || !triangles.material.empty() ? FaceCollector::Keep::faces_too : FaceCollector::Keep::triangles;
   std::vector<FaceCollector> faces(1, FaceCollector(welded.vertices, keep));
-  faces[0].adopt(triangles_of_vertices(triangles, welded, keeps_corners));
+  faces[0].adopt(triangles_of_vertices(source, triangles, welded, keeps_corners));
   TriangleSoup soup = join_soup(source, std::move(welded.vertices), faces);
   if (has_attributes) AttributeReader(document, content, triangles, faces[0].face_of(), welded.index, soup).read();
   add_materials(document, triangles.material, faces[0].face_of(), soup);

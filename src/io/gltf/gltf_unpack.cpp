@@ -17,6 +17,7 @@ constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr int64_t kMostMeshopt = 64;     // bytes of a byte: 2 bits say that 16 bytes are as those before them;
                                          // and of all buffers, as several views may be packed in the same bytes
 constexpr int64_t kMostDraco = 1 << 14;  // of all buffers; flat grids reach some 700
+constexpr double kDracoFactor = 4;       // of what comes out, while it is unpacked: the library's tables and values
 constexpr uint32_t kTriangles = 4, kStrip = 5, kU32 = 5125;  // the reader takes what is unsigned alone
 
 /// An extension of a part of the document; null without it.
@@ -104,6 +105,7 @@ void unpack_view(GltfDocument& document, size_t index, bool is_required, int64_t
   if (left < 0)
     document.refuse(place, " unpacks, together with those before it, to more than " + std::to_string(kMostMeshopt) +
                                " times the bytes of all buffers, the most that is read; restore the file");
+  document.source().take(job.count * job.stride);
   if (const std::string fault = decode_meshopt(job); !fault.empty()) document.refuse(place, fault);
   const size_t bytes = job.values.size();
   const size_t buffer = document.add_buffer(std::move(job.values));
@@ -207,6 +209,7 @@ class DracoUnpacker {
                                     "those before them these are more than " +
                                     std::to_string(kMostDraco) +
                                     " times the bytes of all buffers, the most that is read; restore the file");
+    document_.source().take(int64_t(kDracoFactor * p.bytes));
   }
 
   void put(PackedPrimitive& p) {

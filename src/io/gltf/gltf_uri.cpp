@@ -79,6 +79,14 @@ std::optional<std::string> file_name_of(const std::string& uri) {
   return name;
 }
 
+bool lies_below(const std::string& folder, const std::string& file) {
+  std::error_code code;
+  const std::filesystem::path top = std::filesystem::canonical(folder.empty() ? "." : folder, code);
+  const std::filesystem::path whole = std::filesystem::canonical(file, code);
+  if (top.empty() || whole.empty()) return false;
+  return std::mismatch(top.begin(), top.end(), whole.begin(), whole.end()).first == top.end();
+}
+
 std::string base64_of(View<const char> bytes) {
   std::string text;
   text.reserve(size_t(bytes.size + 2) / 3 * 4);

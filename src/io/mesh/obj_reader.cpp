@@ -13,6 +13,7 @@ namespace isoshell {
 namespace {
 
 constexpr uint32_t kNoValue = 0xffffffff;
+constexpr int64_t kBytesPerName = 256;  // of an object, group or material, beside four times its letters
 
 /// Names that the faces of a chunk have: their objects, groups or materials.
 struct ObjNames {
@@ -23,9 +24,13 @@ struct ObjNames {
   std::unordered_map<std::string, uint32_t> number = {};
   uint32_t now = kNoValue;
 
-  void begin(const std::string& text) {
-    const auto [at, is_new] = number.emplace(text, uint32_t(name.size()));
-    if (is_new) name.push_back(text);
+  void begin(const MeshSource& source, const std::string& text) {
+    auto at = number.find(text);
+    if (at == number.end()) {
+      source.take(kBytesPerName + 4 * int64_t(text.size()));
+      at = number.emplace(text, uint32_t(name.size())).first;
+      name.push_back(text);
+    }
     now = at->second;
   }
 };
@@ -57,14 +62,16 @@ struct ObjChunk {
   std::vector<std::string> libraries = {};
 };
 
-void count_lines(ObjChunk& chunk) {
+void count_lines(const MeshSource& source, ObjChunk& chunk) {
   const char* const end = chunk.text.end;
   for (const char* p = chunk.text.begin; p < end; p = line_end(p, end) + 1) {
     const ObjLine line = classify(p, end);
     chunk.here.add(line);
     chunk.faces += line == ObjLine::face;
     chunk.has_names |= line == ObjLine::object || line == ObjLine::group || line == ObjLine::material;
-    if (line == ObjLine::library) chunk.libraries.push_back(rest_of_line(p, end));
+    if (line != ObjLine::library) continue;
+    chunk.libraries.push_back(rest_of_line(p, end));
+    source.take(kBytesPerName + 4 * int64_t(chunk.libraries.back().size()));
   }
 }
 
@@ -78,8 +85,8 @@ bool parse_color(const char* p, const char* end, double color[3]) {
   return p == end || *p == '\n' || *p == '#';
 }
 
-void read_vertices(const Text& text, ObjChunk& chunk, std::vector<WorldPoint>& points) {
-  WorldPoint* point = points.data() + chunk.before.vertices;
+void read_vertices(const Text& text, ObjChunk& chunk, VertexTable& vertices) {
+  WorldPoint* point = vertices.points.data() + chunk.before.vertices;
   const char* const end = chunk.text.end;
   const WorldPoint* const last = point + chunk.here.vertices;
   for (const char* p = chunk.text.begin; p < end && point < last; p = line_end(p, end) + 1) {
@@ -87,7 +94,7 @@ void read_vertices(const Text& text, ObjChunk& chunk, std::vector<WorldPoint>& p
     read_point(text, p, end, *point);
     double color[3];
     if (p = skip_blanks(p, end); p < end && *p != '\n' && parse_color(p, end, color)) {
-      chunk.colors.resize(3 * size_t(chunk.here.vertices), 1);
+      resize_counted(*vertices.source, chunk.colors, 3 * size_t(chunk.here.vertices), 1.0);
       std::copy(color, color + 3, &chunk.colors[3 * size_t(chunk.here.vertices - (last - point))]);
     }
     ++point;
@@ -115,12 +122,13 @@ void read_values(const Text& text, const ObjChunk& chunk, ObjLine kind, size_t n
 }
 
 /// All chunks' in one; none where no vertex has one.
-std::vector<Attribute> joined_colors(std::vector<ObjChunk>& chunks, int64_t vertex_count) {
+std::vector<Attribute> joined_colors(const MeshSource& source, std::vector<ObjChunk>& chunks, int64_t vertex_count) {
   if (std::all_of(chunks.begin(), chunks.end(), [](const ObjChunk& c) { return c.colors.empty(); })) return {};
-  Attribute color{kColorName, NumberType::f32, 3, std::vector<double>(3 * size_t(vertex_count), 1)};
+  Attribute color{kColorName, NumberType::f32, 3, {}};
+  resize_counted(source, color.values, 3 * size_t(vertex_count), 1.0);
   for (ObjChunk& chunk : chunks) {
     std::copy(chunk.colors.begin(), chunk.colors.end(), color.values.begin() + 3 * chunk.before.vertices);
-    chunk.colors = {};
+    release(source, chunk.colors);
   }
   return {std::move(color)};
 }
@@ -145,8 +153,8 @@ bool read_reference(const char*& p, const char* end, int64_t& index) {
 /// One corner, as i, i/t, i//n or i/t/n; p moves behind it.
 class CornerReader {
  public:
-  CornerReader(const Text& text, const ObjCounts& all, const ObjWanted& wanted)
-      : text_(text), all_(all), wanted_(wanted) {}
+  CornerReader(const MeshSource& source, const Text& text, const ObjCounts& all, const ObjWanted& wanted)
+      : source_(source), text_(text), all_(all), wanted_(wanted) {}
 
   uint32_t read(const char*& p, const char* end, const ObjCounts& so_far, ObjChunk& to) const {
     const char* const token = p;
@@ -167,38 +175,49 @@ class CornerReader {
       text_.refuse(token, "a face corner is " + quoted_token(token, end) +
                               "; numbers of a vertex, a texture coordinate and a normal may stand in it, as 1/2/3");
     if (wanted_.textures)
-      to.texture.push_back(
-          texture == kAbsent ? kNoValue : resolve(text_, token, kTexture, texture, so_far.textures, all_.textures));
+      keep(texture == kAbsent ? kNoValue : resolve(text_, token, kTexture, texture, so_far.textures, all_.textures),
+           to.texture);
     if (wanted_.normals)
-      to.normal.push_back(normal == kAbsent ? kNoValue
-                                            : resolve(text_, token, kNormal, normal, so_far.normals, all_.normals));
+      keep(normal == kAbsent ? kNoValue : resolve(text_, token, kNormal, normal, so_far.normals, all_.normals),
+           to.normal);
+  }
+  void keep(uint32_t value, std::vector<uint32_t>& of_corners) const {
+    make_room(source_, of_corners, 1);
+    of_corners.push_back(value);
   }
 
+  const MeshSource& source_;
   const Text& text_;
   const ObjCounts& all_;
   const ObjWanted& wanted_;
 };
 
-void read_faces(const Text& text, const ObjCounts& all, const ObjWanted& wanted, ObjChunk& chunk,
-                FaceCollector& faces) {
+void read_faces(const MeshSource& source, const Text& text, const ObjCounts& all, const ObjWanted& wanted,
+                ObjChunk& chunk, FaceCollector& faces) {
   const char* const end = chunk.text.end;
-  const CornerReader reader(text, all, wanted);
+  const CornerReader reader(source, text, all, wanted);
   ObjCounts so_far = chunk.before;
   int64_t left = chunk.faces;
   std::vector<uint32_t> corners;
   faces.reserve(chunk.faces);
+  for (ObjNames& names : chunk.names)
+    if (wanted.names) make_room(source, names.of_face, size_t(chunk.faces));
   for (const char* p = chunk.text.begin; p < end && (left > 0 || wanted.names); p = line_end(p, end) + 1) {
     const ObjLine line = classify(p, end);
     so_far.add(line);
     for (ObjNames& names : chunk.names)
-      if (wanted.names && line == names.line) names.begin(rest_of_line(p, end));
+      if (wanted.names && line == names.line) names.begin(source, rest_of_line(p, end));
     if (line != ObjLine::face) continue;
     --left;
     corners.clear();
-    for (p = skip_blanks(p, end); p < end && *p != '\n' && *p != '#'; p = skip_blanks(p, end))
+    for (p = skip_blanks(p, end); p < end && *p != '\n' && *p != '#'; p = skip_blanks(p, end)) {
+      make_room(source, corners, 1);
       corners.push_back(reader.read(p, end, so_far, chunk));
+    }
     faces.add_polygon(corners.data(), int64_t(corners.size()));
     if (wanted.corners()) {
+      make_room(source, chunk.corners.vertex, corners.size());
+      make_room(source, chunk.corners.first, 1);
       chunk.corners.vertex.insert(chunk.corners.vertex.end(), corners.begin(), corners.end());
       chunk.corners.end_face();
     }
@@ -208,13 +227,14 @@ void read_faces(const Text& text, const ObjCounts& all, const ObjWanted& wanted,
 }
 
 /// Values of corners, by the numbers that `of_corner` of each chunk has for its corners.
-void add_corner_attribute(const std::vector<ObjChunk>& chunks, const std::vector<FaceCollector>& faces,
-                          std::vector<uint32_t> ObjChunk::*of_corner, Attribute attribute, TriangleSoup& soup) {
+void add_corner_attribute(const MeshSource& source, const std::vector<ObjChunk>& chunks,
+                          const std::vector<FaceCollector>& faces, std::vector<uint32_t> ObjChunk::*of_corner,
+                          Attribute attribute, TriangleSoup& soup) {
   const auto none = uint32_t(attribute.values.size() / size_t(attribute.components));
-  attribute.values.insert(attribute.values.end(), size_t(attribute.components),
-                          std::numeric_limits<double>::quiet_NaN());
+  resize_counted(source, attribute.values, attribute.values.size() + size_t(attribute.components),
+                 std::numeric_limits<double>::quiet_NaN());
   attribute.domain = AttributeDomain::corner;
-  attribute.index.resize(3 * soup.triangles.size());
+  resize_counted(source, attribute.index, 3 * soup.triangles.size());
   const std::vector<size_t> first = triangles_first(faces);
   for_each_chunk(int64_t(chunks.size()), [&](int64_t c) {
     const ObjChunk& chunk = chunks[size_t(c)];
@@ -232,10 +252,10 @@ void add_corner_attribute(const std::vector<ObjChunk>& chunks, const std::vector
 }
 
 /// One of the three kinds of names, of all chunks. None where no line gives one.
-void add_names(const std::vector<ObjChunk>& chunks, const std::vector<FaceCollector>& faces, size_t kind,
-               TriangleSoup& soup) {
+void add_names(const MeshSource& source, const std::vector<ObjChunk>& chunks, const std::vector<FaceCollector>& faces,
+               size_t kind, TriangleSoup& soup) {
   Attribute attribute{chunks[0].names[kind].attribute, NumberType::i32, 1, {}, AttributeDomain::face};
-  attribute.values.reserve(soup.triangles.size());
+  make_room(source, attribute.values, soup.triangles.size());
   std::unordered_map<std::string, double> number = {{"", -1}};
   double now = -1;
   for (size_t c = 0; c < chunks.size(); ++c) {
@@ -262,7 +282,7 @@ TriangleSoup read_obj(const MeshSource& source) {
   std::vector<ObjChunk> chunks;
   for (const TextChunk& piece : split_at_lines(text.begin(), text.end())) chunks.push_back({piece});
   const int64_t chunk_count = int64_t(chunks.size());
-  for_each_chunk(chunk_count, [&](int64_t c) { count_lines(chunks[size_t(c)]); });
+  for_each_chunk(chunk_count, [&](int64_t c) { count_lines(source, chunks[size_t(c)]); });
   ObjCounts all;
   ObjWanted wanted{false, false, false};
   for (ObjChunk& chunk : chunks) {
@@ -277,11 +297,14 @@ TriangleSoup read_obj(const MeshSource& source) {
     source.refuse("holds more than " + std::to_string(kMaxSoupVertices) +
                   " texture coordinates or normals, the most that can be read; split the file");
   VertexTable vertices(source, all.vertices);
-  Attribute uv{kUvName, NumberType::f32, 2, std::vector<double>(2 * size_t(all.textures))};
-  Attribute normal{kNormalName, NumberType::f32, 3, std::vector<double>(3 * size_t(all.normals))};
+  Attribute uv{kUvName, NumberType::f32, 2, {}}, normal{kNormalName, NumberType::f32, 3, {}};
+  make_room(source, uv.values, 2 * size_t(all.textures) + 2);  // and one more, of corners that have none
+  make_room(source, normal.values, 3 * size_t(all.normals) + 3);
+  uv.values.resize(2 * size_t(all.textures));
+  normal.values.resize(3 * size_t(all.normals));
   for_each_chunk(chunk_count, [&](int64_t c) {
     ObjChunk& chunk = chunks[size_t(c)];
-    read_vertices(text, chunk, vertices.points);
+    read_vertices(text, chunk, vertices);
     if (wanted.textures) read_values(text, chunk, ObjLine::texture, 1, 2, uv.values.data() + 2 * chunk.before.textures);
     if (wanted.normals)
       read_values(text, chunk, ObjLine::normal, 3, 3, normal.values.data() + 3 * chunk.before.normals);
@@ -289,12 +312,13 @@ TriangleSoup read_obj(const MeshSource& source) {
   vertices.count_nonfinite();
   const auto keep = wanted.any() ? FaceCollector::Keep::faces_too : FaceCollector::Keep::triangles;
   std::vector<FaceCollector> faces(chunks.size(), FaceCollector(vertices, keep));
-  for_each_chunk(chunk_count, [&](int64_t c) { read_faces(text, all, wanted, chunks[size_t(c)], faces[size_t(c)]); });
+  for_each_chunk(chunk_count,
+                 [&](int64_t c) { read_faces(source, text, all, wanted, chunks[size_t(c)], faces[size_t(c)]); });
   TriangleSoup soup = join_soup(source, std::move(vertices), faces);
-  soup.attributes = joined_colors(chunks, all.vertices);
-  if (wanted.textures) add_corner_attribute(chunks, faces, &ObjChunk::texture, std::move(uv), soup);
-  if (wanted.normals) add_corner_attribute(chunks, faces, &ObjChunk::normal, std::move(normal), soup);
-  for (size_t kind = 0; wanted.names && kind < 3; ++kind) add_names(chunks, faces, kind, soup);
+  soup.attributes = joined_colors(source, chunks, all.vertices);
+  if (wanted.textures) add_corner_attribute(source, chunks, faces, &ObjChunk::texture, std::move(uv), soup);
+  if (wanted.normals) add_corner_attribute(source, chunks, faces, &ObjChunk::normal, std::move(normal), soup);
+  for (size_t kind = 0; wanted.names && kind < 3; ++kind) add_names(source, chunks, faces, kind, soup);
   for (ObjChunk& chunk : chunks)
     soup.files.materials.insert(soup.files.materials.end(), chunk.libraries.begin(), chunk.libraries.end());
   return soup;

@@ -83,7 +83,7 @@ OffHeader read_header(const Text& text) {
 }
 
 // "n i1 ... in", then perhaps a colour.
-const char* read_face(const Text& text, const char* p, const char* end, int64_t vertex_count,
+const char* read_face(const MeshSource& source, const Text& text, const char* p, const char* end, int64_t vertex_count,
                       std::vector<uint32_t>& corners) {
   int64_t count = 0;
   const char* token = p;
@@ -98,6 +98,7 @@ const char* read_face(const Text& text, const char* p, const char* end, int64_t 
                              " is " + quoted_token(token, end));
     if (index < 0 || index >= vertex_count)
       text.refuse(token, no_such_vertex("a face", std::to_string(index), vertex_count));
+    make_room(source, corners, 1);
     corners.push_back(uint32_t(index));
   }
   return p;
@@ -124,7 +125,7 @@ TriangleSoup read_off(const MeshSource& source) {
   std::vector<FaceCollector> faces(size_t(rows.chunk_count()), FaceCollector(vertices));
   std::vector<std::vector<uint32_t>> corners(faces.size());
   rows.for_each(header.vertices, rows.count(), [&](int64_t, const char* p, const char* end, int64_t chunk) {
-    p = read_face(text, p, end, header.vertices, corners[size_t(chunk)]);
+    p = read_face(source, text, p, end, header.vertices, corners[size_t(chunk)]);
     faces[size_t(chunk)].add_polygon(corners[size_t(chunk)].data(), int64_t(corners[size_t(chunk)].size()));
     return p;
   });

@@ -77,7 +77,8 @@ struct TextFacets {
 // Reads facets until the end of the chunk; all lines between facets but solid and endsolid are refused.
 class FacetReader {
  public:
-  FacetReader(const Text& text, TextFacets& out) : text_(text), out_(out), end_(out.text.end) {}
+  FacetReader(const MeshSource& source, const Text& text, TextFacets& out)
+      : source_(source), text_(text), out_(out), end_(out.text.end) {}
 
   void read() {
     const char* p = out_.text.begin;
@@ -100,6 +101,7 @@ class FacetReader {
     } else if (take_word(p, end_, "facet")) {
       if (in_facet_) text_.refuse(token, "a facet begins inside a facet; an endfacet is missing");
       in_facet_ = true;
+      make_room(source_, out_.corner_counts, 1);
       out_.corner_counts.push_back(0);
     } else if (take_word(p, end_, "outer")) {
       if (!in_facet_ || in_loop_ || out_.corner_counts.back() > 0) text_.refuse(token, "a loop stands outside a facet");
@@ -118,10 +120,12 @@ class FacetReader {
   void read_vertex(const char*& p) {
     WorldPoint point;
     read_point(text_, p, end_, point);
+    make_room(source_, out_.corners, 1);
     out_.corners.push_back(point);
     ++out_.corner_counts.back();
   }
 
+  const MeshSource& source_;
   const Text& text_;
   TextFacets& out_;
   const char* end_;
@@ -162,16 +166,18 @@ TriangleSoup read_text(const MeshSource& source) {
   require_endsolid(text);
   std::vector<TextFacets> parts = split_at_facets(text);
   const int64_t part_count = int64_t(parts.size());
-  for_each_chunk(part_count, [&](int64_t i) { FacetReader(text, parts[size_t(i)]).read(); });
+  for_each_chunk(part_count, [&](int64_t i) { FacetReader(source, text, parts[size_t(i)]).read(); });
   int64_t corner_count = 0;
   for (TextFacets& part : parts) {
     part.first_corner = corner_count;
     corner_count += int64_t(part.corners.size());
   }
-  std::vector<WorldPoint> corners(static_cast<size_t>(corner_count));
+  std::vector<WorldPoint> corners;
+  resize_counted(source, corners, size_t(corner_count));
   for_each_chunk(part_count, [&](int64_t i) {
-    const TextFacets& part = parts[size_t(i)];
+    TextFacets& part = parts[size_t(i)];
     std::copy(part.corners.begin(), part.corners.end(), corners.begin() + part.first_corner);
+    release(source, part.corners);
   });
   WeldedCorners welded = weld_corners(source, corner_count, CornerArray{corners.data()});
   std::vector<FaceCollector> faces(parts.size(), FaceCollector(welded.vertices));

@@ -47,18 +47,23 @@ const VdbGridSpan& choose_grid(const std::string& path, const std::string& name,
 
 openvdb::GridBase::ConstPtr read_field_grid(const std::string& path, const std::string& name, const FieldKind& kind,
                                             int64_t max_bytes) {
+  const auto check_memory = [&](int64_t bytes) {
+    if (max_bytes <= 0 || bytes <= max_bytes) return;
+    throw Error(ErrorCode::out_of_memory, "read",
+                path + ": has " + std::to_string(bytes >> 20) + " MiB, more than the limit of " +
+                    std::to_string(max_bytes >> 20) + " MiB; coarsen " + kind.name + " or raise --max-memory");
+  };
   std::error_code failed;
   const auto size = std::filesystem::file_size(path, failed);
-  if (!failed && max_bytes > 0 && size > uint64_t(max_bytes))
-    throw Error(ErrorCode::out_of_memory, "read",
-                path + ": has " + std::to_string(size >> 20) + " MiB, more than the limit of " +
-                    std::to_string(max_bytes >> 20) + " MiB; coarsen " + kind.name + " or raise --max-memory");
+  if (!failed) check_memory(int64_t(size));
   try {
     initialize_openvdb();
     const Buffer<char> bytes = read_file_start(path, std::numeric_limits<int64_t>::max());
     const VdbLayout layout = read_vdb_layout(path, bytes.view());
     const std::vector<VdbGridSpan> grids = with_names_apart(layout.grids);
-    return read_vdb_grid(path, bytes.view(), choose_grid(path, name, kind, grids));
+    const VdbGridSpan& chosen = choose_grid(path, name, kind, grids);
+    check_memory(bytes.size() + check_vdb_tree(path, bytes.view(), chosen));
+    return read_vdb_grid(path, bytes.view(), chosen);
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::out_of_memory, "read", path + ": out of memory; coarsen " + kind.name);
   }

@@ -155,20 +155,20 @@ class LabelTree {
 
 /// What a grid is read with and messages about it.
 struct Request {
-  const std::string& path;
+  const MeshSource& source;
   const VolumeGrid& grid;
   int64_t tree_bytes;
   VolumeReadOptions options;
   std::optional<int32_t> background;  ///< of the result
 
-  std::string title() const { return path + ": grid \"" + grid.name + "\""; }
+  std::string title() const { return source.name() + ": grid \"" + grid.name + "\""; }
 };
 
 void check_box(const Request& request, const VoxelBox& box) {
   if (box.empty())
     throw Error(ErrorCode::nothing_to_mesh, "read",
                 request.title() + " holds no labels: all its voxels are inactive and have its background's value");
-  check_volume_memory(request.path, request.grid, box.label_bytes() + request.tree_bytes, request.options);
+  check_volume_memory(request.source, request.grid, box.label_bytes() + request.tree_bytes, request.options);
   for (int axis = 0; axis < 3; ++axis)
     if (box.size(axis) > std::numeric_limits<int32_t>::max()) throw std::bad_alloc();
   if (box.label_bytes() == kMostBytes) throw std::bad_alloc();
@@ -222,8 +222,8 @@ LabelGrid read_label_grid(const MeshSource& source, const LabelReadOptions& opti
   const VolumeReadOptions as_options{options.grid, {}, options.memory_limit_bytes};
   const size_t chosen = choose_grid(path, grids, as_options, "of labels");
   const VdbGridSpan& span = layout.grids[chosen];
-  const Request request{path, grids[chosen], check_vdb_tree(path, bytes, span), as_options, options.background};
-  check_volume_memory(path, request.grid, request.tree_bytes, as_options);
+  const Request request{source, grids[chosen], check_vdb_tree(path, bytes, span), as_options, options.background};
+  check_volume_memory(source, request.grid, request.tree_bytes, as_options);
   try {
     const openvdb::GridBase::ConstPtr grid = read_vdb_grid(path, bytes, span);
     LabelGrid read{request.grid.name, request.grid.type == "int32" ? volume_of<int32_t>(request, *grid)
@@ -237,7 +237,9 @@ LabelGrid read_label_grid(const MeshSource& source, const LabelReadOptions& opti
 }
 
 LabelVolume read_labels(const std::string& path, const LabelReadOptions& options) {
-  return read_label_grid(MeshSource(path), options).volume;
+  ReadingBudget budget(options.memory_limit_bytes);
+  const MeshSource source(path, budget);
+  return read_label_grid(source, options).volume;
 }
 
 }  // namespace isoshell

@@ -101,7 +101,7 @@ std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const Vol
   for (const VdbGridSpan& span : layout.grids) grids.push_back(as_volume(span));
   const size_t chosen = choose_grid(source.name(), grids, options);
   const VdbGridSpan& span = layout.grids[chosen];
-  check_volume_memory(source.name(), grids[chosen], check_vdb_tree(source.name(), bytes, span), options);
+  check_volume_memory(source, grids[chosen], check_vdb_tree(source.name(), bytes, span), options);
   const openvdb::GridBase::ConstPtr grid = read_vdb_grid(source.name(), bytes, span);
   std::unique_ptr<ScalarField> field;
   if (grids[chosen].type == "float")

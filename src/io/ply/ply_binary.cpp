@@ -195,7 +195,8 @@ bool take_triangles(const MeshSource& source, const BinaryRows& rows, const PlyE
   const BinaryRows::Place first = rows.find(rows.begin(), list);
   if (first.length != 3) return false;
   const uint64_t vertex_count = vertices.points.size();
-  std::vector<Triangle> triangles(static_cast<size_t>(element.count));
+  std::vector<Triangle> triangles;
+  resize_counted(source, triangles, size_t(element.count));
   std::atomic<bool> in_range{true};
   with_type(element.properties[size_t(list)].type, [&](auto type) {
     using T = decltype(type);
@@ -213,7 +214,10 @@ bool take_triangles(const MeshSource& source, const BinaryRows& rows, const PlyE
       if (!fits) in_range = false;
     });
   });
-  if (!in_range) return false;
+  if (!in_range) {
+    release(source, triangles);
+    return false;
+  }
   faces.emplace_back(vertices).adopt(std::move(triangles));
   return true;
 }
@@ -232,12 +236,13 @@ class FaceRowReader {
       lists_[i].clear();
       append(offset, layout_.corner_lists[i].property, lists_[i]);
     }
-    add_face_row(vertices, lists_, layout_, to, refuse);
+    add_face_row(source_, vertices, lists_, layout_, to, refuse);
   }
 
  private:
   void append(int64_t offset, int property, std::vector<double>& values) const {
     const BinaryRows::Place place = rows_.find(offset, property);
+    make_room(source_, values, size_t(place.length));
     with_type(layout_.faces->properties[size_t(property)].type, [&](auto type) {
       const char* p = source_.begin() + place.offset;
       for (int64_t i = 0; i < place.length; ++i, p += sizeof(type))
@@ -263,7 +268,7 @@ void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyEleme
   if (keeps_rows) body.face_rows.resize(faces.size(), PlyFaceRows(layout));
   for_each_chunk(rows.block_count(), [&](int64_t block) {
     FaceCollector& out = faces[base + size_t(block)];
-    out.reserve(kRowsPerBlock);
+    out.reserve(std::min(kRowsPerBlock, element.count - block * kRowsPerBlock));
     std::vector<int64_t> corners;
     std::vector<uint32_t> scratch;
     FaceRowReader row(source, rows, layout);
@@ -276,7 +281,8 @@ void read_faces(const MeshSource& source, const BinaryRows& rows, const PlyEleme
           return as_index(load_number<T>(p + i * int64_t(sizeof(T)), rows.big_endian()));
         };
         const auto refuse = [&](const std::string& what) { source.refuse_byte(offset, what); };
-        corners.resize(size_t(place.length));
+        resize_counted(source, corners, size_t(place.length));
+        make_room(source, scratch, corners.size() - std::min(corners.size(), scratch.size()));
         for (int64_t i = 0; i < place.length; ++i) corners[size_t(i)] = corner(i);
         add_ply_row(corners, is_strip, vertex_count, scratch, out, refuse);
         if (keeps_rows) row.read(offset, scratch, body.face_rows[base + size_t(block)], refuse);

@@ -41,7 +41,7 @@ struct PlyBody {
   /// For all vertices of the layout, which is not null.
   void make_room(const MeshSource& source, const PlyMeshLayout& layout) {
     vertices = VertexTable(source, layout.vertices->count);
-    for (Attribute& a : attributes) a.values.resize(vertices.points.size() * size_t(a.components));
+    for (Attribute& a : attributes) resize_counted(source, a.values, vertices.points.size() * size_t(a.components));
   }
   double& value_at(const PlyColumn& column, int64_t row) {
     Attribute& a = attributes[column.attribute];
@@ -84,8 +84,11 @@ void add_ply_row(const std::vector<int64_t>& corners, bool is_strip, int64_t ver
 
 /// Ends a face: its vertices and the list that the row had for each of the layout's, which is empty or fits them.
 template <class Refuse>
-void add_face_row(const std::vector<uint32_t>& vertices, const std::vector<std::vector<double>>& lists,
-                  const PlyMeshLayout& layout, PlyFaceRows& rows, Refuse refuse) {
+void add_face_row(const MeshSource& source, const std::vector<uint32_t>& vertices,
+                  const std::vector<std::vector<double>>& lists, const PlyMeshLayout& layout, PlyFaceRows& rows,
+                  Refuse refuse) {
+  make_room(source, rows.corners.vertex, vertices.size());
+  make_room(source, rows.corners.first, 1);
   rows.corners.vertex.insert(rows.corners.vertex.end(), vertices.begin(), vertices.end());
   rows.corners.end_face();
   for (size_t i = 0; i < lists.size(); ++i) {
@@ -94,6 +97,7 @@ void add_face_row(const std::vector<uint32_t>& vertices, const std::vector<std::
       refuse("a face of " + std::to_string(vertices.size()) + " corners has " + std::to_string(lists[i].size()) +
              " values in its list " + layout.faces->properties[size_t(layout.corner_lists[i].property)].name + "; " +
              std::to_string(layout.corner_lists[i].components) + " a corner are needed, or none; correct the list");
+    make_room(source, rows.lists[i], wanted);
     rows.lists[i].insert(rows.lists[i].end(), lists[i].begin(), lists[i].end());
     if (lists[i].empty()) rows.lists[i].resize(rows.lists[i].size() + wanted, std::nan(""));
   }

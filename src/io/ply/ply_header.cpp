@@ -63,7 +63,8 @@ class HeaderReader {
 
  private:
   static constexpr int64_t kMaxLineBytes = 1 << 16;
-  static constexpr size_t kMostOfAKind = 4096;  // elements, properties of one: each is compared with those before
+  static constexpr int64_t kBytesPerNote = 512;  // beside four times its letters
+  static constexpr size_t kMostOfAKind = 4096;   // elements, properties of one: each is compared with those before
 
   static std::string quoted(const std::string& word) { return quoted_token(word.data(), word.data() + word.size()); }
 
@@ -90,6 +91,7 @@ class HeaderReader {
     p = skip_blanks(p, p_);
     const char* last = p_;
     while (last > p && (is_blank(last[-1]) || last[-1] == '\n')) --last;
+    source_.take(kBytesPerNote + 4 * int64_t(last - p));
     header_.notes.emplace_back(words_.begin() + 1, words_.begin() + int64_t(words_before_name));
     header_.notes.back().emplace_back(p, last);
   }

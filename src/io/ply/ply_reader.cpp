@@ -80,11 +80,12 @@ PlyAttributes keep_faces(const PlyHeader& header, PlyMeshLayout& layout, PlyAttr
 }
 
 /// What was read of faces, for the triangles that they became.
-void add_face_attributes(const PlyMeshLayout& layout, const PlyBody& body, std::vector<Attribute> attributes,
-                         TriangleSoup& soup) {
+void add_face_attributes(const MeshSource& source, const PlyMeshLayout& layout, const PlyBody& body,
+                         std::vector<Attribute> attributes, TriangleSoup& soup) {
   const std::vector<size_t> first = triangles_first(body.faces);
   for (Attribute& a : attributes)
-    a.values.resize((a.domain == AttributeDomain::face ? 1 : 3) * soup.triangles.size() * size_t(a.components));
+    resize_counted(source, a.values,
+                   (a.domain == AttributeDomain::face ? 1 : 3) * soup.triangles.size() * size_t(a.components));
   for_each_chunk(int64_t(body.face_rows.size()), [&](int64_t part) {
     const PlyFaceRows& rows = body.face_rows[size_t(part)];
     const std::vector<uint32_t>& face_of = body.faces[size_t(part)].face_of();
@@ -111,8 +112,8 @@ void add_face_attributes(const PlyMeshLayout& layout, const PlyBody& body, std::
 
 /// Normals and texture coordinates belong to corners: vertices may be there twice where they jump. Those that faces
 /// have come before.
-void add_vertex_attributes(std::vector<Attribute> attributes, const std::vector<Attribute>& of_faces,
-                           TriangleSoup& soup) {
+void add_vertex_attributes(const MeshSource& source, std::vector<Attribute> attributes,
+                           const std::vector<Attribute>& of_faces, TriangleSoup& soup) {
   for (Attribute& a : attributes) {
     const AttributeMeaning* const meaning = fitting_meaning(a);
     const bool is_of_corners = meaning && meaning->domain == AttributeDomain::corner && !soup.triangles.empty();
@@ -121,7 +122,7 @@ void add_vertex_attributes(std::vector<Attribute> attributes, const std::vector<
       soup.dropped_attributes.push_back({a.name + " of vertices", "the faces have their own"});
       continue;
     }
-    if (is_of_corners) spread_to_corners(soup.triangles, a);
+    if (is_of_corners) spread_to_corners(source, soup.triangles, a);
     soup.attributes.push_back(std::move(a));
   }
 }
@@ -149,10 +150,10 @@ TriangleSoup read_ply_faces(const MeshSource& source) {
   TriangleSoup soup = join_parts(std::move(body.vertices), body.faces);
   soup.dropped_attributes = std::move(of_vertices.dropped);
   soup.dropped_attributes.insert(soup.dropped_attributes.end(), of_faces.dropped.begin(), of_faces.dropped.end());
-  add_vertex_attributes(std::move(body.attributes), of_faces.attributes, soup);
-  add_face_attributes(layout, body, std::move(of_faces.attributes), soup);
+  add_vertex_attributes(source, std::move(body.attributes), of_faces.attributes, soup);
+  add_face_attributes(source, layout, body, std::move(of_faces.attributes), soup);
   drop_wrong_labels(soup.attributes);
-  take_regions(header, soup);
+  take_regions(source, header, soup);
   soup.files = find_files(header);
   soup.dirt.long_rows = body.dirt.long_rows;
   soup.dirt.surplus_rows = body.dirt.surplus_rows;

@@ -57,12 +57,13 @@ void take_notes(const PlyHeader& header, FaceRegions& regions) {
 
 }  // namespace
 
-void take_regions(const PlyHeader& header, TriangleSoup& soup) {
+void take_regions(const MeshSource& source, const PlyHeader& header, TriangleSoup& soup) {
   const Attribute* const inside = find_labels(soup.attributes, kRegionInside);
   const Attribute* const outside = find_labels(soup.attributes, kRegionOutside);
   if (!inside || !outside || inside->values.empty() || !part_labels(*inside, *outside)) return;
   FaceRegions& regions = soup.regions;
   take_notes(header, regions);
+  make_room(source, regions.labels, inside->values.size());
   for (size_t f = 0; f < inside->values.size(); ++f)
     regions.labels.push_back({int32_t(inside->values[f]), int32_t(outside->values[f])});
   const auto is_taken = [](const Attribute& a) {

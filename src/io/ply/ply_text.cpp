@@ -84,20 +84,21 @@ struct FaceRow {
 };
 
 /// `rows` is null, and the layout's columns and lists are passed over, where there are only triangles to keep.
-const char* read_face(RowReader row, const PlyElement& element, int list, const PlyMeshLayout& layout,
-                      PlyFaceRows* rows, FaceRow& to) {
+const char* read_face(const MeshSource& source, RowReader row, const PlyElement& element, int list,
+                      const PlyMeshLayout& layout, PlyFaceRows* rows, FaceRow& to) {
   size_t column = 0, corner_list = 0;
   to.lists.resize(rows ? layout.corner_lists.size() : 0);
   for (int i = 0; i < int(element.properties.size()); ++i) {
     const PlyProperty& property = element.properties[size_t(i)];
     if (i == list) {
-      to.corners.resize(size_t(row.list_length()));
+      resize_counted(source, to.corners, size_t(row.list_length()));
       for (int64_t& corner : to.corners) corner = row.integer();
     } else if (rows && column < layout.face_columns.size() && layout.face_columns[column].property == i) {
+      make_room(source, rows->columns[column], 1);
       rows->columns[column++].push_back(nearest_of(property.type, row.real()));
     } else if (rows && corner_list < layout.corner_lists.size() && layout.corner_lists[corner_list].property == i) {
       std::vector<double>& values = to.lists[corner_list++];
-      values.resize(size_t(row.list_length()));
+      resize_counted(source, values, size_t(row.list_length()));
       for (double& value : values) value = nearest_of(property.type, row.real());
     } else {
       row.skip(property);
@@ -141,10 +142,11 @@ void read_ply_text(const MeshSource& source, const PlyHeader& header, const PlyM
       FaceRow& row = scratch[size_t(chunk)];
       PlyFaceRows* const kept = keeps_rows ? &body.face_rows[base + size_t(chunk)] : nullptr;
       const auto refuse = [&](const std::string& what) { text.refuse(p, what); };
-      const char* const stop =
-          read_face(RowReader(text, element, p, end, long_rows[size_t(chunk)]), element, list, layout, kept, row);
+      const char* const stop = read_face(source, RowReader(text, element, p, end, long_rows[size_t(chunk)]), element,
+                                         list, layout, kept, row);
+      resize_counted(source, row.vertices, row.corners.size());
       add_ply_row(row.corners, is_strip, vertex_count, row.vertices, faces[base + size_t(chunk)], refuse);
-      if (kept) add_face_row(row.vertices, row.lists, layout, *kept, refuse);
+      if (kept) add_face_row(source, row.vertices, row.lists, layout, *kept, refuse);
       return stop;
     });
   };

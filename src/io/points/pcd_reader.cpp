@@ -127,8 +127,8 @@ class PcdReader {
   }
 
   void make_room(bool normals, PointCloud& cloud) const {
-    cloud.position.resize(size_t(h_.points));
-    if (normals) cloud.normal.resize(size_t(h_.points));
+    resize_counted(source_, cloud.position, size_t(h_.points));
+    if (normals) resize_counted(source_, cloud.normal, size_t(h_.points));
   }
 
   void read_text(const PcdField* const field[6], bool normals, PointCloud& cloud) const {
@@ -171,7 +171,8 @@ class PcdReader {
       source_.refuse(std::to_string(h_.points) + " points of " + std::to_string(h_.row_bytes) +
                      " bytes are packed as " + std::to_string(sizes[1]) + " bytes into " + std::to_string(sizes[0]) +
                      ", where " + std::to_string(left) + " follow");
-    std::vector<char> plain(sizes[1]);
+    std::vector<char> plain;
+    resize_counted(source_, plain, sizes[1]);
     if (!unpack_lzf({h_.body + sizeof sizes, sizes[0]}, {plain.data(), int64_t(plain.size())}))
       source_.refuse("its packed points are damaged");
     make_room(normals, cloud);

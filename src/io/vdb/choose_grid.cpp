@@ -43,11 +43,12 @@ size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named
   throw Error(ErrorCode::nothing_to_mesh, "read", path + ": holds no grid " + wanted + why);
 }
 
-void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_t bytes,
+void check_volume_memory(const MeshSource& source, const VolumeGrid& grid, int64_t grid_bytes,
                          const VolumeReadOptions& options) {
+  const int64_t bytes = grid_bytes + source.budget().held_bytes();
   if (options.memory_limit_bytes <= 0 || bytes <= options.memory_limit_bytes) return;
   throw Error(ErrorCode::out_of_memory, "memory",
-              path + ": grid " + grid.text() + " takes " + std::to_string(bytes >> 20) +
+              source.name() + ": grid " + grid.text() + " takes with its file " + std::to_string(bytes >> 20) +
                   " MiB, more than the limit of " + std::to_string(options.memory_limit_bytes >> 20) +
                   " MiB; resample it coarser or raise --max-memory");
 }

@@ -22,8 +22,8 @@ struct VolumeGrid {
 size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& grids, const VolumeReadOptions& options,
                    const char* wanted = "that has a surface");
 
-/// Throws: out_of_memory when reading would take more than the limit.
-void check_volume_memory(const std::string& path, const VolumeGrid& grid, int64_t bytes,
+/// Throws: out_of_memory when reading would take more than the limit beside what is held of the source.
+void check_volume_memory(const MeshSource& source, const VolumeGrid& grid, int64_t grid_bytes,
                          const VolumeReadOptions& options);
 
 /// Fills `to` from the packed grid of a .nvdb file. False when the bytes do not fit each other.
