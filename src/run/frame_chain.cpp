@@ -184,7 +184,7 @@ std::string FrameChain::go_on_from(const Input& input, const RunRequest& request
   std::string made_of;
   try {
     there = read_mesh(request.output.path, "ply", context.memory_limit_bytes);
-    made_of = made_of_in_ply(request.output.path);
+    made_of = made_of_in_ply(request.output.path, context.memory_limit_bytes);
   } catch (const Error& error) {
     return std::string("cannot be read (") + error.what() + ")";
   }

@@ -65,7 +65,7 @@ FilePositions positions_in_file(const TriangleMesh& mesh, const std::string& for
 WorldPoint offset_to_origin(const TriangleMesh& mesh);
 
 /// What a PLY file says that it was made of, by MeshWriteOptions::made_of; empty where it says nothing. Throws:
-/// unreadable_input for what is no PLY file.
-std::string made_of_in_ply(const std::string& path);
+/// unreadable_input for what is no PLY file; out_of_memory.
+std::string made_of_in_ply(const std::string& path, int64_t memory_limit_bytes = 0);
 
 }  // namespace isoshell

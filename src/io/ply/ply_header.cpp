@@ -201,8 +201,9 @@ const PlyElement* PlyHeader::find(const std::string& element) const {
   return nullptr;
 }
 
-std::string made_of_in_ply(const std::string& path) {
-  for (const std::vector<std::string>& note : read_ply_header(MeshSource(path)).notes)
+std::string made_of_in_ply(const std::string& path, int64_t memory_limit_bytes) {
+  ReadingBudget budget(memory_limit_bytes);
+  for (const std::vector<std::string>& note : read_ply_header(MeshSource(path, budget)).notes)
     if (note[0] == kFrameNote) return note[1];
   return "";
 }
