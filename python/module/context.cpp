@@ -2,10 +2,10 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "isoshell/error.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

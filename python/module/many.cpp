@@ -2,7 +2,6 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <chrono>
@@ -13,6 +12,7 @@
 #include "isoshell/workers.h"
 #include "module/watched.h"
 #include "values/errors.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

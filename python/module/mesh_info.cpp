@@ -2,7 +2,6 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <functional>
@@ -11,6 +10,7 @@
 
 #include "isoshell/run/mesh_info.h"
 #include "module/watched.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

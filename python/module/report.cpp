@@ -3,7 +3,6 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <memory>
@@ -15,6 +14,7 @@
 #include "module/watched.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/text.h"
 #include "vdb_isomesh/command.h"
 
 namespace nb = nanobind;

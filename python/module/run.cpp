@@ -3,12 +3,12 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <utility>
 
 #include "module/watched.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

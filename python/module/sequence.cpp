@@ -2,7 +2,6 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <memory>
@@ -11,6 +10,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "module/watched.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

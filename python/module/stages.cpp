@@ -4,7 +4,6 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <map>
@@ -17,6 +16,7 @@
 #include "isoshell/run/steps.h"
 #include "module/watched.h"
 #include "values/arrays.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

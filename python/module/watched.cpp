@@ -1,11 +1,10 @@
 #include "module/watched.h"
 
-#include <nanobind/stl/string.h>
-
 #include <utility>
 
 #include "isoshell/error.h"
 #include "values/errors.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

@@ -1,7 +1,6 @@
 #include "values/attributes.h"
 
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "isoshell/error.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

@@ -1,7 +1,6 @@
 #include "values/device_arrays.h"
 
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,6 +13,7 @@
 #include "isoshell/device_info.h"
 #include "isoshell/error.h"
 #include "values/arrays.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

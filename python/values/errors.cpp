@@ -1,13 +1,12 @@
 #include "values/errors.h"
 
-#include <nanobind/stl/string.h>
-
 #include <algorithm>
 #include <exception>
 #include <new>
 #include <regex>
 
 #include "isoshell/error.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

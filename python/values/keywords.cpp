@@ -1,9 +1,9 @@
 #include "values/keywords.h"
 
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "isoshell/io/file_format.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

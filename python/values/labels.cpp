@@ -2,13 +2,13 @@
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
-#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <new>
 #include <utility>
 
 #include "isoshell/io/label_file.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

@@ -3,7 +3,6 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <utility>
@@ -14,6 +13,7 @@
 #include "isoshell/run/run.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 

@@ -2,7 +2,6 @@
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -22,6 +21,7 @@
 #include "values/arrays.h"
 #include "values/attributes.h"
 #include "values/labels.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 
