@@ -81,10 +81,8 @@ def test_esc_ends_the_run_and_nothing_is_put_back(operator):
     operator.invoke(context, None)
     while operator._job.stage != "prepare":
         time.sleep(0.01)
-    time.sleep(0.2)
-    begun = time.monotonic()
     assert run(operator, context, "ESC") == {"CANCELLED"}
-    assert time.monotonic() - begun < 10  # seconds; the whole run takes minutes
+    assert operator._job.stage in ("prepare", "relax")  # the whole run takes minutes, and more of them then
     assert operator.made is None and "cancelled" in operator.reports[-1][1] and context.timers == 0
 
 

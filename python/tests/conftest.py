@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import Callable
 
@@ -18,25 +17,25 @@ from left_out import pytest_sessionfinish, pytest_terminal_summary  # noqa: F401
 SOURCE = Path(__file__).resolve().parents[2]
 COMMAND = os.environ.get("VDB_ISOMESH", "").split() or [sys.executable, "-m", "isoshell"]
 
+FOREVER = 1200  # seconds, as a limit that only a test that hangs reaches
+
 Mesh = tuple[np.ndarray, np.ndarray]
 
 
-def seconds_until_interrupted(run: Callable[[], object]) -> float:
-    """How long a run goes on after a key has interrupted it, which it does as KeyboardInterrupt."""
-    pressed = []
+def assert_is_interrupted(run: Callable[[Callable[[], None]], object]) -> None:
+    """A run that would go on for long ends as KeyboardInterrupt, by a key that is pressed once it calls what it is
+    given."""
+    begun = threading.Event()
 
     def press() -> None:
-        time.sleep(0.6)
-        pressed.append(time.monotonic())
+        begun.wait(FOREVER)
         _thread.interrupt_main()
 
     thread = threading.Thread(target=press)
     thread.start()
     with pytest.raises(KeyboardInterrupt):
-        run()
-    waited = time.monotonic() - pressed[0]
+        run(begun.set)
     thread.join()
-    return waited
 
 
 def make_ball(rings: int = 12) -> Mesh:
@@ -92,7 +91,7 @@ def command() -> Callable[..., subprocess.CompletedProcess[str]]:
     """Runs the command with these arguments."""
 
     def run(*arguments: object) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+        return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=FOREVER)
 
     return run
 

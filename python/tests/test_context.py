@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 import isoshell
 import numpy as np
 import pytest
-from conftest import make_ball, seconds_until_interrupted
+from conftest import FOREVER, assert_is_interrupted, make_ball
 from isoshell import ErrorCode
 
 SMALL = {"vertices": 60, "resolution": 24}
@@ -119,18 +119,28 @@ def test_a_run_is_cancelled_from_another_thread(nefertiti):
     assert caught.value.code == ErrorCode.INTERRUPTED == 130
 
 
-def test_a_key_interrupts_within_three_tenths_of_a_second(nefertiti):
-    waited = seconds_until_interrupted(lambda: isoshell.remesh(nefertiti, vertices=400000))
-    assert waited < 3  # .3 on a machine that does nothing else
+def test_a_key_interrupts_a_run_in_the_middle(nefertiti):
+    stages = set()
+
+    def run(begun):
+        def progress(stage, fraction):
+            stages.add(stage)
+            begun()
+
+        isoshell.remesh(nefertiti, vertices=400000, progress=progress)
+
+    assert_is_interrupted(run)
+    assert "measure" not in stages  # it comes after what takes the time
     assert isoshell.remesh(make_ball(), **SMALL).digest
 
 
 def test_an_interrupted_process_ends_in_order(nefertiti):
-    code = f"import isoshell; isoshell.remesh({str(nefertiti)!r}, vertices=400000)"
-    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
-    time.sleep(1.5)
+    code = (f"import isoshell; isoshell.remesh({str(nefertiti)!r}, vertices=400000, "
+            "progress=lambda stage, fraction: print(stage, flush=True))")
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process.stdout.readline()
     process.send_signal(signal.SIGINT)
-    _, text = process.communicate(timeout=30)
+    _, text = process.communicate(timeout=FOREVER)
     assert process.returncode in (130, -signal.SIGINT) and "KeyboardInterrupt" in text
 
 
@@ -145,10 +155,16 @@ def test_other_threads_go_on_while_a_run_works(nefertiti):
 
     thread = threading.Thread(target=work)
     thread.start()
-    isoshell.remesh(nefertiti, vertices=500, resolution=96)
+    most = 0
+    for _ in range(100):  # as often as a busy machine needs
+        before = count[0]
+        isoshell.remesh(nefertiti, vertices=500, resolution=96)
+        most = max(most, count[0] - before)
+        if most > 20:
+            break
     stop.set()
     thread.join()
-    assert count[0] > 20
+    assert most > 20
 
 
 def test_warnings_of_a_run_are_warnings_of_python(ball):

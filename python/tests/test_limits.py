@@ -15,7 +15,7 @@ from typing import Any, Callable, NamedTuple
 import isoshell
 import numpy as np
 import pytest
-from conftest import COMMAND, SOURCE, Mesh, make_ball, make_box, write_obj
+from conftest import COMMAND, FOREVER, SOURCE, Mesh, make_ball, make_box, write_obj
 
 PAGE = (SOURCE / "docs/guide/limits.md").read_text()
 claimed: list[str] = []
@@ -54,7 +54,7 @@ def run(tmp_path: Path) -> Callable[..., Run]:
     def call(source: object, *options: object, output: str = "out.off", device: str = "cpu") -> Run:
         stats, path = tmp_path / "stats.json", tmp_path / output
         words = [*COMMAND, source, path, "--stats", stats, "--device", device, "--force", *options]
-        done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=FOREVER)
         measured = json.loads(stats.read_text()) if done.returncode in (0, 6) else {}
         return Run(done.returncode, done.stderr, measured, path)
 

@@ -7,7 +7,7 @@ import subprocess
 import isoshell
 import numpy as np
 import pytest
-from conftest import write_obj
+from conftest import FOREVER, write_obj
 from isoshell import ErrorCode
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -21,7 +21,7 @@ def certificate():
         pytest.skip("VDB_MESHINFO names no command")
 
     def run(*arguments):
-        done = subprocess.run([command, *map(str, arguments), "--json"], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([command, *map(str, arguments), "--json"], capture_output=True, text=True, timeout=FOREVER)
         return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
 
     return run

@@ -13,14 +13,14 @@ from types import SimpleNamespace
 import isoshell
 import numpy as np
 import pytest
-from conftest import SOURCE, Mesh, write_obj
+from conftest import FOREVER, SOURCE, Mesh, write_obj
 
 RECIPES = SOURCE / "examples/recipes"
 
 
 def run(recipe: str, *arguments: object, python: str = sys.executable) -> str:
     command = [python, str(RECIPES / recipe), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=FOREVER)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -13,6 +13,7 @@ if not CHROMIUM:
     pytest.skip("there is no chromium: apt install chromium", allow_module_level=True)
 
 pytestmark = pytest.mark.filterwarnings("ignore::isoshell.RunWarning")
+TIMEOUT_MS = 600_000  # that only a page that hangs reaches
 DRAWS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
 DOES_NOT_DRAW = ["--disable-gpu", "--disable-3d-apis", "--no-sandbox"]
 
@@ -49,6 +50,7 @@ class Opened:
     def __init__(self, browser, path, **settings):
         self.errors, self.asked = [], []
         self.page = browser.new_context(viewport={"width": 900, "height": 900}, **settings).new_page()
+        self.page.set_default_timeout(TIMEOUT_MS)
         self.page.on("console", lambda message: self.errors.append(message.text) if message.type == "error" else None)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.route("**/*", self.answer)
@@ -59,7 +61,7 @@ class Opened:
         route.continue_() if len(self.asked) == 1 else route.abort()
 
     def wait_until_drawn(self):
-        self.page.wait_for_selector("body[data-drawn=yes]", timeout=60_000)
+        self.page.wait_for_selector("body[data-drawn=yes]", timeout=TIMEOUT_MS)
         return self
 
     def cameras(self):
@@ -87,14 +89,19 @@ def test_both_surfaces_are_drawn_in_every_colouring(opened):
     seen = set()
     modes = ["shape", "deviation", "quality", "valence", "gaps", "creases"]  # the rim of the cap is one
     assert opened.page.locator("label:has(input[name=mode]):visible").count() == len(modes)
+    rounds = 100  # of which a machine that draws at once needs one
+    while rounds and len(seen) <= len(modes):
+        rounds -= 1
+        look_at(opened, modes, seen)
+    assert len(seen) > len(modes)
+
+
+def look_at(opened, modes, seen):
     for mode in modes:
         opened.page.locator(f"label:has(input[value={mode}])").click()
         for side in ("before", "after"):
-            picture = np.array(opened.picture(side)).reshape(-1, 4)
-            assert len(np.unique(picture, axis=0)) > 20, (mode, side)
-            seen.add((side, picture.tobytes()))
+            seen.add((side, tuple(becomes(opened, lambda picture: len(colors_in(picture)) > 20, side))))
         assert (opened.page.locator("#legend").inner_text() != "") == (mode != "shape")
-    assert len(seen) > len(modes)
 
 
 def test_both_panes_have_one_camera(opened):
@@ -130,7 +137,7 @@ def test_no_request_leaves_the_page_and_nothing_goes_wrong(opened, page_file):
 
 def test_in_the_dark_it_is_dark(browsers, page_file):
     dark = Opened(browsers(DRAWS), page_file, color_scheme="dark").wait_until_drawn()
-    assert dark.picture("after")[:3] < [60, 60, 60]
+    becomes(dark, lambda picture: picture[:3] < [60, 60, 60])
     assert dark.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 23, 26)"
     assert dark.errors == []
 
@@ -159,10 +166,14 @@ def hues_in(picture):
     return {tuple(color[:3]) for color in np.array(picture).reshape(-1, 4).tolist() if max(color[:3]) - min(color[:3]) > 40}
 
 
-def becomes(opened, fits):
-    """The picture of the result once it is as it should be: drawing takes a while."""
-    for _ in range(60):
-        picture = opened.picture("after")
+def colors_in(picture):
+    return {tuple(color) for color in np.array(picture).reshape(-1, 4).tolist()}
+
+
+def becomes(opened, fits, side="after"):
+    """The picture of the result, or of the input, once it is as it should be: drawing takes a while."""
+    for _ in range(TIMEOUT_MS // 300):
+        picture = opened.picture(side)
         if fits(picture):
             return picture
     raise AssertionError("the picture did not become what it should be")
@@ -174,7 +185,7 @@ def test_regions_have_colours_hide_by_a_click_and_are_pulled_apart(browsers, pag
     assert buttons.all_inner_texts() == ["1", "<b>bone & skin</b> (2)", "7"]
     words = opened.page.inner_text("body")
     assert "3 regions, each is closed" in words and "Edges of three faces or more in the input" not in words
-    assert hues_in(opened.picture("before"))
+    becomes(opened, hues_in, "before")
     together = becomes(opened, hues_in)
     opened.page.locator("#apart").fill("60")
     becomes(opened, lambda picture: picture != together)

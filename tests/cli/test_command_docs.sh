@@ -58,7 +58,7 @@ END
 # A terminal does not say when it has shown all: what is not there soon is looked for again later.
 zsh_shows() { # what, pattern, line
   local found seconds
-  for seconds in 1 5 20; do
+  for seconds in 1 5 20 60 300; do
     found=$(in_zsh "$3" "$seconds")
     if grep -qE "$2" <<<"$found"; then return; fi
   done

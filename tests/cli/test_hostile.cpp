@@ -179,8 +179,9 @@ TEST_CASE("hostile: an interrupted run ends with 130 at any moment and leaves no
   folder.write_off("ball.off", shapes::sphere({0, 0, 0}, 1, 300));
   folder.write("old.ply", "old");
   for (const char* seconds : {"0.02", "0.1", "0.2", "0.35", "0.6", "1"}) {
-    const auto r = folder.shell("timeout --preserve-status -s INT " + std::string(seconds) + " '" + command_path() +
-                                "' ball.off old.ply --force --vertices 60000 --save-shell s.vdb --stats s.json");
+    const auto r =
+        folder.shell("timeout --foreground --preserve-status -s INT " + std::string(seconds) + " '" + command_path() +
+                     "' ball.off old.ply --force --vertices 60000 --save-shell s.vdb --stats s.json");
     INFO(seconds << ": " << r.err);
     CHECK((r.status == 130 || r.status == 0));
     if (contains(r.err, "; ")) CHECK(contains(r.err, folder.has("s.vdb") ? "written before: s.vdb" : "nothing was"));
@@ -199,9 +200,10 @@ TEST_CASE("hostile: a folder that is full or vanishes leaves the old file as it 
   CHECK(full.status == 4);
   CHECK(folder.content("old.ply") == "old");
   CHECK(folder.file_count() == 2);
-  const auto gone =
-      folder.shell("mkdir gone; '" + command_path() +
-                   "' ball.off gone/out.ply --vertices 400 --resolution 60 & sleep 0.05; rmdir gone; wait $!");
+  // It vanishes while the input is read, which comes by a pipe.
+  const auto gone = folder.shell("mkdir gone; mkfifo pipe.off; '" + command_path() +
+                                 "' pipe.off gone/out.ply --vertices 400 --resolution 60 & "
+                                 "{ rmdir gone; cat ball.off; } >pipe.off; wait $!");
   CHECK(gone.status == 4);
 }
 
