@@ -3,7 +3,7 @@
 
     bench/farm.py make MESHES ASSETS [--count 100]    scaled and damaged copies of a folder of meshes, 5 % poisoned
     bench/farm.py beside ASSETS WORK [--repeats 3]    a farm of two assets at a time and two loops, in turn
-    bench/farm.py chaos ASSETS WORK                   workers and the scheduler killed, the disk full; then resumed
+    bench/farm.py chaos ASSETS WORK                   processes killed, the disk full; then resumed
     bench/farm.py rows WORK [--count 100000]          time to read a manifest and to find that nothing is left to do
 
 Poisoned are: a named pipe that never ends, a named pipe whose reader this program ends by SIGSEGV, a row of the table
@@ -26,7 +26,7 @@ import numpy as np
 
 import isoshell
 from isoshell import _isoshell
-from isoshell._farm import _assets, _manifest, _plan
+from isoshell._farm import _assets, _manifest, _plan, _rows
 
 VERTICES = 2000
 TIME_LIMIT = 8
@@ -177,7 +177,7 @@ def chaos(folder, work):
     subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256m", "tmpfs", str(disk)], check=True)
     try:
         ends = []
-        for how in ("scheduler killed", "disk full", "workers killed only", "resumed"):
+        for how in ("farm killed", "disk full", "processes killed only", "resumed"):
             ends.append({"run": how, **run_in_trouble(folder, disk, how)})
             print(json.dumps(ends[-1]), flush=True)
         print(json.dumps(verdict(folder, disk / "out", work / "serial"), indent=1))
@@ -186,7 +186,7 @@ def chaos(folder, work):
 
 
 def run_in_trouble(folder, disk, how):
-    """Every 20 seconds a worker is killed; after 30 the process of the scheduler is, or no room is left."""
+    """Every 20 seconds a process that meshes is killed; after 30 the farm itself is, or no room is left."""
     filler = disk / "filler"
     farm = subprocess.Popen(farm_words(folder / "assets.csv", disk / "out"), stderr=subprocess.PIPE, text=True)
     start, killed = time.monotonic(), 0
@@ -194,23 +194,22 @@ def run_in_trouble(folder, disk, how):
         time.sleep(0.5)
         seconds = time.monotonic() - start
         if how != "resumed" and seconds > KILL_SECONDS * (killed + 1):
-            killed += kill_worker(farm.pid)
-        if how == "scheduler killed" and seconds > 30:
+            killed += kill_one_that_meshes(farm.pid)
+        if how == "farm killed" and seconds > 30:
             farm.kill()
         if how == "disk full" and seconds > 30 and not filler.exists():
             fill(filler)
     said = farm.stderr.read().strip().splitlines()
     filler.unlink(missing_ok=True)
     rows = rows_of(disk / "out").values()
-    return {"status": farm.returncode, "seconds": round(time.monotonic() - start, 1), "workers_killed": killed,
+    return {"status": farm.returncode, "seconds": round(time.monotonic() - start, 1), "killed": killed,
             "done": sum(row["state"] == "done" for row in rows), "said": said[-1] if said else ""}
 
 
-def kill_worker(pid):
-    """A worker of Dask, with the processes that mesh for it."""
+def kill_one_that_meshes(pid):
     for line in subprocess.run(["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True).stdout.splitlines():
         words = line.split(None, 2)
-        if len(words) == 3 and words[1] == str(pid) and "spawn_main" in words[2]:
+        if len(words) == 3 and words[1] == str(pid) and "isoshell._farm._child" in words[2]:
             os.kill(int(words[0]), signal.SIGKILL)
             return 1
     return 0
@@ -256,16 +255,17 @@ def rows(work, count):
         (out / f"{i:06d}.json").touch()
     assets = _assets.assets_of(str(folder), {"vertices": "2000"}, ".ply", str(out))
     (out / "manifest").mkdir()
-    with open(out / "manifest/rows.jsonl", "w") as file:
-        file.write(json.dumps({"began": "0", "time": 0, "assets": count, "done": 0, "failed": 0, "command": ""}) + "\n")
+    with open(out / "manifest/rows.jsonl", "wb") as file:
+        file.write(_rows.line_of({"began": "0", "time": 0, "assets": count, "done": 0, "failed": 0, "command": "",
+                                  "version": isoshell.__version__}))
         for asset in assets:
-            file.write(json.dumps({
+            file.write(_rows.line_of({
                 "output": asset.output, "asset": asset.path, "options": asset.options, "version": isoshell.__version__,
                 "run": "0", "input_size": 0, "input_changed": asset.changed, "gates": {"required": [], "missed": []},
                 "worker": "host:1", "input_sha256": "0" * 64, "digest": "0" * 16, "peak_memory": 1, "device": "cpu",
                 "device_memory": None, "vertices": 2000, "triangles": 3996, "min_angle": 40.0, "quality": 0.96,
                 "deviation_pct": 0.9, "output_sha256": "0" * 64, "output_size": 0, "attempts": 1, "state": "done",
-                "seconds": 1.0, "time": 1.0}) + "\n")
+                "seconds": 1.0, "time": 1.0}))
     start = time.perf_counter()
     found = _manifest.read(str(out))
     read = time.perf_counter()

@@ -3,15 +3,20 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
+import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import make_ball, write_obj
-from farms import SMALL, Crasher, assert_is_serial, digests_of, farm, files_of, make_assets, rows_of
+from conftest import FOREVER, make_ball, write_obj
+from farms import (ENDLESS, SMALL, Crasher, assert_is_serial, digests_of, farm, files_of, make_assets,
+                   rows_of)
 
 import isoshell
+from isoshell._farm._process import Child, Lost
 
 
 def test_a_farm_writes_what_a_loop_writes_and_does_nothing_twice(assets, serial, tmp_path):
@@ -22,9 +27,9 @@ def test_a_farm_writes_what_a_loop_writes_and_does_nothing_twice(assets, serial,
     assert files_of(out) == {name.replace(".ply", end) for name in serial for end in (".ply", ".json")}
     statistics = json.loads((out / "ball0.json").read_text())
     assert statistics["input"]["path"] == str(assets / "ball0.obj") and statistics["output"]["path"] == "ball0.ply"
-    before = {path: path.stat().st_mtime_ns for path in out.rglob("*")}
+    before = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.name != "lock"}
     assert "4 of 4 assets are done already" in farm("run", assets, out, *SMALL).stderr
-    assert before == {path: path.stat().st_mtime_ns for path in out.rglob("*")}
+    assert before == {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.name != "lock"}
 
 
 def test_only_what_has_changed_is_meshed_again(tmp_path):
@@ -53,16 +58,16 @@ def test_a_bad_asset_is_a_row_with_its_reason_and_harms_no_other(assets, serial,
     for path in assets.glob("*.obj"):
         (mixed / path.name).symlink_to(path)
     (mixed / "malformed.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 9\n")
-    os.mkfifo(mixed / "endless.obj")
-    crasher = Crasher(mixed / "crash.obj")
-    crasher.start()
-    done = farm("run", mixed, tmp_path / "out", *SMALL, "--time-limit", 1.5)
+    with Crasher(mixed / "crash.obj") as crasher:
+        done = farm("run", mixed, tmp_path / "out", *SMALL, *ENDLESS)
     assert done.returncode == 9, done.stderr
     assert_is_serial(tmp_path / "out", serial)
+    os.mkfifo(mixed / "endless.obj")  # alone: how long others take is up to the machine
+    assert farm("run", mixed, tmp_path / "out", *SMALL, "--time-limit", 1.5).returncode == 9
     rows = {name: row for name, row in rows_of(tmp_path / "out").items() if row["state"] == "failed"}
     assert {name: (row["code"], row["attempts"]) for name, row in rows.items()} == {
         "malformed.ply": ("UNREADABLE_INPUT", 1), "endless.ply": ("TIME_LIMIT", 2), "crash.ply": ("CRASHED", 2)}
-    assert "SIGSEGV" in rows["crash.ply"]["message"] and crasher.crashes == 2
+    assert "SIGSEGV" in rows["crash.ply"]["message"] and len(crasher.ended) == 2
     assert "1.5 s" in rows["endless.ply"]["message"]
     again = farm("run", mixed, tmp_path / "out", *SMALL, "--time-limit", 1.5)
     assert again.returncode == 9 and "3 failed before" in again.stderr
@@ -78,14 +83,35 @@ def test_assets_that_share_a_process_are_tried_again_and_the_one_that_ends_it_al
     mixed.mkdir()
     for path in assets.glob("*.obj"):
         (mixed / path.name).symlink_to(path)
-    crasher = Crasher(mixed / "crash.obj")
-    crasher.start()
-    os.mkfifo(mixed / "endless.obj")
-    done = farm("run", mixed, tmp_path / "out", *SMALL, "--contexts", 2, "--time-limit", 2, "--device", "cpu")
+    with Crasher(mixed / "crash.obj"):
+        done = farm("run", mixed, tmp_path / "out", *SMALL, "--contexts", 2, *ENDLESS, "--device", "cpu")
     assert done.returncode == 9, done.stderr
     assert_is_serial(tmp_path / "out", serial)
     failed = {name: row["code"] for name, row in rows_of(tmp_path / "out").items() if row["state"] == "failed"}
-    assert failed == {"crash.ply": "CRASHED", "endless.ply": "TIME_LIMIT"}
+    assert failed == {"crash.ply": "CRASHED"}
+
+
+def test_an_asset_beyond_its_time_ends_the_process_and_others_in_it_are_not_to_blame(tmp_path):
+    """Both would go on for ever."""
+    child, lost = Child(2, {}), {}
+
+    def do(name, time_limit):
+        os.mkfifo(tmp_path / f"{name}.obj")
+        job = {"path": str(tmp_path / f"{name}.obj"), "options": {}, "scratch": str(tmp_path), "known_sha256": None}
+        try:
+            child.do(job, 1 << 40, time_limit)
+        except Lost as error:
+            lost[name] = error
+
+    threads = [threading.Thread(target=do, args=each) for each in (("held", None), ("endless", 0.5))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(FOREVER)
+    child.stop()
+    assert {name: (error.reason, error.is_own_fault) for name, error in lost.items()} == {
+        "endless": ("TIME_LIMIT", True), "held": ("STOPPED", False)}
+    assert "0.5 s" in str(lost["endless"])
 
 
 def test_an_asset_that_is_too_large_is_refused_with_its_figure_and_one_that_fits_alone_is_meshed(assets, tmp_path):

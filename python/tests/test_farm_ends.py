@@ -6,38 +6,13 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
-import time
 
 import pytest
-from conftest import make_ball, write_obj
-from farms import (SMALL, assert_is_serial, digests_of, farm, files_of, make_assets, processes_of, rows_of,
-                   start_farm, wait_for)
+from conftest import FOREVER, make_ball, write_obj
+from farms import (ENDLESS, SMALL, assert_is_serial, digests_of, end, engine, farm, files_of,  # noqa: F401
+                   held, make_assets, processes_of, row_of, rows_of, start_farm, wait_for, wait_for_rows)
 
 from isoshell._farm import _manifest as manifest
-
-ENDLESS = ["--time-limit", "0"]
-
-
-@pytest.fixture
-def held(assets, tmp_path):
-    """The assets, and one beside them that holds whoever reads it."""
-    mixed = tmp_path / "mixed"
-    mixed.mkdir()
-    for path in assets.glob("*.obj"):
-        (mixed / path.name).symlink_to(path)
-    os.mkfifo(mixed / "held.obj")
-    return mixed
-
-
-def end(process, how=signal.SIGKILL):
-    process.send_signal(how)
-    _, said = process.communicate(timeout=30)
-    return said
-
-
-def wait_for_rows(out, count):
-    wait_for(lambda: (out / "manifest").exists() and len(rows_of(out)) >= count)
 
 
 def assert_nothing_is_half_written(out):
@@ -69,7 +44,7 @@ def test_an_interrupted_farm_says_how_to_go_on_and_leaves_no_process(held, seria
     children = processes_of(process, "isoshell._farm._child")
     assert children
     os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=30)
+    _, said = process.communicate(timeout=FOREVER)
     assert process.returncode == 130 and f"isoshell farm run {held} {out}" in said and "Traceback" not in said
     wait_for(lambda: not any(child.is_running() for child in children))
     assert_nothing_is_half_written(out)
@@ -83,7 +58,8 @@ def test_a_farm_whose_processes_are_all_killed_goes_on_where_it_was(held, serial
     out = tmp_path / "out"
     process = start_farm("run", held, out, *SMALL, *ENDLESS)
     wait_for_rows(out, 4)
-    others = [*processes_of(process, "spawn"), *processes_of(process, "isoshell._farm._child")]
+    others = processes_of(process, "isoshell._farm._child")
+    assert others
     end(process)
     wait_for(lambda: not any(other.is_running() for other in others))
     assert_nothing_is_half_written(out)
@@ -93,43 +69,32 @@ def test_a_farm_whose_processes_are_all_killed_goes_on_where_it_was(held, serial
     assert_is_serial(out, serial)
 
 
-def test_a_killed_worker_is_started_again_and_its_assets_are_meshed(held, serial, tmp_path):
-    out = tmp_path / "out"
-    process = start_farm("run", held, out, *SMALL, "--time-limit", 3)
-    wait_for_rows(out, 1)
-    killed = [worker for worker in processes_of(process, "spawn_main")]
-    assert killed
-    for worker in killed:
-        worker.kill()
-    _, said = process.communicate(timeout=60)
-    assert process.returncode == 9, said
-    assert rows_of(out)["held.ply"]["code"] == "TIME_LIMIT"
+def test_a_killed_worker_is_started_again_and_its_assets_are_meshed(engine, held, serial, tmp_path):
+    out, (address, _, nanny) = tmp_path / "out", engine
+    process = start_farm("run", held, out, *SMALL[:4], "--scheduler", address, *ENDLESS)
+    wait_for(lambda: processes_of(nanny, "isoshell._farm._child"))
+    killed = {child.parent().pid for child in processes_of(nanny, "isoshell._farm._child")}
+    for pid in killed:
+        os.kill(pid, signal.SIGKILL)
+    wait_for_rows(out, 4)
+    wait_for(lambda: {child.ppid() for child in processes_of(nanny, "isoshell._farm._child")} - killed - {1})
+    said = end(process, signal.SIGINT)
+    assert process.returncode == 130, said
+    resumed(held, out)
+    without_held(out)
     assert_is_serial(out, serial)
-    assert not (out / ".farm").exists()
+    wait_for(lambda: not (out / ".farm").exists())  # the worker goes on, and tidies up in its own time
 
 
-def test_a_farm_on_a_scheduler_that_dies_ends_and_says_how_to_go_on(held, serial, tmp_path):
-    out, address = tmp_path / "out", tmp_path / "scheduler.json"
-    words = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--scheduler-file", address, "--host", "127.0.0.1",
-             "--port", "0", "--no-dashboard"]
-    engine = subprocess.Popen(list(map(str, words)), stderr=subprocess.DEVNULL)
-    words = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", address, "--nthreads", "2",
-             "--no-dashboard", "--local-directory", tmp_path, "--death-timeout", "20"]
-    worker = subprocess.Popen(list(map(str, words)), stderr=subprocess.DEVNULL)
-    try:
-        wait_for(address.exists)
-        process = start_farm("run", held, out, *SMALL[:4], "--scheduler", address, *ENDLESS)
-        wait_for_rows(out, 4)
-        engine.kill()
-        _, said = process.communicate(timeout=60)
-        assert process.returncode == 10 and "does not answer" in said, said
-        assert f"isoshell farm run {held} {out}" in said
-        assert_nothing_is_half_written(out)
-    finally:
-        engine.kill()
-        worker.terminate()
-        engine.wait(30)
-        worker.wait(30)
+def test_a_farm_on_a_scheduler_that_dies_ends_and_says_how_to_go_on(engine, held, serial, tmp_path):
+    out, (address, scheduler, _) = tmp_path / "out", engine
+    process = start_farm("run", held, out, *SMALL[:4], "--scheduler", address, *ENDLESS)
+    wait_for_rows(out, 4)
+    scheduler.kill()
+    _, said = process.communicate(timeout=FOREVER)
+    assert process.returncode == 10 and "does not answer" in said, said
+    assert f"isoshell farm run {held} {out}" in said
+    assert_nothing_is_half_written(out)
     assert "4 of 5 assets are done already" in resumed(held, out)
     without_held(out)
     assert_is_serial(out, serial)
@@ -171,35 +136,35 @@ def test_a_share_that_comes_back_is_read_by_the_next_run(tmp_path):
 
 
 def test_a_line_that_was_torn_is_passed_over_wherever_it_was_torn(tmp_path):
-    writer = manifest.Writer(str(tmp_path))
+    writer = manifest.Writer(str(tmp_path), 0)
     for name in ("a.ply", "b.ply"):
-        writer.append({"output": name, "state": "done", "message": "größer"})
+        writer.append(row_of(name, state="failed", code="CRASHED", message="größer"))
     writer.close()
     file = next((tmp_path / "manifest").iterdir())
     whole = file.read_bytes()
     first = whole.index(b"\n") + 1
     for length in random.Random(1).sample(range(first, len(whole) - 1), 40):
         file.write_bytes(whole[:length])
-        assert set(manifest.read(str(tmp_path)).rows) == {"a.ply"}
+        found = manifest.read(str(tmp_path))
+        assert set(found.rows) == {"a.ply"} and not found.damaged
     file.write_bytes(whole)
     assert set(manifest.read(str(tmp_path)).rows) == {"a.ply", "b.ply"}
 
 
 def test_of_several_rows_of_an_asset_the_last_counts(tmp_path):
-    for state in ("failed", "done"):
-        writer = manifest.Writer(str(tmp_path))
-        writer.append({"output": "a.ply", "state": state})
+    for output_size in (1, 2):
+        writer = manifest.Writer(str(tmp_path), manifest.read(str(tmp_path)).newest)
+        writer.append(row_of("a.ply", output_size=output_size))
         writer.close()
-        time.sleep(0.01)
     assert len(list((tmp_path / "manifest").iterdir())) == 2
-    assert manifest.read(str(tmp_path)).rows["a.ply"]["state"] == "done"
+    assert manifest.read(str(tmp_path)).rows["a.ply"]["output_size"] == 2
 
 
 def test_object_storage_keeps_rows_in_files_that_are_put_whole(tmp_path, monkeypatch):
     monkeypatch.setattr(manifest, "ROWS_A_FILE", 3)
     place = f"file://{tmp_path}/out"
-    writer = manifest.Writer(place)
+    writer = manifest.Writer(place, 0)
     for i in range(7):
-        writer.append({"output": f"{i}.ply", "state": "done"})
+        writer.append(row_of(f"{i}.ply"))
     assert len(list((tmp_path / "out/manifest").iterdir())) == 3
     assert len(manifest.read(place).rows) == 7

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, Iterable, Iterator, List
 
 from .._errors import Error
-from .._isoshell import ErrorCode, input_formats
+from .._isoshell import ErrorCode, check_frames, input_formats, path_of_frame
 from .._keywords import is_flag, kinds
 from . import _places as places
 
@@ -79,29 +79,14 @@ def file_of(path: str) -> str:
     return named[1] if named else path
 
 
-def files_of(path: str, options: Options) -> List[str]:
+def files_of(path: str, options: Options) -> Iterator[str]:
     """The file of an asset, or those of its frames, in order."""
-    file = file_of(path)
-    frames = options.get("frames")
+    file, frames = file_of(path), options.get("frames")
     if not frames:
-        return [file]
-    parsed = re.fullmatch(r"(\d+)(?:-(\d+))?(?:x(\d+))?", str(frames))
-    if not parsed:
-        raise Error(f"frames is {frames!r}; it must be A-B or A-BxSTEP", stage="assets")
-    first, last, step = int(parsed[1]), int(parsed[2] or parsed[1]), int(parsed[3] or 1)
-    if step < 1 or last < first:
-        raise Error(f"frames is {frames!r}; A must not be above B, and STEP at least 1", stage="assets")
-    return [path_of_frame(file, number) for number in range(first, last + 1, step)]
-
-
-def path_of_frame(pattern: str, number: int) -> str:
-    """As the command does it: #### and %04d are where the number is."""
-
-    def written(place: re.Match[str]) -> str:
-        digits = len(place[0]) if place[0][0] == "#" else int(place[1] or 1)
-        return f"{number:0{digits}d}"
-
-    return re.sub(r"#+|%(\d*)d", written, pattern)
+        yield file
+        return
+    for number in check_frames([], "", "", str(frames), True, False):
+        yield path_of_frame(file, number)
 
 
 def _is_input(name: str) -> bool:
@@ -113,45 +98,80 @@ def _folder_of(place: str) -> str:
 
 
 def _of_table(place: str, options: Options) -> Iterator[Asset]:
-    allowed = options_of_table()
     for number, row in enumerate(_rows_of(place), 1):
-        given = {str(name).strip().replace("-", "_"): value for name, value in row.items()}
-        path = given.pop("path", None)
-        if not path or not isinstance(path, str):
-            raise Error(f"{place}: row {number} has no path; a table has the column path, and others are options",
-                        stage="assets")
-        for name in given:
-            if name not in allowed:
-                raise Error(f"{place}: the column {name} is no option of an asset; there are {', '.join(allowed)}",
-                            stage="assets")
-        own = {name: _value_of(place, number, name, value) for name, value in given.items()}
-        merged = {**options, **{name: value for name, value in own.items() if value is not None}}
-        if not places.is_remote(path):
-            path = path if os.path.isabs(path) else places.join(_folder_of(place), path)
-        asset = Asset(path, merged)
         try:
-            found = [places.file_at(file) for file in files_of(path, merged)]
+            asset = _asset_of_row(row, _folder_of(place), options)
+            found = [places.file_at(file) for file in files_of(asset.path, asset.options)]
             asset.size, asset.changed = sum(file.size for file in found), max(file.changed for file in found)
         except OSError:
             pass  # its row in the manifest will say so
+        except Error as error:
+            raise Error(f"{place}: row {number}: {error}", stage="assets") from error
         yield asset
+
+
+def _asset_of_row(row: Dict[str, Any], folder: str, options: Options) -> Asset:
+    allowed = options_of_table()
+    given = {str(name).strip().replace("-", "_"): value for name, value in row.items()}
+    path = given.pop("path", None)
+    if not path or not isinstance(path, str):
+        raise Error("it has no path; a table has the column path, and others are options", stage="assets")
+    if "\0" in path:
+        raise Error(f"the path {path!r} has a character NUL, which no name of a file has", stage="assets")
+    for name in given:
+        if name not in allowed:
+            raise Error(f"the column {name} is no option of an asset; there are {', '.join(allowed)}", stage="assets")
+    own = {name: _value_of(name, value) for name, value in given.items()}
+    merged = {**options, **{name: value for name, value in own.items() if value is not None}}
+    if not places.is_remote(path):
+        path = path if os.path.isabs(path) else places.join(folder, path)
+    return Asset(path, merged)
 
 
 def _rows_of(place: str) -> Iterable[Dict[str, Any]]:
     content = places.read_bytes(place)
     kind = place.lower().rpartition(".")[2]
     if kind == "parquet":
-        table = places.package("pyarrow.parquet").read_table(io.BytesIO(content))
-        return list(table.to_pylist())
-    text = content.decode("utf-8-sig")
-    if kind == "csv":
-        return list(csv.DictReader(io.StringIO(text, newline="")))
+        parquet = places.package("pyarrow.parquet")
+        try:
+            return list(parquet.read_table(io.BytesIO(content)).to_pylist())
+        except ValueError as error:  # what pyarrow raises of a damaged file is one
+            raise Error(f"{place}: no table of Parquet: {error}", stage="assets") from error
+    text = _text_of(place, content)
+    return _rows_of_csv(place, text) if kind == "csv" else _rows_of_lines(place, text)
+
+
+def _text_of(place: str, content: bytes) -> str:
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = error.object[:error.start].count(b"\n") + 1  # a mark at the begin of the file has no line break
+        raise Error(f"{place}: line {line} is not UTF-8: it has the byte 0x{error.object[error.start]:02x}; save the "
+                    "table as UTF-8, or give a folder or a pattern where names of files are not UTF-8",
+                    stage="assets") from error
+
+
+def _rows_of_csv(place: str, text: str) -> List[Dict[str, Any]]:
+    reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
     rows = []
-    for number, line in enumerate(text.splitlines(), 1):
+    try:
+        for row in reader:
+            if None in row:
+                raise Error(f"{place}: line {reader.reader.line_num} has more cells than the first line has names",
+                            stage="assets")
+            rows.append(row)
+    except csv.Error as error:
+        raise Error(f"{place}: line {reader.reader.line_num}: {error}", stage="assets") from error
+    return rows
+
+
+def _rows_of_lines(place: str, text: str) -> List[Dict[str, Any]]:
+    rows = []
+    for number, line in enumerate(text.split("\n"), 1):
         if line.strip():
             try:
                 row = json.loads(line)
-            except ValueError as error:
+            except (ValueError, RecursionError) as error:
                 raise Error(f"{place}: line {number} is no JSON: {error}", stage="assets") from error
             if not isinstance(row, dict):
                 raise Error(f"{place}: line {number} is no object of JSON", stage="assets")
@@ -159,14 +179,14 @@ def _rows_of(place: str) -> Iterable[Dict[str, Any]]:
     return rows
 
 
-def _value_of(place: str, number: int, name: str, value: Any) -> Any:
+def _value_of(name: str, value: Any) -> Any:
     """A flag as True or None; anything else as it is, and None where nothing is given."""
     if value is None or value == "":
         return None
     if is_flag(name):
         text = str(value).strip().lower()
         if text not in ("true", "false", "yes", "no", "1", "0"):
-            raise Error(f"{place}: row {number}: {name} is {value!r}; it must be true or false", stage="assets")
+            raise Error(f"{name} is {value!r}; it must be true or false", stage="assets")
         return True if text in ("true", "yes", "1") else None
     if isinstance(value, (list, tuple)):
         return ",".join(map(str, value))

@@ -110,7 +110,7 @@ def write_statistics(result: Result, job: Dict[str, Any]) -> None:
     report = result.report
     report["input"]["path"], report["output"]["path"] = job["path"], job["output"]
     try:
-        with open(job["stats"], "w", encoding="utf-8") as file:
+        with open(job["stats"], "w", encoding="utf-8", errors="backslashreplace") as file:
             json.dump(report, file, indent=2, ensure_ascii=False)
     except OSError as error:
         raise Error(f"{job['stats']}: {error.strerror}", ErrorCode.UNWRITABLE_OUTPUT, "write") from error
@@ -128,7 +128,7 @@ def finished(job: Dict[str, Any]) -> Answer:
 
 def brought_here(path: str, options: Dict[str, Any], fetched: str) -> tuple[str, List[str]]:
     """The path that is read, and the files that it means: of remote ones copies."""
-    files = files_of(path, options)
+    files = [*files_of(path, options)]
     if not places.is_remote(path):
         return path, files
     copies = [os.path.join(fetched, os.path.basename(file)) for file in files]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from typing import Any, Dict, List, Optional, Sequence
 
 from .. import _isoshell
@@ -22,6 +23,7 @@ TETRAHEDRON = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 
 
 def main(words: Sequence[str]) -> int:
     """Run the farm's command with these words. Returns its exit status."""
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr] # names need not be text
     arguments = parser().parse_args(words)
     try:
         status: int = arguments.do(arguments, list(words[1:]))

@@ -44,7 +44,8 @@ def report(out: str, output: Optional[str], parquet: Optional[str]) -> int:
     target = Path(output or os.path.join(out, "report.html"))
     part = target.with_name(f".{target.name}.part")
     try:
-        part.write_text(page(found, out, str(target.absolute().parent)), encoding="utf-8")
+        text = page(found, out, str(target.absolute().parent))
+        part.write_text(text, encoding="utf-8", errors="backslashreplace")
         part.replace(target)
     except OSError as error:
         part.unlink(missing_ok=True)
@@ -122,8 +123,12 @@ def _name(row: manifest.Row, base: str) -> str:
 
 def _link(base: str, made: str) -> str:
     if places.is_remote(base):
-        return f"{base.rstrip('/')}/{urllib.parse.quote(made)}"
-    return urllib.parse.quote(f"{base}/{made}")
+        return f"{base.rstrip('/')}/{_quoted(made)}"
+    return _quoted(f"{base}/{made}")
+
+
+def _quoted(path: str) -> str:
+    return urllib.parse.quote(path, errors="surrogateescape")
 
 
 def _chart(rows: List[manifest.Row], key: str, title: str, unit: str, scale: float) -> str:

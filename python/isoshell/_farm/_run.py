@@ -18,8 +18,10 @@ from . import _places as places
 from . import _worker as worker
 from ._assets import Asset
 from ._clusters import Cluster, cluster_of
+from ._lock import locked
 from ._plan import Plan, job_of, plan_of
 from ._progress import Progress, tell
+from ._status import tell_damaged
 
 SOME_FAILED = 9
 ENGINE_LOST = 10
@@ -38,10 +40,16 @@ ENDS = (KeyboardInterrupt, worker.Unwritable, EngineLost)
 
 def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str]) -> int:
     """Returns the exit status."""
-    again = "isoshell farm run " + shlex.join(words)
+    with locked(out):
+        return run_alone(assets, out, settings, "isoshell farm run " + shlex.join(words))
+
+
+def run_alone(assets: List[Asset], out: str, settings: Dict[str, Any], again: str) -> int:
+    """While no other run is at work on OUT."""
     try:
-        plan = plan_of(assets, manifest.read(out).rows, out, settings["retry_failed"])
-        writer = manifest.Writer(out)
+        before = manifest.read(out)
+        plan = plan_of(assets, before.rows, out, settings["retry_failed"])
+        writer = manifest.Writer(out, before.newest)
         number = worker.new_run()
         if plan.wanted:
             writer.append({"began": number, "assets": len(assets), "done": plan.done, "failed": plan.failed,
@@ -49,6 +57,7 @@ def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str
     except OSError as error:
         raise Error(f"{error.filename or out}: {error.strerror or error}", ErrorCode.UNWRITABLE_OUTPUT,
                     "farm") from error
+    tell_damaged(before, "what they were of is made again")
     if plan.done or plan.failed:
         tell(f"{plan.done} of {len(assets)} assets are done already" + (
             f", and {plan.failed} failed before: --retry-failed tries them again" if plan.failed else ""))
@@ -58,7 +67,7 @@ def run(assets: List[Asset], out: str, settings: Dict[str, Any], words: List[str
         if plan.wanted:
             common = {name: settings[name] for name in ("contexts", "asset_memory", "time_limit", "place")}
             with cluster_of(*(settings[name] for name in ("scheduler", "workers", "slots", "memory"))) as cluster:
-                common.update(out=out, run=number, memory=cluster.memory)
+                common.update(out=out, run=number, newest=before.newest, memory=cluster.memory)
                 announce(cluster, len(plan.wanted))
                 try:
                     failed += over(cluster, plan, common, writer, progress)
@@ -121,13 +130,13 @@ def over(cluster: Cluster, plan: Plan, common: Dict[str, Any], writer: manifest.
                 progress.count(row)
             progress.show()
     except BaseException:
-        stop(cluster, common["run"], list(under_way))
+        stop(cluster, common["run"])
         raise
 
 
 def submit(cluster: Cluster, job: Dict[str, Any], rank: int, deaths: int,
            under_way: Dict[Any, Tuple[Dict[str, Any], int]]) -> None:
-    key = f"mesh-{job['run']}-{deaths}-{job['output']}"
+    key = f"mesh-{job['run']}-{deaths}-{ascii(job['output'])}"  # Dask has its own idea of text
     future = cluster.client.submit(worker.mesh, job, key=key, pure=False, priority=-rank)
     under_way[future] = job, deaths
 
@@ -202,14 +211,13 @@ def row_of(cluster: Cluster, future: Any, job: Dict[str, Any], deaths: int,
     return row
 
 
-def stop(cluster: Cluster, run: str, futures: List[Any]) -> None:
-    """End what is under way on the workers of others, without waiting long."""
+def stop(cluster: Cluster, run: str) -> None:
+    """End what is under way, on the workers of others without waiting for its end."""
+    worker.stop(run)
     if cluster.name == "local" or cluster.client.status != "running":
         return
     try:
-        cluster.client.cancel(futures, asynchronous=True)
-        cluster.client.run(worker.stop, run, wait=False, on_error="ignore")
-        time.sleep(SECONDS_TO_STOP)
+        cluster.client.run(worker.stop_soon, run, wait=False, on_error="ignore")
     except Exception:
         pass  # it is going anyhow
 

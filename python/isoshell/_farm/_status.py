@@ -11,9 +11,17 @@ from .._isoshell import ErrorCode
 from . import _manifest as manifest
 from . import _places as places
 from ._admission import text_of
-from ._progress import duration
+from ._progress import duration, tell
 
 MOST = 5  # of a list
+
+
+def tell_damaged(found: manifest.Manifest, what_next: str) -> None:
+    """Which rows of the manifest mean nothing, and why."""
+    for text in found.damaged[:MOST]:
+        tell(f"warning: {text}")
+    if found.damaged:
+        tell(f"warning: {len(found.damaged)} damaged rows are passed over; {what_next}")
 
 
 class Counts(NamedTuple):
@@ -33,6 +41,7 @@ def read_farm(out: str) -> manifest.Manifest:
     except OSError as error:
         raise Error(f"{error.filename or out}: {error.strerror or error}", ErrorCode.UNREADABLE_INPUT,
                     "farm") from error
+    tell_damaged(found, "isoshell farm run makes again what they were of")
     if not found.runs:
         raise Error(f"{out}: no manifest there; give the OUT of isoshell farm run", ErrorCode.UNREADABLE_INPUT, "farm")
     return found

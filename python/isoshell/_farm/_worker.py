@@ -11,7 +11,7 @@ import threading
 import time
 import uuid
 from contextlib import contextmanager
-from typing import Any, Dict, Iterator, List, Optional
+from typing import Any, Dict, Iterator, List, Optional, Set
 
 from isoshell import ErrorCode
 
@@ -45,11 +45,17 @@ def mesh(job: Job) -> Row:
 
 
 def stop(run: str) -> None:
-    """End the assets of a run that are under way here."""
+    """End the assets of a run that are under way here, and begin none of it any more."""
     with _lock:
+        _ended.add(run)
         crew = _crews.pop(run, None)
     if crew is not None:
         crew.stop()
+
+
+async def stop_soon(run: str) -> None:
+    """What Dask's workers can be told without waiting for it."""
+    stop(run)
 
 
 class Crew:
@@ -70,7 +76,7 @@ class Crew:
         self._busy = [0] * len(self._children)
         self._extra: List[Child] = []
         self.is_stopped = False
-        self._writer = Writer(self._out)
+        self._writer = Writer(self._out, job["newest"])
         if places.is_remote(self._out):
             self._scratch = os.path.join(tempfile.mkdtemp(prefix="isoshell-farm-"), "work")
             os.mkdir(self._scratch)
@@ -215,7 +221,7 @@ class Crew:
 
     def _sequence(self, job: Job, names: Dict[str, Any], share: int, path: str) -> Row:
         """The frames of a sequence, by the command. They stay in their folder until all are there."""
-        frames = files_of(os.path.basename(job["output"]), job["options"])
+        frames = [*files_of(os.path.basename(job["output"]), job["options"])]
         folder = os.path.join(names["scratch"], "frames")
         is_again = os.path.isdir(folder)
         os.makedirs(folder, exist_ok=True)
@@ -262,12 +268,15 @@ class Crew:
 
 
 _crews: Dict[str, Crew] = {}
+_ended: Set[str] = set()  # runs
 _lock = threading.Lock()
 
 
 def crew_of(job: Job) -> Crew:
     """The crew of a run. Crews of others that have nothing to do are sent home: their run may have died."""
     with _lock:
+        if job["run"] in _ended:
+            raise Stopped()
         if job["run"] not in _crews:
             for run in [run for run, crew in _crews.items() if crew.is_idle]:
                 _crews.pop(run).stop()
