@@ -22,7 +22,7 @@ environment() { # folder, modules, command that makes it, packages...
   $make "$folder" && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@"
 }
 
-packages=(numpy scipy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue manifold3d==3.5.4)
+packages=(numpy scipy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue cryptography manifold3d==3.5.4)
 if command -v chromium google-chrome >/dev/null; then packages+=(playwright); fi
 if [ "${1:-}" = ci ]; then packages+=(pyvista gmsh); fi
 modules=${packages[*]%%==*}

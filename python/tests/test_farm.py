@@ -213,14 +213,21 @@ def test_a_place_without_assets_is_refused(tmp_path):
 
 def test_slurm_jobs_are_described_by_the_configuration_of_dask():
     pytest.importorskip("dask_jobqueue")
+    pytest.importorskip("cryptography")
     import dask
+    import distributed
 
     from isoshell._farm._clusters import slurm_cluster
 
     with pytest.raises(isoshell.Error, match="jobqueue.yaml"):
-        slurm_cluster()
+        slurm_cluster(False)
     job = {"jobqueue.slurm.cores": 16, "jobqueue.slurm.memory": "64GB", "jobqueue.slurm.queue": "short",
            "jobqueue.slurm.account": "art", "jobqueue.slurm.walltime": "02:00:00"}
-    with dask.config.set(job), slurm_cluster() as cluster:
+    with dask.config.set(job), slurm_cluster(False) as cluster:
         script = cluster.job_script()
+        key = Path(re.search(r"--tls-key (\S+)", script)[1])
+        assert key.stat().st_mode & 0o077 == 0 and "PRIVATE KEY" in key.read_text()
+        assert cluster.scheduler_address.startswith("tls://")
+        with pytest.raises(OSError), distributed.Client(cluster.scheduler_address.replace("tls:", "tcp:"), timeout="3s"):
+            pass
     assert "#SBATCH -p short" in script and "#SBATCH -A art" in script and "--nthreads" in script

@@ -59,6 +59,8 @@ def parser() -> argparse.ArgumentParser:
                       "64G [80 %% of what is free, or what Dask gives a worker]")
     farm.add_argument("--asset-memory", metavar="SIZE", help="memory that an asset may take at most [what its estimate "
                       "says, at most that of the worker]")
+    farm.add_argument("--dashboard", action="store_true", help="local and slurm: Dask's pages of the run, at a port of "
+                      "this machine that all of its users can read; needs bokeh")
     farm.add_argument("--retry-failed", action="store_true", help="also try again what failed before")
     farm.add_argument("--output-format", metavar="F", choices=SUFFIXES, default="ply",
                       help="format of the meshes: " + ", ".join(SUFFIXES) + " [ply]")
@@ -113,9 +115,10 @@ def _run(arguments: argparse.Namespace, words: List[str]) -> int:
         options["sizing"] = os.path.abspath(options["sizing"])
     estimate(TETRAHEDRON, **{**options, **place})  # refuses what cannot be, before anything starts
     scheduler = arguments.scheduler
-    if arguments.workers and scheduler not in ("local", "slurm"):
-        raise Error("--workers is for --scheduler local and slurm; others have the workers that were started for them",
-                    stage="command line")
+    for option in ("workers", "dashboard"):
+        if given[option] and scheduler not in ("local", "slurm"):
+            raise Error(f"--{option} is for --scheduler local and slurm; others have the workers and pages that were "
+                        "started for them", stage="command line")
     processors = len(os.sched_getaffinity(0))
     devices = len(devices_of(place.get("device")))
     contexts = arguments.contexts or (CONTEXTS_OF_DEVICE if devices else 1)
@@ -128,7 +131,7 @@ def _run(arguments: argparse.Namespace, words: List[str]) -> int:
     settings = {"scheduler": scheduler, "workers": arguments.workers, "slots": slots, "contexts": arguments.contexts,
                 "time_limit": arguments.time_limit or None, "memory": _size("--memory", arguments.memory),
                 "asset_memory": _size("--asset-memory", arguments.asset_memory), "place": place,
-                "retry_failed": arguments.retry_failed}
+                "retry_failed": arguments.retry_failed, "dashboard": arguments.dashboard}
     assets = assets_of(arguments.assets, options, f".{arguments.output_format}", out)
     return run(assets, out, settings, words)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 import os
 import time
 import urllib.parse
@@ -27,10 +28,11 @@ from ._status import counts_of, read_farm, reasons_of
 MOST_FAILED = 1000  # of a reason
 MOST_DONE = 5000
 FEW = 25
-CHARTS = (("seconds", "Seconds", " s", 1.0), ("peak_memory", "Peak memory", " MB", float(1 << 20)),
-          ("min_angle", "Smallest angle", "°", 1.0), ("quality", "Mean quality of triangles", "", 1.0),
-          ("deviation_pct", "Largest deviation, % of the diagonal", " %", 1.0),
-          ("input_size", "Size of the input", " MB", 1e6))
+CHARTS = (("seconds", "Seconds", 1.0), ("peak_memory", "Peak memory, MB", float(1 << 20)),
+          ("min_angle", "Smallest angle, degrees", 1.0), ("quality", "Mean quality of triangles", 1.0),
+          ("deviation_pct", "Largest deviation, % of the diagonal", 1.0), ("input_size", "Size of the input, MB", 1e6))
+PARTS = 4  # of an axis
+STEPS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # and these times powers of ten
 FIXED = {"min_angle": (0.0, 60.0), "quality": (0.0, 1.0)}
 
 
@@ -131,9 +133,15 @@ def _quoted(path: str) -> str:
     return urllib.parse.quote(path, errors="surrogateescape")
 
 
-def _chart(rows: List[manifest.Row], key: str, title: str, unit: str, scale: float) -> str:
+def _chart(rows: List[manifest.Row], key: str, title: str, scale: float) -> str:
     values = np.array([float(row[key]) / scale for row in rows if row.get(key) is not None])
     if not len(values):
         return ""
-    span = FIXED.get(key) or (0.0, max(float(np.percentile(values, 99)), 1e-9))
-    return histogram(title, unit, None, values, span, 4)
+    span = FIXED.get(key) or (0.0, PARTS * _step(max(float(np.percentile(values, 99)), 1e-9) / PARTS))
+    return histogram(title, "", None, values, span, PARTS)
+
+
+def _step(least: float) -> float:
+    """A number of few digits, so that what is written at an axis has room."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step for step in STEPS if step * power >= least * (1 - 1e-9)) * power

@@ -28,7 +28,8 @@ def package(name: str) -> Any:
     except ImportError as error:
         if error.name != name.split(".")[0]:
             raise
-        extra = {"pyarrow": "pip install pyarrow", "dask_jobqueue": "pip install dask-jobqueue"}
+        extra = {"pyarrow": "pip install pyarrow", "bokeh": "pip install bokeh",
+                 **dict.fromkeys(("dask_jobqueue", "cryptography"), "pip install dask-jobqueue cryptography")}
         raise Error(f"this needs {error.name}: {extra.get(str(error.name), REMEDY)}", stage="farm") from error
 
 

@@ -7,7 +7,9 @@ import shlex
 import shutil
 import sys
 import time
-from typing import Any, Dict, Iterator, List, NoReturn, Optional, Set, Tuple
+from itertools import islice
+from queue import Empty, SimpleQueue
+from typing import Any, Dict, List, NoReturn, Optional, Tuple
 
 import isoshell
 
@@ -29,6 +31,7 @@ DEATHS = 3  # of workers, by Dask's count, after which an asset is given up
 LOOK_SECONDS = 0.5
 SECONDS_TO_STOP = 0.5
 SECONDS_TO_RECONNECT = 5.0
+FOR_CLUSTERS = ("scheduler", "workers", "slots", "memory", "dashboard")
 
 
 class EngineLost(Exception):
@@ -66,7 +69,7 @@ def run_alone(assets: List[Asset], out: str, settings: Dict[str, Any], again: st
     try:
         if plan.wanted:
             common = {name: settings[name] for name in ("contexts", "asset_memory", "time_limit", "place")}
-            with cluster_of(*(settings[name] for name in ("scheduler", "workers", "slots", "memory"))) as cluster:
+            with cluster_of(*(settings[name] for name in FOR_CLUSTERS)) as cluster:
                 common.update(out=out, run=number, newest=before.newest, memory=cluster.memory)
                 announce(cluster, len(plan.wanted))
                 try:
@@ -112,20 +115,24 @@ def over(cluster: Cluster, plan: Plan, common: Dict[str, Any], writer: manifest.
     """Hands out the assets, as many at a time as keep all workers busy. Returns how many failed."""
     left = iter(plan.wanted)
     under_way: Dict[Any, Tuple[Dict[str, Any], int]] = {}
+    answers: SimpleQueue[Any] = SimpleQueue()
+    counted: List[Any] = []  # the pages count what somebody wants to have
     failed, rank = 0, 0
     try:
         while True:
-            for asset, known in some(left, room(cluster) - len(under_way)):
+            for asset, known in islice(left, None if cluster.has_pages else max(0, room(cluster) - len(under_way))):
                 rank += 1
-                submit(cluster, job_of(asset, known, common), rank, 0, under_way)
+                submit(cluster, job_of(asset, known, common), rank, 0, under_way).add_done_callback(answers.put)
             if not under_way and rank == len(plan.wanted):
                 return failed
-            for future in finished(cluster, set(under_way)):
+            for future in finished(cluster, answers):
                 job, deaths = under_way.pop(future)
                 row = row_of(cluster, future, job, deaths, writer)
                 if row is None:
-                    submit(cluster, job, 0, deaths + 1, under_way)
+                    submit(cluster, job, 0, deaths + 1, under_way).add_done_callback(answers.put)
                     continue
+                if cluster.has_pages:
+                    counted.append(future)
                 failed += row["state"] == "failed"
                 progress.count(row)
             progress.show()
@@ -135,18 +142,11 @@ def over(cluster: Cluster, plan: Plan, common: Dict[str, Any], writer: manifest.
 
 
 def submit(cluster: Cluster, job: Dict[str, Any], rank: int, deaths: int,
-           under_way: Dict[Any, Tuple[Dict[str, Any], int]]) -> None:
+           under_way: Dict[Any, Tuple[Dict[str, Any], int]]) -> Any:
     key = f"mesh-{job['run']}-{deaths}-{ascii(job['output'])}"  # Dask has its own idea of text
     future = cluster.client.submit(worker.mesh, job, key=key, pure=False, priority=-rank)
     under_way[future] = job, deaths
-
-
-def some(assets: Iterator[Any], count: int) -> Iterator[Any]:
-    for _ in range(count):
-        try:
-            yield next(assets)
-        except StopIteration:
-            return
+    return future
 
 
 def room(cluster: Cluster) -> int:
@@ -159,24 +159,21 @@ def threads_of(cluster: Cluster) -> Dict[str, int]:
     return {name: info["nthreads"] for name, info in workers.items()}
 
 
-def finished(cluster: Cluster, futures: Set[Any]) -> List[Any]:
+def finished(cluster: Cluster, answers: SimpleQueue[Any]) -> List[Any]:
     """The futures that are, after a while at most. Raises EngineLost."""
-    distributed = places.package("distributed")
-    if futures:
-        try:
-            distributed.wait(list(futures), timeout=LOOK_SECONDS, return_when="FIRST_COMPLETED")
-        except (TimeoutError, distributed.TimeoutError):
-            pass
-        except Exception:  # cancelled with the connection: looked at below
-            time.sleep(LOOK_SECONDS / 10)
-    else:
-        time.sleep(LOOK_SECONDS)
+    found = []
+    try:
+        found.append(answers.get(timeout=LOOK_SECONDS))
+        while True:
+            found.append(answers.get_nowait())
+    except Empty:
+        pass
     end = time.monotonic() + SECONDS_TO_RECONNECT
     while cluster.client.status != "running":
         if time.monotonic() > end:
             raise no_answer(cluster)
         time.sleep(LOOK_SECONDS)
-    return [future for future in futures if future.done()]
+    return found
 
 
 def no_answer(cluster: Cluster) -> EngineLost:
@@ -223,10 +220,10 @@ def stop(cluster: Cluster, run: str) -> None:
 
 
 def leave(cluster: Cluster, status: int) -> NoReturn:
-    """End at once, with all processes of a local scheduler: what they have not finished is made again."""
+    """End at once, with all processes of a local worker: what they have not finished is made again."""
     if cluster.folder:
         psutil = places.package("psutil")
-        own = [process for process in psutil.Process().children(recursive=True) if not is_tracker(process)]
+        own = psutil.Process().children(recursive=True)
         for process in own:
             try:
                 process.kill()
@@ -236,11 +233,3 @@ def leave(cluster: Cluster, status: int) -> NoReturn:
         shutil.rmtree(cluster.folder, ignore_errors=True)
     sys.stderr.flush()
     os._exit(status)
-
-
-def is_tracker(process: Any) -> bool:
-    """The process of Python's own that removes semaphores when this one has ended."""
-    try:
-        return any("resource_tracker" in word for word in process.cmdline())
-    except places.package("psutil").Error:
-        return False
