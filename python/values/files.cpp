@@ -1,7 +1,6 @@
 #include "values/files.h"
 
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <string>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "isoshell/io/output_files.h"
+#include "values/text.h"
 
 namespace nb = nanobind;
 
