@@ -76,8 +76,10 @@ std::vector<OptionRow> size_rows() {
        {4, kMostVertices}},
       {group, "edge-length", "L", "target edge length in world units, instead of --vertices", "", "edge_length_world",
        &RemeshOptions::edge_length_world, OnResume::of_seeds, kLengths, 0, "vertices"},
-      {group, "sizing", "F.vdb[:GRID]",
-       "float grid of target edge lengths in world units; without --vertices it also decides the number of vertices",
+      {group, "sizing", "F.vdb[:GRID]|NAME",
+       "target edge lengths in world units: a float grid, or the attribute of the input's vertices of that name; "
+       "without "
+       "--vertices it also decides the number of vertices",
        "", "sizing", sizing_option(), OnResume::of_seeds},
       {group, "region-edge-length", "REGION=L",
        "edge length in world units on the walls of a region, a label or a name; may be given for each region; without "

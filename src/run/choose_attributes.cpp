@@ -4,6 +4,7 @@
 
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
+#include "isoshell/io/sizing_vdb.h"
 
 namespace isoshell {
 namespace {
@@ -86,6 +87,12 @@ void choose_attributes(Input& input, const std::optional<Names>& names, const st
       tell(names && has(*names, d.name) ? MessageKind::warning : MessageKind::note,
            input.facts.name() + ": " + d.name + " dropped: " + d.reason);
   if (has_regions) warn_of_lost_regions(input, format, tell);
+}
+
+std::shared_ptr<const SizingField> sizing_of_input(const Input& input, const std::string& text,
+                                                   const Context& context) {
+  return is_sizing_file(text) ? read_sizing(text, context.memory_limit_bytes)
+                              : sizing_of_attribute(input.soup, text, input.facts.name());
 }
 
 }  // namespace isoshell

@@ -1,12 +1,15 @@
 // Which attributes of an input a run keeps.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "isoshell/backend.h"
 #include "isoshell/message.h"
 #include "isoshell/run/record.h"
+#include "isoshell/sizing.h"
 
 namespace isoshell {
 
@@ -17,5 +20,9 @@ namespace isoshell {
 /// does not have, which lists what it has.
 void choose_attributes(Input& input, const std::optional<std::vector<std::string>>& names, const std::string& format,
                        bool has_regions, AttributeReport& report, const Tell& tell);
+
+/// The sizing field that --sizing names: of a .vdb file, or an attribute of the input's vertices, chosen or not.
+/// Throws: as read_sizing and sizing_of_attribute do.
+std::shared_ptr<const SizingField> sizing_of_input(const Input& input, const std::string& text, const Context& context);
 
 }  // namespace isoshell

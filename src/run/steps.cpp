@@ -9,7 +9,6 @@
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/polyline_file.h"
-#include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/transfer_attributes.h"
 #include "progress/step.h"
@@ -114,12 +113,12 @@ class RunSteps::Run {
     if (input_->stage && !left_out_.empty())
       warn(input_->facts.name() + ": the result is without " + left_out_ +
            ", and not cut along their seams: a stage file does not hold them; remesh the input itself to keep them");
+    read_sizing_field();  // may be an attribute, whether it is kept or not
     choose_attributes(*input_, options_.values.attributes, stops_early() ? "vdb" : record_.output.format, has_regions,
                       record_.attributes, teller());
     // A Voronoi stage file does not hold the seeds of patches: then nothing is cut along seams.
     std::vector<Attribute> attributes;
     if (!request_.save_voronoi.empty()) attributes.swap(input_->soup.attributes);
-    read_sizing_field();
     read_lines();
     prepared_ = timed("prepare", [&] { return prepared_from(*input_); });
     progress_.expect(*prepared_);
@@ -242,8 +241,7 @@ class RunSteps::Run {
 
   void read_sizing_field() {
     if (options_.sizing.empty() || options_.values.sizing) return;  // there is none, or it was read
-    options_.values.sizing =
-        timed("sizing", [&] { return read_sizing(options_.sizing, context_->memory_limit_bytes); });
+    options_.values.sizing = timed("sizing", [&] { return sizing_of_input(*input_, options_.sizing, *context_); });
     tell(MessageKind::note, "sizing: " + options_.sizing);
   }
 

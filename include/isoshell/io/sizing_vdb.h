@@ -1,11 +1,13 @@
-// Sizing fields from .vdb files and from memory.
+// Sizing fields from .vdb files, from memory, and from numbers of a surface's vertices.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "isoshell/io/memory_input.h"
 #include "isoshell/sizing.h"
+#include "isoshell/surface_source.h"
 
 namespace isoshell {
 
@@ -20,5 +22,21 @@ std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_
 /// messages call the field. Throws: usage for an array without values or a spacing that is not above 0; as read_sizing
 /// does.
 std::shared_ptr<const SizingField> sizing_of(const DenseVolume& lengths, const std::string& name);
+
+/// The length at the nearest place of a surface, interpolated in its triangle from those of its vertices; NaN says
+/// nothing, for the whole triangle. `name` is what messages call the lengths. Cost: the surface is copied; building is
+/// linear in its triangles, a point takes the search for one. Throws: usage for another number of lengths than of
+/// vertices; unreadable_input for one that is infinite or not more than 0, and where all are NaN; nothing_to_mesh
+/// without a triangle.
+std::shared_ptr<const SizingField> sizing_on(const TriangleSoup& surface, std::vector<double> lengths,
+                                             const std::string& name);
+
+/// The same of the numbers that vertices of the surface have as an attribute. Throws: usage where they have none of
+/// that name; as sizing_on does.
+std::shared_ptr<const SizingField> sizing_of_attribute(const TriangleSoup& surface, const std::string& name,
+                                                       const std::string& surface_name);
+
+/// Whether a person's words name a file, as read_sizing takes it, and not an attribute.
+bool is_sizing_file(const std::string& text);
 
 }  // namespace isoshell
