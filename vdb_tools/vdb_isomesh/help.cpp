@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "vdb_isomesh/other_names.h"
+
 namespace isoshell::tool {
 namespace {
 
@@ -85,7 +87,8 @@ std::string version_text() { return "vdb_isomesh " VDB_ISOMESH_VERSION "\n"; }
 std::string closest_option(const CLI::App& app, const std::string& mistyped) {
   const std::string word = mistyped.substr(0, mistyped.find('='));
   const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
-  std::string best;
+  std::string best = option_of_others(bare);
+  if (!best.empty()) return best;
   size_t best_distance = 1 + bare.size() / 3;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) {
