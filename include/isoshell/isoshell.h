@@ -19,6 +19,7 @@
 #include "isoshell/io/output_files.h"
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/polyline_file.h"
+#include "isoshell/io/python_formats.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/velocity_vdb.h"

@@ -22,6 +22,7 @@
 #include "isoshell/io/file_format.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/io/python_formats.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/readable.h"
 
@@ -111,7 +112,7 @@ class Reader {
     const FileFormat* const known = find_format(format);
     if (!known)
       refuse(path + ": the format '" + format + "' is not one of " + listed_formats(reads_anything, ", ") +
-             "; say which by --input-format");
+             "; say which by --input-format" + python_remedy(path, false));
     if (known->reads_mesh && known->reads_points)
       read_ply(request.creases);
     else if (known->reads_mesh)

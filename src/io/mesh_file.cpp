@@ -14,6 +14,7 @@
 #include "geometry/world_vector.h"
 #include "io/file_formats.h"
 #include "isoshell/error.h"
+#include "isoshell/io/python_formats.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {
@@ -25,10 +26,13 @@ const FormatRow& row_of(const std::string& path, const std::string& format, bool
     throw Error(ErrorCode::usage, stage, "a standard stream has no name to tell the format; name one");
   const FormatRow* row = find_row(format.empty() ? format_of_path(path) : format_name(format));
   if (row && is_one(row->format)) return *row;
+  const std::string remedy = format.empty() ? python_remedy(path, is_one == writes_mesh) : "";
   throw Error(ErrorCode::usage, stage,
-              path + (format.empty() ? ": the name does not tell the format; it must end in one of " +
-                                           listed_endings(is_one) + ", or name a format"
-                                     : ": the format '" + format + "' must be one of " + listed_formats(is_one)));
+              path +
+                  (format.empty() ? ": the name does not tell the format; it must end in one of " +
+                                        listed_endings(is_one) + ", or name a format"
+                                  : ": the format '" + format + "' must be one of " + listed_formats(is_one)) +
+                  remedy);
 }
 
 const char* bits_of(const Placement& placement) { return placement.is_double() ? "64-bit" : "32-bit"; }

@@ -18,6 +18,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/io/python_formats.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/options/option_text.h"
@@ -105,7 +106,7 @@ OutputRequest named_output(const std::string& path, const std::string& format, S
     const FileFormat* const written = find_format(output.format);
     if (!written || !written->writes_mesh)
       refuse_use("the format of OUTPUT is '" + output.format + "'; it must be one of " +
-                 listed_formats(writes_mesh, ", "));
+                 listed_formats(writes_mesh, ", ") + (format.empty() ? python_remedy(path, true) : ""));
   } else {
     if (output.format != "vdb") refuse_use("with --stop-after, OUTPUT is a .vdb file; it is '" + path + "'");
     if (path == "-") refuse_vdb_to_pipe();
@@ -174,7 +175,8 @@ void check_request(const RunRequest& r) {
   if (r.options.values.color_features && r.stop_after == StopAfter::mesh && !output.path.empty() &&
       !find_format(output.format)->holds_edges)
     refuse_use("--color-features needs a PLY file; OUTPUT is '" + output.path + "'");
-  if (!r.options.sizing.empty() && !can_write_vdb()) read_sizing(r.options.sizing);  // says that there is no OpenVDB
+  if (is_sizing_file(r.options.sizing) && !can_write_vdb())
+    read_sizing(r.options.sizing);  // says that there is no OpenVDB
 }
 
 void check_outputs(const RunRequest& r) {

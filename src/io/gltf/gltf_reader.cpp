@@ -240,6 +240,17 @@ void add_materials(const GltfDocument& document, const std::vector<double>& of_c
   soup.files.gltf_materials = gltf_materials_of(document);
 }
 
+/// What the writer says of regions, in extras that other programs drop, is not read.
+void note_regions(const GltfDocument& document, TriangleSoup& soup) {
+  for (const Json& mesh : document.list(document.json(), "meshes")) {
+    const auto extras = mesh.is_object() ? mesh.find("extras") : mesh.end();
+    if (!mesh.is_object() || extras == mesh.end() || !extras->is_object() || !extras->contains("region_background"))
+      continue;
+    soup.dropped_attributes.push_back({"regions", "glTF files are read without them; PLY files keep them"});
+    return;
+  }
+}
+
 }  // namespace
 
 TriangleSoup read_gltf(const MeshSource& source) {
@@ -261,6 +272,7 @@ TriangleSoup read_gltf(const MeshSource& source) {
   TriangleSoup soup = join_soup(source, std::move(welded.vertices), faces);
   if (has_attributes) AttributeReader(document, content, triangles, faces[0].face_of(), welded.index, soup).read();
   add_materials(document, triangles.material, faces[0].face_of(), soup);
+  note_regions(document, soup);
   soup.dirt.other_primitives = content.other_primitives;
   soup.dirt.posed_meshes = content.posed_meshes;
   soup.dirt.surplus_bytes = document.surplus_bytes();
