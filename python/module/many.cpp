@@ -12,6 +12,7 @@
 #include "isoshell/workers.h"
 #include "module/watched.h"
 #include "values/errors.h"
+#include "values/result.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -49,7 +50,7 @@ class BegunRun {
   bool has_ended() const { return !result_.valid() || result_.wait_for(0ms) == std::future_status::ready; }
 
   /// Waits, delivers the messages of the run, and throws what it threw, or what a signal raised.
-  RunResult result() {
+  MadeResult result() {
     for (bool ended = false; !ended;) {
       {
         const nb::gil_scoped_release released;
@@ -60,7 +61,7 @@ class BegunRun {
     tool::Console console(requested_.arguments.progress, requested_.arguments.verbosity);
     const Listener listener = listener_of(requested_, console);
     for (const Mail::Message& message : *messages_) listener.tell(message.kind, message.text);
-    return with_errors([&] { return result_.get(); });
+    return with_errors([&] { return made_of(result_.get()); });
   }
 
  private:

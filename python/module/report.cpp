@@ -14,6 +14,7 @@
 #include "module/watched.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/result.h"
 #include "values/text.h"
 #include "vdb_isomesh/command.h"
 
@@ -81,7 +82,7 @@ int command(const std::vector<std::string>& arguments, const nb::object& write_r
     write = [&](const RunRequest& request, const RunResult& result) {
       const nb::gil_scoped_acquire acquired;
       const auto failure = nb::cast<std::string>(
-          write_report(nb::cast(result), nb::cast(source_of(request)), request.report, request.overwrite));
+          write_report(nb::cast(made_of(result)), nb::cast(source_of(request)), request.report, request.overwrite));
       if (!failure.empty()) throw Error(ErrorCode::unwritable_output, "report", failure);
     };
   const nb::gil_scoped_release released;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "module/watched.h"
+#include "values/result.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -15,12 +16,12 @@ namespace nb = nanobind;
 namespace isoshell::python {
 namespace {
 
-RunResult remesh(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
-                 bool measure_all, nb::object progress, nb::object tell) {
+MadeResult remesh(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
+                  bool measure_all, nb::object progress, nb::object tell) {
   RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
   if (measure_all) requested.arguments.run.measures = Measures::all;
   return watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
-    return run_from(read, request, context);
+    return made_of(run_from(read, request, context));
   });
 }
 

@@ -10,6 +10,7 @@
 #include "isoshell/error.h"
 #include "isoshell/io/velocity_vdb.h"
 #include "module/watched.h"
+#include "values/result.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -39,7 +40,7 @@ class Frames {
   Frames(bool is_coherent, int64_t count)
       : chain_(std::make_shared<FrameChain>(is_coherent)), progress_(std::make_shared<SequenceProgress>(count)) {}
 
-  RunResult run(Place& place, const Source& source, const Keywords& keywords, int64_t index, const std::string& output,
+  MadeResult run(Place& place, const Source& source, const Keywords& keywords, int64_t index, const std::string& output,
                 bool measure_all, const std::string& velocity, nb::object progress, nb::object tell) {
     RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
     if (measure_all) requested.arguments.run.measures = Measures::all;
@@ -50,7 +51,7 @@ class Frames {
                     const RunRequest& request, Context& context) {
                   RunResult made = chain->run(input_of_run(read, request, context), request, context);
                   chain->set_velocity(velocity_of(request, context));
-                  return made;
+                  return made_of(std::move(made));
                 });
   }
 

@@ -16,6 +16,7 @@
 #include "isoshell/run/steps.h"
 #include "module/watched.h"
 #include "values/arrays.h"
+#include "values/result.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -64,9 +65,10 @@ class StageRun {
     return *relaxed_;
   }
 
-  RunResult triangulate() {
+  MadeResult triangulate() {
     relax();
-    return add([](RunSteps& steps, const RunRequest&, Context& context) { return steps.finish(context, true); });
+    return add(
+        [](RunSteps& steps, const RunRequest&, Context& context) { return made_of(steps.finish(context, true)); });
   }
 
   void save_shell(const std::string& path, bool overwrite) {

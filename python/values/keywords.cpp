@@ -1,8 +1,14 @@
 #include "values/keywords.h"
 
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include "isoshell/io/file_format.h"
+#include "isoshell/io/python_formats.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -44,6 +50,14 @@ void bind_keywords(nb::module_& m) {
       "mesh_formats", [] { return names_of(writes_mesh); }, "Of files that meshes are written to.");
   m.def(
       "input_formats", [] { return names_of(reads_anything); }, "Of files that are read: meshes, points and volumes.");
+  m.def(
+      "python_formats",
+      [] {
+        std::vector<std::tuple<std::string, std::string, bool, bool>> all;
+        for (const PythonFormat& f : python_formats()) all.emplace_back(f.name, f.extra, f.reads, f.writes);
+        return all;
+      },
+      "Of files that this package reads or writes by others: ending, extra, whether it reads, whether it writes.");
   m.def("option_table", tool::option_table, "Every option of the command.");
 }
 

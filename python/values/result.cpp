@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "isoshell/advanced/digest.h"
+#include "isoshell/io/file_format.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/region_census.h"
 #include "isoshell/run/run.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/result_state.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -20,10 +22,10 @@ namespace nb = nanobind;
 namespace isoshell::python {
 namespace {
 
-const TriangleMesh& mesh_of(nb::handle self) { return nb::cast<const RunResult&>(self).mesh; }
+const TriangleMesh& mesh_of(nb::handle self) { return nb::cast<const MadeResult&>(self).mesh; }
 
 /// What "auto" or three numbers subtract; none where that is not asked for.
-std::optional<std::array<double, 3>> offset(const RunResult& result, const std::string& recenter) {
+std::optional<std::array<double, 3>> offset(const MadeResult& result, const std::string& recenter) {
   if (recenter.empty()) return {};
   const std::optional<WorldPoint> given = parse_recenter(recenter).offset_world;
   const WorldPoint by = given ? *given : offset_to_origin(result.mesh);
@@ -31,20 +33,33 @@ std::optional<std::array<double, 3>> offset(const RunResult& result, const std::
 }
 
 /// Result: what there is to warn of.
-std::vector<std::string> save(const RunResult& result, const std::string& path, bool overwrite,
+std::vector<std::string> save(const MadeResult& result, const std::string& path, bool overwrite,
                               const std::string& recenter) {
   MeshWriteOptions options;
   options.overwrite = overwrite;
   if (const auto by = offset(result, recenter)) options.offset_world = {(*by)[0], (*by)[1], (*by)[2]};
-  options.made_of = result.made_of;
+  options.made_of = result.frame_note;
   write_mesh(path, result.mesh, options);
   const std::string format = named_output(path, "", StopAfter::mesh).format;
   return warnings_of_files({{path, format, positions_in_file(result.mesh, format, options.offset_world).held}},
                            offset_to_origin(result.mesh));
 }
 
+/// What a file of that name does not hold of the result, with the reasons.
+std::vector<std::string> not_held(const MadeResult& result, const std::string& path) {
+  const size_t dot = path.find_last_of('.');
+  const std::string format = dot == std::string::npos ? "" : path.substr(dot + 1);
+  std::vector<std::string> lost;
+  for (const Attribute& a : result.mesh.attributes)
+    if (const std::string why = why_not_held(format, a); !why.empty()) lost.push_back(a.name + ": " + why);
+  const FileFormat* const found = find_format(format);
+  if (!result.mesh.regions.empty() && found && !found->holds_regions)
+    lost.push_back("regions: " + format + " files do not say which regions a face parts");
+  return lost;
+}
+
 /// Vertices, faces and attributes of one region's boundary.
-nb::tuple region(const RunResult& result, int32_t label) {
+nb::tuple region(const MadeResult& result, int32_t label) {
   TriangleMesh mesh = [&] {
     const nb::gil_scoped_release released;
     return region_of(result.mesh, label);
@@ -56,30 +71,40 @@ nb::tuple region(const RunResult& result, int32_t label) {
 
 }  // namespace
 
+MadeResult made_of(RunResult result) {
+  return {std::move(result.mesh), statistics_json(result.record), std::move(result.gates),
+          std::move(result.missed_gates), std::move(result.made_of)};
+}
+
 void bind_result(nb::module_& m) {
-  nb::class_<RunResult>(m, "RunResult", "What a run made.")
+  nb::class_<MadeResult>(m, "RunResult", "What a run made.")
       .def_prop_ro("vertices", [](nb::handle self) { return rows_of(mesh_of(self).vertices, self); })
       .def_prop_ro("faces", [](nb::handle self) { return rows_of(mesh_of(self).triangles, self); })
       .def_prop_ro(
-          "attributes", [](const RunResult& r) { return attributes_of(r.mesh); },
+          "attributes", [](const MadeResult& r) { return attributes_of(r.mesh); },
           nb::for_getter(nb::sig("def attributes(self, /) -> list[tuple[str, str, typing.Any, list[str]]]")))
       .def_prop_ro(
-          "features", [](const RunResult& r) { return features_of(r.mesh); },
+          "features", [](const MadeResult& r) { return features_of(r.mesh); },
           nb::for_getter(nb::sig("def features(self, /) -> dict[str, typing.Any]")))
       .def_prop_ro(
-          "regions", [](const RunResult& r) { return regions_of(r.mesh); },
+          "regions", [](const MadeResult& r) { return regions_of(r.mesh); },
           nb::for_getter(nb::sig("def regions(self, /) -> dict[str, typing.Any]")))
-      .def_prop_ro("statistics", [](const RunResult& r) { return statistics_json(r.record); })
-      .def_prop_ro("digest", [](const RunResult& r) { return digest_text(digest(r.mesh)); })
-      .def_ro("gates", &RunResult::gates)
-      .def_ro("missed_gates", &RunResult::missed_gates)
+      .def_ro("statistics", &MadeResult::statistics)
+      .def_prop_ro("digest", [](const MadeResult& r) { return digest_text(digest(r.mesh)); })
+      .def_ro("gates", &MadeResult::gates)
+      .def_ro("missed_gates", &MadeResult::missed_gates)
       .def("region", region, nb::arg("label"),
            nb::sig("def region(self, label: int) -> tuple[typing.Any, typing.Any, list[tuple[str, str, typing.Any, "
                    "list[str]]]]"))
       .def("offset", offset, nb::arg("recenter"),
            nb::sig("def offset(self, recenter: str) -> tuple[float, float, float] | None"))
       .def("save", save, nb::arg("path"), nb::arg("overwrite"), nb::arg("recenter"),
-           nb::call_guard<nb::gil_scoped_release>());
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("not_held", not_held, nb::arg("path"))
+      .def("__getstate__", state_of, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def(
+          "__setstate__", [](MadeResult& r, const nb::tuple& state) { new (&r) MadeResult(result_of_state(state)); },
+          nb::sig("def __setstate__(self, state: tuple[typing.Any, ...]) -> None"));
 }
 
 }  // namespace isoshell::python

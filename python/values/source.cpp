@@ -1,11 +1,15 @@
 #include "values/source.h"
 
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -21,6 +25,7 @@
 #include "values/arrays.h"
 #include "values/attributes.h"
 #include "values/labels.h"
+#include "values/result.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -53,13 +58,15 @@ Source surface(const std::string& name, TriangleSoup soup) {
             return input_of(std::move(*given), name, request.tell);
           },
           {},
-          {}};
+          {},
+          {},
+          given};
 }
 
 using GivenAttribute = std::tuple<std::string, std::string, AnyArray, std::vector<std::string>>;
 
 Source triangles(const std::string& name, const AnyArray& vertices, const AnyArray& faces,
-                 const std::vector<GivenAttribute>& attributes, const RunResult* regions_of) {
+                 const std::vector<GivenAttribute>& attributes, const MadeResult* regions_of) {
   TriangleSoup soup;
   soup.vertices = points_of("vertices", vertices);
   soup.triangles = triangles_of("faces", faces, soup.vertices.size());
@@ -170,6 +177,41 @@ void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, 
   source.sizing = sizing_of(dense_volume("sizing", lengths, spacing, origin), "sizing");
 }
 
+TriangleSoup& surface_in(Source& source) {
+  if (!source.surface) refuse("sizing as an array is for meshes in memory; give an isoshell.Volume of edge lengths");
+  return *source.surface;
+}
+
+void set_sizing_of_vertices(Source& source, const AnyArray& lengths) {
+  const float* first = floats_of("sizing", lengths, 1);
+  std::vector<double> values;
+  for (size_t i = 0; i < lengths.shape(0); ++i) values.push_back(double(first[int64_t(i) * lengths.stride(0)]));
+  source.sizing = sizing_on(surface_in(source), std::move(values), "sizing");
+}
+
+using LabelPairs = nb::ndarray<const int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+
+/// Of each face the region behind it and the one in front, in the order that FaceRegions has them in; names by label.
+void set_regions(Source& source, const LabelPairs& labels, int32_t background,
+                 const std::map<int32_t, std::string>& names) {
+  FaceRegions regions;
+  regions.background = background;
+  for (size_t i = 0; i < labels.shape(0); ++i) regions.labels.push_back({labels(i, 0), labels(i, 1)});
+  for (const auto& [label, name] : names) regions.names.push_back({label, name});
+  surface_in(source).regions = std::move(regions);
+}
+
+/// What the mesh had beside its positions and a run does not carry, with the reasons.
+void set_dropped(Source& source, const std::vector<std::pair<std::string, std::string>>& dropped) {
+  for (const auto& [name, reason] : dropped) surface_in(source).dropped_attributes.push_back({name, reason});
+}
+
+/// A file is pickled as its name; what is in memory is not.
+std::string state_of(const Source& source) {
+  if (!source.is_file()) refuse("a source in memory cannot be pickled");
+  return source.path;
+}
+
 }  // namespace
 
 Input input_of_run(const ReadMemory& read, const RunRequest& request, const Context& context) {
@@ -207,6 +249,13 @@ void bind_source(nb::module_& m) {
       .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
            nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
                    "tuple[float, float, float]) -> None"))
+      .def("set_sizing_of_vertices", set_sizing_of_vertices, nb::arg("lengths"),
+           nb::sig("def set_sizing_of_vertices(self, lengths: typing.Any) -> None"))
+      .def("set_regions", set_regions, nb::arg("labels"), nb::arg("background"), nb::arg("names"),
+           nb::sig("def set_regions(self, labels: typing.Any, background: int, names: dict[int, str]) -> None"))
+      .def("set_dropped", set_dropped, nb::arg("dropped"))
+      .def("__getstate__", state_of)
+      .def("__setstate__", [](Source& source, const std::string& path) { new (&source) Source(file(path)); })
       .def("set_velocities", set_velocities, nb::arg("vectors"), nb::arg("spacing"), nb::arg("origin"),
            nb::sig("def set_velocities(self, vectors: typing.Any, spacing: tuple[float, float, float], origin: "
                    "tuple[float, float, float]) -> None"));

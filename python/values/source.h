@@ -23,6 +23,8 @@ struct Source {
   /// Where the surface goes until the next frame, once that has been read; empty: no array says it.
   std::function<std::shared_ptr<const VelocityField>()> velocity = {};
 
+  std::shared_ptr<TriangleSoup> surface = {};  ///< of a mesh in memory, until a run takes it
+
   bool is_file() const { return !read; }
 };
 
