@@ -22,9 +22,9 @@ environment() { # folder, modules, command that makes it, packages...
   $make "$folder" && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@"
 }
 
-packages=(numpy scipy nanobind pytest mypy trimesh k3d usd-core distributed fsspec psutil dask-jobqueue cryptography manifold3d==3.5.4)
+packages=(numpy scipy nanobind pytest mypy trimesh lxml networkx meshio h5py nibabel k3d usd-core distributed fsspec psutil dask-jobqueue cryptography manifold3d==3.5.4)
 if command -v chromium google-chrome >/dev/null; then packages+=(playwright); fi
-if [ "${1:-}" = ci ]; then packages+=(pyvista gmsh); fi
+if [ "${1:-}" = ci ]; then packages+=(pyvista gmsh pymeshlab); fi
 modules=${packages[*]%%==*}
 modules=${modules/usd-core/pxr}
 modules=${modules//-/_}

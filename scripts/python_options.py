@@ -16,10 +16,9 @@ HEAD = '''"""Keywords of isoshell.remesh. Made by scripts/python_options.py from
 from __future__ import annotations
 
 import os
-from typing import Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
+from typing import Any, Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
 from ._context import Progress
-from ._sources import Volume
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -39,7 +38,7 @@ SPECIAL = {
     "device": "str",
     "input-format": "str",
     "output-format": "str",
-    "sizing": "Union[Path, Volume]",
+    "sizing": "Any",
     "region-edge-length": "Mapping[Union[int, str], float]",
     "stats": "Union[bool, Path]",
 }
@@ -77,7 +76,7 @@ def options_file() -> str:
             text += f"\n    {group}:\n"
         text += textwrap.fill(f"{keyword}: {text_of(option)}", 120, initial_indent=8 * " ", subsequent_indent=12 * " ")
         text += "\n"
-        members += f"    {keyword}: {kind if kind == 'bool' else f'Optional[{kind}]'}\n"
+        members += f"    {keyword}: {kind if kind in ('bool', 'Any') else f'Optional[{kind}]'}\n"
     return f'{text}    """\n\n{members}'
 
 

@@ -25,7 +25,7 @@ from ._remesh import estimate, remesh
 from ._report import report
 from ._result import Result
 from ._sequence import Frames, remesh_sequence
-from ._sources import Mesh, Points, Volume
+from ._inputs import Mesh, Points, Volume
 from ._stages import Stages
 
 if _TYPE_CHECKING:

@@ -4,6 +4,7 @@ import os
 import sys
 
 from . import _isoshell
+from ._exchange import format_of
 from ._report import has_k3d, write_of_command
 
 FARM = ("run", "status", "report")
@@ -16,10 +17,10 @@ def main() -> int:
         from ._farm._command import main as farm
 
         return farm(words[1:])
-    if any(".usd" in word.lower() for word in words):
-        from ._usd._command import names_usd, run
+    if any(".usd" in word.lower() or format_of(word) is not None for word in words):
+        from ._usd._command import names_ours, run
 
-        if names_usd(words):
+        if names_ours(words):
             return run(words)
     return _isoshell.command(["vdb_isomesh", *words], write_of_command if has_k3d() else None)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 from . import _isoshell
 from ._errors import Error
@@ -18,9 +18,38 @@ BRING = "bring it to the host (tensor.cpu(), cupy.asnumpy(array))"
 
 def array_of(argument: str, value: Any) -> np.ndarray[Any, Any]:
     """An array of numbers in the host's memory and byte order; `argument` is what errors call it."""
+    array, mask = masked_array_of(argument, value)
+    if mask is not None:
+        raise Error(f"{argument}{first_place(mask)} is masked, and has no value; leave it out, or fill it: array.filled(value)")
+    return array
+
+
+def masked_array_of(argument: str, value: Any) -> tuple[np.ndarray[Any, Any], Optional[np.ndarray[Any, Any]]]:
+    """The same, and where it has no value; None: it has one everywhere."""
     import numpy as np
 
     array = _from_dlpack(argument, value) if _gives_dlpack_only(value) else _from_any(argument, value)
+    mask = np.ma.getmaskarray(array) if np.ma.is_masked(array) else None
+    return _plain(argument, np.ma.getdata(array)), mask
+
+
+def floats_or_nan(argument: str, value: Any) -> np.ndarray[Any, Any]:
+    """An array of single precision, NaN where it has no value."""
+    import numpy as np
+
+    array, mask = masked_array_of(argument, value)
+    floats = array.astype(np.float32, copy=False)
+    return floats if mask is None else np.where(mask, np.float32(np.nan), floats)
+
+
+def first_place(mask: np.ndarray[Any, Any]) -> str:
+    """The indices of the first that is true, as they are written in Python."""
+    return str([int(i[0]) for i in mask.nonzero()])
+
+
+def _plain(argument: str, array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    import numpy as np
+
     if array.dtype.kind not in "biuf":
         raise Error(f"{argument} must be an array of numbers, and is one of {array.dtype}")
     if array.dtype.kind == "f" and array.dtype.itemsize not in (4, 8):
@@ -72,6 +101,8 @@ def _from_any(argument: str, value: Any) -> np.ndarray[Any, Any]:
     import numpy as np
 
     try:
-        return np.asarray(value)
+        if isinstance(value, (list, tuple)) and any(isinstance(part, np.ma.MaskedArray) for part in value):
+            return np.ma.stack(value)
+        return np.asanyarray(value) if isinstance(value, np.ma.MaskedArray) else np.asarray(value)
     except Exception as error:
         raise Error(f"{argument} cannot be made an array: {error}") from error

@@ -36,7 +36,7 @@ class Error(Exception):
         self.info = info
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (str(self), self.code, self.stage)
+        return type(self), (str(self), self.code, self.stage, self.result, self.info)
 
 
 class RunWarning(UserWarning):

@@ -25,6 +25,7 @@ OF_SEQUENCES = "sequences are meshed by isoshell.remesh_sequence"
 class Kind(NamedTuple):
     is_flag: bool
     of_command: bool  # no keyword
+    is_whole: bool  # takes whole numbers alone
 
 
 _kinds: dict[str, Kind] = {}
@@ -33,7 +34,7 @@ _kinds: dict[str, Kind] = {}
 def kinds() -> dict[str, Kind]:
     """Every option of the command by its keyword."""
     if not _kinds:
-        _kinds.update({entry.name.replace("-", "_"): Kind(not entry.value, entry.of_command)
+        _kinds.update({entry.name.replace("-", "_"): Kind(not entry.value, entry.of_command, not entry.real and entry.low < entry.high)
                        for entry in _isoshell.option_table()})
     return _kinds
 
@@ -54,12 +55,14 @@ def keywords_of(options: dict[str, Any]) -> Keywords:
         option = name.replace("_", "-")
         if "-" in name:
             raise Error(f"unknown option {name}; did you mean {name.replace('-', '_')}?", stage="options")
+        if kind is None and name == "faces" and _is_array(value):
+            raise Error("faces is no keyword; give vertices and faces by position: remesh(V, F)", stage="options")
         if kind is None:
             words.append((option, None))  # the parser refuses it, and knows the nearest name
         elif value is None:
             continue
         elif not kind.is_flag:
-            text = text_of(name, value)
+            text = text_of(name, _whole(value) if kind.is_whole or name == "max_memory" else value)
             if text:
                 words.append((option, text))
         elif not isinstance(value, bool):
@@ -69,9 +72,18 @@ def keywords_of(options: dict[str, Any]) -> Keywords:
     return words
 
 
+def _is_array(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) or getattr(value, "ndim", 0) > 0
+
+
 def _plain(value: Any) -> Any:
     """A scalar of numpy as Python's own."""
     return value.item() if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0 else value
+
+
+def _whole(value: Any) -> Any:
+    """1e3 as 1000; any other number as it is."""
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 2**63 else value
 
 
 def text_of(name: str, given: Any) -> str:

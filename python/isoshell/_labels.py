@@ -7,8 +7,9 @@ import os
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
 
 from . import _isoshell
-from ._arrays import array_of, triple_of
+from ._arrays import array_of, masked_array_of, triple_of
 from ._errors import Error
+from ._inputs import lattice_text
 from ._paths import path_text
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ class Labels:
     regions once, and the closed boundary of each: see Result.regions and Result.region.
 
     Args:
-        array: (X, Y, Z) whole numbers of any type and strides that fit int32; voxel (i, j, k) is centred at
+        array: (X, Y, Z) whole numbers, background where they are masked, of any type and strides that fit int32; voxel (i, j, k) is centred at
             origin + (i, j, k) * spacing. Where the array begins with z, give array.transpose(2, 1, 0).
         spacing: world units from a voxel to the next, one number or one an axis.
         origin: the centre of voxel (0, 0, 0), world units.
@@ -48,6 +49,10 @@ class Labels:
         self.background = background
         self.smallest_island = smallest_island
 
+    def __repr__(self) -> str:
+        names = f", {len(self.names)} names" if self.names else ""
+        return f"<isoshell.Labels: {lattice_text(self.array)}{names}>"
+
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write an Int32Grid to a .vdb file, which the command and remesh() read as these labels.
 
@@ -62,11 +67,12 @@ def values_of(labels: Labels) -> np.ndarray[Any, Any]:
     """The array as whole numbers."""
     import numpy as np
 
-    values = array_of("labels", labels.array)
+    values, mask = masked_array_of("labels", labels.array)
     if values.dtype.kind == "f":
         raise Error(f"labels must be whole numbers, and are {values.dtype}; round them: "
                     "numpy.rint(array).astype(numpy.int32)")
-    return values.astype(np.uint8) if values.dtype.kind == "b" else values
+    values = values.astype(np.uint8) if values.dtype.kind == "b" else values
+    return values if mask is None else np.where(mask, labels.background, values)
 
 
 def lattice_of(labels: Labels) -> _isoshell.LabelLattice:

@@ -12,6 +12,7 @@ from . import _isoshell
 from ._errors import Error
 from ._keywords import keywords_of
 from ._remesh import keywords_for, listener, result_of, takes_stats
+from ._inputs import Volume
 from ._result import Result, checked
 from ._sources import SourceLike, opened, sizing_of, source_of
 
@@ -118,6 +119,8 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
         raise Error("sources must be an iterable of sources, such as a list of paths, and is "
                     f"{type(sources).__name__}; one source is for isoshell.remesh", stage="arguments")
     sizing = sizing_of(given)
+    if sizing is not None and not isinstance(sizing, Volume):
+        raise Error("sizing as an array is for one mesh; name an attribute that the vertices of each have", stage="options")
     crew = _isoshell.RunWorkers(keywords_of(given), workers or 0)
 
     runs = (_Run(crew, source, sizing, given, measure_all) for source in sources)
@@ -131,10 +134,12 @@ class _Run:
                  measure_all: bool) -> None:
         self._refusal: Optional[Error] = None
         try:
-            self._keywords = keywords_for(source, options)
-            self._source = opened(source)
+            options = dict(options)
+            self._source = opened(source, options)
+            self._keywords = keywords_for(self._source, options)
             self._start = source_of(self._source, sizing)
-            self._begun = crew.begin(self._start, self._keywords, measure_all, listener(options))
+            named = os.fsdecode(source) if isinstance(source, (str, os.PathLike)) else ""
+            self._begun = crew.begin(self._start, self._keywords, measure_all, listener(options, named))
         except Error as error:
             self._refusal = error
 

@@ -11,12 +11,12 @@ from ._context import Context
 from ._errors import Error
 from ._keywords import Keywords
 from ._remesh import keywords_for, listener, settle
-from ._sources import SourceLike, source_of
+from ._sources import SourceLike, opened, source_of, with_faces
 
 AS_IT_IS = ("features", "off")  # creases are for who remeshes
 
 
-def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
+def mesh_info(mesh: SourceLike, *faces: Any, ref: Optional[SourceLike] = None,
               require: Optional[Union[str, Sequence[str]]] = None, input_format: Optional[str] = None,
               ref_format: Optional[str] = None, context: Optional[Context] = None, threads: Optional[int] = None,
               max_memory: Optional[Union[int, str]] = None) -> dict[str, Any]:
@@ -24,6 +24,7 @@ def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
 
     Args:
         mesh: a mesh as remesh() takes it: a path, (vertices, faces), an object that has both, isoshell.Mesh, a Result.
+        faces: mesh_info(V, F) is mesh_info((V, F)).
         ref: also measure distances and deviations of normals from this surface, both ways: any source of remesh().
         require: closed, manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, regions (each closed,
             with shared walls), min-angle=DEG, and with ref max-deviation=W (world units) and normal-deviation=DEG; a
@@ -48,6 +49,8 @@ def mesh_info(mesh: SourceLike, *, ref: Optional[SourceLike] = None,
     if context is None:
         options["device"] = "cpu"
     place, progress = settle(context, options)
+    mesh = opened(with_faces(mesh, faces), options)
+    ref = opened(ref, {"input_format": ref_format})
     reference = None if ref is None else source_of(ref)
     text, missed = _isoshell.mesh_info(place, source_of(mesh), keywords_for(mesh, options), reference,
                                        _keywords_of_reference(ref, ref_format), progress, listener({}))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
+from typing import Any, Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
 from ._context import Progress
-from ._sources import Volume
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -18,8 +17,8 @@ class Options(TypedDict, total=False):
     Size of the result:
         vertices: number of vertices of the result [10000].
         edge_length: target edge length in world units, instead of vertices.
-        sizing: float grid of target edge lengths in world units; without vertices it also decides the number of
-            vertices.
+        sizing: target edge lengths in world units: a float grid, or the attribute of the input's vertices of that name;
+            without vertices it also decides the number of vertices.
         region_edge_length: edge length in world units on the walls of a region, a label or a name; may be given for
             each region; without vertices it also decides the number of vertices.
         adaptivity: fraction of the vertices, 0 to 1, distributed by curvature instead of area [0].
@@ -93,7 +92,7 @@ class Options(TypedDict, total=False):
 
     vertices: Optional[int]
     edge_length: Optional[float]
-    sizing: Optional[Union[Path, Volume]]
+    sizing: Any
     region_edge_length: Optional[Mapping[Union[int, str], float]]
     adaptivity: Optional[float]
     gradation: Optional[float]

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 from . import _isoshell, _report
 from ._context import Context, OnProgress, Progress
 from ._errors import Error, note, warn
+from ._exchange import format_of
+from ._inputs import Mesh
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._paths import path_text
 from ._result import Result, checked
-from ._sources import Mesh, SourceLike, is_true_or_false, opened, sizing_of, source_of
+from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of, with_faces
 from ._usd import is_usd
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ STAGE_FILES = ("save_shell", "save_voronoi")
 OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
 
 
-def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]] = None,
+def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathLike[str]]] = None,
            context: Optional[Context] = None, **options: Unpack[Options]) -> Result:
     """Remesh a surface: an isotropic triangle mesh of it.
 
@@ -32,15 +34,20 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
             scene.usda:/World/Mesh (see isoshell.usd); (vertices, faces), arrays of (K, 3) numbers in world units and of
             (M, 3) whole numbers, or faces of more corners; anything with .vertices and .faces, such as a mesh of
             trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Mesh, which has attributes;
-            isoshell.Points; isoshell.Volume; isoshell.Labels, whose result has regions. Arrays are whatever numpy or
+            isoshell.Points; isoshell.Volume; isoshell.Labels, whose result has regions. Meshes, scenes and clouds of
+            trimesh, data sets of pyvista and VTK, meshes of meshio and PyMeshLab and images of nibabel bring what they
+            have beside their positions; report["attributes"] says what was kept. Arrays are whatever numpy or
             DLPack can take, of the host, or of a CUDA device where the module was built with CUDA; they are copied
             once, those of a device to the host first.
+        faces: remesh(V, F) is remesh((V, F)).
         output: also write the result there, as the command does, or as a stage of USD, which names the files of
             save_shell and save_voronoi as volumes.
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
-            what these say, progress may be a function, called as progress(stage, fraction) with a Progress of the whole run, stats may be True, to
-            measure everything without writing a file, and sizing may be an isoshell.Volume of edge lengths.
+            what these say, progress may be a function, called as progress(stage, fraction) with a Progress of the whole
+            run, stats may be True, to measure everything without writing a file, and sizing may be an isoshell.Volume of
+            edge lengths, or an array (K,) of one for each vertex of a mesh in memory, NaN where it says nothing: between
+            them lengths are interpolated on the nearest triangle, which takes a search for each vertex of the sheet.
 
     Returns:
         The mesh. Warnings of the run are RunWarning; notes go to the logger "isoshell".
@@ -51,22 +58,24 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
         KeyboardInterrupt: within .3 s of the key; nothing half-written is left.
     """
     given: dict[str, Any] = dict(options)
+    source = with_faces(source, faces)
     measure_all = takes_stats(given)
     sizing = sizing_of(given)
     place, progress = settle(context, given)
-    keywords = keywords_for(source, given)
     target = "" if output is None else path_text(output)
     volumes = stage_files(given)
-    is_stage = is_usd(target)
-    if is_stage:
-        check_stage(target, given, volumes)
+    is_ours = is_written_here(target, given)
+    if is_ours:
+        check_target(target, given, volumes)
     if options.get("report"):
         _report.require_k3d()
-    source = opened(source)
+    keywords_of(given)  # what cannot be is refused before anything is read
+    source = opened(source, given)
+    keywords = keywords_for(source, given)
     start = source_of(source, sizing)
-    made = _isoshell.remesh(place, start, keywords, "" if is_stage else target, measure_all, progress, listener(given))
+    made = _isoshell.remesh(place, start, keywords, "" if is_ours else target, measure_all, progress, listener(given))
     result = result_of(made, start, keywords, source, volumes)
-    if is_stage:
+    if is_ours:
         result.save(target, overwrite=given.get("force") is True, recenter=given.get("recenter"))
     page = options.get("report")
     if page:
@@ -74,7 +83,7 @@ def remesh(source: SourceLike, *, output: Optional[Union[str, os.PathLike[str]]]
     return checked(result)
 
 
-def estimate(source: SourceLike, *, context: Optional[Context] = None, **options: Unpack[Options]) -> dict[str, Any]:
+def estimate(source: SourceLike, *faces: Any, context: Optional[Context] = None, **options: Unpack[Options]) -> dict[str, Any]:
     """What a run would take, as the command's --dry-run; arguments and errors are those of remesh().
 
     Returns:
@@ -84,6 +93,7 @@ def estimate(source: SourceLike, *, context: Optional[Context] = None, **options
     given: dict[str, Any] = dict(options)
     sizing = sizing_of(given)
     place, _ = settle(context, given)
+    source = opened(with_faces(source, faces), given)
     keywords = keywords_for(source, given)
     return _isoshell.estimate(place, source_of(source, sizing), keywords, listener(given))
 
@@ -104,19 +114,29 @@ def result_of(made: _isoshell.RunResult, start: _isoshell.Source, keywords: Keyw
               volumes: list[str]) -> Result:
     """What a run made of a source, with what a report would need of it."""
     return Result(made, start if start.is_file else None, [word for word in keywords if word[0] in READING],
-                  source.origin if isinstance(source, Mesh) else None, volumes)
+                  source.origin if isinstance(source, Mesh) else None, volumes, getattr(source, "material", None))
 
 
-def check_stage(target: str, options: dict[str, Any], volumes: list[str]) -> None:
-    """Before a run whose output is a stage of USD: whether it can be."""
-    from ._usd._write import check_target
+def is_written_here(target: str, options: dict[str, Any]) -> bool:
+    """Whether not the library writes such a file: a stage of USD, or by another package."""
+    return is_usd(target) or (format_of(target) is not None and not options.get("output_format")
+                              and not options.get("stop_after"))
 
+
+def check_target(target: str, options: dict[str, Any], volumes: list[str]) -> None:
+    """Before a run whose output is such a file: whether it can be."""
     refused = [name for name in OF_OTHER_OUTPUTS if options.get(name)]
     if refused:
         raise Error(f"{', '.join(refused)}: not where output is {target}", stage="options")
     others = [(f"--{name.replace('_', '-')}", path_text(options[name])) for name in ("stats", "report", *STAGE_FILES)
               if options.get(name)]
-    check_target(target, options.get("force") is True, volumes, others)
+    if not is_usd(target):
+        from ._exchange import _files
+
+        return _files.check_target(target, options.get("force") is True, others)
+    from ._usd import _write
+
+    _write.check_target(target, options.get("force") is True, volumes, others)
 
 
 def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:
@@ -146,11 +166,14 @@ def keywords_for(source: Any, options: dict[str, Any]) -> Keywords:
     return keywords_of({**options, "iso": 0.5} if has_own else options)
 
 
-def listener(options: dict[str, Any]) -> Callable[[bool, str], None]:
-    """What hears the messages of a run: warnings, unless it is to be quiet, and notes."""
+def listener(options: dict[str, Any], source: str = "") -> Callable[[bool, str], None]:
+    """What hears the messages of a run: warnings, unless it is to be quiet, and notes. Where there are many runs, of a
+    source that has a name."""
     quiet = options.get("quiet") is True
 
     def tell(is_warning: bool, text: str) -> None:
+        if source and not text.startswith(source):
+            text = f"{source}: {text}"
         if is_warning and not quiet:
             warn(text)
         else:

@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 from . import _isoshell
 from ._errors import Error, warn
+from ._exchange import format_of, to_package
+from ._inputs import Mesh, counts_text, regions_in
 from ._keywords import text_of
 from ._labels import label_of
 from ._paths import path_text
 from ._usd import Origin, is_usd
 
 if TYPE_CHECKING:
+    import meshio  # type: ignore[import-not-found, import-untyped, unused-ignore]
     import numpy as np
     import pyvista  # type: ignore[import-not-found, import-untyped, unused-ignore]
     import torch  # type: ignore[import-not-found, import-untyped, unused-ignore]
     import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     from ._keywords import Keywords
-    from ._sources import Mesh
 
     Floats = np.ndarray[Any, np.dtype[np.float64]]
     Ints = np.ndarray[Any, np.dtype[np.int32]]
@@ -32,6 +34,7 @@ class Result:
 
     Attributes:
         origin: what the scene that it comes from says of axes, units and materials, otherwise None: see isoshell.usd.
+        material: what a mesh of trimesh that it comes from shows its texture coordinates with, otherwise None.
         frame: the number of its frame, or of a stage its time code; None where it is no frame of a sequence.
     """
 
@@ -40,11 +43,12 @@ class Result:
 
     def __init__(self, made: _isoshell.RunResult, source: Optional[_isoshell.Source] = None,
                  reading: Optional[Keywords] = None, origin: Optional[Origin] = None,
-                 volumes: Sequence[str] = ()) -> None:
+                 volumes: Sequence[str] = (), material: Any = None) -> None:
         self._made = made
         self._source = source  # of a file; what memory has is not kept
         self._reading = reading or []  # the options that decide how it is read
         self.origin = origin
+        self.material = material
         self.frame = None
         self._volumes = list(volumes)
         self._report: Optional[dict[str, Any]] = None
@@ -116,8 +120,6 @@ class Result:
         Raises:
             Error: of code USAGE for the background and for a label that no face has.
         """
-        from ._sources import Mesh
-
         vertices, faces, attributes = self._made.region(label_of("label", label))
         of: dict[str, dict[str, Any]] = {"vertex": {}, "face": {}, "corner": {}}
         for name, domain, values, _ in attributes:
@@ -155,7 +157,8 @@ class Result:
                 origin, as STL.
 
         A stage of USD (.usda, .usdc, .usd, .usdz; needs usd-core) also names the stage files that the run saved, but
-        in packages: see isoshell.usd.write, which takes more.
+        in packages: see isoshell.usd.write, which takes more. Formats of other packages (.vtk .vtp .vtu .msh .med .xdmf
+        .xmf .inp .3mf) need those; what they do not hold is warned of.
 
         Raises:
             Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True, or the
@@ -166,28 +169,45 @@ class Result:
 
             package = path_text(path).lower().endswith(".usdz")
             usd.write(path, self, volumes=[] if package else self._volumes, overwrite=overwrite, recenter=recenter)
+        elif format_of(path) is not None:
+            from ._exchange import _files
+
+            if recenter is not None:
+                raise Error(f"recenter: not for {path_text(path)}, whose format is another package's", stage="options")
+            _files.write(path_text(path), self, overwrite)
         else:
             for text in self._made.save(path_text(path), overwrite, text_of("recenter", recenter)):
                 warn(text)
+            for lost in self._made.not_held(path_text(path).lower()):
+                warn(f"{path_text(path)}: without {lost}")
+
+    def export(self, path: str | os.PathLike[str], *, overwrite: bool = False,
+               recenter: Union[str, Sequence[float], None] = None) -> None:
+        """The same as save()."""
+        self.save(path, overwrite=overwrite, recenter=recenter)
 
     def to_trimesh(self) -> trimesh.Trimesh:
-        """A trimesh.Trimesh with copies of vertices and faces, and the colours of vertices. Needs trimesh."""
-        import trimesh
+        """A trimesh.Trimesh with copies of all that there is: colours, texture coordinates, normals, attributes of
+        vertices and faces, of regions region_inside and region_outside of faces. Needs trimesh.
 
-        colors = self.attributes.get("color") if self.domains.get("color") == "vertex" else None
-        return trimesh.Trimesh(self.vertices.copy(), self.faces.copy(), vertex_colors=colors, process=False)
+        trimesh shows colours or a texture. For a texture it has coordinates by vertex: where these jump, along seams, and
+        normals on creases, vertices are there once for each side, at the same place. Beside colours both are
+        face_attributes, of the shape (M, 3, ...). Names of labels and regions are metadata["isoshell"].
+        """
+        made: trimesh.Trimesh = to_package("_trimesh", self)
+        return made
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """A pyvista.PolyData with copies of vertices, faces and the attributes of both. Needs pyvista."""
-        import numpy as np
-        import pyvista
+        """A pyvista.PolyData with the same: point_data, cell_data, active texture coordinates "uv" and normals
+        "normal", for which vertices are there once for each side of a seam or crease; names in field_data. Needs pyvista."""
+        made: pyvista.PolyData = to_package("_pyvista", self)
+        return made
 
-        faces = np.column_stack([np.full(len(self.faces), 3, np.int32), self.faces]).ravel()
-        mesh = pyvista.PolyData(self.vertices.copy(), faces)
-        for name, domain, values, _ in self._named_attributes():
-            if domain != "corner":
-                (mesh.point_data if domain == "vertex" else mesh.cell_data)[name] = values
-        return mesh
+    def to_meshio(self) -> meshio.Mesh:
+        """A meshio.Mesh with the same, in the same way: point_data and cell_data; names in field_data, with their number and 2 for a
+        label of faces, or 3 for a region. Needs meshio."""
+        made: meshio.Mesh = to_package("_meshio", self)
+        return made
 
     def to_torch(self, device: Optional[Any] = None) -> tuple[torch.Tensor, torch.Tensor]:
         """Vertices (K, 3) float64 and faces (M, 3) int64 as tensors of torch, which own their memory. Needs torch.
@@ -204,7 +224,12 @@ class Result:
         return torch.tensor(self.vertices, device=device), torch.tensor(self.faces, dtype=torch.int64, device=device)
 
     def __repr__(self) -> str:
-        return f"<isoshell.Result: {len(self.vertices)} vertices, {len(self.faces)} faces>"
+        counts = counts_text(self.vertices, self.faces, [*self.attributes], regions_in(self.regions))
+        return f"<isoshell.Result: {counts}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the arrays of attributes, which are views of the mesh."""
+        return {**self.__dict__, "_attributes": None}
 
     def _named_attributes(self) -> list[tuple[str, str, Array, list[str]]]:
         if self._attributes is None:

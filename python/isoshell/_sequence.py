@@ -12,7 +12,8 @@ from ._errors import Error, warn
 from ._isoshell import ErrorCode
 from ._keywords import keywords_of
 from ._paths import path_text
-from ._remesh import keywords_for, listener, result_of, settle, stage_files, takes_stats
+from ._remesh import (check_target, is_written_here, keywords_for, listener, result_of, settle, stage_files,
+                      takes_stats)
 from ._result import Result, checked
 from ._sources import SourceLike, frame_source_of, opened, sizing_of
 from ._usd import is_usd, split_name
@@ -139,11 +140,11 @@ class _Sequence:
         self._is_coherent = not flags["no_coherence"]
         self._keep_going, self._resume = flags["keep_going"], flags["resume"]
         self._target = "" if output is None else path_text(output)
-        self._output = "" if is_usd(self._target) else self._target  # what the library writes
+        self._output = "" if is_written_here(self._target, options) else self._target  # what the library writes
         if options.get("split_regions"):
             raise Error("split_regions is for one frame; leave it out: Result.region has the regions of each",
                         stage="options")
-        if self._resume and (not self._target or is_usd(self._target)):
+        if self._resume and not self._output:
             raise Error("resume needs output to be a name of PLY files, as out.####.ply", stage="options")
         self._frames = self._frames_of(source, _text_of(frames))
         self._stage = self._stage_for(self._target)
@@ -178,8 +179,8 @@ class _Sequence:
 
     def _made(self, chain: _isoshell.Frames, index: int, frame: Number, source: Any) -> Result:
         options = self._options_of(frame)
+        source = opened(source, options)
         keywords = keywords_for(source, options)
-        source = opened(source)
         start = frame_source_of(source, self._sizing)
         path = _path_at(self._output, frame)
         made = chain.run(self._place, start, keywords, index, path, self._measure_all, self._velocity, self._progress,
@@ -197,8 +198,9 @@ class _Sequence:
         if not self._resume or not os.path.exists(path):
             return False
         options = self._options_of(frame)
-        misfit = chain.go_on_from(self._place, frame_source_of(opened(source), self._sizing),
-                                  keywords_for(source, options), path, self._velocity, listener(options))
+        given = opened(source, options)
+        misfit = chain.go_on_from(self._place, frame_source_of(given, self._sizing), keywords_for(given, options), path,
+                                  self._velocity, listener(options))
         if misfit and options.get("quiet") is not True:
             warn(f"{path} {misfit}: it is made again")
         return not misfit
@@ -261,23 +263,20 @@ class _Sequence:
         """The numbers of the frames; `files` is empty where sources are no files."""
         keywords = keywords_of(self._options)
         stage_of_all = is_usd(self._target) and not _is_pattern(self._target)
-        if is_usd(self._target) and not stage_of_all:
-            self._check_stages(keywords, frames)
+        if self._target and not self._output and not stage_of_all:
+            self._check_targets(keywords, frames)
         return _isoshell.check_frames(keywords, files, self._output, frames, self._keep_going, self._resume)
 
-    def _check_stages(self, keywords: Any, frames: str) -> None:
-        from ._remesh import check_stage
-
+    def _check_targets(self, keywords: Any, frames: str) -> None:
         for n in _isoshell.check_frames(keywords, "", "", frames, True, False):
-            check_stage(_path_at(self._target, n), self._options, [])
+            check_target(_path_at(self._target, n), self._options, [])
 
     def _stage_for(self, target: str) -> Optional[SampledStage]:
         if not is_usd(target) or _is_pattern(target):
             return None
-        from ._remesh import check_stage
         from ._usd._samples import SampledStage
 
-        check_stage(target, self._options, [])
+        check_target(target, self._options, [])
         if self._options.get("recenter") is not None:
             raise Error(f"recenter: not where all frames are {target}, whose mesh has a transform", stage="options")
         return SampledStage(target, self._options.get("force") is True)

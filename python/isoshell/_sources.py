@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of, triple_of
+from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, triple_of
+from ._exchange import format_of, taken
 from ._errors import Error
+from ._inputs import Mesh, Points, Volume
 from ._isoshell import RunResult, Source
-from ._labels import Labels, lattice_of, values_of
+from ._labels import Labels, label_of, lattice_of, values_of
 from ._paths import path_text
 from ._result import Result
-from ._usd import Origin, is_usd
+from ._usd import is_usd
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,100 +42,86 @@ class PolyDataLike(Protocol):
     def faces(self) -> Any: ...
 
 
-class Mesh:
-    """Triangles with attributes, which the result keeps: see the option `attributes`.
+class SceneLike(Protocol):
+    """A scene of trimesh."""
 
-    Where uv, texnumber or values with labels jump, the result has edges. A Result that is a source has its attributes
-    and regions.
+    @property
+    def geometry(self) -> Any: ...
 
-    Args:
-        vertices: (K, 3), world units.
-        faces: (M, 3), whole numbers.
-        of_vertices: by name (K,) numbers, and "color" (K, 3) or (K, 4): of whole numbers parts of the largest of their
-            type, otherwise 0 to 1.
-        of_faces: by name (M,) numbers, and "color" (M, 3) or (M, 4).
-        of_corners: "uv" (M, 3, 2), further sets of them "uv1", "uv2", and "normal" (M, 3, 3).
-        labels: by name the names that an attribute's values are the numbers of, -1 being none: "material", for one.
-        velocities: (K, 3) world units a frame, used as float32: where the vertices go until the next frame of
-            remesh_sequence(), which uses them where that has other faces; NaN where nothing is known.
-
-    Attributes:
-        name: what messages call it.
-        origin: of a mesh from a scene, what that says of axes, units and materials: see isoshell.usd.
-    """
-
-    def __init__(self, vertices: Any, faces: Any, *, of_vertices: Optional[Mapping[str, Any]] = None,
-                 of_faces: Optional[Mapping[str, Any]] = None, of_corners: Optional[Mapping[str, Any]] = None,
-                 labels: Optional[Mapping[str, Sequence[str]]] = None, velocities: Any = None) -> None:
-        self.vertices = vertices
-        self.faces = faces
-        self.of_vertices = dict(of_vertices or {})
-        self.of_faces = dict(of_faces or {})
-        self.of_corners = dict(of_corners or {})
-        self.labels = dict(labels or {})
-        self.velocities = velocities
-        self.name = "mesh"
-        self.origin: Optional[Origin] = None
+    @property
+    def graph(self) -> Any: ...
 
 
-class Points:
-    """A point cloud; its surface is found by Poisson reconstruction.
+class CellsLike(Protocol):
+    """A mesh of meshio, or a data set of pyvista."""
 
-    Args:
-        positions: (K, 3), world units.
-        normals: (K, 3), outward directions of any length; without them they are estimated.
-    """
+    @property
+    def points(self) -> Any: ...
 
-    def __init__(self, positions: Any, normals: Any = None) -> None:
-        self.positions = positions
-        self.normals = normals
+    @property
+    def point_data(self) -> Any: ...
 
 
-class Volume:
-    """Values on a regular lattice: a CT, a segmentation, a simulation.
+class ImageLike(Protocol):
+    """An image of nibabel."""
 
-    The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
-    True. Without `iso` the values are distances: negative inside, or unsigned. As a sizing field it holds edge lengths,
-    and NaN where it says nothing.
+    @property
+    def affine(self) -> Any: ...
 
-    Args:
-        values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
-            array begins with z, give values.transpose(2, 1, 0): that takes no copy.
-        spacing: world units from a value to the next, one number or one an axis.
-        origin: where values[0, 0, 0] stands, world units.
-        velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
-            remesh_sequence(); NaN where nothing is known.
-    """
-
-    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None) -> None:
-        self.values = values
-        self.spacing = spacing
-        self.origin = origin
-        self.velocities = velocities
+    @property
+    def dataobj(self) -> Any: ...
 
 
-SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, Labels, MeshLike, PolyDataLike,
-                   Tuple[Any, Any]]
+class ArrayLike(Protocol):
+    """Vertices, where faces follow: remesh(V, F)."""
+
+    @property
+    def shape(self) -> Any: ...
 
 
-def opened(given: Any) -> Any:
-    """Files that are read here and not by the library, as meshes; anything else as it is."""
-    if not is_usd(given):
-        return given
-    from . import usd
-
-    return usd.read(given)
+SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, Labels, MeshLike, PolyDataLike, SceneLike, CellsLike,
+                   ImageLike, ArrayLike, Tuple[Any, Any]]
 
 
-def source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
+def opened(given: Any, options: Optional[dict[str, Any]] = None) -> Any:
+    """Files that are read here and not by the library, and objects of other packages, as meshes, points, volumes and
+    labels; anything else as it is. What of the options only this reading needs is taken out of them."""
+    options = {} if options is None else options
+    if is_usd(given):
+        from . import usd
+
+        return usd.read(given)
+    if format_of(given) is not None and not options.get("input_format"):
+        from ._exchange import _files
+
+        return _files.read(os.fsdecode(given), options)
+    return taken(given, options)
+
+
+def with_faces(source: Any, faces: Sequence[Any]) -> Any:
+    """remesh(V, F) as remesh((V, F))."""
+    if not faces:
+        return source
+    if len(faces) > 1 or isinstance(source, (str, os.PathLike)):
+        raise Error("by position there is one source, or vertices and faces: remesh(V, F); everything else is by name")
+    return source, faces[0]
+
+
+def source_of(given: Any, sizing: Any = None) -> Source:
     """The source that an argument of remesh() means, with a sizing field that is in memory."""
     source = _source_of(opened(given))
-    if sizing is not None:
-        source.set_sizing(*_lattice_of("sizing", sizing))
+    if isinstance(sizing, Volume):
+        source.set_sizing(*_lattice_of("sizing", sizing, floats_or_nan))
+    elif sizing is not None:
+        lengths = floats_or_nan("sizing", sizing)
+        if lengths.ndim != 1:
+            raise Error(f"sizing must be one edge length for each vertex, or an isoshell.Volume, and has the shape "
+                        f"{lengths.shape}")
+        source.set_sizing_of_vertices(lengths)
     return source
 
 
-def frame_source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
+def frame_source_of(given: Any, sizing: Any = None) -> Source:
     """The same for a frame of a sequence, with the velocities that are in memory."""
     source = source_of(given, sizing)
     if isinstance(given, Volume) and given.velocities is not None:
@@ -147,21 +135,18 @@ def frame_source_of(given: Any, sizing: Optional[Volume] = None) -> Source:
 
 
 def _vectors_of(velocities: Any, of_shape: Tuple[int, ...]) -> np.ndarray[Any, Any]:
-    import numpy as np
-
-    vectors = array_of("velocities", velocities)
+    vectors = floats_or_nan("velocities", velocities)
     if vectors.shape != (*of_shape, 3):
         raise Error(f"velocities must have the shape {(*of_shape, 3)}, three numbers for each place, and has "
                     f"{vectors.shape}")
-    return vectors.astype(np.float32, copy=False)
+    return vectors
 
 
 def _source_of(given: Any) -> Source:
     if isinstance(given, (str, os.PathLike)):
         return Source.file(path_text(given))
     if isinstance(given, Points):
-        normals = None if given.normals is None else array_of("normals", given.normals)
-        return Source.points(array_of("points", given.positions), normals)
+        return Source.points(*_points_of(given))
     if isinstance(given, Volume):
         return Source.volume(*_lattice_of("volume", given))
     if isinstance(given, Labels):
@@ -172,18 +157,19 @@ def _source_of(given: Any) -> Source:
         named = [attribute for attribute in given._named_attributes() if attribute[0] != "gap"]
         return _source_of_triangles("result", given.vertices, given.faces, named, given._made)
     if isinstance(given, Mesh):
-        return _source_of_triangles(given.name, given.vertices, given.faces, _attributes_of(given))
+        return _source_of_mesh(given)
     for name in ("vertices", "points"):
         vertices, faces = getattr(given, name, None), getattr(given, "faces", None)
         if vertices is not None and faces is not None:
             return _source_of_faces(type(given).__name__, vertices, faces)
     raise Error("source must be a path, (vertices, faces), an object with vertices and faces, isoshell.Mesh, Points, "
-                f"Volume or Labels, and is {type(given).__name__}")
+                f"Volume or Labels, or a mesh of trimesh, pyvista, meshio or PyMeshLab, and is {type(given).__name__}")
 
 
-def sizing_of(options: dict[str, Any]) -> Optional[Volume]:
-    """Takes a sizing field in memory out of the options; one in a file stays there."""
-    return options.pop("sizing") if isinstance(options.get("sizing"), Volume) else None
+def sizing_of(options: dict[str, Any]) -> Any:
+    """Takes a sizing field in memory out of the options; the name of a file, or of an attribute, stays there."""
+    is_name = isinstance(options.get("sizing"), (str, os.PathLike))
+    return None if is_name else options.pop("sizing", None)
 
 
 def is_true_or_false(volume: Any) -> bool:
@@ -211,6 +197,69 @@ def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
     return Source.triangles(name, positions, indices, [], None)
 
 
+def _points_of(given: Points) -> tuple[Any, Any]:
+    """Positions and normals, without the points that have not both."""
+    import numpy as np
+
+    positions, mask = masked_array_of("points", given.positions)
+    if given.normals is None:
+        normals, other = None, None
+    else:
+        normals, other = masked_array_of("normals", given.normals)
+    left_out = np.zeros(len(positions) if positions.ndim else 0, bool)
+    for part in (mask, other):
+        if part is not None and part.ndim == 2 and len(part) == len(left_out):
+            left_out |= part.any(axis=1)
+        elif part is not None:
+            raise Error(f"points{first_place(part)} is masked; points and normals must be as many rows of three")
+    if not left_out.any():
+        return positions, normals
+    return positions[~left_out], None if normals is None else normals[~left_out]
+
+
+def _source_of_mesh(mesh: Mesh) -> Source:
+    if mesh.regions is None:
+        source = _source_of_triangles(mesh.name, mesh.vertices, mesh.faces, _attributes_of(mesh))
+    else:
+        source = _source_of_regions(mesh, mesh.regions)
+    if mesh.dropped:
+        source.set_dropped(mesh.dropped)
+    return source
+
+
+def _source_of_regions(mesh: Mesh, regions: Mapping[str, Any]) -> Source:
+    """With faces that have the lesser label behind them and the background in front, as the library wants them."""
+    import numpy as np
+
+    labels = array_of("regions['labels']", regions["labels"])
+    faces = array_of("faces", mesh.faces)
+    if labels.shape != (len(faces), 2) or labels.dtype.kind not in "iu":
+        raise Error(f"regions['labels'] must be whole numbers of the shape ({len(faces)}, 2), two for each face, and is "
+                    f"{labels.dtype} of the shape {labels.shape}")
+    background = label_of("regions['background']", regions.get("background", 0))
+    behind, front = labels[:, 0], labels[:, 1]
+    turned = (front != background) & ((behind == background) | (behind > front))
+    order = np.where(turned[:, None], [0, 2, 1], [0, 1, 2])
+    attributes = []
+    for name, domain, values, names in _attributes_of(mesh):
+        if domain == "corner":
+            array = array_of(f"the attribute '{name}'", values)
+            values = array[np.arange(len(array))[:, None], order] if len(array) == len(faces) else array
+        attributes.append((name, domain, values, names))
+    source = _source_of_triangles(mesh.name, mesh.vertices, np.take_along_axis(faces, order, axis=1), attributes)
+    source.set_regions(np.where(turned[:, None], labels[:, ::-1], labels).astype(np.int32, order="C"), background,
+                       {label_of("a key of names", k): str(v) for k, v in sorted(regions.get("names", {}).items())})
+    return source
+
+
+def named_of(made: Result | Mesh) -> list[Named]:
+    """Everything that it has beside its positions, as arrays."""
+    if isinstance(made, Result):
+        return made._named_attributes()
+    return [(name, domain, array_of(f"the attribute '{name}'", values), labels)
+            for name, domain, values, labels in _attributes_of(made)]
+
+
 def _attributes_of(mesh: Mesh) -> list[Named]:
     domains = {"vertex": mesh.of_vertices, "face": mesh.of_faces, "corner": mesh.of_corners}
     return [(name, domain, values, list(mesh.labels.get(name, [])))
@@ -228,7 +277,12 @@ def _rows(name: str, domain: str, values: Any) -> np.ndarray[Any, Any]:
     """Values of an attribute as one row each."""
     import numpy as np
 
-    array = array_of(f"the attribute '{name}'", values)
+    array, mask = masked_array_of(f"the attribute '{name}'", values)
+    if mask is not None:
+        if array.dtype.kind != "f":
+            raise Error(f"the attribute '{name}' is masked at {first_place(mask)}, and whole numbers have none that means "
+                        "nothing; fill it: array.filled(value)")
+        array = np.where(mask, np.nan, array).astype(array.dtype)
     if array.dtype.kind == "b":
         array = array.astype(np.uint8)
     if array.dtype in (np.int64, np.uint64):
@@ -278,9 +332,21 @@ def _counted_faces(faces: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], n
     return faces[heads], faces[is_corner]
 
 
-def _lattice_of(argument: str, volume: Volume) -> tuple[Any, tuple[float, float, float], tuple[float, float, float]]:
+def _lattice_of(argument: str, volume: Volume,
+                read: Any = None) -> tuple[Any, tuple[float, float, float], tuple[float, float, float]]:
+    values: np.ndarray[Any, Any] = (read or _values_of)(argument, volume.values)
+    return (values, triple_of("spacing", volume.spacing),
+            triple_of("origin", volume.origin))
+
+
+def _values_of(argument: str, values: Any) -> np.ndarray[Any, Any]:
+    """Of a volume: where a mask of what is inside has no value, that is outside."""
     import numpy as np
 
-    values = array_of(argument, volume.values)
-    return (values.astype(np.float32, copy=False), triple_of("spacing", volume.spacing),
-            triple_of("origin", volume.origin))
+    array, mask = masked_array_of(argument, values)
+    if mask is None:
+        return array.astype(np.float32, copy=False)
+    if array.dtype.kind == "b":
+        return np.asarray(array & ~mask, np.float32)
+    raise Error(f"{argument}{first_place(mask)} is masked, and which side of the surface it is on is not known; fill it "
+                "with a value of the outside: array.filled(value)")

@@ -11,7 +11,7 @@ from ._errors import Error
 from ._paths import path_text
 from ._remesh import keywords_for, listener, settle
 from ._result import Result
-from ._sources import SourceLike, sizing_of, source_of
+from ._sources import SourceLike, opened, sizing_of, source_of, with_faces
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,13 +36,14 @@ class Stages:
         Error: as remesh() does. After a stage failed, or anything was interrupted, the stages refuse to go on.
     """
 
-    def __init__(self, source: SourceLike, *, context: Optional[Context] = None, **options: Unpack[Options]) -> None:
+    def __init__(self, source: SourceLike, *faces: Any, context: Optional[Context] = None, **options: Unpack[Options]) -> None:
         given: dict[str, Any] = dict(options)
         refused = [name for name in OF_WHOLE_RUNS if given.get(name)]
         if refused:
             raise Error(f"{', '.join(refused)}: only remesh() takes that", stage="options")
         sizing = sizing_of(given)
         place, progress = settle(context, given)
+        source = opened(with_faces(source, faces), given)
         self._run = _isoshell.StageRun(place, source_of(source, sizing), keywords_for(source, given),
                                       progress, listener(given))
         self._result: Optional[Result] = None

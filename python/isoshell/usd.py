@@ -16,7 +16,7 @@ from __future__ import annotations
 import os
 from typing import Optional, Sequence
 
-from ._sources import Mesh
+from ._inputs import Mesh
 from ._usd import Origin, is_usd
 from ._usd._read import PURPOSES, Scene
 from ._usd._write import write

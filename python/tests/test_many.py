@@ -180,3 +180,14 @@ def test_a_process_that_leaves_an_iterator_behind_ends_in_order(nefertiti):
             "print(len(next(made).vertices))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=FOREVER)
     assert (done.returncode, done.stdout, done.stderr) == (0, "2000\n", "")
+
+
+def test_warnings_of_files_name_them(tmp_path):
+    vertices, faces = make_ball()
+    flipped = faces.copy()
+    flipped[::7] = flipped[::7, ::-1]
+    paths = [write_obj(tmp_path / f"ball{i}.obj", vertices, flipped) for i in range(2)]
+    for path in paths:
+        with pytest.warns(isoshell.RunWarning) as caught:
+            next(isoshell.remesh_many([path], vertices=12, resolution=24))
+        assert len(caught) > 1 and all(str(w.message).startswith(str(path)) for w in caught)

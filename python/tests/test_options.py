@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import get_type_hints
 
 import isoshell
+import numpy as np
 import pytest
 from conftest import SOURCE
 from isoshell import ErrorCode, _isoshell
@@ -120,3 +121,39 @@ def test_a_device_that_is_not_there_is_refused(ball):
 
 def test_hints_of_keywords_can_be_resolved():
     assert get_type_hints(isoshell.Options)["outer_only"] is bool
+
+
+@pytest.mark.parametrize("value", [1e2, np.float64(100), np.int64(100), 100])
+def test_whole_numbers_may_be_floats(ball, value):
+    assert len(isoshell.remesh(ball, vertices=value, resolution=32.0, threads=1.0, max_memory=1e9).vertices) == 100
+
+
+@pytest.mark.parametrize("value", [1000.5, 1e300, float("inf"), float("nan"), True])
+def test_no_other_numbers_are_counts(ball, value):
+    with pytest.raises(isoshell.Error, match="vertices") as caught:
+        isoshell.remesh(ball, vertices=value)
+    assert caught.value.code == isoshell.ErrorCode.USAGE
+
+
+@pytest.mark.parametrize("theirs, ours", [
+    ("faces", "vertices"), ("face_count", "vertices"), ("n_vertices", "vertices"), ("targetfacenum", "vertices"),
+    ("target_edge_length", "edge_length"), ("targetlen", "edge_length"), ("isovalue", "iso"), ("feature_angle", "features"),
+    ("overwrite", "force"), ("n_jobs", "threads"), ("size_field", "sizing"), ("pitch", "voxel_size")])
+def test_names_by_which_others_call_options_are_answered_with_ours(ball, theirs, ours):
+    with pytest.raises(isoshell.Error, match=f"unknown option {theirs}; did you mean {ours}\\b") as caught:
+        isoshell.remesh(ball, **{theirs: 100})
+    assert caught.value.code == isoshell.ErrorCode.USAGE
+
+
+def test_vertices_and_faces_may_stand_by_themselves(ball):
+    small = {"vertices": 100, "resolution": 32}
+    expected = isoshell.remesh(ball, **small)
+    assert isoshell.remesh(*ball, **small).digest == expected.digest
+    assert isoshell.estimate(*ball, **small) == isoshell.estimate(ball, **small)
+    assert isoshell.Stages(*ball, **small).triangulate().digest == expected.digest
+    assert isoshell.mesh_info(*ball)["topology"] == isoshell.mesh_info(ball)["topology"]
+    for wrong in ((*ball, 7), ("ball.ply", ball[1])):
+        with pytest.raises(isoshell.Error, match=r"remesh\(V, F\)"):
+            isoshell.remesh(*wrong)
+    with pytest.raises(isoshell.Error, match=r"by position: remesh\(V, F\)"):
+        isoshell.remesh(ball[0], faces=ball[1])

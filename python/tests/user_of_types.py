@@ -43,6 +43,13 @@ def of_many(arrays: "list[np.ndarray[Any, Any]]") -> int:
     return len(first.faces) + sum(len(one.vertices) if isinstance(one, isoshell.Result) else one.code for one in kept)
 
 
+def of_two_arrays(vertices: "np.ndarray[Any, Any]", faces: "np.ndarray[Any, Any]") -> isoshell.Result:
+    made = isoshell.remesh(vertices, faces, sizing=vertices[:, 0])
+    made.export("out.vtu", overwrite=True)
+    print(made.to_trimesh(), made.region(3).to_pyvista(), made.to_meshio())
+    return made
+
+
 def code_of_failure(path: str) -> int:
     try:
         isoshell.remesh(path, output="out.ply", force=True).save("other.obj", overwrite=True)

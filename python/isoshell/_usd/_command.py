@@ -1,4 +1,4 @@
-"""The command where INPUT or OUTPUT is a stage of USD, which the command itself does not read."""
+"""The command where INPUT or OUTPUT is a file that only Python reads or writes: a stage of USD, or one of _exchange."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import warnings
 from typing import Any, Optional
 
 from .._errors import Error, RunWarning
+from .._exchange import format_of
 from .._isoshell import VERSION, ErrorCode
 from .._keywords import kinds
 from .._remesh import estimate, remesh
@@ -21,10 +22,13 @@ OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
 SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help"}
 
 
-def names_usd(words: list[str]) -> bool:
+def names_ours(words: list[str]) -> bool:
     """Whether INPUT or OUTPUT is one, and nobody asks for the help."""
     places, options = split_words(words)
-    return any(is_usd(place) for place in places) and not {"help", "version"} & set(options)
+    is_ours = any(is_usd(place) for place in places) or any(
+        format_of(place) is not None and not options.get(option)
+        for place, option in zip(places, ("input_format", "output_format")))
+    return is_ours and not {"help", "version"} & set(options)
 
 
 def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Optional
 
-from .. import _isoshell
-from .._errors import Error
+from .._polygons import split_polygons
 from . import unreadable
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ def triangles_of(pxr: Any, prim: Any, matrix: Any, time: Any) -> Triangles:
     if np.any((holes < 0) | (holes >= len(sizes))):
         raise unreadable(path, f"holeIndices name a face that is none of its {len(sizes)}")
     used[holes] = False
-    face_of, corner_of = _split(path, points, sizes, corners, used)
+    face_of, corner_of = split_polygons(path, points, sizes, corners, used)
     is_left_handed = mesh.GetOrientationAttr().Get(time) == pxr.UsdGeom.Tokens.leftHanded
     if is_left_handed != (determinant(rows) < 0):
         corner_of = corner_of[:, [0, 2, 1]]
@@ -149,33 +148,3 @@ def _check(path: str, vertex_count: int, sizes: Array, corners: Array) -> None:
         corner = int(np.argmax(wrong))
         raise unreadable(path, f"faceVertexIndices[{corner}] is {corners[corner]} in a mesh of {vertex_count} points; "
                                "indices count from 0 and are below that")
-
-
-def _split(path: str, points: Array, sizes: Array, corners: Array, used: Array) -> tuple[Array, Array]:
-    """Per triangle its face and the places of its corners, in the order of the faces."""
-    import numpy as np
-
-    first = np.cumsum(sizes) - sizes
-    simple = np.flatnonzero((sizes == 3) & used)
-    corner_of = first[simple][:, None] + np.arange(3)
-    polygons = np.flatnonzero((sizes > 3) & used)
-    if len(polygons) == 0:
-        return simple, corner_of
-    in_face = np.repeat(polygons, sizes[polygons])
-    starts = np.cumsum(sizes[polygons]) - sizes[polygons]
-    at = first[in_face] + np.arange(len(in_face)) - np.repeat(starts, sizes[polygons])
-    follows = at + 1
-    ends = follows == first[in_face] + sizes[in_face]
-    follows[ends] = first[in_face[ends]]
-    kept = corners[at] != corners[follows]  # a quad that is closed to a triangle stays one
-    at, in_face = at[kept], in_face[kept]
-    counts = np.bincount(in_face, minlength=len(sizes))[polygons]
-    try:
-        split = _isoshell.split_polygons(path, points[corners[at]], counts, np.arange(len(at)))
-    except Error as error:
-        if error.code != _isoshell.ErrorCode.NOTHING_TO_MESH:
-            raise
-        split = np.zeros((0, 3), np.int64)
-    faces = np.concatenate([simple, in_face[split[:, 0]]])
-    order = np.argsort(faces, kind="stable")
-    return faces[order], np.concatenate([corner_of, at[split]])[order]

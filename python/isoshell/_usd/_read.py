@@ -7,12 +7,13 @@ from typing import Any, Optional, Sequence, Union
 
 from .._errors import Error, note, warn
 from .._isoshell import ErrorCode
+from .._inputs import Mesh
 from .._paths import path_text
-from .._sources import Mesh
 from . import Origin, library, split_name
 from ._faces import Triangles, rows_of, triangles_of
 from ._materials import Materials
 from ._primvars import add_columns, joined_columns
+from ._regions import read_names, read_regions
 from ._scene import is_skinned, meshes_of, open_stage, reading, root_of, sampled_times, time_of
 
 PURPOSES = ("default", "render")
@@ -81,7 +82,19 @@ class Scene:
             if labels:
                 made.labels[name] = labels
         made.origin = origin
+        made.regions = self._regions_of(placed, meshes, code)
         return made, meshes
+
+    def _regions_of(self, placed: list[Any], meshes: list[Triangles], code: Any) -> Optional[dict[str, Any]]:
+        """Those that a mesh alone was written with."""
+        if len(placed) != 1:
+            return None
+        mesh, triangles = placed[0][0], meshes[0]
+        labels = read_regions(self._pxr, mesh, code, triangles.face_count)
+        if labels is None:
+            return None
+        background, names = read_names(self._pxr, mesh)
+        return {"labels": labels[triangles.face_of], "background": background, "names": names}
 
     def _warn_of_skins(self, meshes: list[Any]) -> None:
         """Once, however many times are read."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
 
 from .._result import Result
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, np.dtype[Any]]
 
 FAMILY = "regions"
+PAIR, NAMES = "isoshell:regions", "isoshell:region_names"  # keys of custom data: of a subset, and of the mesh
 Pair = Tuple[int, int]  # the region behind faces, and the one in front of them
 
 
@@ -21,6 +22,7 @@ def write_regions(pxr: Any, mesh: Any, result: Result) -> None:
     for pair, faces in faces_of.items():
         _define(pxr, mesh, result, pair).GetIndicesAttr().Set(pxr.Vt.IntArray.FromNumpy(faces))
     if faces_of:
+        _write_names(mesh, result)
         pxr.UsdGeom.Subset.SetFamilyType(mesh, FAMILY, pxr.UsdGeom.Tokens.partition)
 
 
@@ -48,6 +50,7 @@ class SampledRegions:
             faces = faces_of.get(pair, np.zeros(0, np.int32))
             subset.GetIndicesAttr().Set(self._pxr.Vt.IntArray.FromNumpy(faces), time)
         if self._subsets:
+            _write_names(self._mesh, result)
             tokens = self._pxr.UsdGeom.Tokens
             kind = tokens.partition if self._is_partition else tokens.nonOverlapping
             self._pxr.UsdGeom.Subset.SetFamilyType(self._mesh, FAMILY, kind)
@@ -70,11 +73,38 @@ def _faces_of_pairs(result: Result) -> Dict[Pair, Array]:
             for number, (inside, outside) in enumerate(pairs.tolist())}
 
 
+def _write_names(mesh: Any, result: Result) -> None:
+    names = {str(label): name for label, name in result.region_names.items()}
+    mesh.GetPrim().SetCustomDataByKey(NAMES, {"background": int(result.regions["background"]), "names": names})
+
+
 def _define(pxr: Any, mesh: Any, result: Result, pair: Pair) -> Any:
     """A subset without faces yet, by the names of both regions."""
     words = [result.region_names.get(label, str(label)) for label in pair]
     name = pxr.Tf.MakeValidIdentifier("region_" + "_".join(words))
     subset = pxr.UsdGeom.Subset.CreateUniqueGeomSubset(
         mesh, name, pxr.UsdGeom.Tokens.face, pxr.Vt.IntArray(), FAMILY)
-    subset.GetPrim().SetCustomDataByKey("isoshell:regions", pxr.Vt.IntArray(pair))
+    subset.GetPrim().SetCustomDataByKey(PAIR, pxr.Vt.IntArray(pair))
     return subset
+
+
+def read_regions(pxr: Any, mesh: Any, time: Any, face_count: int) -> Optional[Array]:
+    """Of each face of a prim the two regions that it parts, (N, 2), where subsets that were written here say it of all."""
+    import numpy as np
+
+    labels = np.zeros((face_count, 2), np.int32)
+    is_said = np.zeros(face_count, bool)
+    for subset in pxr.UsdGeom.Subset.GetGeomSubsets(pxr.UsdGeom.Imageable(mesh), pxr.UsdGeom.Tokens.face, FAMILY):
+        pair = subset.GetPrim().GetCustomDataByKey(PAIR)
+        faces = np.array(subset.GetIndicesAttr().Get(time) or [], np.int64)
+        if pair is None or len(pair) != 2 or np.any((faces < 0) | (faces >= face_count)):
+            continue
+        labels[faces], is_said[faces] = [int(label) for label in pair], True
+    return labels if face_count and is_said.all() else None
+
+
+def read_names(pxr: Any, mesh: Any) -> Tuple[int, Dict[int, str]]:
+    """The background's label, and what regions are called."""
+    data = mesh.GetPrim().GetCustomDataByKey(NAMES) or {}
+    names = {int(label): str(name) for label, name in data.get("names", {}).items()}
+    return int(data.get("background", 0)), names

@@ -1,0 +1,205 @@
+"""Meshes of meshio, and files by it; and results as meshes of it."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+from typing import TYPE_CHECKING, Any, Iterator
+
+from .._errors import Error
+from .._isoshell import ErrorCode
+from .._inputs import Mesh, Points
+from . import package
+from ._give import given_of
+from ._take import Taker
+
+if TYPE_CHECKING:
+    import meshio  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+    from .._result import Result
+
+CORNERS = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}  # which come first
+SIDES = {  # of volume cells, by their corners: outward
+    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "wedge": ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
+    "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+}
+GMSH = {"gmsh:physical": "group"}
+FILE_FORMATS = {"msh": "gmsh"}  # another format has that ending, too
+ALONE = ("inp",)  # hold vertices and faces, and nothing else
+WITHOUT_NAMES = ("vtu", "med", "xdmf", "xmf")
+
+
+def taken(given: Any, options: dict[str, Any]) -> Any:
+    """A source of it: its faces, or the boundary of its volume cells where it has no faces, or a cloud of its points."""
+    meshio = package("meshio", "an object of meshio")
+    if not isinstance(given, meshio.Mesh):
+        raise Error(f"source is a {type(given).__name__} of meshio; give a Mesh")
+    blocks = [i for i, block in enumerate(given.cells) if _corners_of(block) and len(block.data)]
+    if not blocks:
+        return _taken_boundary(given)
+    import numpy as np
+
+    rows = [_rows(given.cells[i]) for i in blocks]
+    sizes = np.concatenate([np.full(len(row), row.shape[1], np.int64) for row in rows])
+    taker = Taker("Mesh", given.points, np.concatenate([row.reshape(-1) for row in rows]), sizes)
+    for name, values in given.point_data.items():
+        taker.add(name, "vertex", values)
+    names = _names_of_groups(given, blocks)
+    for name, parts in given.cell_data.items():
+        values = [np.asarray(parts[i]) for i in blocks]
+        if name in GMSH and names:
+            taker.add(GMSH[name], "face", [names.get(int(v), str(v)) for part in values for v in part])
+        elif len({value.shape[1:] for value in values}) == 1:
+            taker.add(name, "face", np.concatenate(values))
+    left_out = sorted({block.type for i, block in enumerate(given.cells) if i not in blocks})
+    if left_out:
+        taker.drop(", ".join(left_out), "cells that are no faces are left out")
+    taker.add_names(_notes_of(given.field_data))
+    return taker.mesh
+
+
+def _corners_of(block: Any) -> int:
+    return CORNERS.get(block.type, 1 if block.type.startswith("polygon") else 0)
+
+
+def _rows(block: Any) -> Any:
+    import numpy as np
+
+    rows = np.asarray(block.data)
+    return rows[:, :CORNERS[block.type]] if block.type in CORNERS else rows
+
+
+def _names_of_groups(given: Any, blocks: list[int]) -> dict[int, str]:
+    """Gmsh's physical groups of faces that have a name."""
+    return {int(value[0]): name for name, value in given.field_data.items()
+            if len(value) == 2 and int(value[1]) == 2 and ":" not in name}
+
+
+def _taken_boundary(given: Any) -> Any:
+    """The sides of volume cells that only one cell has."""
+    import numpy as np
+
+    sides: dict[int, list[Any]] = {3: [], 4: []}
+    kinds = [(block, kind) for block in given.cells for kind in SIDES
+             if block.type.rstrip("0123456789") == kind and len(block.data)]
+    for block, kind in kinds:
+        for side in SIDES[kind]:
+            sides[len(side)].append(np.asarray(block.data)[:, list(side)])
+    if not kinds:
+        return Points(given.points)
+    rows, sizes = [], []
+    for size, parts in sides.items():
+        if not parts:
+            continue
+        every = np.concatenate(parts)
+        _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+        kept = every[np.sort(first[count == 1])]
+        rows.append(kept.reshape(-1))
+        sizes.append(np.full(len(kept), size, np.int64))
+    taker = Taker("Mesh", given.points, np.concatenate(rows), np.concatenate(sizes))
+    for name, values in given.point_data.items():
+        taker.add(name, "vertex", values)
+    for name in given.cell_data:
+        taker.drop(name, "it is of volume cells, and their boundary is meshed")
+    return taker.mesh
+
+
+def given(made: Result | Mesh) -> meshio.Mesh:
+    """A Mesh with copies of all that there is. Names of regions and labels are in field_data, as Gmsh's are: by name a
+    number, and the dimension of what has it."""
+    import numpy as np
+
+    library = package("meshio", "to_meshio()")
+    mesh = given_of(made)
+    field_data = {}
+    for name, number in zip(mesh.notes.get("region_names", []), mesh.notes.get("region_numbers", [])):
+        field_data[f"region:{name}"] = np.array([number, 3])
+    if mesh.notes.get("region_background", [0]) != [0]:
+        field_data["region_background:"] = np.array([mesh.notes["region_background"][0], 3])
+    for key, labels in mesh.notes.items():
+        if key.endswith("_names") and key != "region_names":
+            field_data.update({f"{key[:-6]}:{label}": np.array([i, 2]) for i, label in enumerate(labels)})
+    made_here: meshio.Mesh = library.Mesh(
+        mesh.vertices, [("triangle", mesh.faces)], point_data=dict(mesh.of_vertices),
+        cell_data={name: [values] for name, values in mesh.of_faces.items()}, field_data=field_data)
+    return made_here
+
+
+def _notes_of(field_data: Any) -> dict[str, Any]:
+    """What given() has made of names, back."""
+    notes: dict[str, Any] = {"region_background": [0], "region_numbers": [], "region_names": []}
+    for key, value in field_data.items():
+        kind, is_named, name = str(key).partition(":")
+        if not is_named or len(value) != 2:
+            continue
+        if kind == "region_background":
+            notes[kind] = [int(value[0])]
+        elif kind == "region":
+            notes["region_numbers"].append(int(value[0]))
+            notes["region_names"].append(name)
+        else:
+            labels = notes.setdefault(f"{kind}_names", [])
+            labels.extend([""] * (int(value[0]) + 1 - len(labels)))
+            labels[int(value[0])] = name
+    return notes
+
+
+def read(path: str, options: dict[str, Any]) -> Any:
+    """What a file has."""
+    library, ending = check(path), _ending(path)
+    with _quiet(path):
+        return taken(library.read(path, file_format=FILE_FORMATS.get(ending)), options)
+
+
+def write(made: Result | Mesh, path: str) -> list[str]:
+    """Returns what the file does not hold."""
+    library, ending = check(path), _ending(path)
+    mesh, lost = given(made), []
+    if ending in ALONE:
+        lost = [*mesh.point_data, *mesh.cell_data]
+        mesh = library.Mesh(mesh.points, mesh.cells)
+    if mesh.field_data and ending in WITHOUT_NAMES:
+        lost.append("names of " + ", ".join(sorted({key.partition(":")[0] for key in mesh.field_data})))
+        mesh.field_data = {}
+    if ending == "msh":
+        _fit_gmsh(mesh)
+    with _quiet(path):
+        library.write(path, mesh, file_format=FILE_FORMATS.get(ending))
+    return lost
+
+
+def _fit_gmsh(mesh: Any) -> None:
+    """Gmsh has values of one, three or nine numbers."""
+    import numpy as np
+
+    for name, values in mesh.point_data.items():
+        if values.ndim == 2 and values.shape[1] == 2:
+            mesh.point_data[name] = np.column_stack([values, np.zeros(len(values))])
+
+
+def check(path: str) -> Any:
+    """The package, with the one that it needs for such a file."""
+    if _ending(path) in ("med", "xdmf", "xmf"):
+        package("h5py", f"{path}: this format")
+    return package("meshio", f"{path}: this format")
+
+
+def _ending(path: str) -> str:
+    return os.path.splitext(path)[1][1:].lower()
+
+
+@contextlib.contextmanager
+def _quiet(path: str) -> Iterator[None]:
+    """What meshio prints of its errors is their message; where no reader has read a file it exits."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            yield
+    except Error:
+        raise
+    except (Exception, SystemExit) as error:
+        words = " ".join((said.getvalue() if isinstance(error, SystemExit) else str(error)).split())
+        raise Error(f"{path}: meshio: {words or type(error).__name__}", ErrorCode.UNREADABLE_INPUT, "read") from error

@@ -1,0 +1,61 @@
+"""Images of nibabel: whole numbers are labels, and others a volume."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .._errors import Error
+from .._labels import Labels
+from .._inputs import Volume
+from . import package
+
+
+def taken(given: Any, options: dict[str, Any]) -> Any:
+    """Labels with the image's affine; with an isovalue, and where values are not whole, a Volume. Of the options, background
+    and smallest_island, which are of labels, are taken out.
+
+    Raises:
+        Error: of code USAGE for what is no image of three dimensions, and for a Volume that is turned.
+    """
+    import numpy as np
+
+    package("nibabel", "an object of nibabel")
+    shape, affine = getattr(given, "shape", None), getattr(given, "affine", None)
+    if shape is None or affine is None:
+        raise Error(f"source is a {type(given).__name__} of nibabel; give an image with an affine, such as a Nifti1Image")
+    values = np.asanyarray(given.dataobj)
+    values = values.reshape(values.shape[:3]) if values.shape[3:] == (1,) * (values.ndim - 3) else values
+    if values.ndim != 3:
+        raise Error(f"source is an image of the shape {tuple(shape)}; give one volume of it, such as image.slicer[..., 0]")
+    if options.get("iso") is None and (values.dtype.kind in "biu" or np.array_equal(values, np.rint(values))):
+        labels = Labels(values if values.dtype.kind in "biu" else values.astype(np.int64), affine=np.array(affine, float))
+        for name in ("background", "smallest_island"):
+            if options.get(name) is not None:
+                setattr(labels, name, int(options.pop(name)))
+        return labels
+    return _volume_of(values, np.array(affine, float))
+
+
+def _volume_of(values: Any, affine: Any) -> Volume:
+    """Turned by right angles, and mirrored, as its affine says."""
+    import numpy as np
+
+    axes = affine[:3, :3]
+    of_world = np.abs(axes).argmax(axis=1)  # of each axis of the world that of the array
+    spacing = axes[np.arange(3), of_world]
+    straight = np.zeros((3, 3))
+    straight[np.arange(3), of_world] = spacing
+    if sorted(of_world.tolist()) != [0, 1, 2] or not np.allclose(axes, straight, atol=1e-6 * np.abs(axes).max()):
+        raise Error("the image's axes are not those of the world, and a volume of values is not turned; resample it, as "
+                    "nibabel.processing.resample_to_output does, or give labels")
+    values, origin = values.transpose(of_world), affine[:3, 3].copy()
+    for axis in range(3):
+        if spacing[axis] < 0:
+            values = np.flip(values, axis)
+            origin[axis] += spacing[axis] * (values.shape[axis] - 1)
+    return Volume(values, np.abs(spacing), origin)
+
+
+def read(path: str, options: dict[str, Any]) -> Any:
+    """What a file has."""
+    return taken(package("nibabel", f"{path}: this format").load(path), options)

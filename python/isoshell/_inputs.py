@@ -1,0 +1,156 @@
+"""Meshes, points and volumes that a run can start from, with what belongs to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Sequence, Tuple
+
+from ._exchange import to_package
+from ._usd import Origin
+
+if TYPE_CHECKING:
+    import meshio  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    import pyvista  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+
+def rows_in(values: Any) -> str:
+    """How many there are, without a copy; "?" where that cannot be told."""
+    shape = getattr(values, "shape", None)
+    try:
+        return str(shape[0] if shape is not None else len(values))
+    except (TypeError, IndexError):
+        return "?"
+
+
+def lattice_text(values: Any) -> str:
+    """The size of an array and its type."""
+    import numpy as np
+
+    shape = getattr(values, "shape", None)
+    shape = np.shape(values) if shape is None else shape
+    return " x ".join(map(str, shape)) + f" {getattr(values, 'dtype', 'numbers')}"
+
+
+def counts_text(vertices: Any, faces: Any, names: Sequence[str], regions: int) -> str:
+    """What there is of a mesh."""
+    text = f"{rows_in(vertices)} vertices, {rows_in(faces)} faces"
+    text += f", {regions} regions" if regions else ""
+    return text + (f", attributes {', '.join(names)}" if names else "")
+
+
+def regions_in(regions: Optional[Mapping[str, Any]]) -> int:
+    """How many regions faces part, without the background."""
+    import numpy as np
+
+    if not regions or not len(regions["labels"]):
+        return 0
+    labels = np.unique(np.asarray(regions["labels"]))
+    return int(np.count_nonzero(labels != regions.get("background", 0)))
+
+
+class Mesh:
+    """Triangles with attributes, which the result keeps: see the option `attributes`.
+
+    Where uv, texnumber or values with labels jump, the result has edges. A Result that is a source has its attributes
+    and regions.
+
+    Args:
+        vertices: (K, 3), world units.
+        faces: (M, 3), whole numbers.
+        of_vertices: by name (K,) numbers, and "color" (K, 3) or (K, 4): of whole numbers parts of the largest of their
+            type, otherwise 0 to 1.
+        of_faces: by name (M,) numbers, and "color" (M, 3) or (M, 4).
+        of_corners: "uv" (M, 3, 2), further sets of them "uv1", "uv2", and "normal" (M, 3, 3).
+        labels: by name the names that an attribute's values are the numbers of, -1 being none: "material", for one.
+        velocities: (K, 3) world units a frame, used as float32: where the vertices go until the next frame of
+            remesh_sequence(), which uses them where that has other faces; NaN where nothing is known.
+        regions: those that faces part, as Result.regions has them: "labels" (M, 2), of each face the region behind it and
+            the one that its normal points into; "background", and "names" by label.
+
+    Attributes:
+        name: what messages call it.
+        dropped: what the mesh had that it was made of, and this has not, each with the reason; for report["attributes"].
+        material: what trimesh has to show texture coordinates with; to_trimesh() of a result gives it back.
+        origin: of a mesh from a scene, what that says of axes, units and materials: see isoshell.usd.
+    """
+
+    def __init__(self, vertices: Any, faces: Any, *, of_vertices: Optional[Mapping[str, Any]] = None,
+                 of_faces: Optional[Mapping[str, Any]] = None, of_corners: Optional[Mapping[str, Any]] = None,
+                 labels: Optional[Mapping[str, Sequence[str]]] = None, velocities: Any = None,
+                 regions: Optional[Mapping[str, Any]] = None) -> None:
+        self.vertices = vertices
+        self.faces = faces
+        self.of_vertices = dict(of_vertices or {})
+        self.of_faces = dict(of_faces or {})
+        self.of_corners = dict(of_corners or {})
+        self.labels = dict(labels or {})
+        self.velocities = velocities
+        self.regions = None if regions is None else dict(regions)
+        self.name = "mesh"
+        self.dropped: List[Tuple[str, str]] = []
+        self.material: Any = None
+        self.origin: Optional[Origin] = None
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """The same as of a Result."""
+        made: trimesh.Trimesh = to_package("_trimesh", self)
+        return made
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """The same as of a Result."""
+        made: pyvista.PolyData = to_package("_pyvista", self)
+        return made
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The same as of a Result."""
+        made: meshio.Mesh = to_package("_meshio", self)
+        return made
+
+    def __repr__(self) -> str:
+        return f"<isoshell.Mesh: {self._counts()}>"
+
+    def _counts(self) -> str:
+        names = [*self.of_vertices, *self.of_faces, *self.of_corners]
+        return counts_text(self.vertices, self.faces, names, regions_in(self.regions))
+
+
+class Points:
+    """A point cloud; its surface is found by Poisson reconstruction.
+
+    Args:
+        positions: (K, 3), world units.
+        normals: (K, 3), outward directions of any length; without them they are estimated.
+    """
+
+    def __init__(self, positions: Any, normals: Any = None) -> None:
+        self.positions = positions
+        self.normals = normals
+
+    def __repr__(self) -> str:
+        return f"<isoshell.Points: {rows_in(self.positions)} points{'' if self.normals is None else ', normals'}>"
+
+
+class Volume:
+    """Values on a regular lattice: a CT, a segmentation, a simulation.
+
+    The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
+    True. Without `iso` the values are distances: negative inside, or unsigned. As a sizing field it holds edge lengths,
+    and NaN where it says nothing.
+
+    Args:
+        values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
+            array begins with z, give values.transpose(2, 1, 0): that takes no copy.
+        spacing: world units from a value to the next, one number or one an axis.
+        origin: where values[0, 0, 0] stands, world units.
+        velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
+            remesh_sequence(); NaN where nothing is known.
+    """
+
+    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None) -> None:
+        self.values = values
+        self.spacing = spacing
+        self.origin = origin
+        self.velocities = velocities
+
+    def __repr__(self) -> str:
+        return f"<isoshell.Volume: {lattice_text(self.values)}, spacing {self.spacing}, origin {self.origin}>"
