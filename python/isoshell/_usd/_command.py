@@ -141,7 +141,9 @@ def _status(frames: Frames) -> int:
 
 def _summary(result: Result) -> str:
     topology, quality = result.report["topology"], result.report["quality"]
-    kind = f"closed 2-manifold of genus {topology['genus']}" if topology["closed"] else "not closed"
+    kind = "closed" if topology["closed"] else "not closed"
+    if topology["closed"] and topology["genus"] is not None:  # regions have none together
+        kind = f"closed 2-manifold of genus {topology['genus']}"
     return (f"{len(result.vertices)} vertices, {len(result.faces)} triangles, {topology['components']} "
             f"component{'' if topology['components'] == 1 else 's'}, {kind}, smallest angle "
             f"{quality['theta_min_deg']:.1f}")
