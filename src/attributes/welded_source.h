@@ -24,7 +24,8 @@ WeldedSource weld_source(const TriangleSoup& soup);
 /// Where on an inner edge the values of its two faces differ.
 enum class Jump : uint8_t { none, at_one_end, at_both_ends };
 
-/// Per edge, of an attribute of corners or faces; none at edges that are no inner ones.
+/// Per edge, of an attribute of corners or faces; none at edges that are no inner ones. Corners whose values differ by
+/// no more than rounding, as of programs that compute each by itself, do not jump.
 std::vector<Jump> find_jumps(const WeldedSource& source, const Attribute& attribute);
 
 }  // namespace isoshell
