@@ -40,6 +40,12 @@ enum class Boundary {
   keep,   ///< borders wider than the gaps to close are borders of the result
 };
 
+/// What becomes of the places where texture coordinates of neighbouring faces, or the images they are in, differ.
+enum class UvSeams {
+  keep,    ///< they are edges of the result, where the surface allows it
+  ignore,  ///< triangles lie across them, and take all their texture coordinates from the chart under their middle
+};
+
 /// How long edges are on the walls of a region.
 struct RegionEdgeLength {
   std::string region;  ///< its label in decimal digits, or its name
@@ -89,7 +95,8 @@ struct ShapeOptions {
   /// Names of the attributes that a run keeps; without a value all. Where texture coordinates, materials or groups that
   /// are kept jump, the result has edges. remesh() itself makes positions only.
   std::optional<std::vector<std::string>> attributes;
-  bool color_features = false;  ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
+  UvSeams uv_seams = UvSeams::keep;  ///< names of faces, as materials and groups, end at edges either way
+  bool color_features = false;       ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
 };
 
 /// What has no value is chosen by the run. The numbers that stood for that before, 0 or -1 by option, mean it still.

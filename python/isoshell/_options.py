@@ -49,6 +49,8 @@ class Options(TypedDict, total=False):
             whatever its faces enclose, or what has the same value of an attribute of faces.
         attributes: what a mesh has beside its positions and the result keeps: names separated by commas, such as color,
             uv, normal, material, group [all].
+        uv_seams: places where texture coordinates jump: keep: they are edges of the result; ignore: triangles lie
+            across them, each with the texture coordinates of one chart [keep].
         color_features: colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY.
         uniform_area: prefer triangles of equal area to triangles of the best shape.
 
@@ -111,6 +113,7 @@ class Options(TypedDict, total=False):
     boundary: Optional[Literal["close", "keep"]]
     regions: Optional[str]
     attributes: Optional[Union[str, Sequence[str]]]
+    uv_seams: Optional[Literal["keep", "ignore"]]
     color_features: bool
     uniform_area: bool
     iso: Optional[float]

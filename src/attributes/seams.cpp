@@ -12,12 +12,15 @@ namespace {
 constexpr double kShortestSlit = 2;  // of an edge of the result
 constexpr uint32_t kMostAtVertex = 6;
 
-/// Directions and colours may vary from face to face; where an image or a material ends, no triangle may lie on both.
-bool makes_seams(const Attribute& a) {
+/// Directions and colours may vary from face to face; where a material ends, no triangle may lie on both sides, and
+/// where an image or a chart ends, none that is asked not to.
+bool makes_seams(const Attribute& a, UvSeams uv_seams) {
+  if (a.domain == AttributeDomain::face && !a.labels.empty()) return true;
+  if (uv_seams == UvSeams::ignore) return false;
   const AttributeMeaning* const meaning = meaning_of(a.name);
   const bool is_meant = meaning && meaning->domain == a.domain;
   if (a.domain == AttributeDomain::corner) return !is_meant || meaning->makes_seams;
-  return a.domain == AttributeDomain::face && (!a.labels.empty() || (is_meant && meaning->makes_seams));
+  return a.domain == AttributeDomain::face && is_meant && meaning->makes_seams;
 }
 
 class SeamFinder {
@@ -73,11 +76,11 @@ class SeamFinder {
 
 }  // namespace
 
-Seams find_seams(const TriangleSoup& soup, const std::optional<std::vector<std::string>>& names,
-                 double edge_length_world) {
+Seams find_seams(const TriangleSoup& soup, const ShapeOptions& options, double edge_length_world) {
+  const std::optional<std::vector<std::string>>& names = options.attributes;
   std::vector<const Attribute*> jumping;
   for (const Attribute& a : soup.attributes)
-    if (makes_seams(a) && (!names || std::find(names->begin(), names->end(), a.name) != names->end()))
+    if (makes_seams(a, options.uv_seams) && (!names || std::find(names->begin(), names->end(), a.name) != names->end()))
       jumping.push_back(&a);
   if (jumping.empty()) return {};
   SeamFinder finder(soup, edge_length_world);

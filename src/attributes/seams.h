@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isoshell/remesh_options.h"
 #include "isoshell/surface_source.h"
 
 namespace isoshell {
@@ -16,14 +17,14 @@ struct Seams {
 };
 
 /// Where texture coordinates, the images they are in, materials, groups and objects jump between two faces, of the
-/// attributes that are named (of all without names). Left out are
+/// attributes that the options name (of all without names). Left out are
+/// - texture coordinates, other attributes of corners, and images, if seams of UVs are to be ignored;
 /// - attributes whose seams would leave patches narrower than about two edges;
 /// - edges where values differ at one end only, if they are shorter than two edges and end freely there, as slits do,
 /// or
 ///   if more than six seams would meet, as at the pole of a globe.
 /// Result: in the order of the edges of the welded soup. Cost: nothing without such attributes, else a sort of the
 /// half-edges.
-Seams find_seams(const TriangleSoup& soup, const std::optional<std::vector<std::string>>& names,
-                 double edge_length_world);
+Seams find_seams(const TriangleSoup& soup, const ShapeOptions& options, double edge_length_world);
 
 }  // namespace isoshell

@@ -198,6 +198,10 @@ std::vector<OptionRow> shape_rows() {
        "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
        "normal, material, group",
        "all", "attributes", named<&RemeshOptions::attributes, parse_attributes, attributes_text>(), OnResume::of_run},
+      {group, "uv-seams", "keep|ignore",
+       "places where texture coordinates jump: keep: they are edges of the result; ignore: triangles lie across them, "
+       "each with the texture coordinates of one chart",
+       "keep", "uv_seams", named<&RemeshOptions::uv_seams, parse_uv_seams, uv_seams_name>(), OnResume::of_run},
       {group, "color-features", "",
        "colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY", "",
        "color_features", &RemeshOptions::color_features, OnResume::of_file},

@@ -102,6 +102,12 @@ Boundary parse_boundary(const std::string& option, const std::string& text) {
 
 const char* boundary_name(Boundary boundary) { return boundary == Boundary::keep ? "keep" : "close"; }
 
+UvSeams parse_uv_seams(const std::string& option, const std::string& text) {
+  return parse_choice<UvSeams>(option, text, {{"keep", UvSeams::keep}, {"ignore", UvSeams::ignore}});
+}
+
+const char* uv_seams_name(UvSeams seams) { return seams == UvSeams::ignore ? "ignore" : "keep"; }
+
 Features parse_features(const std::string& option, const std::string& text) {
   const size_t comma = text.find(',');
   const std::string creases = text.substr(0, comma);

@@ -35,7 +35,7 @@ std::string ways_to_fewer_curves(const RunRecord& record) {
   if (!f.kept || record.regions) return ways;
   if (f.curves > f.seams + f.lines)
     ways += ", as does to give up creases by --features off, or those that turn by less than DEG by --features DEG";
-  if (f.seams > 0) ways += ", or seams by leaving out of --attributes what has them";
+  if (f.seams > 0) ways += ", or seams by --uv-seams ignore, or by leaving out of --attributes what has them";
   return ways;
 }
 

@@ -37,7 +37,7 @@ TEST_CASE("options json: what is not given is the number that always stood for i
       R"({"vertices":10000,"edge-length":0.0,"sizing":"","region-edge-length":"","adaptivity":0.0,)"
       R"("gradation":1.2,"resolution":0,"voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,)"
       R"("method":"sheet","iterations":0,"tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close","regions":"",)"
-      R"("attributes":"all","color-features":false,"uniform-area":false})");
+      R"("attributes":"all","uv-seams":"keep","color-features":false,"uniform-area":false})");
   const RequestedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
   CHECK_FALSE(back.values.edge_length_world);
@@ -72,6 +72,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.color_features = true;
   o.boundary = Boundary::keep;
   o.attributes = {"color", "quality"};
+  o.uv_seams = UvSeams::ignore;
   o.outer_only = true;
   const RequestedOptions back = parse_options_json(options_json(o));
   const RemeshOptions& b = back.values;
@@ -99,6 +100,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.color_features);
   CHECK(b.boundary == Boundary::keep);
   CHECK(b.attributes == o.attributes);
+  CHECK(b.uv_seams == UvSeams::ignore);
   CHECK(b.outer_only);
   CHECK(back.sizing == "field.vdb:edge");
   const Json object = Json::parse(options_json(o));

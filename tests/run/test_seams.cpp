@@ -103,11 +103,12 @@ Values uv_unrolled(const WorldPoint& middle, const WorldPoint& p) {
 }
 
 RunResult run_of(TriangleSoup soup, int64_t vertices, const std::string& features = "auto", int threads = 0,
-                 const std::string& attributes = "all") {
+                 const std::string& attributes = "all", UvSeams uv_seams = UvSeams::keep) {
   RunRequest request;
   request.options.values.vertices = vertices;
   request.options.values.features = parse_features("features", features);
   request.options.values.attributes = parse_attributes("attributes", attributes);
+  request.options.values.uv_seams = uv_seams;
   Context context;
   context.backend = Backend::cpu;
   context.threads = threads;
@@ -331,6 +332,26 @@ TEST_CASE("seams: of a surface with a hole they are kept beside its cap", "[seam
   CHECK(result.record.report.features.kept);
   CHECK(named(result.mesh.attributes, kUvName).index.size() == 3 * result.mesh.triangles.size());
   CHECK(std::any_of(result.mesh.gap.begin(), result.mesh.gap.end(), [](uint8_t flag) { return flag != 0; }));
+}
+
+TEST_CASE("seams: those of charts are no edges where they are ignored, and creases and materials still are",
+          "[seams]") {
+  const OfCorner nearest_of_chart = [](const WorldPoint& middle, const WorldPoint& p) {
+    return uv_of_charts(middle, {middle.x > 1 ? std::max(p.x, 1.) : std::min(p.x, 1.), p.y, p.z});
+  };
+  TriangleSoup soup = bar(4);
+  soup.attributes = {of_corners(soup, kUvName, 2, uv_of_charts)};
+  const RunResult across = run_of(soup, 1500, "auto", 0, "all", UvSeams::ignore);
+  CHECK(across.record.report.features.patches == 6);
+  CHECK(across.record.report.features.seams == 0);
+  CHECK(reach_over_middle(across.mesh) > kSnapped);
+  CHECK(largest_error(across.mesh, kUvName, nearest_of_chart) < kSnapped);
+
+  soup.attributes.push_back(halves(soup, kMaterialName));
+  const RunResult cut = run_of(soup, 1500, "auto", 0, "all", UvSeams::ignore);
+  CHECK(cut.record.report.features.patches == 10);
+  CHECK(reach_over_middle(cut.mesh) < kSnapped);
+  CHECK(largest_error(cut.mesh, kUvName, uv_of_charts) < kSnapped);
 }
 
 TEST_CASE("seams: on a flat part a seam is a curve, on a crease it is the crease", "[seams]") {

@@ -69,6 +69,10 @@ std::string features_text(const Features& features);
 std::vector<RegionEdgeLength> parse_region_edge_lengths(const std::string& option, const std::string& text);
 std::string region_edge_lengths_text(const std::vector<RegionEdgeLength>& lengths);
 
+/// "keep" or "ignore". Throws: usage.
+UvSeams parse_uv_seams(const std::string& option, const std::string& text);
+const char* uv_seams_name(UvSeams seams);
+
 /// "all", "none", or names separated by commas. Throws: usage.
 std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text);
 std::string attributes_text(const std::optional<std::vector<std::string>>& attributes);
