@@ -71,7 +71,8 @@ def main(archive, command, mesh, vertices, runs=5, folder=None):
     name = obj.name
     for _ in range(int(runs)):
         taken["command"].append(timed(lambda: subprocess.run(
-            [command, source, target, "--vertices", vertices, "--force", "--quiet", "--allow-intersections"], check=True),
+            [command, source, target, "--vertices", vertices, "--uv-seams", "ignore", "--force", "--quiet",
+             "--allow-intersections"], check=True),
             resource.RUSAGE_CHILDREN))
         copy = bpy.data.objects[name].copy()
         copy.data = copy.data.copy()

@@ -59,7 +59,7 @@ def write_png(path, image):
 
 
 def render(v, f, colours, curves, size, view, up, zoom, edges, framed=None):
-    """The picture; frames of a film are `framed` by the same points."""
+    """The picture; frames of a film are `framed` by the same points. All edges are drawn, or those of a set of pairs."""
     back = view / np.linalg.norm(view)
     right = np.cross(up, back)
     right /= np.linalg.norm(right)
@@ -101,11 +101,12 @@ def render(v, f, colours, curves, size, view, up, zoom, edges, framed=None):
         if edges:
             height = abs(det) / np.array([np.hypot(*(c - b)[:2]), np.hypot(*(a - c)[:2]), np.hypot(*(b - a)[:2])]).clip(1e-9)
             away = [w * h for w, h in zip((w0, w1, w2), height)]  # from the side opposite of each corner
-            near = np.minimum(np.minimum(away[0], away[1]), away[2])
+            sides = [tuple(sorted((int(t[(i + 1) % 3]), int(t[(i + 2) % 3])))) for i in range(3)]
+            drawn = [away[i] for i in range(3) if edges is True or sides[i] in edges]
+            near = np.min(drawn, axis=0) if drawn else np.full(hit.shape, np.inf)
             block = np.where((near < 0.6)[..., None], block * 0.35, block)
             for i in range(3):
-                ends = (int(t[(i + 1) % 3]), int(t[(i + 2) % 3]))
-                if (min(ends), max(ends)) in curves:
+                if sides[i] in curves:
                     block = np.where((away[i] < 2)[..., None], 0, block)
         image[y0:y1 + 1, x0:x1 + 1][hit] = block[hit].clip(0, 255).astype(np.uint8)
         depth[y0:y1 + 1, x0:x1 + 1][hit] = z[hit]

@@ -165,7 +165,9 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
 
         obj = context.active_object
         taken = volume_source.TakenVolume(obj, context.evaluated_depsgraph_get(), self.grid)
-        words = self.keywords_of_labels() if taken.is_of_labels else self.keywords()
+        if self.properties.is_property_set("threshold") and not self.properties.is_property_set("use_threshold"):
+            self.use_threshold = True
+        words = self.keywords_of_labels() if taken.is_of_labels else self.keywords_of_values(taken.grid_class)
         self._name = obj.name
         return lambda run: taken.remesh(words | {"allow_intersections": True}, run, isoshell)
 

@@ -5,6 +5,8 @@ import math
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+SURFACE_OF_CLASS = {"level set": 0.0, "fog volume": 0.1}  # the latter as of Blender's own modifier
+
 
 class Size:
     by: EnumProperty(name="Size", default="COUNT", items=(
@@ -56,13 +58,17 @@ class Remesh(Size):
     density_ratio: FloatProperty(name="Ratio", default=4, min=1, max=16,
                                  description="How many times shorter edges are where the weight is 1 than where it is "
                                              "0. An edge length is that where it is 0")
+    keep_uv_seams: BoolProperty(name="Keep UV Seams", default=False,
+                                description="Seams of UV maps are edges of the result. Otherwise triangles, which are "
+                                            "better shaped then, lie across them, each with the UVs of one island")
     apply_modifiers: BoolProperty(name="Apply Modifiers", default=True,
                                   description="Remesh what the viewport shows, and remove the modifiers that it shows; "
                                               "otherwise remesh the mesh below them, and keep them")
 
     def keywords(self):
         gaps = {"AUTO": "auto", "NONE": 0, "WIDTH": self.gap_width}[self.gaps]
-        return super().keywords() | {"boundary": self.boundary.lower(), "close_gaps": gaps}
+        uv_seams = "keep" if self.keep_uv_seams else "ignore"
+        return super().keywords() | {"boundary": self.boundary.lower(), "close_gaps": gaps, "uv_seams": uv_seams}
 
     def draw_remesh(self, layout, obj):
         self.draw_size(layout)
@@ -73,15 +79,18 @@ class Remesh(Size):
         layout.prop(self, "gaps")
         if self.gaps == "WIDTH":
             layout.prop(self, "gap_width")
+        layout.prop(self, "keep_uv_seams")
         layout.prop(self, "apply_modifiers")
         layout.prop(self, "device")
 
 
 class Extract(Size):
-    use_threshold: BoolProperty(name="Use Threshold", default=True,
-                                description="The surface is where the values of the grid are the threshold, as that of "
-                                            "a fog volume. Otherwise it is where they are 0, as that of distances is")
-    threshold: FloatProperty(name="Threshold", default=0.1, description="Value of the grid on the surface")
+    use_threshold: BoolProperty(name="Use Threshold", default=False,
+                                description="The surface is where the values of the grid are the threshold. Otherwise "
+                                            "the grid's class says where: at 0 of a level set, at 0.1 of a fog volume. "
+                                            "A grid without a class holds distances")
+    threshold: FloatProperty(name="Threshold", default=SURFACE_OF_CLASS["fog volume"],
+                             description="Value of the grid on the surface")
     grid: StringProperty(name="Grid", description="Name of the grid; empty: the active one")
     use_background: BoolProperty(name="Use Background", default=False,
                                  description="Of a grid of labels: what is no region has the label below. Otherwise it "
@@ -99,16 +108,22 @@ class Extract(Size):
         words = {"background": self.background} if self.use_background else {}
         return super().keywords() | words | {"smallest_island": self.smallest_island}
 
-    def keywords(self):
-        """Of isoshell.remesh, for a grid of values."""
-        return super().keywords() | ({"iso": self.threshold} if self.use_threshold else {})
+    def keywords_of_values(self, grid_class):
+        """Of isoshell.remesh, for a grid of values. What stands for no threshold is the library's to say."""
+        iso = self.threshold if self.use_threshold else SURFACE_OF_CLASS.get(grid_class)
+        return super().keywords() | {"iso": iso}
 
-    def draw_extract(self, layout):
+    def draw_extract(self, layout, grid=None):
+        """With the name and the class of the grid where they are known."""
         self.draw_size(layout)
         layout.prop(self, "grid")
+        if grid:
+            layout.label(text=f"{grid[0]}: {grid[1]}")
         layout.prop(self, "use_threshold")
         if self.use_threshold:
             layout.prop(self, "threshold")
+        elif grid and grid[1] in SURFACE_OF_CLASS:
+            layout.label(text=f"Surface at {SURFACE_OF_CLASS[grid[1]]:g}")
         labels = layout.box().column()
         labels.label(text="Grids of Labels")
         labels.prop(self, "use_background")

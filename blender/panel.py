@@ -5,6 +5,7 @@ import bpy
 
 from . import options
 from .operators import OBJECT_OT_isoshell_remesh, OBJECT_OT_isoshell_volume_to_mesh
+from .volume_source import grid_of
 
 
 class IsoshellRemeshSettings(options.Remesh, bpy.types.PropertyGroup):
@@ -43,7 +44,8 @@ class VIEW3D_PT_isoshell(bpy.types.Panel):
     def draw(self, context):
         self.layout.use_property_split = True
         if context.active_object.type == "VOLUME":
-            context.scene.isoshell_volume_to_mesh.draw_extract(self.layout)
+            settings = context.scene.isoshell_volume_to_mesh
+            settings.draw_extract(self.layout, grid_of(context.active_object, settings.grid))
         else:
             context.scene.isoshell_remesh.draw_remesh(self.layout, context.active_object)
         buttons(self.layout, context)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """An object with a volume as what isoshell starts from."""
 
+import functools
 import os
 import tempfile
 
@@ -12,6 +13,40 @@ from .mesh_source import Refused, linear_of
 OF_LABELS = {"INT", "INT64"}
 OF_THE_GRID = {"iso", "background", "smallest_island"}  # options that a mesh of it has no use for
 FINER = 4  # times as many vertices has the mesh that is made first where the object's scale is not even
+
+
+def _name_of(grids, wanted):
+    return wanted or grids[min(max(grids.active_index, 0), len(grids) - 1)].name
+
+
+def _classes_of(path):
+    """Of a file's grids by name: "level set", "fog volume" and so on; none where only reading it will say."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return {}
+    return _classes_of_state(path, status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=16)  # the panel asks whenever it is drawn
+def _classes_of_state(path, _time, _size):
+    from isoshell import Error
+    from isoshell._vdb_header import grids_of
+
+    try:
+        return {grid.name: grid.grid_class for grid in reversed(grids_of(path))}  # the first one of a name
+    except Error:  # the run refuses it with the reason, if it cannot read it either
+        return {}
+
+
+def grid_of(obj, wanted):
+    """Name and class of the grid that would be meshed; None where they are not known before modifiers are done."""
+    grids = obj.data.grids
+    if obj.modifiers or not (grids.is_loaded or grids.load()) or not len(grids):
+        return None
+    name = _name_of(grids, wanted)
+    classes = _classes_of(grids.frame_filepath)
+    return (name, classes[name]) if name in classes else None
 
 
 class TakenVolume:
@@ -26,7 +61,7 @@ class TakenVolume:
         if not len(grids):
             raise Refused(f"{obj.name} has no grids")
         names = [grid.name for grid in grids]
-        name = grid_name or names[min(max(grids.active_index, 0), len(names) - 1)]
+        name = _name_of(grids, grid_name)
         if name not in names:
             raise Refused(f"{obj.name} has no grid {name}; its grids are {', '.join(names)}")
         self.is_of_labels = grids[names.index(name)].data_type in OF_LABELS
@@ -37,6 +72,7 @@ class TakenVolume:
             if not grids.save(filepath=path):
                 raise Refused(f"{obj.name}: its grids cannot be written to {path}")
         self.source = f"{path}:{name}"
+        self.grid_class = _classes_of(path).get(name, "unknown")
 
     def remesh(self, options, context, isoshell):
         """The result, and what its vertices are multiplied by to be in the object's space. The edges are even in the

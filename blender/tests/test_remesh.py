@@ -27,6 +27,73 @@ def test_the_monkey_with_a_subdivision_modifier_becomes_one_closed_mesh():
     assert signed_volume(vertices, faces) > 1.5
 
 
+def angles_of(vertices, faces):
+    """Of each triangle the three angles in degrees."""
+    corner = vertices[faces]
+    to_next, to_last = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
+    cosine = np.einsum("nij,nij->ni", to_next, to_last)
+    cosine /= np.linalg.norm(to_next, axis=2) * np.linalg.norm(to_last, axis=2)
+    return np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+
+
+def longest_side(corners):
+    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(1)
+
+
+def uv_per_length(obj):
+    """Of each face the longest side in its UV map over the longest one in space."""
+    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    mesh.calc_loop_triangles()
+    position, uv = rows(mesh.vertices, "co", 3), rows(mesh.uv_layers[0].uv, "vector", 2)
+    return longest_side(uv[rows(mesh.loop_triangles, "loops", 3, np.int32)]) / \
+        longest_side(position[rows(mesh.loop_triangles, "vertices", 3, np.int32)])
+
+
+def monkey_with_uvs():
+    bpy.ops.mesh.primitive_monkey_add()
+    obj = bpy.context.object
+    obj.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    bpy.context.view_layer.update()
+    assert obj.data.uv_layers
+    return obj
+
+
+@pytest.mark.parametrize("count", [3000, 10000])
+def test_the_monkey_with_uvs_has_wide_angles_even_edges_and_no_triangle_on_two_islands(count):
+    obj = monkey_with_uvs()
+    largest = uv_per_length(obj).max()
+    remesh(vertices=count)
+    vertices, faces = triangles_of(obj)
+    lengths, _ = edge_lengths(vertices, faces)
+    assert_closed_manifold(faces, len(vertices))
+    assert len(vertices) == count and angles_of(vertices, faces).min() >= 39
+    assert lengths.max() < 3 * lengths.min()
+    assert uv_per_length(obj).max() < 2 * largest  # from one island to another it would be above ten times as much
+
+
+@pytest.mark.parametrize("keep", [False, True])
+def test_seams_of_uvs_are_edges_where_they_are_to_be_kept(keep):
+    """A ball with an island for each half."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24, radius=1)
+    obj = bpy.context.object
+    mesh = obj.data
+    loops = rows(mesh.loops, "vertex_index", 1, np.int32)[:, 0]
+    uv = rows(mesh.vertices, "co", 3)[loops, :2]
+    for polygon in mesh.polygons:
+        uv[polygon.loop_indices, 0] += 10 * (polygon.center.z > 0)
+    mesh.uv_layers[0].uv.foreach_set("vector", uv.reshape(-1))
+    remesh(vertices=1000, keep_uv_seams=keep)
+    vertices, faces = triangles_of(obj)
+    height = vertices[faces][:, :, 2]
+    reach = np.minimum(height.max(1), -height.min(1)).max()
+    assert reach < 1e-3 if keep else reach > 0.01
+    carried = rows(mesh.uv_layers[0].uv, "vector", 2).reshape(-1, 3, 2)
+    upper = carried[:, :, 0] > 5
+    assert (upper.all(1) | ~upper.any(1)).all() and np.array_equal(upper[:, 0], height.mean(1) > 0)
+    expected = vertices[faces][:, :, :2] + np.stack([10 * upper, np.zeros(upper.shape)], axis=2)
+    assert np.abs(carried - expected).max() < (0.02 if keep else 0.1)  # a corner beyond a seam has what the seam has
+
+
 @pytest.mark.parametrize("scale", [(1, 1, 1), (0.5, 1, 2), (-1, 1, 1), (-3, 1, 1)])
 def test_edges_are_even_in_the_world_whatever_the_scale_of_the_object_is(scale):
     obj = ball(scale=scale)

@@ -20,6 +20,38 @@ def volume_of_ball():
     return obj
 
 
+def level_set_of_ball(radius, voxel):
+    """Of a file, made by geometry nodes, whose grids of distances Blender 5.0 has first."""
+    tree = bpy.data.node_groups.new("distances", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    ball, grid, store, out = (tree.nodes.new(kind) for kind in (
+        "GeometryNodeMeshIcoSphere", "GeometryNodeMeshToSDFGrid", "GeometryNodeStoreNamedGrid", "NodeGroupOutput"))
+    ball.inputs["Radius"].default_value, ball.inputs["Subdivisions"].default_value = radius, 6
+    grid.inputs["Voxel Size"].default_value = voxel
+    store.inputs["Name"].default_value = "surface"
+    tree.links.new(ball.outputs["Mesh"], grid.inputs["Mesh"])
+    tree.links.new(grid.outputs[0], store.inputs["Grid"])
+    tree.links.new(store.outputs[0], out.inputs[0])
+    bpy.ops.object.volume_add()
+    made = bpy.context.object
+    made.modifiers.new("Nodes", "NODES").node_group = tree
+    bpy.context.view_layer.update()
+    return made
+
+
+def imported(made, folder):
+    """The volume of a file that holds what the modifiers of another one make. Blender remembers grids by the file's
+    name, so the folder must be new."""
+    path = str(folder / "made.vdb")
+    assert made.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.grids.save(filepath=path)
+    bpy.ops.object.volume_import(filepath=path)
+    return bpy.context.object
+
+
+def across(obj):
+    return np.ptp(triangles_of(obj)[0], axis=0).mean()
+
+
 def mesh_by_blender(volume):
     """Vertices in the world that Blender's own modifier makes of it."""
     obj = bpy.data.objects.new("theirs", bpy.data.meshes.new("theirs"))
@@ -31,13 +63,8 @@ def mesh_by_blender(volume):
 
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (2, 2, 2), (1, 1, 3), (-1, 1, 3)])
-def test_a_volume_that_a_modifier_makes_becomes_a_mesh_that_is_even_in_the_world(scale):
-    source = volume_of_ball()
-    path = bpy.app.tempdir + "ball.vdb"
-    grids = source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.grids
-    assert grids.save(filepath=path)
-    bpy.ops.object.volume_import(filepath=path)
-    volume = bpy.context.object
+def test_a_volume_that_a_modifier_makes_becomes_a_mesh_that_is_even_in_the_world(scale, tmp_path):
+    volume = imported(volume_of_ball(), tmp_path)
     volume.scale, volume.location = scale, (1, 2, 3)
     bpy.context.view_layer.update()
     assert to_mesh(by="LENGTH", edge_length=0.2, threshold=0.5) == {"FINISHED"}
@@ -68,3 +95,56 @@ def test_a_grid_that_is_not_there_is_refused_by_name():
     volume_of_ball()
     with pytest.raises(RuntimeError, match="has no grid smoke; its grids are density"):
         to_mesh(grid="smoke")
+
+
+class Layout:
+    """What of a panel's layout is asked for."""
+
+    def __init__(self):
+        self.labels, self.props = [], []
+
+    def label(self, text):
+        self.labels.append(text)
+
+    def prop(self, _owner, name, **_look):
+        self.props.append(name)
+
+    def box(self):
+        return self
+
+    def column(self):
+        return self
+
+
+def panel_of(volume):
+    from bl_ext.user_default.isoshell.volume_source import grid_of
+
+    settings, layout = bpy.context.scene.isoshell_volume_to_mesh, Layout()
+    settings.draw_extract(layout, grid_of(volume, settings.grid))
+    return layout
+
+
+@pytest.mark.skipif(bpy.app.version < (5, 0, 0), reason="made by nodes of Blender 5.0")
+@pytest.mark.parametrize("of_file", [True, False])
+def test_the_surface_of_a_level_set_is_where_its_distances_are_0(of_file, tmp_path):
+    volume = level_set_of_ball(radius=10, voxel=0.2)
+    volume = imported(volume, tmp_path) if of_file else volume
+    assert to_mesh(vertices=3000) == {"FINISHED"}
+    assert across(bpy.context.object) == pytest.approx(20, abs=0.03)
+    if of_file:
+        layout = panel_of(volume)
+        assert layout.labels[:2] == ["surface: level set", "Surface at 0"] and "threshold" not in layout.props
+    bpy.context.view_layer.objects.active = volume
+    assert to_mesh(vertices=3000, threshold=0.1) == {"FINISHED"}  # as a script asks for it
+    assert across(bpy.context.object) == pytest.approx(20.2, abs=0.03)
+
+
+def test_the_surface_of_a_fog_volume_is_where_that_of_blender_is(tmp_path):
+    volume = imported(volume_of_ball(), tmp_path)
+    assert panel_of(volume).labels[:2] == ["density: fog volume", "Surface at 0.1"]
+    sizes = []
+    for words in ({}, {"threshold": 0.1}, {"threshold": 0.9}):
+        bpy.context.view_layer.objects.active = volume
+        assert to_mesh(vertices=500, **words) == {"FINISHED"}
+        sizes.append(across(bpy.context.object))
+    assert sizes[0] == sizes[1] > sizes[2]

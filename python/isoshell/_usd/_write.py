@@ -13,11 +13,11 @@ from .._isoshell import VERSION, ErrorCode
 from .._keywords import text_of
 from .._paths import path_text
 from .._result import Result
+from .._vdb_header import Box, Grid, grids_of
 from . import Origin, library, reason_of, split_name
 from ._attributes import PrimvarWriter
 from ._materials import relative_asset, write_materials
 from ._regions import write_regions
-from ._vdb_header import Box, Grid, grids_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -223,7 +223,7 @@ def _write_volume(pxr: Any, stage: Any, path: Any, file: str, grids: list[Grid],
         asset.CreateFilePathAttr(pxr.Sdf.AssetPath(relative_asset(os.path.abspath(file), folder)))
         asset.CreateFieldNameAttr(grid.name)
         asset.CreateFieldDataTypeAttr(kind)
-        asset.CreateFieldClassAttr(CLASSES.get(grid.metadata.get("class", ""), "unknown"))
+        asset.CreateFieldClassAttr(CLASSES.get(grid.grid_class, "unknown"))
         if grid.name in VECTOR_ROLES and kind.endswith("3"):
             asset.CreateVectorDataRoleHintAttr(VECTOR_ROLES[grid.name])
         volume.CreateFieldRelationship(name, asset.GetPath())

@@ -1,4 +1,4 @@
-"""What OpenVDB files say of their grids before the voxels: names, types and where they lie."""
+"""What OpenVDB files say of their grids before the voxels: names, types, classes and where they lie."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import struct
 from dataclasses import dataclass
 from typing import Any, Iterator
 
-from .._errors import Error
-from .._isoshell import ErrorCode
+from ._errors import Error
+from ._isoshell import ErrorCode
 
 MAGIC = 0x56444220
 OLDEST = 222  # of the format: since then grids say how they are compressed
@@ -34,6 +34,11 @@ class Grid:
     metadata: dict[str, Any]
     rows: list[list[float]]
 
+    @property
+    def grid_class(self) -> str:
+        """What its values are: "level set", "fog volume" and so on; "unknown" when the file does not say it."""
+        return str(self.metadata.get("class", "unknown"))
+
     def box(self) -> Box | None:
         """The world's box of its active voxels to their far sides; None when the file does not say it."""
         low, high = self.metadata.get("file_bbox_min"), self.metadata.get("file_bbox_max")
@@ -57,7 +62,7 @@ class _Reader:
             raise self.refused(os.strerror(error.errno or 0)) from error
 
     def refused(self, what: str) -> Error:
-        return Error(f"{self.path}: {what}", ErrorCode.UNREADABLE_INPUT, "usd")
+        return Error(f"{self.path}: {what}", ErrorCode.UNREADABLE_INPUT, "read")
 
     def take(self, layout: str) -> tuple[Any, ...]:
         return struct.unpack("<" + layout, self.bytes(struct.calcsize("<" + layout)))
