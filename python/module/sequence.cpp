@@ -41,7 +41,7 @@ class Frames {
       : chain_(std::make_shared<FrameChain>(is_coherent)), progress_(std::make_shared<SequenceProgress>(count)) {}
 
   MadeResult run(Place& place, const Source& source, const Keywords& keywords, int64_t index, const std::string& output,
-                bool measure_all, const std::string& velocity, nb::object progress, nb::object tell) {
+                 bool measure_all, const std::string& velocity, nb::object progress, nb::object tell) {
     RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
     if (measure_all) requested.arguments.run.measures = Measures::all;
     progress_->begin(index);
