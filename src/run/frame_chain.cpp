@@ -13,9 +13,9 @@
 #include "isoshell/options/options_json.h"
 #include "isoshell/readable.h"
 #include "isoshell/run/sequence.h"
+#include "progress/step.h"
 #include "run/measures.h"
 #include "run/outputs.h"
-#include "run/step.h"
 
 namespace isoshell {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "isoshell/io/velocity_vdb.h"
 #include "isoshell/readable.h"
+#include "progress/step.h"
 #include "run/measures.h"
 #include "run/outputs.h"
-#include "run/step.h"
 
 namespace isoshell {
 namespace {
