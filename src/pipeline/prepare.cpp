@@ -20,6 +20,7 @@
 #include "pipeline/repaired_input.h"
 #include "pipeline/sheet/prepare_surface.h"
 #include "pipeline/sheet/warm_start.h"
+#include "repair/holes/far_vertices.h"
 
 namespace isoshell {
 namespace {
@@ -232,9 +233,13 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
 }
 
-Prepared prepare(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {
+Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested, Context& context) {
   RemeshReport report;
   const RemeshOptions given_options = checked(requested);
+  const auto edge_world = [&](double area_world) { return target_of(given_options, area_world).edge_length_world; };
+  const std::optional<TriangleSoup> pulled =
+      repair::pull_back_far_vertices(given_soup, edge_world, report.input.repair);
+  const TriangleSoup& soup = pulled ? *pulled : given_soup;
   if (!given_options.regions.empty()) {
     PartRegions found =
         timed(report, "regions", context, [&] { return find_part_regions(soup, given_options.regions, context); });

@@ -10,7 +10,6 @@
 
 #include "pipeline/grid/timed.h"
 #include "pipeline/joined_parts.h"
-#include "repair/holes/far_vertices.h"
 #include "repair/holes/open_soup.h"
 
 namespace isoshell {
@@ -68,10 +67,9 @@ class Repair {
   }
 
   RepairedInput made() {
-    pull_back();
-    const InputTopology given = measured_.topology;
+    const InputTopology& given = measured_.topology;
     if (!join(measured_, false) && (!given.closed || !given.oriented)) {
-      made_.changed = timed(report_, "mend", context_, [&] { return repaired(soup(), plan_, report_.input.repair); });
+      made_.changed = timed(report_, "mend", context_, [&] { return repaired(given_, plan_, report_.input.repair); });
       const SoupTopology left = measured();
       made_.topology = left.topology;
       join(left, plan_.options.boundary == Boundary::keep);
@@ -91,15 +89,6 @@ class Repair {
 
   SoupTopology measured() {
     return timed(report_, "topology", context_, [&] { return measure_topology(soup(), context_); });
-  }
-
-  /// Without vertices that are far away the surface has another size, and the plan another grid.
-  void pull_back() {
-    made_.changed = repair::pull_back_far_vertices(given_, plan_.target.edge_length_world, report_.input.repair);
-    if (!made_.changed) return;
-    measured_ = measured();
-    made_.topology = measured_.topology;
-    plan_ = plan_of(plan_.options, made_.topology, bounding_box(soup()));
   }
 
   bool join(const SoupTopology& measured, bool may_be_open) {
@@ -127,8 +116,8 @@ class Repair {
   }
 
   const TriangleSoup& given_;
-  SoupTopology measured_;  ///< of the surface with no vertex far away
-  Plan plan_;
+  const SoupTopology& measured_;
+  const Plan& plan_;
   RemeshReport& report_;
   Context& context_;
   RepairedInput made_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -16,7 +17,7 @@ namespace {
 using Face = std::array<uint32_t, 3>;
 
 constexpr double kFarInBodies = 32;     // antennas and tails of real models are shorter
-constexpr double kShareOfBody = .9;     // of the faces: a surface of which more is needles is one of needles
+constexpr double kShareOfBody = .75;    // of the faces: a surface of which more is needles is one of needles
 constexpr double kLongEdgeOfBox = .25;  // shorter ones reach no vertex that is far away
 
 double longest_edge_sq(const TriangleSoup& soup, const Face& f) {
@@ -124,42 +125,39 @@ std::optional<WorldPoint> middle_of_narrow(const std::vector<WorldPoint>& points
   return 1 / double(needle.foot.size()) * sum;
 }
 
-/// Each far vertex becomes the first of its needle, which `to` says where to put.
-TriangleSoup pulled_back(const TriangleSoup& soup, const std::map<uint32_t, uint32_t>& becomes,
-                         const std::map<uint32_t, WorldPoint>& to) {
-  TriangleSoup made;
-  made.vertices = soup.vertices;
-  made.faces_in_file = soup.faces_in_file;
-  for (const auto& [v, at] : to) made.vertices[v] = at;
-  for (Face f : soup.triangles) {
-    for (uint32_t& v : f)
-      if (const auto other = becomes.find(v); other != becomes.end()) v = other->second;
-    if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) made.triangles.push_back(f);
-  }
-  return made;
+double area_of(const TriangleSoup& soup) {
+  double area = 0;
+  for (const Face& f : soup.triangles)
+    area += triangle_area(soup.vertices[f[0]], soup.vertices[f[1]], soup.vertices[f[2]]);
+  return area;
 }
 
 }  // namespace
 
-std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup, double edge_world, RepairReport& report) {
+std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
+                                                   const std::function<double(double)>& edge_world,
+                                                   RepairReport& report) {
   if (soup.triangles.empty() || !has_long_edge(soup)) return {};
   FarVertices far(soup);
-  std::map<uint32_t, uint32_t> becomes;
-  std::map<uint32_t, WorldPoint> to;
-  for (const auto& [leader, needle] : far.needles()) {
-    const std::optional<WorldPoint> middle = middle_of_narrow(soup.vertices, needle, edge_world);
+  const std::map<uint32_t, Needle> needles = far.needles();
+  if (needles.empty()) return {};
+  const double widest_world = edge_world(area_of(soup));
+  std::vector<std::pair<uint32_t, WorldPoint>> moved;
+  for (const auto& [leader, needle] : needles) {
+    const std::optional<WorldPoint> middle = middle_of_narrow(soup.vertices, needle, widest_world);
     if (!middle) continue;
     for (const uint32_t v : needle.far) {
-      becomes[v] = needle.far.front();
+      moved.push_back({v, *middle});
       if (far.distance(v) <= report.far_distance_world) continue;
       report.far_distance_world = far.distance(v);
       report.farthest = soup.vertices[v];
     }
-    to[needle.far.front()] = *middle;
-    report.far_vertices += int64_t(needle.far.size());
   }
-  if (to.empty()) return {};
-  return pulled_back(soup, becomes, to);
+  if (moved.empty()) return {};
+  report.far_vertices = int64_t(moved.size());
+  TriangleSoup made = soup;
+  for (const auto& [v, at] : moved) made.vertices[v] = at;
+  return made;
 }
 
 }  // namespace isoshell::repair
