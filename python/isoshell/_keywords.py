@@ -18,6 +18,7 @@ INSTEAD = {  # of options that only the command has
     "help": "see help(isoshell.Options)",
     "version": "see isoshell.__version__",
     "dry_run": "call isoshell.estimate",
+    "output": "isoshell.remesh, remesh_many and remesh_sequence have it as a parameter",
 }
 PLACES = ("recenter",)  # of three numbers
 OF_SEQUENCES = "sequences are meshed by isoshell.remesh_sequence"

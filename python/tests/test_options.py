@@ -14,7 +14,7 @@ from isoshell import ErrorCode, _isoshell
 
 TABLE = {option.name.replace("-", "_"): option for option in _isoshell.option_table()}
 SEQUENCES = {"frames", "velocity", "no_coherence", "keep_going", "resume"}
-NO_KEYWORDS = {"help", "version", "dry_run"} | SEQUENCES
+NO_KEYWORDS = {"help", "version", "dry_run", "output"} | SEQUENCES  # output is a parameter
 
 
 def test_there_is_a_keyword_for_every_option():

@@ -169,9 +169,22 @@ TEST_CASE("args: files must say what they are", "[cli][args]") {
   CHECK(parse({"dir.x/a.OBJ", "b.Ply"}).run->run.input.format == "obj");
 }
 
+TEST_CASE("args: OUTPUT may be an option, but not both", "[cli][args]") {
+  for (const std::vector<const char*>& words :
+       {std::vector<const char*>{"in.obj", "-o", "b.stl"}, {"-ob.stl", "in.obj"}, {"in.obj", "--output=b.stl"}}) {
+    const Arguments a = *parse(words).run;
+    CHECK(a.run.input.path == "in.obj");
+    CHECK(a.run.output.path == "b.stl");
+    CHECK(a.run.output.format == "stl");
+  }
+  CHECK(parse({"-", "--input-format", "obj", "-o", "-", "--output-format", "ply"}).run->run.output.path == "-");
+  CHECK(refusal({"in.obj", "a.ply", "-o", "b.ply"}) ==
+        "OUTPUT is given twice, as 'a.ply' and as --output 'b.ply'; leave one out");
+}
+
 TEST_CASE("args: help and version answer under every name", "[cli][args]") {
   for (const char* name : {"--help", "-help", "-h"}) CHECK(contains(parse({name}).text, "--close-gaps W"));
-  for (const char* name : {"--version", "-version"}) CHECK(parse({name}).text.find("vdb_isomesh ") == 0);
+  for (const char* name : {"-V", "--version", "-version"}) CHECK(parse({name}).text.find("vdb_isomesh ") == 0);
 }
 
 TEST_CASE("args: options by name mean what they mean on the command line", "[cli][args]") {

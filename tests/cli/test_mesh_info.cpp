@@ -175,3 +175,11 @@ TEST_CASE("mesh info: walls of regions are judged by the regions that they close
   CHECK(open.status == 6);
   CHECK(contains(open.err, "gate failed: regions: region 2 (bone) is not closed"));
 }
+
+TEST_CASE("mesh info: the version has a short name", "[cli][mesh_info]") {
+  cli::Folder folder;
+  const auto r = folder.run("-V");
+  CHECK(r.status == 0);
+  CHECK(r.out.find("vdb_meshinfo ") == 0);
+  CHECK(r.out == folder.run("--version").out);
+}

@@ -52,7 +52,13 @@ class Parser {
   bool has_flag(const std::string& name) const { return flags_.at(name); }
   const CLI::App& app() const { return app_; }
   const std::string& input() const { return input_; }
-  const std::string& output() const { return output_; }
+  /// Throws: usage.
+  const std::string& output() const {
+    const std::string& named = texts_.at("output");
+    if (!output_.empty() && !named.empty())
+      refuse("OUTPUT is given twice, as '" + output_ + "' and as --output '" + named + "'; leave one out");
+    return named.empty() ? output_ : named;
+  }
 
   void set_options(Arguments& a) const {
     for (const CommandOption& option : options_) {

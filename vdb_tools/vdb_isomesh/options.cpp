@@ -114,6 +114,7 @@ std::vector<CommandOption> file_options() {
       {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",
         "by its name"},
        [](const std::string& text, Arguments& a) { a.run.output.format = text; }},
+      {{group, "output", "OUTPUT", "the same as OUTPUT behind INPUT", "", false, true}, nothing, "o"},
       {{group, "save-shell", "F.vdb", "also write the shell, to resume from"}, text_of(&RunRequest::save_shell)},
       {{group, "save-voronoi", "F.vdb", "also write the Voronoi volume, to resume from"},
        text_of(&RunRequest::save_voronoi)},
@@ -182,7 +183,7 @@ std::vector<CommandOption> process_options() {
       {{group, "verbose", "", "print more messages"}, verbosity(2), "v"},
       {{group, "quiet", "", "print errors only"}, verbosity(0), "q"},
       {{group, "help", "", "print this help and exit", "", false, true}, nothing, "h"},
-      {{group, "version", "", "print the version and exit", "", false, true}, nothing},
+      {{group, "version", "", "print the version and exit", "", false, true}, nothing, "V"},
   };
 }
 

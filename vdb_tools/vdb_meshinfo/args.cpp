@@ -65,7 +65,7 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
          "80 % of the free memory");
   flag(process, "-q,--quiet", a.quiet, "print errors only");
   flag(process, "-h,--help", raw.help, "print this help and exit");
-  flag(process, "--version", raw.version, "print the version and exit");
+  flag(process, "-V,--version", raw.version, "print the version and exit");
 }
 
 void refuse_leftovers(const CLI::App& app) {

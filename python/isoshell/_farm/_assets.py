@@ -20,7 +20,7 @@ MESHES = (*(f".{name}" for name in input_formats()), ".usd", ".usda", ".usdc", "
 TABLES = (".csv", ".jsonl", ".parquet")
 OF_SEQUENCES = ("frames", "velocity", "no_coherence", "keep_going")
 OF_THE_FARM = ("stats", "report", "force", "progress", "resume", "dry_run", "output_format", "save_shell",
-               "save_voronoi", "split_regions", "stop_after", "verbose", "quiet", "help", "version", "device",
+               "save_voronoi", "split_regions", "stop_after", "output", "verbose", "quiet", "help", "version", "device",
                "threads", "max_memory")
 
 Options = Dict[str, Any]

@@ -19,7 +19,7 @@ from .._sequence import Frames, remesh_sequence
 from . import is_usd
 
 OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
-SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help"}
+SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", "-o": "--output"}
 
 
 def names_ours(words: list[str]) -> bool:
@@ -35,9 +35,9 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
     """The places that are no options, and the options as keywords, not checked."""
     places: list[str] = []
     options: dict[str, Any] = {}
-    left = [SHORT.get(word, word) for word in words]
+    left = [*words]
     while left:
-        word = left.pop(0)
+        word = _long(left.pop(0), left)
         if not word.startswith("--"):
             places.append(word)
             continue
@@ -49,7 +49,17 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
             options[name] = True
         else:
             options[name] = left.pop(0) if left else ""
+    if options.get("output"):
+        places.append(options.pop("output"))
     return places, options
+
+
+def _long(word: str, left: list[str]) -> str:
+    """The word, a short option as its long name; what stands behind it, as in -qv or -oFILE, is left."""
+    option = SHORT.get(word[:2])
+    if option is not None and word[2:]:
+        left.insert(0, word[2:] if option == "--output" else f"-{word[2:]}")
+    return option or word
 
 
 def run(words: list[str]) -> int:

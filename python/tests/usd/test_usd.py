@@ -287,6 +287,9 @@ def test_the_command_takes_stages(stage_of, tmp_path, ball):
     gate = run(source, target, "--force", "--quiet", "--vertices", 100, "--resolution", 32, "--require", "genus=3")
     assert gate.returncode == ErrorCode.GATE_FAILED and "genus" in gate.stderr
     assert run(source, tmp_path / "out.ply", "--vertices", 100, "--resolution", 32).returncode == 0
+    for number, named in enumerate((["-o", tmp_path / "0.usda"], [f"-o{tmp_path / '1.usda'}"], ["-qo", tmp_path / "2.usda"])):
+        assert run(source, *named, "--vertices", 100, "--resolution", 32).returncode == 0
+        assert np.array_equal(written_mesh(tmp_path / f"{number}.usda")[2], expected)
 
 
 def test_a_far_mesh_stands_where_it_is_or_less_an_offset(tmp_path, ball):
