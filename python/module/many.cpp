@@ -58,7 +58,7 @@ class BegunRun {
       }
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
     }
-    tool::Console console(requested_.arguments.progress, requested_.arguments.verbosity);
+    tool::Console console(requested_.arguments.progress, requested_.arguments.verbosity, "isoshell");
     const Listener listener = listener_of(requested_, console);
     for (const Mail::Message& message : *messages_) listener.tell(message.kind, message.text);
     return with_errors([&] { return made_of(result_.get()); });

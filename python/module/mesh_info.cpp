@@ -11,6 +11,7 @@
 #include "isoshell/run/mesh_info.h"
 #include "module/watched.h"
 #include "values/text.h"
+#include "vdb_meshinfo/command.h"
 
 namespace nb = nanobind;
 
@@ -52,6 +53,13 @@ nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywo
   return nb::make_tuple(mesh_info_json(info), info.missed_gates);
 }
 
+int command(const std::vector<std::string>& arguments) {
+  std::vector<const char*> words;
+  for (const std::string& word : arguments) words.push_back(word.c_str());
+  const nb::gil_scoped_release released;
+  return tool::mesh_info_command(int(words.size()), words.data(), arguments.at(0));
+}
+
 }  // namespace
 
 void bind_mesh_info(nb::module_& m) {
@@ -60,6 +68,9 @@ void bind_mesh_info(nb::module_& m) {
         nb::sig("def mesh_info(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | "
                 "None]], reference: Source | None, reference_keywords: collections.abc.Sequence[tuple[str, str | "
                 "None]], progress: typing.Any, tell: typing.Any) -> tuple[str, list[str]]"));
+  m.def("mesh_info_command", command, nb::arg("arguments"),
+        nb::sig("def mesh_info_command(arguments: collections.abc.Sequence[str]) -> int"),
+        "The command vdb_meshinfo, as command.");
 }
 
 }  // namespace isoshell::python

@@ -74,7 +74,8 @@ Numbers distances_to(const AnyArray& points, const AnyArray& vertices, const Any
   return {kept.data(), {kept.size()}, owner};
 }
 
-int command(const std::vector<std::string>& arguments, const nb::object& write_report) {
+int command(const std::vector<std::string>& arguments, const nb::object& write_report, const std::string& also_reads,
+            const std::string& also_writes) {
   std::vector<const char*> words;
   for (const std::string& word : arguments) words.push_back(word.c_str());
   tool::WriteReport write;
@@ -86,7 +87,7 @@ int command(const std::vector<std::string>& arguments, const nb::object& write_r
       if (!failure.empty()) throw Error(ErrorCode::unwritable_output, "report", failure);
     };
   const nb::gil_scoped_release released;
-  return tool::command(int(words.size()), words.data(), write);
+  return tool::command(int(words.size()), words.data(), write, {arguments.at(0), also_reads, also_writes});
 }
 
 }  // namespace
@@ -98,11 +99,13 @@ void bind_report(nb::module_& m) {
   m.def("distances", distances_to, nb::arg("points"), nb::arg("vertices"), nb::arg("faces"),
         nb::sig("def distances(points: typing.Any, vertices: typing.Any, faces: typing.Any) -> typing.Any"),
         "Of each point to the nearest one of the mesh.");
-  m.def("command", command, nb::arg("arguments"), nb::arg("write_report").none(),
-        nb::sig("def command(arguments: collections.abc.Sequence[str], write_report: typing.Any) -> int"),
-        "The command, with its name as the first argument. Returns its exit status; signals end the process from then "
-        "on. write_report(result, source, path, overwrite) makes the page of --report, and returns why it could not; "
-        "None: the option is refused.");
+  m.def("command", command, nb::arg("arguments"), nb::arg("write_report").none(), nb::arg("also_reads"),
+        nb::arg("also_writes"),
+        nb::sig("def command(arguments: collections.abc.Sequence[str], write_report: typing.Any, also_reads: str, "
+                "also_writes: str) -> int"),
+        "The command, with its name in messages and help as the first argument. Returns its exit status; signals end "
+        "the process from then on. write_report(result, source, path, overwrite) makes the page of --report, and "
+        "returns why it could not; None: the option is refused. also_reads and also_writes are lines of the help.");
 }
 
 }  // namespace isoshell::python

@@ -43,7 +43,7 @@ auto watched(Place& place, const Source& source, const RequestFromPython& reques
   const std::shared_ptr<Context> context = lease.context();
   const auto job = std::make_shared<Job>(context);
   RunRequest request = requested.arguments.run;
-  tool::Console console(requested.arguments.progress, requested.arguments.verbosity);
+  tool::Console console(requested.arguments.progress, requested.arguments.verbosity, "isoshell");
   const Listener listener = listener_of(requested, console);
   Job* posts = job.get();  // the work ends before the job
   request.tell = [posts](MessageKind kind, const std::string& text) { posts->post(kind, text); };

@@ -1,18 +1,22 @@
-"""python -m isoshell is the command."""
+"""python -m isoshell is the command, and its first word names what to do."""
 
 import json
 import os
+import re
 import subprocess
 import sys
+from importlib import import_module
 
 import isoshell
 import pytest
-from conftest import write_obj
+from conftest import SOURCE, write_obj
+
+COMMANDS = ("remesh", "info", "farm")
 
 
-def run(*arguments):
-    return subprocess.run([sys.executable, "-m", "isoshell", *map(str, arguments)], capture_output=True, text=True,
-                          errors="surrogateescape")
+def run(*arguments, **settings):
+    words = [sys.executable, "-m", "isoshell", *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, errors="surrogateescape", **settings)
 
 
 def test_it_takes_the_arguments_of_the_command(tmp_path, ball):
@@ -25,7 +29,7 @@ def test_it_takes_the_arguments_of_the_command(tmp_path, ball):
 
 def test_its_exit_statuses_are_those_of_the_command(tmp_path):
     assert run("--version").stdout.split()[1] == isoshell.__version__
-    assert "--close-gaps W" in run("--help").stdout
+    assert "--close-gaps W" in run("remesh", "--help").stdout
     assert run().returncode == 2
     assert run("a.obj", "b.ply", "--verticse", 7).returncode == 2
     assert run(tmp_path / "none.obj", tmp_path / "out.ply").returncode == 3
@@ -48,3 +52,68 @@ def test_names_that_are_not_utf_8_are_read_written_and_told(tmp_path, ball):
     assert json.loads(statistics.read_text())["counts"]["vertices"] == 60
     with pytest.raises(isoshell.Error, match="none\udcff.obj"):
         isoshell.remesh(tmp_path / os.fsdecode(b"none\xff.obj"), **options)
+
+
+def test_its_help_names_what_it_can_do():
+    for word in ("--help", "-h"):
+        said = run(word)
+        assert said.returncode == 0 and said.stdout.startswith("isoshell COMMAND ") and "vdb_isomesh" not in said.stdout
+        assert all(f"\n  {name} " in said.stdout for name in COMMANDS) and "USD" in said.stdout
+    assert run("--version").stdout == run("-V").stdout == f"isoshell {isoshell.__version__}\n"
+
+
+@pytest.mark.parametrize("name, says", [("remesh", "--close-gaps W"), ("info", "--ref INPUT"), ("farm", "status"),
+                                        ("farm run", "--retry-failed")])
+def test_each_command_has_a_help_under_its_name(name, says):
+    said = run(*name.split(), "--help")
+    assert said.returncode == 0 and f"isoshell {name} " in said.stdout.splitlines()[0] and says in said.stdout
+
+
+def test_a_command_alone_says_what_it_lacks():
+    for words, says in (((), "isoshell: error: COMMAND is missing"), (("remesh",), "isoshell remesh: error: "),
+                        (("info",), "isoshell info: error: MESH is missing"),
+                        (("farm",), "isoshell farm: error: the following arguments are required: run|status|report"),
+                        (("farm", "run"), "isoshell farm run: error: the following arguments are required: ASSETS")):
+        said = run(*words)
+        assert said.returncode == 2 and says in said.stderr and said.stdout == "", said.stderr
+    assert "did you mean info?" in run("inof", "mesh.ply").stderr
+
+
+def test_remesh_is_what_the_call_without_a_name_does(tmp_path, ball):
+    source = write_obj(tmp_path / "ball.obj", *ball)
+    options = ("--vertices", 60, "--resolution", 24)
+    for number, words in enumerate([(source, "0.ply"), ("remesh", source, "1.ply"), ("remesh", source, "-o", "2.ply"),
+                                    ("-o3.ply", source)]):
+        done = run(*words, *options, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / f"{number}.ply").read_bytes() == (tmp_path / "0.ply").read_bytes()
+        assert done.stderr.startswith("isoshell remesh: ")
+    twice = run(source, "4.ply", "-o", "5.ply", cwd=tmp_path)
+    assert twice.returncode == 2 and "'4.ply' and as --output '5.ply'" in twice.stderr
+
+
+def test_info_is_the_certificate(tmp_path, ball):
+    source = write_obj(tmp_path / "ball.obj", *ball)
+    table = run("info", source)
+    assert table.returncode == 0 and "closed 2-manifold" in table.stdout
+    assert json.loads(run("info", source, "--json").stdout) == isoshell.mesh_info(source)
+    assert run("info", source, "--require", "genus=3").returncode == 6
+    assert run("info", "-V").stdout == f"isoshell info {isoshell.__version__}\n"
+
+
+def test_scripts_of_the_package_are_there(capfd, monkeypatch):
+    scripts = re.findall(r'^(\w+) = "(isoshell\.\w+):(\w+)"$', (SOURCE / "pyproject.toml").read_text(), re.MULTILINE)
+    assert [name for name, _, _ in scripts] == ["isoshell", "vdb_meshinfo"]
+    for name, module, function in scripts:
+        monkeypatch.setattr(sys, "argv", [name, "--version"])
+        assert getattr(import_module(module), function)() == 0
+        assert capfd.readouterr().out == f"{name} {isoshell.__version__}\n"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_file_that_is_called_as_a_command_has_a_folder(tmp_path, ball, name):
+    write_obj(tmp_path / name, *ball)
+    words = ("--input-format", "obj", "--vertices", 60, "--resolution", 24)
+    wrong = run(name, "out.ply", *words, cwd=tmp_path)
+    assert wrong.returncode == 2 and f"the file of that name is ./{name}" in wrong.stderr, wrong.stderr
+    assert run(f"./{name}", "out.ply", *words, cwd=tmp_path).returncode == 0

@@ -182,6 +182,18 @@ TEST_CASE("args: OUTPUT may be an option, but not both", "[cli][args]") {
         "OUTPUT is given twice, as 'a.ply' and as --output 'b.ply'; leave one out");
 }
 
+TEST_CASE("args: help, version and refusals call the program as it was called", "[cli][args]") {
+  const Program program{"isoshell remesh", "or a stage (.usd)", "or a pile (.pile)"};
+  const char* help[] = {"isoshell remesh", "--help"};
+  const std::string text = parse_command_line(2, help, program).text;
+  CHECK(text.find("isoshell remesh INPUT OUTPUT [options]\n") == 0);
+  CHECK(text.find(";\n        or a stage (.usd)\nOUTPUT ") != std::string::npos);
+  CHECK(text.find(";\n        or a pile (.pile)\n\n") != std::string::npos);
+  CHECK(text.find("vdb_isomesh") == std::string::npos);
+  const char* version[] = {"isoshell remesh", "-V"};
+  CHECK(parse_command_line(2, version, program).text.find("isoshell remesh ") == 0);
+}
+
 TEST_CASE("args: help and version answer under every name", "[cli][args]") {
   for (const char* name : {"--help", "-help", "-h"}) CHECK(contains(parse({name}).text, "--close-gaps W"));
   for (const char* name : {"-V", "--version", "-version"}) CHECK(parse({name}).text.find("vdb_isomesh ") == 0);

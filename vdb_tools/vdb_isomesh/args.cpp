@@ -14,25 +14,31 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "command line", message); }
 
-std::string description() {
-  return "vdb_isomesh INPUT OUTPUT [options]\n\n"
+std::string line_of(const std::string& also) { return also.empty() ? "" : ";\n        " + also; }
+
+std::string description(const Program& program) {
+  return program.name +
+         " INPUT OUTPUT [options]\n\n"
          "Turns any surface into an isotropic triangle mesh: closed, 2-manifold, well-shaped triangles.\n\n"
          "INPUT   a mesh (" +
          listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + "),\n        a volume (" +
          listed_endings(reads_volume) +
          ": a level set, unsigned distances, or with --iso a fog volume;\n"
          "        FILE.vdb:NAME names a grid), or a stage file that this command wrote (.vdb); - reads\n"
-         "        standard input and needs --input-format\n"
+         "        standard input and needs --input-format" +
+         line_of(program.also_reads) +
+         "\n"
          "OUTPUT  a mesh (" +
          listed_endings(writes_mesh) +
          "), or a .vdb file with --stop-after; - writes standard\n"
-         "        output and needs --output-format";
+         "        output and needs --output-format" +
+         line_of(program.also_writes);
 }
 
 /// The command as CLI11 knows it. All values are text, which the options turn into what they are.
 class Parser {
  public:
-  Parser() : app_(description()), options_(command_options()) {
+  explicit Parser(const Program& program = {}) : app_(description(program)), options_(command_options()) {
     app_.set_help_flag();
     app_.allow_extras();
     app_.add_option("INPUT", input_);
@@ -122,8 +128,8 @@ void refuse_leftovers(const CLI::App& app) {
 
 }  // namespace
 
-CommandLine parse_command_line(int argc, const char* const* argv) {
-  Parser parser;
+CommandLine parse_command_line(int argc, const char* const* argv, const Program& program) {
+  Parser parser(program);
   std::vector<std::string> words;
   for (int i = argc - 1; i > 0; --i) {
     std::string word = argv[i];
@@ -132,7 +138,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   }
   parser.split(std::move(words));
   if (parser.has_flag("help")) return {std::nullopt, help_text(parser.app())};
-  if (parser.has_flag("version")) return {std::nullopt, version_text()};
+  if (parser.has_flag("version")) return {std::nullopt, version_text(program.name)};
   refuse_leftovers(parser.app());
   Arguments a = checked_arguments(parser, parser.output());
   if (parser.input().empty()) refuse("INPUT is missing; see --help");

@@ -34,8 +34,15 @@ struct CommandLine {
   std::string text;
 };
 
+/// What runs the command: the name by which people called it, and what it reads and writes beside the command's own
+/// files, as the help says it.
+struct Program {
+  std::string name = "vdb_isomesh";
+  std::string also_reads = {}, also_writes = {};
+};
+
 /// Throws: usage.
-CommandLine parse_command_line(int argc, const char* const* argv);
+CommandLine parse_command_line(int argc, const char* const* argv, const Program& program = {});
 
 /// An option by its name without dashes; a flag has no value.
 struct GivenOption {

@@ -12,9 +12,10 @@ namespace isoshell::tool {
 namespace {
 
 Context context;
+Program program;  // lives as long as the process, as signals that name it may come until then
 
 int run_command(int argc, const char* const* argv, const WriteReport& write_report) {
-  const CommandLine command = parse_command_line(argc, argv);
+  const CommandLine command = parse_command_line(argc, argv, program);
   if (!command.run) {
     print(command.text);
     return 0;
@@ -24,7 +25,7 @@ int run_command(int argc, const char* const* argv, const WriteReport& write_repo
     throw Error(ErrorCode::usage, "command line",
                 "--report is made by the Python module: pip install 'isoshell[report]', then isoshell INPUT OUTPUT "
                 "--report FILE.html, with the same options");
-  Console console(a.progress, a.verbosity);
+  Console console(a.progress, a.verbosity, program.name.c_str());
   context.backend = a.backend;
   context.device = a.device;
   context.threads = a.threads;
@@ -33,15 +34,16 @@ int run_command(int argc, const char* const* argv, const WriteReport& write_repo
 }
 
 int report(ErrorCode code, const char* message) {
-  Console(ProgressMode::never, 0).error(message);
+  Console(ProgressMode::never, 0, program.name.c_str()).error(message);
   return int(code);
 }
 
 }  // namespace
 
-int command(int argc, const char* const* argv, const WriteReport& write_report) {
+int command(int argc, const char* const* argv, const WriteReport& write_report, const Program& front) {
   fill_closed_streams();
-  answer_signals(context);
+  program = front;
+  answer_signals(context, program.name.c_str());
   try {
     return on_own_thread([&] { return run_command(argc, argv, write_report); });
   } catch (const Error& e) {

@@ -15,7 +15,7 @@ namespace isoshell::tool {
 class Console {
  public:
   /// Messages begin with the name of the program, which outlives the console.
-  Console(ProgressMode progress, int verbosity, const char* program = "vdb_isomesh");
+  Console(ProgressMode progress, int verbosity, const char* program);
   ~Console() { clear_bar(); }
 
   void error(const std::string& message);

@@ -11,7 +11,7 @@ namespace isoshell::tool {
 /// not ended a quarter of a second later, or by the next signal, is ended with status 130, unless a file is being
 /// written then.
 /// `program` is what the last words begin with; it lives as long.
-void answer_signals(Context& context, const char* program = "vdb_isomesh");
+void answer_signals(Context& context, const char* program);
 
 /// While one of these lives, a file is being written: it is finished or removed before the process ends.
 class WhileWriting {

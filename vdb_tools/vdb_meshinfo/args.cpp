@@ -15,8 +15,9 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "command line", message); }
 
-std::string description() {
-  return "vdb_meshinfo MESH [--ref INPUT] [options]\n\n"
+std::string description(const std::string& program) {
+  return program +
+         " MESH [--ref INPUT] [options]\n\n"
          "Counts and measures a triangle mesh as it is stored: topology, shapes of triangles, self-intersections,\n"
          "and with --ref how far it is from a surface.\n\n"
          "MESH    a mesh (" +
@@ -84,10 +85,10 @@ void refuse_empty_values(const CLI::App& app) {
 
 }  // namespace
 
-MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv) {
+MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const std::string& program) {
   MeshInfoArguments a;
   Raw raw;
-  CLI::App app(description());
+  CLI::App app(description(program));
   describe(app, a, raw);
   std::vector<std::string> words(argv + 1, argv + argc);
   std::reverse(words.begin(), words.end());  // as CLI11 wants them
@@ -97,7 +98,7 @@ MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv) {
     refuse(std::string(e.what()) + "; see --help");
   }
   if (raw.help) return {std::nullopt, options_text(app) + kExitStatus};
-  if (raw.version) return {std::nullopt, "vdb_meshinfo " VDB_MESHINFO_VERSION "\n"};
+  if (raw.version) return {std::nullopt, version_text(program)};
   refuse_leftovers(app);
   refuse_empty_values(app);
   if (raw.mesh.empty()) refuse("MESH is missing; see --help");

@@ -25,6 +25,6 @@ struct MeshInfoCommandLine {
 };
 
 /// Throws: usage.
-MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv);
+MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const std::string& program = "vdb_meshinfo");
 
 }  // namespace isoshell::tool

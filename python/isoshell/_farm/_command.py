@@ -40,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
     whole = argparse.ArgumentParser(prog="isoshell farm", allow_abbrev=False,
                                     description="Mesh many assets over the workers of a Dask cluster.")
     commands = whole.add_subparsers(required=True, metavar="run|status|report")
-    run = commands.add_parser("run", allow_abbrev=False, help="mesh the assets that are not done",
+    run = commands.add_parser("run", allow_abbrev=False, usage="%(prog)s ASSETS OUT [options]", help="mesh the assets that are not done",
                               description="Mesh the assets that are not done. The options of a mesh are those of the "
                               "command isoshell, the same for all assets unless a table says otherwise.")
     run.add_argument("assets", metavar="ASSETS", help="a folder, a pattern in quotes, or a table (.csv, .jsonl, "

@@ -18,6 +18,7 @@ from .._result import Result
 from .._sequence import Frames, remesh_sequence
 from . import is_usd
 
+PROGRAM = "isoshell remesh"
 OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
 SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", "-o": "--output"}
 
@@ -66,7 +67,7 @@ def run(words: list[str]) -> int:
     """Run the command. Returns its exit status."""
     places, options = split_words(words)
     if options.get("verbose"):
-        logging.basicConfig(format="vdb_isomesh: %(message)s", level=logging.INFO)
+        logging.basicConfig(format=f"{PROGRAM}: %(message)s", level=logging.INFO)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore" if options.get("quiet") else "always", RunWarning)
         setattr(warnings, "showwarning", _show_warning)
@@ -164,4 +165,4 @@ def _show_warning(message: Any, *_: Any) -> None:
 
 
 def _tell(text: str) -> None:
-    print(f"vdb_isomesh: {text}", file=sys.stderr)
+    print(f"{PROGRAM}: {text}", file=sys.stderr)

@@ -1,0 +1,86 @@
+"""The command isoshell: its first word names what to do. Without such a name it meshes, as it did before it had them."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import sys
+from typing import Callable
+
+from . import _isoshell
+from ._isoshell import ErrorCode
+
+Run = Callable[[list[str]], int]
+
+# In the shape that scripts/command_docs.py reads.
+HELP = """isoshell COMMAND [arguments]
+
+Makes isotropic triangle meshes of any surface, and measures meshes.
+
+Commands:
+  remesh INPUT OUTPUT           mesh a surface, or a sequence of them: a mesh, points, a volume, labels
+                                or a stage of USD; isoshell INPUT OUTPUT does the same
+  info MESH                     count and measure a mesh as it is stored, as vdb_meshinfo does
+  farm run ASSETS OUT           mesh many assets over the workers of a cluster, or of this machine; also
+                                farm status OUT and farm report OUT
+
+Options:
+  -h, --help                    print this help and exit; isoshell COMMAND --help says more of one
+  -V, --version                 print the version and exit
+
+A file that is called as a command is ./remesh, ./info or ./farm.
+
+Exit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read, 4 output cannot be
+written, 5 nothing to mesh, 6 a requirement of --require is not met or the result intersects
+itself, 7 over the memory limit or out of memory, 8 no such device, 130 interrupted.
+"""
+
+
+def run_one_of(words: list[str], remesh: Run) -> int:
+    """Run what the first word names, or else remesh. Returns the exit status."""
+    commands: dict[str, Run] = {"remesh": remesh, "info": _info, "farm": _farm}
+    first = words[0] if words else ""
+    if first in ("-h", "--help"):
+        print(HELP, end="")
+        return 0
+    if first in ("-V", "--version"):
+        print(f"isoshell {_isoshell.VERSION}")
+        return 0
+    if not words:
+        return _refuse("COMMAND is missing: remesh, info or farm; see isoshell --help")
+    if first not in commands:
+        meant = difflib.get_close_matches(first, commands)
+        if meant and not os.path.exists(first):
+            return _refuse(f"there is neither a command nor a file {first}; did you mean {meant[0]}?")
+        return remesh(words)
+    status = commands[first](words[1:])
+    if status == int(ErrorCode.USAGE) and os.path.isfile(first):
+        _tell(f"{first} is taken as the command; the file of that name is ./{first}")
+    return status
+
+
+def vdb_meshinfo() -> int:
+    """The command of that name. Returns its exit status."""
+    return _isoshell.mesh_info_command(["vdb_meshinfo", *map(os.fspath, sys.argv[1:])])
+
+
+def _info(words: list[str]) -> int:
+    return _isoshell.mesh_info_command(["isoshell info", *words])
+
+
+def _farm(words: list[str]) -> int:
+    from ._farm._command import main
+
+    try:
+        return main(words)
+    except SystemExit as ended:  # of argparse, which has told what it is about
+        return ended.code if isinstance(ended.code, int) else 0
+
+
+def _refuse(text: str) -> int:
+    _tell(f"error: {text}")
+    return int(ErrorCode.USAGE)
+
+
+def _tell(text: str) -> None:
+    print(f"isoshell: {text}", file=sys.stderr)

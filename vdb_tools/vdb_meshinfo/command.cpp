@@ -1,0 +1,81 @@
+#include "vdb_meshinfo/command.h"
+
+#include <exception>
+#include <new>
+
+#include "isoshell/advanced/own_thread.h"
+#include "isoshell/error.h"
+#include "isoshell/io/output_files.h"
+#include "vdb_isomesh/console.h"
+#include "vdb_isomesh/interrupt.h"
+#include "vdb_isomesh/memory.h"
+#include "vdb_isomesh/streams.h"
+#include "vdb_meshinfo/args.h"
+#include "vdb_meshinfo/table.h"
+
+namespace isoshell::tool {
+namespace {
+
+Context context;
+std::string program;  // lives as long as the process, as signals that name it may come until then
+
+/// Before anything is read.
+void check_files(const MeshInfoArguments& a) {
+  const auto& reference = a.request.reference;
+  const std::string table = a.statistics != "-" && !a.quiet ? "-" : "";
+  check_output_files({{"--stats", a.statistics}, {"the table", table}},
+                     {{"MESH", a.request.mesh.path}, {"--ref", reference ? reference->path : ""}}, a.overwrite);
+}
+
+void write_statistics(const MeshInfoArguments& a, const MeshInfo& info) {
+  std::optional<WhileWriting> writing;
+  if (a.statistics != "-") writing.emplace();  // standard output cannot be left in order
+  write_mesh_info(a.statistics, info, a.overwrite);
+}
+
+int run_command(int argc, const char* const* argv) {
+  const MeshInfoCommandLine command = parse_mesh_info(argc, argv, program);
+  if (!command.arguments) {
+    print(command.text);
+    return 0;
+  }
+  const MeshInfoArguments& a = *command.arguments;
+  Console console(ProgressMode::automatic, a.quiet ? 0 : 1, program.c_str());
+  context.backend = Backend::cpu;
+  context.threads = a.threads;
+  context.memory_limit_bytes = a.max_memory_bytes > 0 ? a.max_memory_bytes : default_memory_limit_bytes();
+  check_files(a);
+  const Tell tell = [&](MessageKind kind, const std::string& text) {
+    kind == MessageKind::warning ? console.warn(text) : console.detail(text);
+  };
+  const MeshInfo info =
+      mesh_info(a.request, context, tell, [&](const Progress& progress) { console.progress(progress); });
+  if (!a.statistics.empty()) write_statistics(a, info);
+  if (a.statistics != "-" && !a.quiet) print(mesh_info_table(info));
+  for (const std::string& text : info.missed_gates) console.error("gate failed: " + text);
+  return info.missed_gates.empty() ? 0 : int(ErrorCode::gate_failed);
+}
+
+int report(ErrorCode code, const char* message) {
+  Console(ProgressMode::never, 0, program.c_str()).error(message);
+  return int(code);
+}
+
+}  // namespace
+
+int mesh_info_command(int argc, const char* const* argv, const std::string& front) {
+  fill_closed_streams();
+  program = front;
+  answer_signals(context, program.c_str());
+  try {
+    return on_own_thread([&] { return run_command(argc, argv); });
+  } catch (const Error& e) {
+    return report(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return report(ErrorCode::out_of_memory, "out of memory; the mesh is too large for this machine");
+  } catch (const std::exception& e) {
+    return report(ErrorCode::internal, e.what());
+  }
+}
+
+}  // namespace isoshell::tool
