@@ -56,7 +56,7 @@ if [ "$with_tests" -eq 1 ]; then
   cp README.md "$folder"  # more files that tests of the command read
   cp docs/guide/command.md "$folder/docs/guide"
   cp examples/01_remesh.cpp "$folder/examples"
-  cp scripts/option_table.sh scripts/command_docs.py "$folder/scripts"
+  cp scripts/option_table.sh scripts/command_{completions,docs,help}.py "$folder/scripts"
 fi
 find "$from/bench" -maxdepth 1 -name 'bench_*' -type f -perm -u+x | while read -r bench; do copy "$bench" "$folder/bench"; done
 cp LICENSE "$folder"

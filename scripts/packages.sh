@@ -5,9 +5,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=build/packages python=build/python-system
 [ -x $python/bin/python ] || /usr/bin/python3 -m venv $python
-# nanobind is no package of Debian 12.
-$python/bin/python -c 'import nanobind' 2>/dev/null ||
-  $python/bin/python -m pip install --quiet --disable-pip-version-check nanobind typing_extensions
+# nanobind is no package of Debian 12; numpy runs the command whose man page is made.
+$python/bin/python -c 'import nanobind, numpy' 2>/dev/null ||
+  $python/bin/python -m pip install --quiet --disable-pip-version-check nanobind numpy typing_extensions
 . scripts/ccache.sh
 cmake -S . -B $folder -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DISOSHELL_CUDA="${ISOSHELL_CUDA:-off}" \
   -DISOSHELL_CUDA_FOR_ALL=ON \

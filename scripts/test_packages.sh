@@ -90,6 +90,8 @@ use_packages() { # root
   inside "$root" vdb_isomesh --version
   check_command_docs "$root" vdb_isomesh
   check_command_docs "$root" vdb_meshinfo
+  check_command_docs "$root" isoshell
+  inside "$root" isoshell info /command.ply -q --require closed,manifold
   inside "$root" cmp /command.ply /out.ply
   inside "$root" cmp /command.ply /by_pkg_config_out.ply
   inside "$root" dpkg-query -W '*isoshell*' 'libopenvdb*'

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 start = time.perf_counter()
 import isoshell
@@ -21,4 +22,10 @@ command = [sys.executable, "-m", "isoshell", "box.obj", "out.ply", "--vertices",
 subprocess.run(command, check=True)
 assert isoshell.remesh("box.obj", vertices=300).digest == result.digest
 assert isoshell.remesh("shell.vdb").vertices.shape == (300, 3)
+subprocess.run([sys.executable, "-m", "isoshell", "info", "out.ply", "--require", "closed,genus=0"], check=True)
+subprocess.run([Path(sys.executable).with_name("vdb_meshinfo"), "out.ply", "--quiet"], check=True)
+share = Path(sys.prefix) / "share"
+for page in ("man/man1/isoshell.1.gz", "bash-completion/completions/isoshell", "zsh/site-functions/_isoshell",
+             "fish/vendor_completions.d/isoshell.fish"):
+    assert (share / page).is_file(), page
 print(f"Python {sys.version.split()[0]}: import {took:.3f} s, digest {result.digest}")

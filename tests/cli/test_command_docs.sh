@@ -10,6 +10,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 touch scan.ply scan.vdb scan.txt
 mkdir shells
+[ "$name" != isoshell ] || touch scan.usda
 
 # Is this program here? What is left out without it is told to scripts/test.sh.
 have() {
@@ -80,6 +81,7 @@ case "$name" in
     expect "bash, a number" "" "$(in_bash --vertices "")"
     expect "bash, options" "--save-shell --save-voronoi" "$(in_bash --save)"
     expect "bash, formats" "gltf glb" "$(in_bash --output-format g)"
+    expect "bash, OUTPUT as an option" "scan.ply scan.vdb shells" "$(in_bash a.ply -o s)"
     if have fish; then
       expect "fish, a choice" "close keep" "$(in_fish a.ply b.ply --boundary "")"
       expect "fish, a file of an option" "scan.vdb shells/" "$(in_fish --save-shell s)"
@@ -90,6 +92,41 @@ case "$name" in
       zsh_shows "zsh, a choice" "^close +keep" "$name a.ply b.ply --boundary "
       zsh_shows "zsh, a file of an option" "$name --save-shell scan.vdb" "$name --save-shell sca"
       zsh_shows "zsh, INPUT" "^scan.ply +scan.vdb$" "$name scan"
+      zsh_shows "zsh, OUTPUT as an option" "^scan.ply +scan.vdb$" "$name a.ply -o scan"
+    fi
+    ;;
+  isoshell)
+    expect "bash, a command" "info" "$(in_bash i)"
+    expect "bash, commands and INPUT" "remesh info farm shells scan.ply scan.usda scan.vdb" "$(in_bash "")"
+    expect "bash, a command of a command" "run report" "$(in_bash farm r)"
+    for named in remesh ""; do  # shellcheck disable=SC2086
+      expect "bash, $named INPUT" "scan.ply scan.usda scan.vdb shells" "$(in_bash $named s)"
+      expect "bash, $named OUTPUT" "scan.ply scan.usda scan.vdb shells" "$(in_bash $named --vertices 10 a.ply s)"
+      expect "bash, $named, a third file" "" "$(in_bash $named a.ply b.ply s)"
+      expect "bash, $named, a choice" "keep" "$(in_bash $named a.ply b.ply --boundary k)"
+    done
+    expect "bash, options of a command" "--ref --ref-format" "$(in_bash info --ref)"
+    expect "bash, MESH" "scan.ply shells" "$(in_bash info s)"
+    expect "bash, options of a command of a command" "--retry-failed" "$(in_bash farm run --ret)"
+    expect "bash, a folder" "shells" "$(in_bash farm run shells s)"
+    if have fish; then
+      expect "fish, a command" "info" "$(in_fish inf)"
+      expect "fish, a command of a command" "run" "$(in_fish farm ru)"
+      expect "fish, INPUT" "scan.ply scan.usda scan.vdb shells/" "$(in_fish remesh s)"
+      expect "fish, INPUT without a command" "scan.ply scan.usda scan.vdb shells/" "$(in_fish a.ply s)"
+      expect "fish, MESH" "scan.ply shells/" "$(in_fish info s)"
+      expect "fish, a choice" "close keep" "$(in_fish remesh a.ply b.ply --boundary "")"
+      expect "fish, options of a command of a command" "--retry-failed" "$(in_fish farm run --retr)"
+    fi
+    if have zsh; then
+      zsh_shows "zsh, a command and its INPUT" "rem.*esh .* s" "$name rem"
+      zsh_shows "zsh, a command and its commands" "^status +-- say how far a farm is" "$name fa"
+      zsh_shows "zsh, INPUT" "^scan.ply +scan.usda +scan.vdb$" "$name remesh scan"
+      zsh_shows "zsh, INPUT without a command" "^scan.ply +scan.usda +scan.vdb$" "$name scan"
+      zsh_shows "zsh, OUTPUT without a command" "^scan.ply +scan.usda +scan.vdb$" "$name a.ply --vertices 10 scan"
+      zsh_shows "zsh, MESH" "$name info scan.ply" "$name info sca"
+      zsh_shows "zsh, a choice" "^close +keep" "$name remesh a.ply b.ply --boundary "
+      zsh_shows "zsh, options of a command of a command" "$name farm run --retry-failed" "$name farm run --ret"
     fi
     ;;
   vdb_meshinfo)
