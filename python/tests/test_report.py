@@ -239,6 +239,16 @@ def test_the_script_writes_the_page_and_the_command_says_who_does(tmp_path, ball
         assert refused.returncode == ErrorCode.USAGE and "pip install 'isoshell[report]'" in refused.stderr
 
 
+def test_names_of_options_and_requirements_are_marked_so_that_no_line_breaks_them():
+    from isoshell._report._tables import gates, warnings
+
+    told = warnings({"warnings": ["<a> was closed; --close-gaps 0 leaves it, --features off, too"]})
+    assert told.count('<span class="name">') == 2 and '<span class="name">--close-gaps</span> 0' in told
+    assert "&lt;a&gt; was" in told
+    asked = gates(["closed", "min-angle=30"], ["min-angle: 2.5, a-well-known fault"])
+    assert asked.count('<span class="name">') == 1 and '<span class="name">min-angle</span>: 2.5' in asked
+
+
 def test_thinning_keeps_the_worst_values():
     from isoshell._report._surface import Surface, thinned
 

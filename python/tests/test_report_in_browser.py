@@ -49,7 +49,7 @@ class Opened:
 
     def __init__(self, browser, path, **settings):
         self.errors, self.asked = [], []
-        self.page = browser.new_context(viewport={"width": 900, "height": 900}, **settings).new_page()
+        self.page = browser.new_context(**{"viewport": {"width": 900, "height": 900}, **settings}).new_page()
         self.page.set_default_timeout(TIMEOUT_MS)
         self.page.on("console", lambda message: self.errors.append(message.text) if message.type == "error" else None)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -159,6 +159,53 @@ def page_of_regions(tmp_path_factory):
     path = tmp_path_factory.mktemp("report") / "layers.html"
     isoshell.report(isoshell.remesh(labels, vertices=500), path, source=labels)
     return path
+
+
+@pytest.fixture(scope="module")
+def page_of_ball(tmp_path_factory, ball):
+    path = tmp_path_factory.mktemp("report") / "ball.html"
+    isoshell.report(isoshell.remesh(ball, stats=True, vertices=150, resolution=32), path, source=ball)
+    return path
+
+
+@pytest.fixture(scope="module")
+def page_of_part(tmp_path_factory):
+    """Of a cube, which has creases; with requirements, whose names have hyphens."""
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    sides = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+    path = tmp_path_factory.mktemp("report") / "part.html"
+    result = isoshell.remesh((corners, sides), vertices=200, resolution=32, stats=True,
+                             require="closed,manifold,no-self-intersections,min-angle=20,max-deviation=0.1,genus=0")
+    isoshell.report(result, path, source=(corners, sides))
+    return path
+
+
+PHONE = {"width": 390, "height": 844}
+CUT = """() => {
+  const cut = [];
+  for (const row of document.querySelectorAll('.choice')) {
+    const outer = row.getBoundingClientRect();
+    for (const label of row.querySelectorAll('label:not([hidden])')) {
+      const inner = label.getBoundingClientRect();
+      if (inner.left < outer.left || inner.right > Math.min(outer.right, innerWidth)) cut.push(label.innerText);
+    }
+  }
+  return cut;
+}"""
+
+
+@pytest.mark.parametrize("page, modes", [("page_of_ball", 4), ("page_file", 6), ("page_of_part", 5), ("page_of_regions", 6)])
+def test_on_a_phone_nothing_is_cut_and_no_name_is_broken(browsers, request, page, modes):
+    phone = Opened(browsers(DRAWS), request.getfixturevalue(page), viewport=PHONE).wait_until_drawn()
+    assert phone.page.locator("label:has(input[name=mode]):visible").count() == modes
+    assert phone.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert phone.page.evaluate(CUT) == []
+    lines = "Array.from(document.querySelectorAll('.choice label:not([hidden]) span, .name'), (e) => [e.innerText, %s])"
+    heights = {words: height for words, height in phone.page.evaluate(lines % "e.clientHeight") if height}
+    assert len(set(heights.values())) == 1, heights
+    broken = [words for words, count in phone.page.evaluate(lines % "e.getClientRects().length") if count > 1]
+    assert broken == []
+    assert (page == "page_of_part") == ("no-self-intersections" in phone.page.locator(".name").all_inner_texts())
 
 
 def hues_in(picture):

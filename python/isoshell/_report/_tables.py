@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -118,6 +119,11 @@ def regions(report: dict[str, Any]) -> str:
     return card("Regions", rows, ("volume", "area", "triangles"))
 
 
+def _named(words: str) -> str:
+    """The words with names of options, and that of the requirement that they begin with, which no line may break."""
+    return re.sub(r"--[a-z][a-z-]*|^[a-z]+(?:-[a-z]+)+", r'<span class="name">\g<0></span>', html.escape(words))
+
+
 def gates(asked: Sequence[str], missed: Sequence[str]) -> str:
     """What was required, and whether it is so."""
     reasons = {words.split(":")[0].split("=")[0]: words for words in missed}
@@ -127,7 +133,7 @@ def gates(asked: Sequence[str], missed: Sequence[str]) -> str:
         rows.append((reason is None, gate if reason is None else reason))
     rows += [(False, reason) for reason in reasons.values()]
     body = "".join(f'<tr><td class="mark {"met" if met else "missed"}"></td>'
-                   f'<td class="text">{html.escape(words)}</td></tr>' for met, words in rows)
+                   f'<td class="text">{_named(words)}</td></tr>' for met, words in rows)
     return f'<div class="card"><h3>Requirements</h3><table>{body}</table></div>' if rows else ""
 
 
@@ -194,7 +200,7 @@ def changes(report: dict[str, Any]) -> str:
 
 
 def warnings(report: dict[str, Any]) -> str:
-    items = "".join(f"<li>{html.escape(warning)}</li>" for warning in report["warnings"])
+    items = "".join(f"<li>{_named(warning)}</li>" for warning in report["warnings"])
     return f'<section><h2>Warnings</h2><ul class="warnings">{items}</ul></section>' if items else ""
 
 
