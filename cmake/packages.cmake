@@ -44,7 +44,7 @@ if(ISOSHELL_HAS_MESHOPT)
 endif()
 if(ISOSHELL_PYTHON_DIR)
   isoshell_package(python python3-isoshell python
-                   "${isoshell_about}\n.\nThis package holds the module for this system's own Python 3.")
+                   "${isoshell_about}\n.\nThis package holds the module for this system's own Python 3, and\nthe command isoshell.")
   list(APPEND CPACK_COMPONENTS_ALL python)
   # A compiled module is for one version of Python.
   execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; v = sys.version_info; \

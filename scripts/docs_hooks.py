@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+OPTION = re.compile(r"(?<![\w-])--?[a-z][a-z-]*")
 LINK = re.compile(r"\[([^\]]*)\]\(((?!https?:|#|mailto:)[^)#\s]+)(#[^)\s]*)?\)")
 
 
@@ -52,3 +53,8 @@ def on_page_markdown(markdown, page, config, files):
         return link[1] if target.startswith("..") or is_folder else link[0]
 
     return LINK.sub(plain_outside, markdown)
+
+
+def on_page_content(html, page, config, files):
+    """Marks names of options, which site.css keeps whole: a line may break behind their hyphens otherwise."""
+    return re.sub(r">[^<]+<", lambda text: OPTION.sub(r'<span class="option">\g<0></span>', text[0]), html)
