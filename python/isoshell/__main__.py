@@ -5,11 +5,9 @@ import sys
 
 from . import _isoshell
 from ._command import run_one_of
-from ._exchange import format_of
+from ._exchange import format_of, formats
 from ._report import has_k3d, write_of_command
 from ._usd import ENDINGS
-
-STAGE = f"or a stage of USD ({' '.join(ENDINGS)})"
 
 
 def main() -> int:
@@ -25,7 +23,14 @@ def remesh(words: list[str]) -> int:
         if names_ours(words):
             return run(words)
     return _isoshell.command(["isoshell remesh", *words], write_of_command if has_k3d() else None,
-                             f"{STAGE}; FILE:/PRIM names one of its prims", STAGE)
+                             _also("; FILE:/PRIM names a prim", [each.ending for each in formats() if each.reads]),
+                             _also("", [each.ending for each in formats() if each.writes]))
+
+
+def _also(of_stages: str, endings: list[str]) -> str:
+    """What the help says of files beside those of the command."""
+    names = " ".join(f".{ending}" for ending in endings)
+    return f"or a stage of USD ({' '.join(ENDINGS)}{of_stages}), or a file by other Python packages\n        ({names})"
 
 
 if __name__ == "__main__":

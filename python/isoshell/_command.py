@@ -18,8 +18,8 @@ HELP = """isoshell COMMAND [arguments]
 Makes isotropic triangle meshes of any surface, and measures meshes.
 
 Commands:
-  remesh INPUT OUTPUT           mesh a surface, or a sequence of them: a mesh, points, a volume, labels
-                                or a stage of USD; isoshell INPUT OUTPUT does the same
+  remesh INPUT OUTPUT           mesh a surface, or a sequence of them: a mesh, points, a volume, labels,
+                                a stage of USD; isoshell INPUT OUTPUT does the same
   info MESH                     count and measure a mesh as it is stored, as vdb_meshinfo does
   farm run ASSETS OUT           mesh many assets over the workers of a cluster, or of this machine; also
                                 farm status OUT and farm report OUT

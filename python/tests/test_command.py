@@ -69,6 +69,13 @@ def test_each_command_has_a_help_under_its_name(name, says):
     assert said.returncode == 0 and f"isoshell {name} " in said.stdout.splitlines()[0] and says in said.stdout
 
 
+def test_the_help_names_files_of_other_packages():
+    said = run("remesh", "--help").stdout.split("Size of the result:")[0].split("OUTPUT  a mesh")
+    assert all("(.usd .usda .usdc .usdz" in part for part in said)
+    for format in isoshell._exchange.formats():
+        assert [f".{format.ending}" in re.split(r"[ ()]", part) for part in said] == [format.reads, format.writes]
+
+
 def test_a_command_alone_says_what_it_lacks():
     for words, says in (((), "isoshell: error: COMMAND is missing"), (("remesh",), "isoshell remesh: error: "),
                         (("info",), "isoshell info: error: MESH is missing"),
