@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import math
 import os
 import sys
 from typing import Any, Dict, List, Optional, Sequence
@@ -18,7 +20,6 @@ from ._assets import OF_SEQUENCES, OF_THE_FARM, assets_of
 from ._progress import tell
 
 SUFFIXES = (*_isoshell.mesh_formats(), "usda", "usdc", "usdz")
-TETRAHEDRON = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 
 def main(words: Sequence[str]) -> int:
@@ -103,6 +104,16 @@ def _add_options(run: argparse.ArgumentParser) -> None:
             groups[option.group].add_argument(f"--{option.name}", action="store_true", default=None, help=text)
 
 
+def _tetrahedron_for(options: dict[str, Any]) -> tuple[list[list[float]], list[list[int]]]:
+    """A mesh that options are tried on: 20 times as large as the sizes in world units among them."""
+    sizes = []
+    for name in ("edge_length", "voxel_size"):
+        with contextlib.suppress(KeyError, ValueError):  # what is no number is refused as such
+            sizes.append(float(options[name]))
+    side = 20 * max(filter(math.isfinite, sizes), default=0.05) or 1.0
+    return [[0, 0, 0], [side, 0, 0], [0, side, 0], [0, 0, side]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+
+
 def _run(arguments: argparse.Namespace, words: List[str]) -> int:
     from ._run import run
     from ._worker import CONTEXTS_OF_DEVICE, devices_of
@@ -113,7 +124,7 @@ def _run(arguments: argparse.Namespace, words: List[str]) -> int:
     place = {name: options.pop(name) for name in PLACE if name in options}
     if options.get("sizing") and not places.is_remote(options["sizing"]):
         options["sizing"] = os.path.abspath(options["sizing"])
-    estimate(TETRAHEDRON, **{**options, **place})  # refuses what cannot be, before anything starts
+    estimate(_tetrahedron_for(options), **{**options, **place})  # refuses what cannot be, before anything starts
     scheduler = arguments.scheduler
     for option in ("workers", "dashboard"):
         if given[option] and scheduler not in ("local", "slurm"):
