@@ -42,7 +42,7 @@ std::vector<WorldPoint> put_as_in_file(TriangleMesh& mesh, RunRecord& record) {
   record.triangles = int64_t(mesh.triangles.size());
   OutputRequest& output = record.output;
   if (output.recenter.is_asked && !output.recenter.offset_world) output.recenter.offset_world = offset_to_origin(mesh);
-  if (output.path.empty()) return mesh.vertices;
+  if (output.path.empty()) return {};
   FilePositions in_file = positions_in_file(mesh, output.format, output.recenter.offset());
   record.files.push_back({output.path, output.format, in_file.held});
   return std::exchange(mesh.vertices, std::move(in_file.vertices));
@@ -61,9 +61,11 @@ bool measures_all(const RunRequest& request) {
 
 bool measures_distance(const RunRequest& request) { return measures_all(request) || request.gates.needs_distance(); }
 
-std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context) {
+namespace {
+
+/// What there is to warn of.
+std::vector<std::string> check_triangles(const TriangleMesh& mesh, RunRecord& record, Context& context) {
   record.topology = check_mesh(mesh);
-  record.quality = measure_quality(mesh);
   if (!mesh.regions.empty())
     record.regions = take_region_census(mesh, context);
   else if (record.report.is_optimized)
@@ -75,7 +77,22 @@ std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& recor
     warnings.push_back(flaw + ", which should not be: please report the input");
   if (const std::optional<RegionChanges> changes = region_changes_of(record); changes && changes->any())
     warnings.push_back(words_of(*changes));
-  if (!is_coarse(record))  // which is a reason of its own
+  return warnings;
+}
+
+}  // namespace
+
+std::vector<std::string> measure_mesh(TriangleMesh& mesh, std::vector<WorldPoint>& exact, bool is_asked,
+                                      RunRecord& record, Context& context) {
+  const bool coarse = is_coarse(record), is_measured = is_asked || coarse;
+  std::vector<std::string> warnings;
+  if (is_measured) warnings = check_triangles(mesh, record, context);
+  if (coarse)
+    move_by(record.output.recenter.offset(), mesh.vertices);
+  else if (!exact.empty())
+    mesh.vertices.swap(exact);
+  if (is_measured) record.quality = measure_quality(mesh);
+  if (is_measured && !coarse)  // which is a reason of its own for small angles
     for (std::string& text : warnings_of_quality(record)) warnings.push_back(std::move(text));
   return warnings;
 }

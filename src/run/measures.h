@@ -13,7 +13,8 @@ bool measures_all(const RunRequest& request);
 bool measures_distance(const RunRequest& request);
 
 /// Puts the vertices where the file of the output has them, less its offset, and notes that file in the record, and how
-/// many vertices and triangles there are. Result: where they were. Throws: as positions_in_file().
+/// many vertices and triangles there are. Result: where they were; none where no file is
+/// asked for. Throws: as positions_in_file().
 std::vector<WorldPoint> put_as_in_file(TriangleMesh& mesh, RunRecord& record);
 
 /// Whether that file's numbers are.
@@ -21,9 +22,12 @@ bool is_coarse(const RunRecord& record);
 
 void move_by(const WorldPoint& offset, std::vector<WorldPoint>& positions);
 
-/// Topology, quality, intersections and regions, on the triangles alone: no stage's word is taken for them. Result:
+/// Topology, intersections and regions of a mesh that is as in its file, on the triangles alone: no stage's word is
+/// taken for them; and its quality at the exact positions. The mesh has these then and `exact` those of the file,
+/// unless the file's numbers are coarse: that is measured though it is not asked for, and of the quality, too. Result:
 /// what there is to warn of. Throws: interrupted.
-std::vector<std::string> measure_mesh(const TriangleMesh& mesh, RunRecord& record, Context& context);
+std::vector<std::string> measure_mesh(TriangleMesh& mesh, std::vector<WorldPoint>& exact, bool is_asked,
+                                      RunRecord& record, Context& context);
 
 /// Distances from the surface as it was meshed, of regions from their walls as they are in `soup`, and of borders that
 /// were kept. Throws: interrupted.

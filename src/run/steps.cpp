@@ -153,11 +153,10 @@ class RunSteps::Run {
     if (request_.stop_after == StopAfter::voronoi) return result({});
     TriangleMesh mesh = timed("triangulate", [&] { return triangulated(keeps_seeds); });
     std::vector<WorldPoint> positions = put_as_in_file(mesh, record_);
-    timed("measure", [&] { measure(mesh); });
-    if (!record_.files.empty()) move_by(record_.output.recenter.offset(), mesh.vertices);
+    timed("measure", [&] { measure(mesh, positions); });
     if (measures_distance(request_))
       timed("distance", [&] { measure_distances(*prepared_, surface(), mesh, record_, *context_); });
-    mesh.vertices = std::move(positions);
+    if (is_coarse(record_)) mesh.vertices = std::move(positions);
     TriangleSoup& soup = input_->soup;
     if (!soup.attributes.empty())
       mesh.attributes =
@@ -291,10 +290,9 @@ class RunSteps::Run {
     if (!files.empty()) save_voronoi(files, request_.overwrite);
   }
 
-  void measure(const TriangleMesh& mesh) {
+  void measure(TriangleMesh& mesh, std::vector<WorldPoint>& exact) {
     const bool is_asked = request_.measures != Measures::none || measures_all(request_) || request_.gates.any();
-    if (!is_asked && !is_coarse(record_)) return;
-    for (const std::string& text : measure_mesh(mesh, record_, *context_)) warn(text);
+    for (const std::string& text : measure_mesh(mesh, exact, is_asked, record_, *context_)) warn(text);
   }
 
   void show_features(TriangleMesh& mesh) {
