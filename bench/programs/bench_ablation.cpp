@@ -22,7 +22,7 @@ struct Bench {
   Context& context;
 
   SeedSet from_levels(int32_t passes) const {
-    return relax_by_levels(prepared.parts(), {start, {passes, kTolerancePpb, 0}, true}, context).seeds;
+    return relax_by_levels(PreparedParts::of(prepared), {start, {passes, kTolerancePpb, 0}, true}, context).seeds;
   }
   SeedSet from_strata() const { return place_seeds(prepared.sheet(), start, context); }
 

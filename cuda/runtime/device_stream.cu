@@ -176,13 +176,13 @@ void DeviceStream::give_back(void* stream) noexcept {
 }
 
 DeviceStream& DeviceStream::of(Context& context) {
-  const auto* mine = static_cast<const DeviceStream*>(context.backend_state.get());
+  const auto* mine = static_cast<const DeviceStream*>(context.backend_state_.get());
   if (!mine || mine->device() != context.device) {
     require_success(cudaSetDevice(context.device), "cudaSetDevice");
     require_code(context.device);
-    context.backend_state = std::shared_ptr<void>(borrow(context.device), give_back);
+    context.backend_state_ = std::shared_ptr<void>(borrow(context.device), give_back);
   }
-  DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state.get());
+  DeviceStream& stream = *static_cast<DeviceStream*>(context.backend_state_.get());
   require_success(cudaSetDevice(stream.device()), "cudaSetDevice");
   stream.limit_ = context.memory_limit_bytes;
   stream.threads_ = context.threads;

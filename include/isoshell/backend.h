@@ -10,6 +10,8 @@ namespace isoshell {
 
 enum class Backend { best, cpu, cuda };
 
+class DeviceStream;
+
 /// Passed to every stage, by one thread at a time. Not copied; outlives the call. Products of one context may be given
 /// to another: one that works on a device copies them first where it did not make them itself. A product must not be
 /// changed or destroyed while a stage of another context takes it.
@@ -22,8 +24,10 @@ struct Context {
   std::function<void(const char* stage, double fraction)> progress;
   /// Set from any thread or a signal handler; the stage throws Error{interrupted} soon after.
   std::atomic<bool> cancel{false};
-  /// What the backend keeps from call to call, a CUDA stream for one. Made at first use; not for callers.
-  std::shared_ptr<void> backend_state;
+
+ private:
+  friend class DeviceStream;             // of the library, in cuda/runtime
+  std::shared_ptr<void> backend_state_;  ///< what the backend keeps from call to call; made at first use
 };
 
 /// Returns when everything that the context's stages left to a device is done: what times a stage ends with it.

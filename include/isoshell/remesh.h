@@ -17,8 +17,6 @@ struct PreparedSurface;
 /// Copies share their products.
 class Prepared {
  public:
-  explicit Prepared(std::shared_ptr<PreparedSurface> parts);
-
   const LatticeSurface& surface() const;
   const SiteSet& sites() const;
   const SiteSamples& samples() const;  ///< empty where want_samples, the shell and digests let them go
@@ -30,9 +28,10 @@ class Prepared {
   const RemeshReport& report() const;  ///< what was measured up to here
   void free_samples();  ///< of all copies: relax() and triangulate() of the method sheet do not read them
 
-  const PreparedSurface& parts() const { return *parts_; }  ///< of the library alone
-
  private:
+  friend struct PreparedParts;  // of the library, in src/pipeline/grid
+  explicit Prepared(std::shared_ptr<PreparedSurface> parts);
+
   std::shared_ptr<PreparedSurface> parts_;
 };
 

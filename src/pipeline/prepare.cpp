@@ -217,7 +217,7 @@ void refuse_region_lengths(const RemeshOptions& options) {
 Prepared prepare_walls(const TriangleSoup& walls, const RemeshOptions& options, RemeshReport report, Context& context) {
   PreparedSurface p = prepare_regions(walls, with_even_length(options, walls), report, context);
   p.report = std::move(report);
-  return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
+  return PreparedParts::hold(std::move(p));
 }
 
 }  // namespace
@@ -230,7 +230,7 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   PreparedSurface p = prepare_surface(std::move(surface), closing, checked(options), report, context);
   finish(p, {}, report, context);
   p.report = std::move(report);
-  return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
+  return PreparedParts::hold(std::move(p));
 }
 
 Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested, Context& context) {
@@ -260,7 +260,7 @@ Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested,
   PreparedSurface p = GridSearch(meshed, plan, {&soup, input.interfaces}, report, context).best_grid();
   report.input.topology = measured.topology;
   p.report = std::move(report);
-  return Prepared(std::make_shared<PreparedSurface>(std::move(p)));
+  return PreparedParts::hold(std::move(p));
 }
 
 }  // namespace isoshell

@@ -224,14 +224,14 @@ TriangleMesh triangulate_anyhow(const PreparedSurface& p, Attempt& best, Context
 }  // namespace
 
 Relaxed relax(const Prepared& prepared, Context& context) {
-  const PreparedSurface& p = prepared.parts();
+  const PreparedSurface& p = PreparedParts::of(prepared);
   Relaxed relaxed{{}, p.report};
   relaxed.seeds = relax_seeds(p, Begin::as_prepared, p.cut != nullptr, relaxed.report, context);
   return relaxed;
 }
 
 RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& context) {
-  const PreparedSurface& p = prepared.parts();
+  const PreparedSurface& p = PreparedParts::of(prepared);
   Attempt best{{}, std::move(relaxed.report)};
   best.made.seeds = std::move(relaxed.seeds);
   TriangleMesh mesh = triangulate_anyhow(p, best, context);

@@ -98,7 +98,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   TriangleSoup bowl = shapes::sphere({0, 0, 0}, 1, 64);
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const PreparedRun run = prepare_with(bowl, options);
-  CHECK(run.prepared.parts().grown.distance_vox > 0);
+  CHECK(PreparedParts::of(run.prepared).grown.distance_vox > 0);
   REQUIRE(run.report.warnings.size() == 1);
   CHECK(run.report.warnings[0].find("both of its sides") != std::string::npos);
   CHECK(run.report.sheet.topology.components == 1);
@@ -111,7 +111,7 @@ TEST_CASE("prepare: a bowl keeps its two sides apart, and says so", "[prepare]")
   CHECK(measure_quality(result.mesh).theta_min_deg > 30);
   CHECK(measure_quality(result.mesh).q_avg > .92);
   const PreparedRun ball = prepare_with(shapes::sphere({0, 0, 0}, 1, 64), options);
-  CHECK(ball.prepared.parts().grown.distance_vox == 0);
+  CHECK(PreparedParts::of(ball.prepared).grown.distance_vox == 0);
 }
 
 TEST_CASE("prepare: open parts of a solid get walls that edges turn around, the solid stays where it is", "[prepare]") {
@@ -153,7 +153,7 @@ TEST_CASE("prepare: a solid with flaps keeps the points that its sheet misses", 
   options.resolution = 100;
   const PreparedRun run = prepare_with(crown, options);
   CHECK(run.report.input.repair.capped_loops == 1);
-  REQUIRE(run.prepared.parts().grown.only_flaps);
+  REQUIRE(PreparedParts::of(run.prepared).grown.only_flaps);
   const Sheet sheet = to_host(run.prepared.sheet());
   const PointQ8 bottom = sheet.frame.snap(pit);
   int64_t at_pit = 0, on_brim = 0;
@@ -176,7 +176,7 @@ TEST_CASE("prepare: a solid with flaps whose topology is not the input's says bo
   options.resolution = 150;
   options.features.creases = Features::Creases::off;
   const PreparedRun run = prepare_with(shapes::together(hat(), ring), options);
-  REQUIRE(run.prepared.parts().grown.only_flaps);
+  REQUIRE(PreparedParts::of(run.prepared).grown.only_flaps);
   REQUIRE(run.report.sheet.is_compared);
   REQUIRE(run.report.sheet.topology.genus == 0);
   REQUIRE(run.report.warnings.size() == 2);
@@ -193,7 +193,7 @@ TEST_CASE("prepare: walls of what the widest closing does not close grow too", "
   bowl.triangles.resize(bowl.triangles.size() / 2);
   const PreparedRun run = prepare_with(bowl, options);
   CHECK(run.report.grid.closing_vox == kMaxClosingVox);
-  CHECK(run.prepared.parts().grown.distance_vox > 2);
+  CHECK(PreparedParts::of(run.prepared).grown.distance_vox > 2);
   CHECK(run.report.sheet.topology.components == 1);
   CHECK(run.report.sheet.topology.genus == 0);
 }

@@ -24,6 +24,10 @@ double edge_length_on_sheet_world(const PreparedSurface& p) {
   return target_of(p.options, sheet_area_world(p.sheet)).edge_length_world;
 }
 
+Prepared PreparedParts::hold(PreparedSurface parts) {
+  return Prepared(std::make_shared<PreparedSurface>(std::move(parts)));
+}
+
 Prepared::Prepared(std::shared_ptr<PreparedSurface> parts) : parts_(std::move(parts)) {}
 const LatticeSurface& Prepared::surface() const { return parts_->surface; }
 const SiteSet& Prepared::sites() const { return parts_->sites; }

@@ -44,6 +44,12 @@ struct PreparedSurface {
   RemeshReport report;                        ///< up to here
 };
 
+/// The library's own way into a Prepared.
+struct PreparedParts {
+  static const PreparedSurface& of(const Prepared& prepared) { return *prepared.parts_; }
+  static Prepared hold(PreparedSurface parts);
+};
+
 /// A surface that a run begins with.
 PreparedSurface begin_with(LatticeSurface surface, const RemeshOptions& checked_options);
 
