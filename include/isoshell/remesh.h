@@ -8,6 +8,7 @@
 #include "isoshell/advanced/stages.h"
 #include "isoshell/remesh_options.h"
 #include "isoshell/remesh_report.h"
+#include "isoshell/triangle_mesh.h"
 
 namespace isoshell {
 
@@ -42,6 +43,10 @@ class Prepared {
 /// a given resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage,
 /// out_of_memory, interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, Context& context);
+/// The same from a mesh, as a result of an earlier call or of the caller's own making: positions, triangles, attributes
+/// and regions count, features and gaps do not. Cost: a copy of it. Throws: unreadable_input, naming the first, for a
+/// triangle whose vertex is not there or not finite, and for attributes or regions that do not fit; and as the other.
+Prepared prepare(const TriangleMesh& mesh, const RemeshOptions& options, Context& context);
 /// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context);
 
@@ -62,5 +67,7 @@ RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& con
 
 /// Algorithm 1 of the paper: prepare, relax, triangulate.
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& options, Context& context);
+/// The same from a mesh, of which prepare() says what counts. Throws: as that does.
+RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options, Context& context);
 
 }  // namespace isoshell

@@ -13,8 +13,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include "core/attribute_values.h"
 #include "core/file_format.h"
+#include "geometry/given_surface.h"
 #include "io/faces/face_collector.h"
 #include "io/vdb/grid_kinds.h"
 #include "isoshell/advanced/stages.h"
@@ -48,34 +48,7 @@ void check_exists(const std::string& path) {
   if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once
 }
 
-/// Readers make only surfaces that hold to what TriangleSoup promises; one from memory may be anything.
-void check_surface(const TriangleSoup& soup, const std::string& name) {
-  for (size_t t = 0; t < soup.triangles.size(); ++t)
-    for (const uint32_t v : soup.triangles[t]) {
-      if (v < soup.vertices.size() && is_finite(soup.vertices[v])) continue;
-      std::ostringstream text;
-      text << name << ": triangle " << t << " has vertex " << v;
-      if (v < soup.vertices.size()) {
-        const WorldPoint& p = soup.vertices[v];
-        text << " at (" << p.x << ", " << p.y << ", " << p.z << "); positions must be finite";
-      } else {
-        text << " of a surface of " << counted(int64_t(soup.vertices.size()), "vertex", "vertices")
-             << "; indices count from 0 and are below that";
-      }
-      refuse(text.str());
-    }
-  if (!soup.regions.empty() && soup.regions.labels.size() != soup.triangles.size())
-    refuse(name + ": there are regions of " + std::to_string(soup.regions.labels.size()) + " faces for " +
-           std::to_string(soup.triangles.size()) + " triangles; give two labels a triangle");
-  if (!soup.regions.side.empty() && soup.regions.side.size() != soup.triangles.size())
-    refuse(name + ": there are sides of " + std::to_string(soup.regions.side.size()) + " faces for " +
-           std::to_string(soup.triangles.size()) + " triangles; give one a triangle, or none at all");
-  for (const Attribute& a : soup.attributes)
-    if (const std::string misfit = misfit_of(a, soup.vertices.size(), soup.triangles.size()); !misfit.empty())
-      refuse(name + ": " + misfit);
-}
-
-/// And so with points, which readers leave out where they are not finite.
+/// Readers leave out points that are not finite; those from memory may be anything.
 void check_points(const PointCloud& cloud, const std::string& name) {
   for (const auto* values : {&cloud.position, &cloud.normal})
     for (size_t i = 0; i < values->size(); ++i) {

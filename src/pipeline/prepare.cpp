@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/copy_product.h"
+#include "geometry/given_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/part_regions.h"
 #include "isoshell/remesh.h"
@@ -261,6 +262,10 @@ Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested,
   report.input.topology = measured.topology;
   p.report = std::move(report);
   return PreparedParts::hold(std::move(p));
+}
+
+Prepared prepare(const TriangleMesh& mesh, const RemeshOptions& options, Context& context) {
+  return prepare(surface_of(mesh), options, context);
 }
 
 }  // namespace isoshell

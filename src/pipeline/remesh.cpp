@@ -6,6 +6,7 @@
 
 #include "core/copy_product.h"
 #include "features/cutting/cut_surface.h"
+#include "geometry/given_surface.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
@@ -248,6 +249,10 @@ RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& requested, Co
   Prepared prepared = prepare(soup, options, context);
   if (options.method == Method::sheet) prepared.free_samples();
   return triangulate(prepared, relax(prepared, context), context);
+}
+
+RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options, Context& context) {
+  return remesh(surface_of(mesh), options, context);
 }
 
 }  // namespace isoshell
