@@ -16,6 +16,7 @@
 #include "isoshell/io/input.h"
 #include "isoshell/io/label_file.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/io/mesh_view.h"
 #include "isoshell/io/output_files.h"
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/polyline_file.h"

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "isoshell/error.h"
+#include "isoshell/io/mesh_view.h"
 
 namespace nb = nanobind;
 
@@ -37,11 +38,6 @@ std::string type_text(const nb::dlpack::dtype& type) {
   return kind + std::to_string(type.bits);
 }
 
-void check_rows(const char* argument, const AnyArray& a) {
-  if (a.ndim() != 2 || a.shape(1) != 3)
-    refuse(argument, " must be rows of three, of the shape (K, 3), and has the shape " + shape_text(a));
-}
-
 bool is(const nb::dlpack::dtype& type, DlpackCode code, int bits) {
   return type.code == uint8_t(code) && type.bits == bits && type.lanes == 1;
 }
@@ -61,48 +57,36 @@ bool of_whole_type(const AnyArray& a, Work work) {
   return false;
 }
 
-template <class Work>
-bool of_number_type(const AnyArray& a, Work work) {
-  if (is(a.dtype(), DlpackCode::Float, 64)) return work(double(0)), true;
-  if (is(a.dtype(), DlpackCode::Float, 32)) return work(float(0)), true;
-  return of_whole_type(a, work);
+/// The library's name of the array's type. `needed` is what the refusal asks for.
+ElementType element_type(const char* argument, const AnyArray& a, const char* needed) {
+  if (is(a.dtype(), DlpackCode::Float, 64)) return ElementType::f64;
+  if (is(a.dtype(), DlpackCode::Float, 32)) return ElementType::f32;
+  ElementType type{};
+  if (!of_whole_type(a, [&](auto zero) { type = element_type_of<decltype(zero)>(); }))
+    refuse(argument, std::string(" must be ") + needed + ", and is " + type_text(a.dtype()));
+  return type;
 }
 
-/// Calls visit(i, value) for every value in order. The array is of one or two dimensions.
-template <class T, class Visit>
-void each_value(const AnyArray& a, Visit visit) {
-  const auto* const bytes = static_cast<const std::byte*>(a.data());  // which need not be aligned
-  const size_t rows = a.shape(0), columns = a.ndim() == 2 ? a.shape(1) : 1;
-  const int64_t step = a.stride(0), across = a.ndim() == 2 ? a.stride(1) : 0;
-  for (size_t i = 0; i < rows; ++i)
-    for (size_t j = 0; j < columns; ++j) {
-      T value;
-      std::memcpy(&value, bytes + (int64_t(i) * step + int64_t(j) * across) * int64_t(sizeof(T)), sizeof(T));
-      visit(i * columns + j, value);
-    }
+constexpr char kNumbers[] = "numbers, such as float32 or float64";
+constexpr char kWholeNumbers[] = "whole numbers, such as int32 or int64";
+
+/// An array of one or two dimensions, as what is read without the interpreter's lock.
+RowsView view_of(const char* argument, const AnyArray& a, const char* needed) {
+  const bool has_columns = a.ndim() == 2;
+  const ElementType type = element_type(argument, a, needed);
+  const int64_t bytes = a.dtype().bits / 8;
+  return {a.data(),
+          type,
+          int64_t(a.shape(0)),
+          has_columns ? int64_t(a.shape(1)) : 1,
+          a.stride(0) * bytes,
+          has_columns ? a.stride(1) * bytes : 0};
 }
 
-[[noreturn]] void refuse_index(const char* argument, const AnyArray& a, size_t at, const std::string& value,
-                               size_t end) {
-  const std::string place =
-      a.ndim() == 2 ? std::to_string(at / a.shape(1)) + ", " + std::to_string(at % a.shape(1)) : std::to_string(at);
-  throw Error(ErrorCode::unreadable_input, "arguments",
-              std::string(argument) + "[" + place + "] is " + value + "; indices count from 0 and are below " +
-                  std::to_string(end) + ", the number of vertices");
-}
-
-void copy_indices(const char* argument, const AnyArray& a, size_t end, uint32_t* to) {
-  const bool known = of_whole_type(a, [&](auto zero) {
-    using T = decltype(zero);
-    const nb::gil_scoped_release released;
-    each_value<T>(a, [&](size_t at, T value) {
-      bool fits = uint64_t(value) < uint64_t(end);
-      if constexpr (std::is_signed_v<T>) fits = fits && value >= 0;
-      if (!fits) refuse_index(argument, a, at, std::to_string(value), end);
-      to[at] = uint32_t(value);
-    });
-  });
-  if (!known) refuse(argument, " must be whole numbers, such as int32 or int64, and is " + type_text(a.dtype()));
+RowsView view_of_threes(const char* argument, const AnyArray& a, const char* needed) {
+  if (a.ndim() != 2 || a.shape(1) != 3)
+    refuse(argument, " must be rows of three, of the shape (K, 3), and has the shape " + shape_text(a));
+  return view_of(argument, a, needed);
 }
 
 [[noreturn]] void refuse_label(const char* argument, size_t i, size_t j, size_t k, const std::string& value) {
@@ -137,30 +121,22 @@ void copy_labels(const char* argument, const AnyArray& a, int32_t* to) {
 }  // namespace
 
 std::vector<WorldPoint> points_of(const char* argument, const AnyArray& a) {
-  check_rows(argument, a);
-  std::vector<WorldPoint> points(a.shape(0));
-  double* to = points.empty() ? nullptr : &points[0].x;
-  const bool known = of_number_type(a, [&](auto zero) {
-    using T = decltype(zero);
-    const nb::gil_scoped_release released;
-    each_value<T>(a, [&](size_t at, T value) { to[at] = double(value); });
-  });
-  if (!known) refuse(argument, " must be numbers, such as float32 or float64, and is " + type_text(a.dtype()));
-  return points;
+  const RowsView rows = view_of_threes(argument, a, kNumbers);
+  const nb::gil_scoped_release released;
+  return points_in(rows, argument);
 }
 
 std::vector<std::array<uint32_t, 3>> triangles_of(const char* argument, const AnyArray& a, size_t vertices) {
-  check_rows(argument, a);
-  std::vector<std::array<uint32_t, 3>> triangles(a.shape(0));
-  copy_indices(argument, a, vertices, triangles.empty() ? nullptr : triangles[0].data());
-  return triangles;
+  const RowsView rows = view_of_threes(argument, a, kWholeNumbers);
+  const nb::gil_scoped_release released;
+  return triangles_in(rows, int64_t(vertices), argument);
 }
 
 std::vector<uint32_t> indices_of(const char* argument, const AnyArray& a, size_t end) {
   if (a.ndim() != 1) refuse(argument, " must be one row, and has the shape " + shape_text(a));
-  std::vector<uint32_t> indices(a.shape(0));
-  copy_indices(argument, a, end, indices.data());
-  return indices;
+  const RowsView rows = view_of(argument, a, kWholeNumbers);
+  const nb::gil_scoped_release released;
+  return indices_in(rows, int64_t(end), argument);
 }
 
 std::vector<int32_t> labels_of(const char* argument, const AnyArray& a) {
