@@ -5,7 +5,7 @@ set(isoshell_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/isoshell)
 
 install(TARGETS isoshell EXPORT isoshell ARCHIVE COMPONENT dev LIBRARY COMPONENT runtime
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/isoshell DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/isoshell ${PROJECT_BINARY_DIR}/include/isoshell DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT isoshell NAMESPACE isoshell:: FILE isoshellTargets.cmake DESTINATION ${isoshell_cmake_dir} COMPONENT dev)
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/isoshellConfig.cmake.in ${PROJECT_BINARY_DIR}/isoshellConfig.cmake

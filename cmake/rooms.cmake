@@ -10,6 +10,7 @@ function(isoshell_compile_as_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                              PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:isoshell_numerics> TBB::tbb
                                           $<BUILD_INTERFACE:NanoVDB::headers>
@@ -62,6 +63,8 @@ function(isoshell_add_room room)
   target_sources(isoshell PRIVATE $<TARGET_OBJECTS:${name}>)
 endfunction()
 
+# The one public header that is made: isoshell/version.h.
+configure_file(${CMAKE_CURRENT_LIST_DIR}/version.h.in ${PROJECT_BINARY_DIR}/include/isoshell/version.h @ONLY)
 add_library(isoshell ${PROJECT_BINARY_DIR}/isoshell.cpp)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/isoshell.cpp CONTENT "// The rooms are the library.\n")
 add_library(isoshell::isoshell ALIAS isoshell)

@@ -43,4 +43,5 @@
 #include "isoshell/run/sequence.h"
 #include "isoshell/run/steps.h"
 #include "isoshell/transfer_attributes.h"
+#include "isoshell/version.h"
 #include "isoshell/workers.h"

@@ -1,6 +1,7 @@
 // The compiled part of the package isoshell: what its Python files, which people see, stand on.
 #include <nanobind/nanobind.h>
 
+#include "isoshell/version.h"
 #include "module/context.h"
 #include "module/many.h"
 #include "module/mesh_info.h"

@@ -13,6 +13,7 @@
 #include "isoshell/options/options_json.h"
 #include "isoshell/readable.h"
 #include "isoshell/run/sequence.h"
+#include "isoshell/version.h"
 #include "progress/step.h"
 #include "run/measures.h"
 #include "run/outputs.h"

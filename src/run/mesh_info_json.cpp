@@ -3,6 +3,7 @@
 
 #include "isoshell/io/output_files.h"
 #include "isoshell/run/mesh_info.h"
+#include "isoshell/version.h"
 #include "run/regions_json.h"
 
 namespace isoshell {

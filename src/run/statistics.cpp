@@ -4,6 +4,7 @@
 
 #include "isoshell/options/options_json.h"
 #include "isoshell/run/record.h"
+#include "isoshell/version.h"
 #include "run/regions_json.h"
 
 namespace isoshell {

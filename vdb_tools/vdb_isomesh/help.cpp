@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "isoshell/version.h"
 #include "vdb_isomesh/other_names.h"
 
 namespace isoshell::tool {
@@ -82,7 +83,7 @@ std::string help_text(const CLI::App& app) {
          "itself, 7 over the memory limit or out of memory, 8 no such device, 130 interrupted.\n";
 }
 
-std::string version_text(const std::string& program) { return program + " " VDB_ISOMESH_VERSION "\n"; }
+std::string version_text(const std::string& program) { return program + " " ISOSHELL_VERSION "\n"; }
 
 std::string closest_option(const CLI::App& app, const std::string& mistyped) {
   const std::string word = mistyped.substr(0, mistyped.find('='));

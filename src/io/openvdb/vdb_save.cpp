@@ -17,6 +17,7 @@
 #include "isoshell/error.h"
 #include "isoshell/gaps.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/version.h"
 #include "voxel/random.h"
 
 namespace isoshell {
