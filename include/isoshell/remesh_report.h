@@ -61,6 +61,7 @@ struct StageTime {
 struct InputReport {
   InputTopology topology;  ///< as given; of a resumed run, as repaired
   DirtCounts dirt;
+  FarVertexReport far;
   RepairReport repair;
   UnionReport united;
   JoinReport joined;

@@ -19,14 +19,18 @@ struct RepairOptions {
   bool cap_loops = true;  ///< close holes with new faces
 };
 
+/// Vertices that were pulled back, as needles narrower than edges held them far away from the rest.
+struct FarVertexReport {
+  int64_t vertices = 0;
+  double distance_world = 0;     ///< of the farthest one from the rest
+  WorldPoint farthest{0, 0, 0};  ///< where it was
+};
+
 /// What was changed, by kind.
 struct RepairReport {
-  int64_t far_vertices = 0;       ///< that stretched the surface by needles narrower than edges; pulled back
-  double far_distance_world = 0;  ///< of the farthest one from the rest
-  WorldPoint farthest{0, 0, 0};   ///< where it was
-  int64_t joined_vertices = 0;    ///< of boundaries, moved by next to nothing onto others: cracks
-  int64_t repeated_faces = 0;     ///< the same corners as another face, whichever way round; dropped
-  int64_t fins = 0;               ///< small patches that hang on the surface by edges of three faces; dropped
+  int64_t joined_vertices = 0;  ///< of boundaries, moved by next to nothing onto others: cracks
+  int64_t repeated_faces = 0;   ///< the same corners as another face, whichever way round; dropped
+  int64_t fins = 0;             ///< small patches that hang on the surface by edges of three faces; dropped
   int64_t fin_faces = 0;
   int64_t islands = 0;  ///< small open patches apart from the rest; dropped
   int64_t island_faces = 0;

@@ -33,10 +33,10 @@ Json dirt_json(const DirtCounts& d) {
           {"surplus_bytes", d.surplus_bytes}};
 }
 
-Json repair_json(const RepairReport& m) {
-  return {{"far_vertices", m.far_vertices},
-          {"far_distance", m.far_distance_world},
-          {"farthest", m.far_vertices > 0 ? point(m.farthest) : Json()},
+Json repair_json(const FarVertexReport& far, const RepairReport& m) {
+  return {{"far_vertices", far.vertices},
+          {"far_distance", far.distance_world},
+          {"farthest", far.vertices > 0 ? point(far.farthest) : Json()},
           {"joined_vertices", m.joined_vertices},
           {"repeated_faces", m.repeated_faces},
           {"fins", m.fins},
@@ -77,7 +77,7 @@ Json input_json(const RunRecord& r) {
           {"vertices", known(r.input.vertices)},
           {"faces", known(r.input.faces)},
           {"dropped", dirt_json(r.report.input.dirt)},
-          {"mended", repair_json(r.report.input.repair)},
+          {"mended", repair_json(r.report.input.far, r.report.input.repair)},
           {"united", union_json(r.report.input.united, r.report.input.joined)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},

@@ -68,11 +68,12 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   if (!has_regions) note(d.nonmanifold_edges, "edges that more than two faces share");
   note(d.inconsistent_edges, "edges whose two faces disagree about the orientation");
   const RepairReport& m = report.input.repair;
-  std::ostringstream far;
-  far << "vertices pulled back that needles narrower than an edge held " << m.far_distance_world
-      << " away from the rest, as near " << m.farthest.x << ' ' << m.farthest.y << ' ' << m.farthest.z
-      << "; with shorter edges (--edge-length) they stay";
-  note(m.far_vertices, far.str());
+  const FarVertexReport& far = report.input.far;
+  std::ostringstream pulled;
+  pulled << "vertices pulled back that needles narrower than an edge held " << far.distance_world
+         << " away from the rest, as at " << exact_place(far.farthest)
+         << "; with shorter edges (--edge-length) they stay";
+  note(far.vertices, pulled.str());
   note(m.joined_vertices, "vertices of boundaries joined over cracks");
   note(m.fins, "fins dropped: small patches that hang on edges of more than two faces");
   note(m.islands, "islands dropped: small open patches apart from the rest");

@@ -272,7 +272,7 @@ TEST_CASE("hostile: where the system gives no threads, that is said", "[cli][hos
   const std::string other = geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
   if (folder.shell(other + "'" + command_path() + "' --version").status != 0) return;
   for (const char* most : {"1", "2"}) {
-    const auto r = folder.shell(other + "sh -c \"ulimit -u " + most + "; exec '" + command_path() +
+    const auto r = folder.shell(other + "bash -c \"ulimit -u " + most + "; exec '" + command_path() +
                                 "' ball.off out.ply" + kSmall + "\"");
     INFO(r.err);
     CHECK(r.status == 7);

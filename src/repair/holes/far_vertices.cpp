@@ -111,17 +111,20 @@ class FarVertices {
   std::vector<uint32_t> leader_;
 };
 
-/// Result: where the foot's middle is, if no side of its box is as long as an edge.
+WorldBox box_around(const std::vector<WorldPoint>& points, const std::vector<uint32_t>& of) {
+  WorldBox box = box_of_none();
+  for (const uint32_t v : of) stretch(box, points[v]);
+  return box;
+}
+
+/// Result: where the foot's middle is, if no side of its box, nor of that of the far end, is as long as an edge.
 std::optional<WorldPoint> middle_of_narrow(const std::vector<WorldPoint>& points, const Needle& needle,
                                            double edge_world) {
-  if (needle.foot.empty()) return {};
-  WorldBox box = box_of_none();
+  if (needle.foot.empty() || longest_side(box_around(points, needle.foot)) >= edge_world ||
+      longest_side(box_around(points, needle.far)) >= edge_world)
+    return {};
   WorldPoint sum{0, 0, 0};
-  for (const uint32_t v : needle.foot) {
-    stretch(box, points[v]);
-    sum = sum + points[v];
-  }
-  if (longest_side(box) >= edge_world) return {};
+  for (const uint32_t v : needle.foot) sum = sum + points[v];
   return 1 / double(needle.foot.size()) * sum;
 }
 
@@ -136,7 +139,7 @@ double area_of(const TriangleSoup& soup) {
 
 std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
                                                    const std::function<double(double)>& edge_world,
-                                                   RepairReport& report) {
+                                                   FarVertexReport& report) {
   if (soup.triangles.empty() || !has_long_edge(soup)) return {};
   FarVertices far(soup);
   const std::map<uint32_t, Needle> needles = far.needles();
@@ -148,13 +151,13 @@ std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
     if (!middle) continue;
     for (const uint32_t v : needle.far) {
       moved.push_back({v, *middle});
-      if (far.distance(v) <= report.far_distance_world) continue;
-      report.far_distance_world = far.distance(v);
+      if (far.distance(v) <= report.distance_world) continue;
+      report.distance_world = far.distance(v);
       report.farthest = soup.vertices[v];
     }
   }
   if (moved.empty()) return {};
-  report.far_vertices = int64_t(moved.size());
+  report.vertices = int64_t(moved.size());
   TriangleSoup made = soup;
   for (const auto& [v, at] : moved) made.vertices[v] = at;
   return made;

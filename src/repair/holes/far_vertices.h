@@ -13,11 +13,11 @@ namespace isoshell::repair {
 /// Result: none where there are none. Otherwise the soup in which each such vertex stands in the middle of its foot.
 /// The body is the box of three quarters of the faces, those with the shortest longest edges. A vertex is far where it
 /// is farther from the body than 32 times its longest side. The foot of far vertices that faces connect are the others
-/// of these faces; they are pulled back where the box of the foot has no side of `edge_world(area_world)`, which is
-/// asked once, if at all. Cost: linear in the faces; one look at each where no edge is longer than a quarter of the
-/// box.
+/// of these faces. They are pulled back where neither their box nor that of the foot has a side as long as
+/// `edge_world(area_world)`, which is asked once, if at all. Cost: linear in the faces; one look at each where no edge
+/// is longer than a quarter of the box.
 std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
                                                    const std::function<double(double)>& edge_world,
-                                                   RepairReport& report);
+                                                   FarVertexReport& report);
 
 }  // namespace isoshell::repair
