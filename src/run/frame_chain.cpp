@@ -89,11 +89,14 @@ uint64_t digest_of_file(const std::string& path, FileDigests& known) {
   return known[path] = sum;
 }
 
-/// A field in memory by the lengths that it gives the input.
+/// A field in memory by the lengths that it gives the input, one of a file by the file and the grid's name, and an
+/// attribute by its name.
 uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDigests& files) {
   const RequestedOptions& options = request.options;
-  const std::string text = std::string(ISOSHELL_VERSION) + options_json(options.values) +
-                           (options.lengths_decide() ? " lengths decide" : "");
+  std::string text = std::string(ISOSHELL_VERSION) + options_json(options.values) +
+                     (options.lengths_decide() ? " lengths decide" : "");
+  const std::string& sizing = options.sizing;
+  if (!sizing.empty()) text += " sizing " + sizing.substr(file_of_sizing(sizing).size());
   uint64_t sum = digest_of({digest_of(text), uint64_t(request.stop_after)});
   for (const NamedFile& file : inputs_of(request))
     if (file.what != kInput && !file.path.empty()) sum = digest_of({sum, digest_of_file(file.path, files)});

@@ -12,6 +12,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "core/file_format.h"
@@ -149,11 +150,15 @@ std::vector<NamedFile> outputs_of(const RunRequest& r) {
   return files;
 }
 
+std::string file_of_sizing(const std::string& sizing) {
+  if (!is_sizing_file(sizing)) return "";
+  constexpr std::string_view kEnding = ".vdb";
+  return sizing.substr(0, sizing.rfind(kEnding) + kEnding.size());
+}
+
 std::vector<NamedFile> inputs_of(const RunRequest& r) {
-  const std::string& sizing = r.options.sizing;  // FIELD.vdb:GRID
-  const size_t colon = sizing.rfind(".vdb:");
   return {{kInput, r.input.path},
-          {"--sizing", colon == std::string::npos ? sizing : sizing.substr(0, colon + 4)},
+          {"--sizing", file_of_sizing(r.options.sizing)},
           {"--features", r.options.values.features.line_file}};
 }
 

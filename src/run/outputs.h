@@ -21,6 +21,9 @@ constexpr const char* kInput = "INPUT";
 std::vector<NamedFile> outputs_of(const RunRequest& request);
 std::vector<NamedFile> inputs_of(const RunRequest& request);
 
+/// The file of a sizing field, FIELD.vdb or FIELD.vdb:GRID; empty where it is an attribute of the input.
+std::string file_of_sizing(const std::string& sizing);
+
 /// Every file that the run would write can be (see check_output_files). Throws: also unwritable_output when this build
 /// cannot write its format.
 void check_outputs(const RunRequest& request);

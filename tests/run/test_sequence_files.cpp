@@ -71,3 +71,26 @@ TEST_CASE("sequence: outputs that are one file, or another frame's input, are re
   CHECK(contains(refusal(request, ErrorCode::unwritable_output), "which is not there"));
   CHECK_FALSE(std::filesystem::exists(folder / "out.00.ply"));
 }
+
+TEST_CASE("sequence: edge lengths of an attribute hold in every frame, and another attribute's make it anew",
+          "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  for (int f = 0; f < 2; ++f) {
+    TriangleMesh mesh{twisted(f).vertices, twisted(f).triangles};
+    for (const auto& [name, length] : {std::pair{"coarse", .5}, std::pair{"fine", .4}})
+      mesh.attributes.push_back(
+          {name, NumberType::f64, 1, std::vector<double>(mesh.vertices.size(), length), AttributeDomain::vertex});
+    write_mesh(path_of_frame(folder / "in.##.ply", f), mesh);
+  }
+  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  RemeshOptions options;
+  request.frame.options = requested_options(options, "coarse");
+  CHECK(run_sequence(request, context).made == 2);
+  const std::vector<std::string> coarse = files_of(request);
+  request.resume = true;
+  CHECK(run_sequence(request, context).found == 2);
+  request.frame.options.sizing = "fine";
+  CHECK(run_sequence(request, context).made == 2);
+  CHECK(files_of(request) != coarse);
+}
