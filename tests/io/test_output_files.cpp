@@ -89,6 +89,23 @@ TEST_CASE("output files: neither way to take a name takes one that is there", "[
   CHECK(folder.file_count() == 1);
 }
 
+TEST_CASE("output files: a file system without a rename that keeps what is there takes names all the same",
+          "[output_file][unit]") {
+  const TemporaryFolder folder;
+  put_file(folder / "old", "old");
+  put_file(folder / "new", "new");
+  CHECK(rename_by_link(folder / "new", folder / "old") == EEXIST);
+  CHECK(rename_by_link(folder / "new", folder / "made") == 0);
+  CHECK(get_file(folder / "made") == "new");
+  CHECK_FALSE(fs::exists(folder / "new"));
+  fs::create_directory(folder / "single");  // no folder has two names: EPERM, as of any file on such a file system
+  CHECK(rename_by_link(folder / "single", folder / "old") == EEXIST);
+  CHECK(rename_by_link(folder / "single", folder / "moved") == 0);
+  CHECK(fs::is_directory(folder / "moved"));
+  CHECK_FALSE(fs::exists(folder / "single"));
+  CHECK(get_file(folder / "old") == "old");
+}
+
 TEST_CASE("output files: what a killed process of this host has left goes, and nothing else", "[output_file][unit]") {
   const TemporaryFolder folder;
   const std::string ended = std::to_string(ended_process());

@@ -62,6 +62,15 @@ void find_folder(OutputPlace& place) {
   place.id = FileId{info.st_dev, info.st_ino, last};
 }
 
+int plain_rename(const std::string& from, const std::string& to) {
+  return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+}
+
+/// Whether the system or the file system does not have what was asked for.
+bool is_unknown_here(int error) {
+  return error == EINVAL || error == ENOSYS || error == EPERM || error == ENOTSUP;
+}
+
 }  // namespace
 
 std::string OutputPlace::folder() const { return folder_of(target); }
@@ -97,13 +106,23 @@ std::optional<FileId> input_id(const std::string& path) {
 }
 
 int rename_to(const std::string& from, const std::string& to, bool overwrite) {
-  if (overwrite) return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+  if (overwrite) return plain_rename(from, to);
 #ifdef RENAME_NOREPLACE
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
+  if (!is_unknown_here(errno)) return errno;
 #endif
-  // On a file system that cannot rename so, as NFS, a second name can: there it refuses what exists.
-  return link(from.c_str(), to.c_str()) == 0 && unlink(from.c_str()) == 0 ? 0 : errno;
+  return rename_by_link(from, to);
+}
+
+int rename_by_link(const std::string& from, const std::string& to) {
+  if (link(from.c_str(), to.c_str()) == 0) {
+    (void)unlink(from.c_str());  // the file has its name, whether or not it keeps the other one, too
+    return 0;
+  }
+  if (!is_unknown_here(errno)) return errno;
+  struct stat info;
+  if (lstat(to.c_str(), &info) == 0) return EEXIST;
+  return errno == ENOENT ? plain_rename(from, to) : errno;
 }
 
 int bring_to_disk(int file) {
