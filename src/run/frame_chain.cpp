@@ -61,12 +61,22 @@ uint64_t digest_of(const FaceRegions& regions) {
   return digest_of({digest_of(regions.labels), digest_of(regions.side), digest_of(names)});
 }
 
+uint64_t digest_of(const AttributeFiles& files) {
+  std::string names = files.gltf_materials;
+  for (const auto* list : {&files.materials, &files.textures}) {
+    names += '\0';
+    for (const std::string& name : *list) names += name + '\n';
+  }
+  return digest_of(names);
+}
+
 uint64_t digest_of_input(const Input& input) {
   if (input.stage)
     return digest_of({digest(input.stage->surface), input.stage->seeds ? digest(*input.stage->seeds) : 0,
                       digest_of(input.stage->info.options_json)});
   const TriangleSoup& soup = input.soup;
-  uint64_t sum = digest_of({digest_of(soup.vertices), digest_of(soup.triangles), digest_of(soup.regions)});
+  uint64_t sum = digest_of(
+      {digest_of(soup.vertices), digest_of(soup.triangles), digest_of(soup.regions), digest_of(soup.files)});
   for (const Attribute& attribute : soup.attributes) sum = digest_of({sum, digest_of(attribute)});
   return sum;
 }
@@ -97,7 +107,8 @@ uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDi
                      (options.lengths_decide() ? " lengths decide" : "");
   const std::string& sizing = options.sizing;
   if (!sizing.empty()) text += " sizing " + sizing.substr(file_of_sizing(sizing).size());
-  uint64_t sum = digest_of({digest_of(text), uint64_t(request.stop_after)});
+  const std::vector<WorldPoint> offset = {request.output.recenter.offset()};
+  uint64_t sum = digest_of({digest_of(text), uint64_t(request.stop_after), digest_of(offset)});
   for (const NamedFile& file : inputs_of(request))
     if (file.what != kInput && !file.path.empty()) sum = digest_of({sum, digest_of_file(file.path, files)});
   if (options.values.sizing) sum = digest_of({sum, digest_of(options.values.sizing->lengths_at(input.soup.vertices))});

@@ -94,3 +94,28 @@ TEST_CASE("sequence: edge lengths of an attribute hold in every frame, and anoth
   CHECK(run_sequence(request, context).made == 2);
   CHECK(files_of(request) != coarse);
 }
+
+TEST_CASE("sequence: resumed with another offset, or of a mesh with other images, it makes frames again",
+          "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  const auto write_input = [&](const std::string& image) {
+    TriangleMesh mesh{twisted(0).vertices, twisted(0).triangles};
+    mesh.files.textures = {image};
+    mesh.attributes.push_back({kTextureName, NumberType::i32, 1, std::vector<double>(mesh.triangles.size(), 0),
+                               AttributeDomain::face});
+    write_mesh(folder / "in.00.ply", mesh, {"", true});
+  };
+  write_input("one.png");
+  SequenceRequest request = request_in(folder, 1, "out.##.ply");
+  request.frame.output.recenter = {true, WorldPoint{0, 0, 0}};
+  request.resume = true;
+  CHECK(run_sequence(request, context).made == 1);
+  CHECK(run_sequence(request, context).found == 1);
+  request.frame.output.recenter.offset_world = WorldPoint{10, 0, 0};
+  CHECK(run_sequence(request, context).made == 1);
+  CHECK(run_sequence(request, context).found == 1);
+  write_input("two.png");
+  CHECK(run_sequence(request, context).made == 1);
+  CHECK(contains(get_file(folder / "out.00.ply"), "two.png"));
+}
