@@ -44,7 +44,8 @@ class Frames {
                  bool measure_all, const std::string& velocity, nb::object progress, nb::object tell) {
     RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
     if (measure_all) requested.arguments.run.measures = Measures::all;
-    progress_->begin(index);
+    progress_->go_to(index);
+    progress_->begin();
     requested.in_whole = [sequence = progress_](const Progress& frame) { return sequence->of(frame); };
     return work(place, source, requested,
                 [chain = chain(), read = source.read, velocity_of = velocity_reader(source, velocity)](

@@ -43,7 +43,7 @@ class Sequence {
       const int64_t frame = numbers_[i];
       RunRequest one = request_of_frame(request_, frame);
       if (one.progress) one.progress = [this](const Progress& p) { request_.frame.progress(progress_.of(p)); };
-      progress_.begin(int64_t(i));
+      progress_.go_to(int64_t(i));
       try {
         make(frame, one, kept_sum);
       } catch (const Error& error) {
@@ -63,6 +63,7 @@ class Sequence {
       ++result_.found;
       return set_velocity(one);
     }
+    progress_.begin();
     const RunResult made = chain_.run(std::move(input), one, context_);
     ++result_.made;
     if (made.record.options.previous) {
@@ -113,9 +114,9 @@ class Sequence {
 
 }  // namespace
 
-void SequenceProgress::begin(int64_t index) {
+void SequenceProgress::go_to(int64_t index) {
   index_ = index;
-  if (begun_++ == 0) start_ = Clock::now();
+  if (begun_ == 0) start_ = Clock::now();
 }
 
 Progress SequenceProgress::of(const Progress& frame) const {
@@ -123,7 +124,7 @@ Progress SequenceProgress::of(const Progress& frame) const {
   Progress whole = frame;
   whole.fraction = (double(index_) + frame.fraction) / double(frames_);
   const double till_next = std::chrono::duration<double>(Clock::now() - start_).count() + frame.seconds_left;
-  whole.seconds_left += till_next / double(begun_) * double(frames_ - 1 - index_);
+  whole.seconds_left += till_next / double(std::max<int64_t>(begun_, 1)) * double(frames_ - 1 - index_);
   return whole;
 }
 

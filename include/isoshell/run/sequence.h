@@ -66,15 +66,17 @@ class SequenceProgress {
   /// Of so many frames; 0: nobody knows, and then each frame is all that there is.
   explicit SequenceProgress(int64_t frames) : frames_(frames) {}
 
-  /// A frame that is made; 0 is the first of all.
-  void begin(int64_t index);
+  /// A frame that may be there already; 0 is the first of all.
+  void go_to(int64_t index);
+  /// It is made: the time that a frame takes is the mean over such ones.
+  void begin() { ++begun_; }
   Progress of(const Progress& frame) const;
 
  private:
   using Clock = std::chrono::steady_clock;
 
   int64_t frames_, index_ = 0, begun_ = 0;
-  Clock::time_point start_;  ///< of the first that is made
+  Clock::time_point start_ = Clock::now();  ///< of the first that is made
 };
 
 /// A frame that is not as it should be.
