@@ -189,7 +189,8 @@ void check_outputs(const RunRequest& r) {
     refuse(
         "this build writes no .vdb files: leave out --stop-after, --save-shell and --save-voronoi, or build with "
         "-DISOSHELL_VDB=ON");
-  check_output_files(outputs_of(r), inputs_of(r), r.overwrite);
+  const bool is_later_frame = !r.written_before.empty();  // then the first one has removed what was left
+  check_output_files(outputs_of(r), inputs_of(r), r.overwrite, is_later_frame);
   if (!r.split_regions.empty()) check_folder_of_regions(r.split_regions);
 }
 

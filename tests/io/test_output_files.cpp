@@ -1,13 +1,11 @@
 // Outputs before any work and in their place: whole or not at all, one file each, and nothing that is not theirs.
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "io/bytes/output_place.h"
-#include "io/bytes/temporary_name.h"
 #include "isoshell/io/output_files.h"
 #include "support/catch.h"
+#include "support/leftovers.h"
 #include "support/mesh_files.h"
 #include "support/refusals.h"
 
@@ -19,21 +17,6 @@ namespace {
 std::string refusal(ErrorCode code, const std::vector<NamedFile>& outputs, bool overwrite = true,
                     const std::vector<NamedFile>& inputs = {}) {
   return message_of(code, [&] { check_output_files(outputs, inputs, overwrite); });
-}
-
-/// That of a process which has ended.
-pid_t ended_process() {
-  const pid_t process = fork();
-  if (process == 0) _exit(0);
-  waitpid(process, nullptr, 0);
-  return process;
-}
-
-/// A name of ours with another number of a process.
-std::string temporary_of(const std::string& process) {
-  std::string name = next_temporary_name();
-  const std::string own = "-" + std::to_string(getpid()) + "-";
-  return name.replace(name.rfind(own), own.size(), "-" + process + "-");
 }
 
 }  // namespace

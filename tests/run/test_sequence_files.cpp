@@ -1,5 +1,6 @@
 // What a sequence takes for its own when it resumes, what it says when it ends early, and which outputs it refuses.
 #include "run/sequences.h"
+#include "support/leftovers.h"
 
 using namespace isoshell;
 
@@ -118,4 +119,21 @@ TEST_CASE("sequence: resumed with another offset, or of a mesh with other images
   write_input("two.png");
   CHECK(run_sequence(request, context).made == 1);
   CHECK(contains(get_file(folder / "out.00.ply"), "two.png"));
+}
+
+TEST_CASE("sequence: what killed processes have left goes before the first frame, and no frame looks for it again",
+          "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 3, twisted);
+  SequenceRequest request = request_in(folder, 3, "out.##.ply");
+  const std::string ended = std::to_string(ended_process());
+  const std::string before = temporary_of(ended), during = temporary_of(ended);
+  put_file(folder / before, "part");
+  request.after_frame = [&](int64_t frame, const RunResult&) {
+    CHECK_FALSE(std::filesystem::exists(folder / before));
+    if (frame == 0) put_file(folder / during, "part");
+  };
+  run_sequence(request, context);
+  CHECK(std::filesystem::exists(folder / during));
 }

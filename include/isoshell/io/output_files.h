@@ -14,8 +14,10 @@ struct NamedFile {
 
 /// Every output can be written and is there only if it may be replaced; no two of them are one file, and none is an
 /// input, whatever links their paths go through. Temporary files that killed processes of this host have left in the
-/// folders of the outputs are removed. Throws: unwritable_output; usage for a file that is named twice.
-void check_output_files(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs, bool overwrite);
+/// folders of the outputs are removed, unless `keeps_leftovers`: for a folder of many frames that takes long. Throws:
+/// unwritable_output; usage for a file that is named twice.
+void check_output_files(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs, bool overwrite,
+                        bool keeps_leftovers = false);
 
 /// A file of this text, which appears whole or not at all and is on the disk then; "-" is standard output. Throws:
 /// unwritable_output, also when it exists and is not to be replaced.

@@ -30,7 +30,8 @@ void check_place(const OutputPlace& place, bool overwrite) {
 
 }  // namespace
 
-void check_output_files(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs, bool overwrite) {
+void check_output_files(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs, bool overwrite,
+                        bool keeps_leftovers) {
   std::map<FileId, const NamedFile*> read, written;
   for (const NamedFile& input : inputs)
     if (const std::optional<FileId> id = input_id(input.path)) read.emplace(*id, &input);
@@ -46,6 +47,7 @@ void check_output_files(const std::vector<NamedFile>& outputs, const std::vector
     if (const auto same = read.find(*place.id); same != read.end())
       refuse_one_file(output, *same->second, "a result needs its own");
   }
+  if (keeps_leftovers) return;
   for (const std::string& folder : folders) remove_leftovers(folder);
 }
 

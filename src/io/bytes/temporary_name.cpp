@@ -32,9 +32,8 @@ std::string beginning() {
   return ".isoshell-" + name + "-";
 }
 
-/// The process that a name of ours tells; none of any other name.
-std::optional<pid_t> process_of(const std::string& name) {
-  const std::string begin = beginning();
+/// The process that a name which begins as ours do tells; none of any other name.
+std::optional<pid_t> process_of(const std::string& name, const std::string& begin) {
   if (name.compare(0, begin.size(), begin) != 0) return {};
   pid_t process = 0;
   uint32_t serial = 0;
@@ -63,9 +62,10 @@ std::string next_temporary_name() {
 }
 
 void remove_leftovers(const std::string& folder) {
+  const std::string begin = beginning();
   std::error_code code;
   for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-    const std::optional<pid_t> process = process_of(it->path().filename().string());
+    const std::optional<pid_t> process = process_of(it->path().filename().string(), begin);
     if (process && has_ended(*process)) remove_unless_held(it->path().string());
   }
 }
