@@ -183,3 +183,13 @@ TEST_CASE("mesh info: the version has a short name", "[cli][mesh_info]") {
   CHECK(r.out.find("vdb_meshinfo ") == 0);
   CHECK(r.out == folder.run("--version").out);
 }
+
+TEST_CASE("mesh info: an option of other programs is not taken for one that only vdb_isomesh has", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kTetrahedron);
+  const auto foreign = folder.run("t.off --triangles");
+  CHECK(foreign.status == 2);
+  CHECK(contains(foreign.err, "unknown option --triangles; see --help"));
+  CHECK(contains(folder.run("t.off --overwrite").err, "did you mean --force?"));
+  CHECK(contains(folder.run("t.off --njobs").err, "did you mean --threads?"));
+}

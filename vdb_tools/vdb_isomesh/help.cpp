@@ -89,7 +89,8 @@ std::string closest_option(const CLI::App& app, const std::string& mistyped) {
   const std::string word = mistyped.substr(0, mistyped.find('='));
   const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
   std::string best = option_of_others(bare);
-  if (!best.empty()) return best;
+  if (!best.empty() && app.get_option_no_throw(best.substr(0, best.find(' ')))) return best;
+  best.clear();  // vdb_meshinfo has few of them
   size_t best_distance = 1 + bare.size() / 3;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) {
