@@ -72,6 +72,20 @@ TEST_CASE("output files: neither way to take a name takes one that is there", "[
   CHECK(folder.file_count() == 1);
 }
 
+TEST_CASE("output files: what replaces a file has its permissions, however it was made", "[output_file][unit]") {
+  const TemporaryFolder folder;
+  const fs::path old = folder / "old";
+  const fs::perms own = fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_exec;
+  put_file(old.string(), "old");
+  fs::permissions(old, own);
+  write_text(old.string(), "text", true);
+  CHECK(fs::status(old).permissions() == own);
+  put_file(folder / "new", "new");
+  put_in_place(folder / "new", old.string(), true);
+  CHECK(get_file(old.string()) == "new");
+  CHECK(fs::status(old).permissions() == own);
+}
+
 TEST_CASE("output files: a file system without a rename that keeps what is there takes names all the same",
           "[output_file][unit]") {
   const TemporaryFolder folder;

@@ -23,8 +23,8 @@ void check_output_files(const std::vector<NamedFile>& outputs, const std::vector
 /// unwritable_output, also when it exists and is not to be replaced.
 void write_text(const std::string& path, const std::string& text, bool overwrite);
 
-/// Gives a finished file of the same file system its name, in one step, once it is on the disk. Throws: as
-/// write_text(); `finished` stays then.
+/// Gives a finished file of the same file system its name, in one step, once it is on the disk, and the permissions of
+/// the file that it replaces. Throws: as write_text(); `finished` stays then.
 void put_in_place(const std::string& finished, const std::string& path, bool overwrite);
 
 }  // namespace isoshell

@@ -28,6 +28,11 @@ void refuse_write(const OutputPlace& place, int reason) {
              (place.is_replaced_whole() ? kUntouched : ""));
 }
 
+/// That of the file which it replaces, as far as the system lets it.
+void take_mode(int file, const OutputPlace& place) {
+  if (place.mode) (void)!fchmod(file, *place.mode & 07777);
+}
+
 /// Of a file that is on the disk already.
 void give_name(const std::string& finished, const OutputPlace& place, bool overwrite) {
   const int failed = rename_to(finished, place.target, overwrite);
@@ -51,7 +56,7 @@ OutputFile::OutputFile(const std::string& path, bool overwrite) : place_(output_
   } else {
     if (place_.is_there() && !overwrite) refuse_taken(place_);
     open_temporary();
-    if (place_.mode) (void)!fchmod(file_, *place_.mode & 07777);
+    take_mode(file_, place_);
   }
 }
 
@@ -106,8 +111,10 @@ void put_in_place(const std::string& finished, const std::string& path, bool ove
   if (!place.is_replaced_whole()) place.fail("is not a regular file; name another");
   if (place.is_there() && !overwrite) refuse_taken(place);
   const int file = open(finished.c_str(), O_RDONLY | O_CLOEXEC);
-  const int failed = file < 0 ? errno : bring_to_disk(file);
-  if (file >= 0) close(file);
+  if (file < 0) refuse_write(place, errno);
+  take_mode(file, place);
+  const int failed = bring_to_disk(file);
+  close(file);
   if (failed) refuse_write(place, failed);
   give_name(finished, place, overwrite);
   bring_name_to_disk(place);
