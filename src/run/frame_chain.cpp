@@ -141,6 +141,18 @@ std::string misfit_of(const FrameKey& key, const std::string& found) {
   return "";
 }
 
+/// What reading a file says is wrong with it, and that it cannot be read where that is so. Throws: what is no fault of
+/// the file, as out_of_memory.
+template <class Read>
+std::string misfit_of_file(Read read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::unreadable_input && error.code() != ErrorCode::nothing_to_mesh) throw;
+    return std::string("cannot be read (") + error.what() + ")";
+  }
+}
+
 }  // namespace
 
 struct FrameChain::Frame {
@@ -195,18 +207,17 @@ void FrameChain::set_velocity(std::shared_ptr<const VelocityField> velocity) {
 std::string FrameChain::go_on_from(const Input& input, const RunRequest& request, Context& context) {
   for (const NamedFile& file : outputs_of(request))
     if (!file.path.empty() && !std::filesystem::exists(file.path)) return "is there without " + file.path;
-  TriangleSoup there;
-  std::string made_of;
-  try {
-    there = read_mesh(request.output.path, "ply", context.memory_limit_bytes);
-    made_of = made_of_in_ply(request.output.path, context.memory_limit_bytes);
-  } catch (const Error& error) {
-    return std::string("cannot be read (") + error.what() + ")";
-  }
-  if (there.faces_in_file != int64_t(there.triangles.size())) return "has faces that are none";
   RunRequest one = request;
   if (follows(request) && last_) one.options.values.previous = previous_for(input, context);
-  const std::string misfit = misfit_of(key_of_frame(one, input, written_->digests), made_of);
+  const FrameKey key = key_of_frame(one, input, written_->digests);
+  TriangleSoup there;
+  const std::string misfit = misfit_of_file([&] {
+    const std::string& path = request.output.path;
+    const std::string made_of = made_of_in_ply(path, context.memory_limit_bytes);
+    if (const std::string other = misfit_of(key, made_of); !other.empty()) return other;
+    there = read_mesh(path, "ply", context.memory_limit_bytes);
+    return std::string(there.faces_in_file == int64_t(there.triangles.size()) ? "" : "has faces that are none");
+  });
   if (!misfit.empty() || !follows(request)) return misfit;
   TriangleMesh mesh;
   mesh.vertices = std::move(there.vertices);

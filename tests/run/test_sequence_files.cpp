@@ -137,3 +137,33 @@ TEST_CASE("sequence: what killed processes have left goes before the first frame
   run_sequence(request, context);
   CHECK(std::filesystem::exists(folder / during));
 }
+
+TEST_CASE("sequence: a frame that there is no memory to read is not taken for a damaged one", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 1, twisted);
+  SequenceRequest request = request_in(folder, 1, "out.##.ply");
+  run_sequence(request, context);
+  const RunRequest one = request_of_frame(request, 0);
+  const Input input = read_input_of(one, context, {});
+  CHECK(FrameChain().go_on_from(input, one, context).empty());
+  context.memory_limit_bytes = 4096;  // enough for the header
+  CHECK(contains(message_of(ErrorCode::out_of_memory, [&] { FrameChain().go_on_from(input, one, context); }),
+                 "--max-memory"));
+}
+
+TEST_CASE("sequence: of a frame that does not fit, only the header is read", "[sequence]") {
+  const TemporaryFolder folder;
+  MeshWriteOptions options;
+  options.made_of = "one two three";
+  write_mesh(folder / "a.ply", {twisted(0).vertices, twisted(0).triangles}, options);
+  const std::string whole = get_file(folder / "a.ply");
+  CHECK(made_of_in_ply(folder / "a.ply", 4096) == "one two three");
+  put_file(folder / "a.ply", whole.substr(0, whole.find("end_header") + 11));
+  CHECK(made_of_in_ply(folder / "a.ply") == "one two three");
+  put_file(folder / "a.ply", whole.substr(0, whole.find("end_header")));
+  CHECK(contains(message_of(ErrorCode::unreadable_input, [&] { made_of_in_ply(folder / "a.ply"); }), "end_header"));
+  put_file(folder / "a.ply", std::string(1 << 20, 'a'));
+  CHECK(contains(message_of(ErrorCode::unreadable_input, [&] { made_of_in_ply(folder / "a.ply"); }), "with ply"));
+  CHECK(contains(message_of(ErrorCode::unreadable_input, [&] { made_of_in_ply(folder / "no.ply"); }), "opened"));
+}

@@ -2,12 +2,17 @@
 #include "io/ply/ply_header.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 
 #include "io/bytes/text_scan.h"
 #include "isoshell/io/mesh_file.h"
 
 namespace isoshell {
 namespace {
+
+constexpr int64_t kMaxLineBytes = 1 << 16;
 
 struct TypeName {
   const char *name, *other_name;
@@ -62,7 +67,6 @@ class HeaderReader {
   }
 
  private:
-  static constexpr int64_t kMaxLineBytes = 1 << 16;
   static constexpr int64_t kBytesPerNote = 512;  // beside four times its letters
   static constexpr size_t kMostOfAKind = 4096;   // elements, properties of one: each is compared with those before
 
@@ -156,6 +160,25 @@ class HeaderReader {
   PlyHeader header_;
 };
 
+/// The lines up to end_header, or as far as they are those of a header.
+std::string header_text(const std::string& path, int64_t memory_limit_bytes) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) MeshSource(path, View<const char>{}).refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  ReadingBudget budget(memory_limit_bytes);
+  std::string text;
+  for (std::string line(kMaxLineBytes, '\0'); file.getline(line.data(), kMaxLineBytes) || file.gcount() > 0;) {
+    const bool is_whole = file.good();
+    const auto got = size_t(file.gcount()) - (is_whole ? 1 : 0);
+    budget.take(int64_t(got) + 1, path);
+    text.append(line, 0, got);
+    if (!is_whole) break;
+    text += '\n';
+    const std::vector<std::string> words = words_of(line.data(), line.data() + got);
+    if (!words.empty() && words[0] == "end_header") break;
+  }
+  return text;
+}
+
 // As text a value takes a digit and a separator; the last separator may be missing.
 void check_counts(const MeshSource& source, const PlyHeader& header) {
   const bool ascii = header.encoding == PlyEncoding::ascii;
@@ -202,8 +225,9 @@ const PlyElement* PlyHeader::find(const std::string& element) const {
 }
 
 std::string made_of_in_ply(const std::string& path, int64_t memory_limit_bytes) {
-  ReadingBudget budget(memory_limit_bytes);
-  for (const std::vector<std::string>& note : read_ply_header(MeshSource(path, budget)).notes)
+  const std::string text = header_text(path, memory_limit_bytes);
+  const MeshSource source(path, View<const char>{text.data(), int64_t(text.size())});
+  for (const std::vector<std::string>& note : HeaderReader(source).read().notes)
     if (note[0] == kFrameNote) return note[1];
   return "";
 }
