@@ -189,7 +189,7 @@ double ProgressMeter::seconds_left() const {
 }
 
 void ProgressMeter::tell() {
-  if (tell_) tell_({step_, whole_, part_, seconds_left()});
+  if (tell_ && *step_ != '\0') tell_({step_, whole_, part_, seconds_left()});
 }
 
 }  // namespace isoshell

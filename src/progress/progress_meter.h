@@ -21,8 +21,8 @@ struct ExpectedWork {
 /// What is left is the sum over the work that is not over, and each decrease of it moves the fraction by the same part
 /// of what the fraction has left: so more work than was expected slows the fraction down, and nothing takes it back.
 /// While work goes on, its share goes with the time, ever slower as it takes longer than expected; what stages report
-/// of themselves corrects that. Work that is late by much moves the whole a little. Calls may come from several
-/// threads.
+/// of themselves corrects that. Work that is late by much moves the whole a little. Nothing is told before the first
+/// step has begun. Calls may come from several threads.
 class ProgressMeter {
  public:
   using Seconds = std::function<double()>;  ///< a clock that never goes back

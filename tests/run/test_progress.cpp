@@ -134,6 +134,16 @@ TEST_CASE("progress: it goes on while one stage takes far longer than expected, 
   CHECK(told.seconds_left() < 9 * 40 / 4);  // one stage alone does not say that all are so late
 }
 
+TEST_CASE("progress: nothing is told before a step has begun", "[run]") {
+  Told told;
+  told.meter.expect({{"read", "", 1}});
+  told.pass(.5, 3);
+  CHECK(told.all.empty());
+  told.meter.begin("read");
+  told.pass(.5, 3);
+  CHECK(stages_of(told.all) == std::vector<std::string>{"read"});
+}
+
 TEST_CASE("progress: a whole run begins at 0 and ends at 1, its stages in their order", "[run]") {
   CpuContext context;
   std::vector<Progress> told;
