@@ -2,8 +2,9 @@
 #include "progress/metered.h"
 
 #include <chrono>
-#include <system_error>
 #include <utility>
+
+#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
@@ -20,8 +21,8 @@ Metered::Metered(ProgressMeter& meter, Context& context) : meter_(meter), contex
     if (own_) own_(stage, fraction);
   };
   try {
-    thread_ = std::thread([this] { tick(); });
-  } catch (const std::system_error&) {  // no more threads are to be had: then only the steps are heard
+    thread_ = OwnThread([this] { tick(); });
+  } catch (const Error&) {  // no more threads are to be had: then only the steps are heard
   }
 }
 

@@ -4,8 +4,8 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <thread>
 
+#include "isoshell/advanced/own_thread.h"
 #include "isoshell/backend.h"
 #include "progress/progress_meter.h"
 
@@ -29,7 +29,7 @@ class Metered {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_over_ = false;
-  std::thread thread_;
+  OwnThread thread_;
 };
 
 }  // namespace isoshell
