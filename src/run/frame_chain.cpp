@@ -130,6 +130,13 @@ FrameKey key_of_frame(const RunRequest& request, const Input& input, FileDigests
           previous ? digest_of_previous(*previous) : 0};
 }
 
+/// Whether the mesh has a place for the key. One in memory may be written later.
+bool may_be_ply(const RunRequest& request) {
+  if (request.stop_after != StopAfter::mesh) return false;
+  const OutputRequest& output = request.output;
+  return output.path.empty() || named_output(output.path, output.format, request.stop_after).format == "ply";
+}
+
 /// What is another in the key that a file has, as "was made with other options"; empty where they are the same.
 std::string misfit_of(const FrameKey& key, const std::string& found) {
   std::istringstream words(found);
@@ -179,7 +186,7 @@ RunResult FrameChain::run(Input input, RunRequest request, Context& context) {
     throw Error(ErrorCode::usage, "frames",
                 input.facts.path + " is a stage file, which has no surface that vertices could go with");
   if (follows(request) && last_) request.options.values.previous = previous_for(input, context);
-  request.made_of = key_of_frame(request, input, written_->digests).text();
+  if (may_be_ply(request)) request.made_of = key_of_frame(request, input, written_->digests).text();
   request.written_before = written();
   TriangleSoup surface;
   if (follows(request)) surface = triangles_alone(input.soup.vertices, input.soup.triangles);

@@ -167,3 +167,18 @@ TEST_CASE("sequence: of a frame that does not fit, only the header is read", "[s
   CHECK(contains(message_of(ErrorCode::unreadable_input, [&] { made_of_in_ply(folder / "a.ply"); }), "with ply"));
   CHECK(contains(message_of(ErrorCode::unreadable_input, [&] { made_of_in_ply(folder / "no.ply"); }), "opened"));
 }
+
+TEST_CASE("sequence: only a mesh that may become a PLY file has the key of its frame", "[sequence]") {
+  TestContext context;
+  const TemporaryFolder folder;
+  write_frames(folder, 1, twisted);
+  RunRequest request = request_of_frame(request_in(folder, 1, "out.##.ply"), 0);
+  const Input input = read_input_of(request, context, {});
+  const auto has_key = [&](const std::string& output) {
+    request.output = named_output(output.empty() ? "" : folder / output, "", StopAfter::mesh);
+    return !FrameChain().run(input, request, context).made_of.empty();
+  };
+  CHECK(has_key("a.ply"));
+  CHECK(has_key(""));
+  CHECK_FALSE(has_key("a.obj"));
+}
