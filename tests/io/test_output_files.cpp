@@ -1,6 +1,7 @@
 // Outputs before any work and in their place: whole or not at all, one file each, and nothing that is not theirs.
 #include <fcntl.h>
 #include <sys/file.h>
+#include <unistd.h>
 
 #include "io/bytes/output_place.h"
 #include "isoshell/io/output_files.h"
@@ -84,6 +85,27 @@ TEST_CASE("output files: what replaces a file has its permissions, however it wa
   put_in_place(folder / "new", old.string(), true);
   CHECK(get_file(old.string()) == "new");
   CHECK(fs::status(old).permissions() == own);
+}
+
+TEST_CASE("output files: without a standard input, files are closed all the same", "[output_file][unit]") {
+  const TemporaryFolder folder;
+  put_file(folder / "in.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const int input = dup(STDIN_FILENO);
+  close(STDIN_FILENO);
+  const auto is_closed = [] { return fcntl(STDIN_FILENO, F_GETFD) < 0; };
+  write_text(folder / "text", "text", false);
+  const bool closes_outputs = is_closed();
+  close(STDIN_FILENO);
+  const size_t read = read_mesh(folder / "in.off").triangles.size();
+  const bool closes_inputs = is_closed();
+  close(STDIN_FILENO);
+  if (input >= 0) {
+    dup2(input, STDIN_FILENO);
+    close(input);
+  }
+  CHECK(closes_outputs);
+  CHECK(closes_inputs);
+  CHECK(read == 1);
 }
 
 TEST_CASE("output files: a file system without a rename that keeps what is there takes names all the same",

@@ -26,7 +26,7 @@ constexpr int64_t kHugePageBytes = int64_t(1) << 21;
 struct FileHandle {
   int number;
   ~FileHandle() {
-    if (number > 0) close(number);
+    if (number >= 0) close(number);
   }
 };
 

@@ -61,7 +61,7 @@ OutputFile::OutputFile(const std::string& path, bool overwrite) : place_(output_
 }
 
 OutputFile::~OutputFile() {
-  if (file_ > STDOUT_FILENO) close(file_);
+  if (is_own()) close(file_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
@@ -93,7 +93,7 @@ void OutputFile::write(const void* data, int64_t bytes) {
 void OutputFile::commit() {
   if (!temporary_.empty())
     if (const int failed = bring_to_disk(file_)) refuse_write(place_, failed);
-  if (file_ > STDOUT_FILENO && close(std::exchange(file_, -1)) != 0) refuse_write(place_, errno);
+  if (is_own() && close(std::exchange(file_, -1)) != 0) refuse_write(place_, errno);
   if (temporary_.empty()) return;
   give_name(temporary_, place_, overwrite_);
   temporary_.clear();

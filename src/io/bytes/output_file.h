@@ -26,6 +26,8 @@ class OutputFile {
 
  private:
   void open_temporary();
+  /// 0 and 1 are numbers of files, too, where the process was started without those streams.
+  bool is_own() const { return !place_.is_stream && file_ >= 0; }
 
   OutputPlace place_;
   std::string temporary_;
