@@ -83,8 +83,11 @@ def _writing(path: str) -> Iterator[None]:
     """What fails meanwhile is an Error of code UNWRITABLE_OUTPUT."""
     try:
         yield
-    except OSError as error:
-        raise _unwritable(path, os.strerror(error.errno or 0)) from error
+    except Error:
+        raise
+    except Exception as error:  # whatever the package raises of a disk that is full
+        words = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
+        raise _unwritable(path, words) from error
 
 
 def _unwritable(path: str, what: str) -> Error:

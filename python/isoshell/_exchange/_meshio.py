@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import os
-from typing import TYPE_CHECKING, Any, Iterator
+from typing import TYPE_CHECKING, Any
 
 from .._errors import Error
-from .._isoshell import ErrorCode
 from .._inputs import Mesh, Points
 from . import package
 from ._give import given_of
@@ -27,7 +25,8 @@ SIDES = {  # of volume cells, by their corners: outward
     "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
 }
 GMSH = {"gmsh:physical": "group"}
-FILE_FORMATS = {"msh": "gmsh"}  # another format has that ending, too
+# Of an ending: the module of meshio. Its general functions try several formats, print, and exit where none fits.
+MODULES = {"msh": "gmsh", "vtu": "vtu", "med": "med", "xdmf": "xdmf", "xmf": "xdmf", "inp": "abaqus"}
 ALONE = ("inp",)  # hold vertices and faces, and nothing else
 WITHOUT_NAMES = ("vtu", "med", "xdmf", "xmf")
 
@@ -149,9 +148,7 @@ def _notes_of(field_data: Any) -> dict[str, Any]:
 
 def read(path: str, options: dict[str, Any]) -> Any:
     """What a file has."""
-    library, ending = check(path), _ending(path)
-    with _quiet(path):
-        return taken(library.read(path, file_format=FILE_FORMATS.get(ending)), options)
+    return taken(getattr(check(path), MODULES[_ending(path)]).read(path), options)
 
 
 def write(made: Result | Mesh, path: str) -> list[str]:
@@ -166,8 +163,14 @@ def write(made: Result | Mesh, path: str) -> list[str]:
         mesh.field_data = {}
     if ending == "msh":
         _fit_gmsh(mesh)
-    with _quiet(path):
-        library.write(path, mesh, file_format=FILE_FORMATS.get(ending))
+    module = getattr(library, MODULES[ending])
+    if ending != "med":
+        module.write(path, mesh)
+        return lost
+    image = io.BytesIO()  # it does not close a file, and so does not say when that fails
+    module.write(image, mesh)
+    with open(path, "wb") as file:
+        file.write(image.getbuffer())
     return lost
 
 
@@ -189,17 +192,3 @@ def check(path: str) -> Any:
 
 def _ending(path: str) -> str:
     return os.path.splitext(path)[1][1:].lower()
-
-
-@contextlib.contextmanager
-def _quiet(path: str) -> Iterator[None]:
-    """What meshio prints of its errors is their message; where no reader has read a file it exits."""
-    said = io.StringIO()
-    try:
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            yield
-    except Error:
-        raise
-    except (Exception, SystemExit) as error:
-        words = " ".join((said.getvalue() if isinstance(error, SystemExit) else str(error)).split())
-        raise Error(f"{path}: meshio: {words or type(error).__name__}", ErrorCode.UNREADABLE_INPUT, "read") from error

@@ -7,7 +7,7 @@ import sys
 import isoshell
 import numpy as np
 import pytest
-from conftest import write_obj
+from conftest import FOREVER, write_obj
 from isoshell import ErrorCode
 from isoshell._exchange import formats
 
@@ -20,7 +20,7 @@ def as_ball(result):
 
 
 def run_module(*words, **environment):
-    return subprocess.run([sys.executable, "-m", "isoshell", *map(str, words)], capture_output=True, text=True, timeout=120,
+    return subprocess.run([sys.executable, "-m", "isoshell", *map(str, words)], capture_output=True, text=True, timeout=FOREVER,
                           env={**os.environ, **environment})
 
 
@@ -115,7 +115,7 @@ def test_without_its_package_a_file_is_refused_with_what_to_install(tmp_path, ba
     for words in ([tmp_path / f"in.{ending}", "o.ply"], [source, tmp_path / f"out.{ending}"]):
         if ending == "nii" and words[0] == source:
             continue
-        done = subprocess.run([sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, timeout=FOREVER)
         assert done.returncode == ErrorCode.USAGE, done.stderr
         assert f"pip install 'isoshell[{package}]'" in done.stderr and "Traceback" not in done.stderr
 
@@ -132,6 +132,33 @@ def test_the_command_in_cpp_names_the_module_that_reads_such_files(command, tmp_
         assert "pip install 'isoshell[meshio]'" in done.stderr
     done = command(source, tmp_path / "o.nii")
     assert "python -m isoshell" not in done.stderr  # it is not written there either
+
+
+def test_what_meshio_prints_is_not_caught(tmp_path, ball, monkeypatch, capsys):
+    """Streams are of the process, and other threads write to them, too."""
+    meshio = pytest.importorskip("meshio")
+    isoshell.remesh(ball, **SMALL).save(tmp_path / "in.vtu")
+    read = meshio.vtu.read
+    monkeypatch.setattr(meshio.vtu, "read", lambda path: print("another thread's words") or read(path))
+    assert as_ball(isoshell.remesh(tmp_path / "in.vtu", **SMALL)) and capsys.readouterr().out == "another thread's words\n"
+
+
+@pytest.mark.parametrize("ending", ["vtk", "vtu", "msh", "med", "inp", "3mf"])
+def test_a_disk_that_is_full_is_told_with_the_name_of_the_file(tmp_path, ball, ending):
+    for package in {"vtk": ["pyvista"], "3mf": ["lxml"]}.get(ending, ["meshio", "h5py"]):
+        pytest.importorskip(package)
+    source, target = write_obj(tmp_path / "ball.obj", *ball), tmp_path / f"o.{ending}"
+    code = """if True:
+        import resource, sys, isoshell
+        result = isoshell.remesh(sys.argv[1], vertices=1000, resolution=32)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
+        try:
+            result.save(sys.argv[2])
+        except isoshell.Error as error:
+            print(error.code.name, error)"""
+    done = subprocess.run([sys.executable, "-c", code, source, target], capture_output=True, text=True, timeout=FOREVER)
+    assert done.returncode == 0 and done.stdout.startswith(f"UNWRITABLE_OUTPUT {target}: "), done.stdout + done.stderr
+    assert "Success" not in done.stdout and os.listdir(tmp_path) == ["ball.obj"]
 
 
 def test_saving_says_what_a_format_does_not_hold(tmp_path, ball):
