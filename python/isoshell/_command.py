@@ -12,6 +12,8 @@ from ._isoshell import ErrorCode
 
 Run = Callable[[list[str]], int]
 
+NO_COMMAND = frozenset(". / : # %".split())  # characters of names of files, of grids and prims in them, and of frames
+
 # In the shape that scripts/command_docs.py reads.
 HELP = """isoshell COMMAND [arguments]
 
@@ -49,7 +51,7 @@ def run_one_of(words: list[str], remesh: Run) -> int:
     if not words:
         return _refuse("COMMAND is missing: remesh, info or farm; see isoshell --help")
     if first not in commands:
-        meant = difflib.get_close_matches(first, commands)
+        meant = difflib.get_close_matches(first, commands) if NO_COMMAND.isdisjoint(first) else []
         if meant and not os.path.exists(first):
             return _refuse(f"there is neither a command nor a file {first}; did you mean {meant[0]}?")
         return remesh(words)

@@ -27,6 +27,7 @@ class Kind(NamedTuple):
     is_flag: bool
     of_command: bool  # no keyword
     is_whole: bool  # takes whole numbers alone
+    repeats: bool  # its text has a line for each time that it is given
 
 
 _kinds: dict[str, Kind] = {}
@@ -35,7 +36,8 @@ _kinds: dict[str, Kind] = {}
 def kinds() -> dict[str, Kind]:
     """Every option of the command by its keyword."""
     if not _kinds:
-        _kinds.update({entry.name.replace("-", "_"): Kind(not entry.value, entry.of_command, not entry.real and entry.low < entry.high)
+        _kinds.update({entry.name.replace("-", "_"): Kind(not entry.value, entry.of_command,
+                                                         not entry.real and entry.low < entry.high, entry.repeats)
                        for entry in _isoshell.option_table()})
     return _kinds
 

@@ -10,6 +10,7 @@ from importlib import import_module
 import isoshell
 import pytest
 from conftest import SOURCE, write_obj
+from isoshell._usd._command import split_words
 
 COMMANDS = ("remesh", "info", "farm")
 
@@ -84,6 +85,18 @@ def test_a_command_alone_says_what_it_lacks():
         said = run(*words)
         assert said.returncode == 2 and says in said.stderr and said.stdout == "", said.stderr
     assert "did you mean info?" in run("inof", "mesh.ply").stderr
+
+
+@pytest.mark.parametrize("name", ["remesh.vdb:sdf", "remesh.usd:/a", "remesh.#.ply", "remesh.%d.ply", "farm.ply", "a/inf"])
+def test_what_can_name_a_file_is_no_misspelt_command(tmp_path, name):
+    words = ("out.#.ply", "--frames", "1-1") if {"#", "%"} & {*name} else ("out.ply",)
+    done = run(name, *words, cwd=tmp_path)
+    assert done.returncode == 3 and "did you mean" not in done.stderr and "no such file" in done.stderr, done.stderr
+
+
+def test_options_that_repeat_do_so_where_python_reads_or_writes_the_file():
+    words = ["a.usda", "b.ply", "--region-edge-length", "a=1", "--region-edge-length=b=2", "--seed", "3", "--seed", "4"]
+    assert split_words(words) == (["a.usda", "b.ply"], {"region_edge_length": "a=1\nb=2", "seed": "4"})
 
 
 def test_remesh_is_what_the_call_without_a_name_does(tmp_path, ball):

@@ -44,12 +44,12 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
             continue
         option, is_joined, value = word[2:].partition("=")
         name = option.replace("-", "_")
-        if is_joined:
-            options[name] = value
-        elif name not in kinds() or kinds()[name].is_flag:
+        kind = kinds().get(name)
+        if not is_joined and (kind is None or kind.is_flag):
             options[name] = True
-        else:
-            options[name] = left.pop(0) if left else ""
+            continue
+        text = value if is_joined else left.pop(0) if left else ""
+        options[name] = f"{options[name]}\n{text}" if kind is not None and kind.repeats and name in options else text
     if options.get("output"):
         places.append(options.pop("output"))
     return places, options
