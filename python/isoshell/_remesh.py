@@ -14,7 +14,7 @@ from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._paths import path_text
 from ._result import Result, checked
 from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of, with_faces
-from ._usd import is_usd
+from ._usd import file_of, is_usd
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -66,7 +66,7 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     volumes = stage_files(given)
     is_ours = is_written_here(target, given)
     if is_ours:
-        check_target(target, given, volumes)
+        check_target(target, given, volumes, source)
     if options.get("report"):
         _report.require_k3d()
     keywords_of(given)  # what cannot be is refused before anything is read
@@ -123,20 +123,23 @@ def is_written_here(target: str, options: dict[str, Any]) -> bool:
                               and not options.get("stop_after"))
 
 
-def check_target(target: str, options: dict[str, Any], volumes: list[str]) -> None:
-    """Before a run whose output is such a file: whether it can be."""
+def check_target(target: str, options: dict[str, Any], volumes: list[str], source: Any = None) -> None:
+    """Before a run whose output is such a file: whether it can be, and is not the file of the source."""
     refused = [name for name in OF_OTHER_OUTPUTS if options.get(name)]
+    if not is_usd(target) and options.get("recenter") is not None:
+        refused.append("recenter")
     if refused:
         raise Error(f"{', '.join(refused)}: not where output is {target}", stage="options")
     others = [(f"--{name.replace('_', '-')}", path_text(options[name])) for name in ("stats", "report", *STAGE_FILES)
               if options.get(name)]
+    inputs = [("INPUT", file_of(source))] if isinstance(source, (str, os.PathLike)) else []
     if not is_usd(target):
         from ._exchange import _files
 
-        return _files.check_target(target, options.get("force") is True, others)
+        return _files.check_target(target, options.get("force") is True, others, inputs)
     from ._usd import _write
 
-    _write.check_target(target, options.get("force") is True, volumes, others)
+    _write.check_target(target, options.get("force") is True, volumes, others, inputs)
 
 
 def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:

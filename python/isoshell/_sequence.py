@@ -16,7 +16,7 @@ from ._remesh import (check_target, is_written_here, keywords_for, listener, res
                       takes_stats)
 from ._result import Result, checked
 from ._sources import SourceLike, frame_source_of, opened, sizing_of
-from ._usd import is_usd, split_name
+from ._usd import file_of, is_usd
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -147,7 +147,7 @@ class _Sequence:
         if self._resume and not self._output:
             raise Error("resume needs output to be a name of PLY files, as out.####.ply", stage="options")
         self._frames = self._frames_of(source, _text_of(frames))
-        self._stage = self._stage_for(self._target)
+        self._stage = self._stage_for(self._target, source)
 
     def results(self) -> Iterator[Result]:
         """The loop."""
@@ -229,7 +229,7 @@ class _Sequence:
             return self._frames_of_stage(name, frames)
         if frames is None:
             raise Error(f"which frames of {name}? Give frames, as '1-240'", stage="frames")
-        numbers = self._checked_numbers(split_name(name)[0] if is_usd(name) else name, frames)
+        numbers = self._checked_numbers(file_of(name), frames)
         self.count = len(numbers)
         return ((n, lambda n=n: _isoshell.path_of_frame(name, n)) for n in numbers)  # type: ignore[misc]
 
@@ -264,19 +264,19 @@ class _Sequence:
         keywords = keywords_of(self._options)
         stage_of_all = is_usd(self._target) and not _is_pattern(self._target)
         if self._target and not self._output and not stage_of_all:
-            self._check_targets(keywords, frames)
+            self._check_targets(keywords, files, frames)
         return _isoshell.check_frames(keywords, files, self._output, frames, self._keep_going, self._resume)
 
-    def _check_targets(self, keywords: Any, frames: str) -> None:
+    def _check_targets(self, keywords: Any, files: str, frames: str) -> None:
         for n in _isoshell.check_frames(keywords, "", "", frames, True, False):
-            check_target(_path_at(self._target, n), self._options, [])
+            check_target(_path_at(self._target, n), self._options, [], _path_at(files, n) or None)
 
-    def _stage_for(self, target: str) -> Optional[SampledStage]:
+    def _stage_for(self, target: str, source: Any) -> Optional[SampledStage]:
         if not is_usd(target) or _is_pattern(target):
             return None
         from ._usd._samples import SampledStage
 
-        check_target(target, self._options, [])
+        check_target(target, self._options, [], source)
         if self._options.get("recenter") is not None:
             raise Error(f"recenter: not where all frames are {target}, whose mesh has a transform", stage="options")
         return SampledStage(target, self._options.get("force") is True)

@@ -108,8 +108,8 @@ def with_faces(source: Any, faces: Sequence[Any]) -> Any:
 
 
 def source_of(given: Any, sizing: Any = None) -> Source:
-    """The source that an argument of remesh() means, with a sizing field that is in memory."""
-    source = _source_of(opened(given))
+    """The source that what is opened means, with a sizing field that is in memory."""
+    source = _source_of(given)
     if isinstance(sizing, Volume):
         source.set_sizing(*_lattice_of("sizing", sizing, floats_or_nan))
     elif sizing is not None:

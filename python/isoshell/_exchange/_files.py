@@ -43,14 +43,15 @@ def read(path: str, options: dict[str, Any]) -> Any:
     return made
 
 
-def check_target(path: str, overwrite: bool, others: Iterable[tuple[str, str]] = ()) -> None:
-    """Before a run: whether its result could be written there, beside its other files.
+def check_target(path: str, overwrite: bool, others: Iterable[tuple[str, str]] = (),
+                 inputs: Iterable[tuple[str, str]] = ()) -> None:
+    """Before a run: whether its result could be written there, beside its other files and those that it reads.
 
     Raises:
         Error: of code UNWRITABLE_OUTPUT or USAGE.
     """
     _module_of(_format_for(path, "writes")).check(path)
-    _isoshell.check_output_files([("OUTPUT", path), *others], [], overwrite)
+    _isoshell.check_output_files([("OUTPUT", path), *others], list(inputs), overwrite)
 
 
 def write(path: str, made: Result | Mesh, overwrite: bool) -> None:

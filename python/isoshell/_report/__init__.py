@@ -13,7 +13,7 @@ from .._errors import Error
 from .._keywords import Keywords
 from .._paths import path_text
 from .._result import Result
-from .._sources import SourceLike, source_of
+from .._sources import SourceLike, opened, source_of
 
 if TYPE_CHECKING:
     from .._result import Floats, Ints
@@ -42,7 +42,7 @@ def report(result: Result, path: str | os.PathLike[str], *, source: Optional[Sou
     """
     require_k3d()
     _refuse_existing(Path(path_text(path)), overwrite)
-    write(result, source_of(source) if source is not None else result._source, path, overwrite)
+    write(result, source_of(opened(source)) if source is not None else result._source, path, overwrite)
 
 
 def require_k3d() -> Path:

@@ -57,6 +57,11 @@ def split_name(path: str | os.PathLike[str]) -> tuple[str, Optional[str]]:
     return found["file"], found["prim"]
 
 
+def file_of(path: str | os.PathLike[str]) -> str:
+    """The file that a source names, without a prim in it."""
+    return split_name(path)[0] if is_usd(path) else path_text(path)
+
+
 def library() -> Any:
     """The package pxr with the modules used here.
 

@@ -33,8 +33,8 @@ FAR = 64  # sizes of itself from the origin: beyond, single precision takes more
 
 
 def check_target(path: str, overwrite: bool, volumes: Iterable[str] = (),
-                 others: Iterable[tuple[str, str]] = ()) -> None:
-    """Before a run: whether its result could be written there, beside its other files.
+                 others: Iterable[tuple[str, str]] = (), inputs: Iterable[tuple[str, str]] = ()) -> None:
+    """Before a run: whether its result could be written there, beside its other files and those that it reads.
 
     Raises:
         Error: of code UNWRITABLE_OUTPUT or USAGE.
@@ -43,7 +43,7 @@ def check_target(path: str, overwrite: bool, volumes: Iterable[str] = (),
     file, prim = split_name(path)
     if prim is not None:
         raise Error(f"{path}: a prim is named; give the file alone", stage="write")
-    _isoshell.check_output_files([("OUTPUT", file), *others], [], overwrite)
+    _isoshell.check_output_files([("OUTPUT", file), *others], list(inputs), overwrite)
     if file.lower().endswith(".usdz") and list(volumes):
         raise Error(f"{file}: packages hold no volumes; give a .usda or .usdc", stage="write")
 

@@ -82,6 +82,42 @@ def test_labels_of_nifti_have_the_affine_of_their_file(tmp_path, ending):
         made.save(path, overwrite=True)
 
 
+def test_a_format_that_is_named_is_that_of_the_file_whatever_its_ending(tmp_path, ball):
+    path = tmp_path / "ply.vtk"
+    isoshell.remesh(ball, **SMALL).save(tmp_path / "a.ply")
+    (tmp_path / "a.ply").rename(path)
+    for made in (isoshell.remesh(path, input_format="ply", **SMALL),
+                 next(isoshell.remesh_many([path], input_format="ply", **SMALL)),
+                 next(isoshell.remesh_sequence([path], input_format="ply", **SMALL)),
+                 isoshell.Stages(path, input_format="ply", **SMALL).triangulate()):
+        assert as_ball(made)
+    assert isoshell.estimate(path, input_format="ply", **SMALL)["vertices"] == 100
+    assert isoshell.mesh_info(path, input_format="ply", ref=path, ref_format="ply")["distance"]
+
+
+@pytest.mark.parametrize("ending, package", [("vtp", "pyvista"), ("msh", "meshio"), ("usda", "pxr")])
+def test_a_result_never_replaces_its_source(tmp_path, ball, ending, package):
+    pytest.importorskip(package)
+    path = tmp_path / f"a.1.{ending}"
+    isoshell.remesh(ball, **SMALL).save(path)
+    kept = path.read_bytes()
+    for source in [path] + ([f"{path}:/World"] if ending == "usda" else []):
+        with pytest.raises(isoshell.Error, match="are one file") as caught:
+            isoshell.remesh(source, output=path, force=True, **SMALL)
+        assert caught.value.code == ErrorCode.USAGE
+    with pytest.raises(isoshell.Error, match="are one file"):
+        pattern = tmp_path / f"a.#.{ending}"
+        isoshell.remesh_sequence(pattern, frames="1-1", output=pattern, force=True, **SMALL)
+    assert path.read_bytes() == kept
+
+
+def test_recenter_is_refused_before_a_run_where_the_format_has_none(tmp_path):
+    pytest.importorskip("pyvista")
+    for place in ("auto", np.zeros(3)):
+        with pytest.raises(isoshell.Error, match="recenter: not where output is .*o.vtp"):
+            isoshell.remesh(tmp_path / "absent.obj", output=tmp_path / "o.vtp", recenter=place)
+
+
 def test_vtk_reads_files_of_other_programs(tmp_path, ball):
     pyvista = pytest.importorskip("pyvista")
     rows = np.column_stack([np.full(len(ball[1]), 3), ball[1]])
