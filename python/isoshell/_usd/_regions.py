@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
 
+from .._errors import Error
+from .._labels import label_of
 from .._result import Result
+from . import unreadable
+from ._faces import values_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -96,15 +100,26 @@ def read_regions(pxr: Any, mesh: Any, time: Any, face_count: int) -> Optional[Ar
     is_said = np.zeros(face_count, bool)
     for subset in pxr.UsdGeom.Subset.GetGeomSubsets(pxr.UsdGeom.Imageable(mesh), pxr.UsdGeom.Tokens.face, FAMILY):
         pair = subset.GetPrim().GetCustomDataByKey(PAIR)
-        faces = np.array(subset.GetIndicesAttr().Get(time) or [], np.int64)
-        if pair is None or len(pair) != 2 or np.any((faces < 0) | (faces >= face_count)):
+        if pair is None:
             continue
-        labels[faces], is_said[faces] = [int(label) for label in pair], True
+        if not isinstance(pair, pxr.Vt.IntArray) or len(pair) != 2:
+            raise _refused(subset, PAIR, pair, "two labels")
+        faces = values_of(subset.GetIndicesAttr(), time)
+        if np.any((faces < 0) | (faces >= face_count)):
+            continue
+        labels[faces], is_said[faces] = list(pair), True
     return labels if face_count and is_said.all() else None
 
 
 def read_names(pxr: Any, mesh: Any) -> Tuple[int, Dict[int, str]]:
     """The background's label, and what regions are called."""
     data = mesh.GetPrim().GetCustomDataByKey(NAMES) or {}
-    names = {int(label): str(name) for label, name in data.get("names", {}).items()}
-    return int(data.get("background", 0)), names
+    try:
+        names = {label_of(NAMES, int(label)): str(name) for label, name in data.get("names", {}).items()}
+        return label_of(NAMES, data.get("background", 0)), names
+    except (AttributeError, ValueError, Error):
+        raise _refused(mesh, NAMES, data, "a background and names by label") from None
+
+
+def _refused(prim: Any, key: str, data: Any, meant: str) -> Error:
+    return unreadable(str(prim.GetPath()), f"its custom data {key} is {data!r}, and not {meant}")

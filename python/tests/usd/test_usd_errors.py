@@ -8,7 +8,7 @@ import pytest
 from isoshell import ErrorCode
 
 pytest.importorskip("pxr", reason="needs usd-core: pip install usd-core")
-from pxr import UsdGeom  # noqa: E402
+from pxr import Usd, UsdGeom, Vt  # noqa: E402
 from usd_stages import SMALL, add_mesh, colored, new_stage, stage_of, written  # noqa: E402, F401, fixture
 
 
@@ -88,3 +88,22 @@ def test_damaged_files_raise_errors_and_nothing_else(stage_of, tmp_path, box):
                 assert error.code == ErrorCode.UNREADABLE_INPUT
             else:
                 assert ending == "usda"
+
+
+@pytest.mark.parametrize("key, data", [
+    ("regions", 7), ("regions", "text"), ("regions", Vt.IntArray([1])), ("regions", Vt.DoubleArray([1, 0])),
+    ("region_names", "text"), ("region_names", {"names": 3}), ("region_names", {"names": {"a": "b"}}),
+    ("region_names", {"names": {"99999999999": "b"}}), ("region_names", {"background": "none"})])
+def test_notes_of_regions_that_are_none_are_told_with_their_prim(tmp_path, key, data):
+    labels = np.zeros((12, 8, 8), np.uint8)
+    labels[2:6, 2:6, 2:6], labels[6:10, 2:6, 2:6] = 3, 7
+    path = str(tmp_path / "regions.usda")
+    isoshell.usd.write(path, isoshell.remesh(isoshell.Labels(labels), vertices=200))
+    stage = Usd.Stage.Open(path)
+    for prim in stage.Traverse():
+        if prim.HasCustomDataKey(f"isoshell:{key}"):
+            prim.SetCustomDataByKey(f"isoshell:{key}", data)
+    stage.Save()
+    with pytest.raises(isoshell.Error, match=f"/World.*isoshell:{key} is") as caught:
+        isoshell.remesh(path, **SMALL)
+    assert caught.value.code == ErrorCode.UNREADABLE_INPUT
