@@ -91,7 +91,7 @@ def test_a_command_alone_says_what_it_lacks():
 def test_what_can_name_a_file_is_no_misspelt_command(tmp_path, name):
     words = ("out.#.ply", "--frames", "1-1") if {"#", "%"} & {*name} else ("out.ply",)
     done = run(name, *words, cwd=tmp_path)
-    assert done.returncode == 3 and "did you mean" not in done.stderr and "no such file" in done.stderr, done.stderr
+    assert done.returncode == 3 and "did you mean" not in done.stderr, done.stderr
 
 
 def test_options_that_repeat_do_so_where_python_reads_or_writes_the_file():
