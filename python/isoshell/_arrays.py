@@ -42,6 +42,19 @@ def floats_or_nan(argument: str, value: Any) -> np.ndarray[Any, Any]:
     return floats if mask is None else np.where(mask, np.float32(np.nan), floats)
 
 
+def nan_where_masked(argument: str, value: Any) -> np.ndarray[Any, Any]:
+    """An array, NaN where it has no value; whole numbers must have one everywhere."""
+    import numpy as np
+
+    array, mask = masked_array_of(argument, value)
+    if mask is None:
+        return array
+    if array.dtype.kind != "f":
+        raise Error(f"{argument} is masked at {first_place(mask)}, and whole numbers have none that means nothing; "
+                    "fill it: array.filled(value)")
+    return np.where(mask, np.nan, array).astype(array.dtype)
+
+
 def first_place(mask: np.ndarray[Any, Any]) -> str:
     """The indices of the first that is true, as they are written in Python."""
     return str([int(i[0]) for i in mask.nonzero()])

@@ -89,6 +89,18 @@ def _whole(value: Any) -> Any:
     return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 2**63 else value
 
 
+def whole_number_of(name: str, value: Any) -> int:
+    """An option that is used here, and not by the parser.
+
+    Raises:
+        Error: of code USAGE for what is no whole number.
+    """
+    try:
+        return int(text_of(name, _whole(_plain(value))))
+    except ValueError:
+        raise Error(f"{name} is {value!r}; it must be a whole number", stage="options") from None
+
+
 def text_of(name: str, given: Any) -> str:
     """A value as the command takes it; None is empty."""
     value = _plain(given)

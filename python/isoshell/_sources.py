@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, triple_of
+from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, triple_of
 from ._exchange import format_of, taken
 from ._errors import Error
 from ._inputs import Mesh, Points, Volume
@@ -277,12 +277,7 @@ def _rows(name: str, domain: str, values: Any) -> np.ndarray[Any, Any]:
     """Values of an attribute as one row each."""
     import numpy as np
 
-    array, mask = masked_array_of(f"the attribute '{name}'", values)
-    if mask is not None:
-        if array.dtype.kind != "f":
-            raise Error(f"the attribute '{name}' is masked at {first_place(mask)}, and whole numbers have none that means "
-                        "nothing; fill it: array.filled(value)")
-        array = np.where(mask, np.nan, array).astype(array.dtype)
+    array = nan_where_masked(f"the attribute '{name}'", values)
     if array.dtype.kind == "b":
         array = array.astype(np.uint8)
     if array.dtype in (np.int64, np.uint64):

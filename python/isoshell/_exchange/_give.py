@@ -47,9 +47,10 @@ def given_of(made: Result | Mesh, splits: bool = True) -> Given:
     regions = made.regions
     if regions and len(regions["labels"]):
         of_faces["region_inside"], of_faces["region_outside"] = np.array(regions["labels"], np.int32).T.copy()
-        notes["region_background"] = [int(regions["background"])]
-        notes["region_numbers"] = [int(label) for label in regions["names"]]
-        notes["region_names"] = list(regions["names"].values())
+        notes["region_background"] = [int(regions.get("background", 0))]
+        names = regions.get("names") or {}
+        notes["region_numbers"] = [int(label) for label in names]
+        notes["region_names"] = list(names.values())
     return Given(vertices[vertex_of], faces, _with_vectors(of_vertices), _with_vectors(of_faces), notes)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._errors import Error
 from .._inputs import Mesh, Points
+from .._labels import INT32
 from . import package
 from ._give import given_of
 from ._take import Taker
@@ -73,8 +74,8 @@ def _rows(block: Any) -> Any:
 
 def _names_of_groups(given: Any, blocks: list[int]) -> dict[int, str]:
     """Gmsh's physical groups of faces that have a name."""
-    return {int(value[0]): name for name, value in given.field_data.items()
-            if len(value) == 2 and int(value[1]) == 2 and ":" not in name}
+    rows = {name: _whole_numbers(value) for name, value in given.field_data.items()}
+    return {row[0]: name for name, row in rows.items() if len(row) == 2 and row[1] == 2 and ":" not in name}
 
 
 def _taken_boundary(given: Any) -> Any:
@@ -132,18 +133,30 @@ def _notes_of(field_data: Any) -> dict[str, Any]:
     notes: dict[str, Any] = {"region_background": [0], "region_numbers": [], "region_names": []}
     for key, value in field_data.items():
         kind, is_named, name = str(key).partition(":")
-        if not is_named or len(value) != 2:
-            continue
-        if kind == "region_background":
-            notes[kind] = [int(value[0])]
-        elif kind == "region":
-            notes["region_numbers"].append(int(value[0]))
+        row = _whole_numbers(value)
+        if not is_named or len(row) != 2:
+            continue  # somebody else's
+        number, dimension = row
+        if kind == "region_background" and dimension == 3:
+            notes[kind] = [number]
+        elif kind == "region" and dimension == 3:
+            notes["region_numbers"].append(number)
             notes["region_names"].append(name)
-        else:
+        elif dimension == 2 and 0 <= number < len(field_data):
             labels = notes.setdefault(f"{kind}_names", [])
-            labels.extend([""] * (int(value[0]) + 1 - len(labels)))
-            labels[int(value[0])] = name
+            labels.extend([""] * (number + 1 - len(labels)))
+            labels[number] = name
     return notes
+
+
+def _whole_numbers(value: Any) -> list[int]:
+    """Those of a note that a label can be; none where it has others."""
+    import numpy as np
+
+    row = np.atleast_1d(np.asarray(value))
+    if row.dtype.kind not in "iu" or row.ndim != 1 or np.any((row < INT32[0]) | (row > INT32[1])):
+        return []
+    return [int(number) for number in row]
 
 
 def read(path: str, options: dict[str, Any]) -> Any:

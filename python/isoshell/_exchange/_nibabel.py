@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .._errors import Error
+from .._keywords import whole_number_of
 from .._labels import Labels
 from .._inputs import Volume
 from . import package
@@ -15,7 +16,8 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
     and smallest_island, which are of labels, are taken out.
 
     Raises:
-        Error: of code USAGE for what is no image of three dimensions, and for a Volume that is turned.
+        Error: of code USAGE for what is no image of three dimensions, for a Volume that is turned, and for
+            options that are no whole numbers.
     """
     import numpy as np
 
@@ -31,7 +33,7 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
         labels = Labels(values if values.dtype.kind in "biu" else values.astype(np.int64), affine=np.array(affine, float))
         for name in ("background", "smallest_island"):
             if options.get(name) is not None:
-                setattr(labels, name, int(options.pop(name)))
+                setattr(labels, name, whole_number_of(name, options.pop(name)))
         return labels
     return _volume_of(values, np.array(affine, float))
 

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 from .. import _isoshell
+from .._arrays import array_of, nan_where_masked
 from .._errors import Error
 from .._polygons import split_polygons
 from .._inputs import Mesh
@@ -20,7 +21,7 @@ COLORS = ("color", "colors", "rgb", "rgba", "vertexcolor", "vertexcolors", "face
 UVS = ("uv", "uvs", "st", "tcoords", "texcoord", "texcoords", "texturecoordinate", "texturecoordinates")
 NORMALS = ("normal", "normals", "vertexnormal", "vertexnormals")
 REGIONS = ("region_inside", "region_outside")
-OF_ITSELF = ("gap", "vtkOriginalPointIds", "vtkOriginalCellIds")  # says nothing of another mesh
+OF_ITSELF = ("gap", "vtkOriginalPointIds", "vtkOriginalCellIds", "gmsh:dim_tags", "gmsh:geometrical")  # says nothing of another mesh
 MOST_COLUMNS = 16
 
 
@@ -37,12 +38,12 @@ class Taker:
     def __init__(self, name: str, vertices: Any, faces: Any, sizes: Any = None) -> None:
         import numpy as np
 
-        self._points = np.asarray(vertices, np.float64)
+        self._points = np.asarray(array_of("vertices", vertices), np.float64)
         if self._points.ndim != 2 or self._points.shape[1] not in (2, 3):
             raise Error(f"{name}: its points must be rows of three numbers, and have the shape {self._points.shape}")
         if self._points.shape[1] == 2:
             self._points = np.column_stack([self._points, np.zeros(len(self._points))])
-        corners = np.asarray(faces)
+        corners = array_of("faces", faces)
         sizes = np.full(len(corners), 3, np.int64) if sizes is None else np.asarray(sizes, np.int64)
         corners = corners.reshape(-1)
         wrong = (corners < 0) | (corners >= len(self._points))
@@ -62,7 +63,7 @@ class Taker:
         name = str(name).replace("\n", " ")
         if name in OF_ITSELF:
             return self.drop(name, "it is of the mesh that it was made for")
-        array = np.ma.filled(values, np.nan) if np.ma.is_masked(values) else np.asarray(values)
+        array = nan_where_masked(f"the attribute '{name}'", values) if np.ma.is_masked(values) else np.asarray(values)
         if array.dtype.kind in "USO":
             array, labels = _numbered(array)
             if domain != "face":
@@ -97,7 +98,7 @@ class Taker:
         if width == 3 and bare in NORMALS:
             return self._put("normal", "corner", self._by_corner(domain, rows))
         if bare in UVS and (width == 2 or (width == 3 and not rows[:, 2].any())):  # some formats have no pairs
-            number = re.search(r"\d*$", name)
+            number = re.search(r"[1-9]\d*$", name)  # TEXCOORD_0 is the first, as uv is
             return self._put("uv" + (number.group() if number else ""), "corner", self._by_corner(domain, rows[:, :2]))
         if domain == "corner":
             return self.drop(name, "of corners of faces only texture coordinates and normals are kept")

@@ -4,6 +4,7 @@ import isoshell
 import numpy as np
 import pytest
 from conftest import make_ball
+from isoshell._exchange._take import Taker
 from test_sources import ball_values
 
 SMALL = {"vertices": 100, "resolution": 32}
@@ -50,6 +51,18 @@ def test_masked_numbers_of_an_attribute_are_none_and_masked_whole_numbers_are_re
     assert np.isnan(made).any() and np.nanmax(np.abs(made)) <= 1.001
     with pytest.raises(isoshell.Error, match=r"'part' is masked at \[2\]"):
         isoshell.remesh(isoshell.Mesh(*ball, of_faces={"part": masked(np.arange(len(ball[1])), 2)}), **SMALL)
+
+
+def test_masks_of_other_packages_are_those_of_a_mesh(ball):
+    count = len(ball[0])
+    taker = Taker("mesh", *ball)
+    taker.add("heat", "vertex", masked(np.ones(count, np.float32), 2))
+    assert np.isnan(taker.mesh.of_vertices["heat"][2]) and taker.mesh.of_vertices["heat"].dtype == np.float32
+    for words, ask in ((r"'part' is masked at \[2\]", lambda: taker.add("part", "vertex", masked(np.arange(count), 2))),
+                       (r"vertices\[5, 1\] is masked", lambda: Taker("mesh", masked(ball[0], (5, 1)), ball[1])),
+                       (r"faces\[7, 2\] is masked", lambda: Taker("mesh", ball[0], masked(ball[1], (7, 2))))):
+        with pytest.raises(isoshell.Error, match=words):
+            ask()
 
 
 def test_a_masked_voxel_of_true_and_false_is_outside():

@@ -160,6 +160,39 @@ def test_physical_groups_of_gmsh_are_groups(ball):
     assert (names[height > 0.1] == "inlet").all() and (names[height < -0.1] == "wall").all()
 
 
+@pytest.mark.parametrize("note", [1.0, np.array(7), [5.5, 2.0], "text", [2**40, 2], [[5, 2]], [2_000_000_000, 2], [-1, 2]])
+def test_notes_of_meshio_that_are_somebody_elses_are_left_alone(ball, note):
+    meshio = pytest.importorskip("meshio")
+    parts = np.arange(len(ball[1])) % 2
+    mesh = meshio.Mesh(ball[0], [("triangle", ball[1])], cell_data={"part": [parts], "gmsh:physical": [parts + 5]})
+    mesh.field_data = {"time": note, "part:a": np.array([0, 2]), "part:b": np.array([1, 2]), "part:c": note,
+                       "region:d": note, "region_background:": note, "inlet": np.array([5, 2])}
+    made = isoshell.remesh(mesh, **SMALL)
+    assert made.labels["part"][:2] == ["a", "b"] and "inlet" in made.labels["group"]
+
+
+def test_numbers_of_gmsh_are_of_its_own_mesh(ball):
+    meshio = pytest.importorskip("meshio")
+    count = len(ball[1])
+    made = isoshell.remesh(meshio.Mesh(
+        ball[0], [("triangle", ball[1])], point_data={"gmsh:dim_tags": np.ones((len(ball[0]), 2), int)},
+        cell_data={"gmsh:geometrical": [np.ones(count, int)]}), **SMALL)
+    assert {"gmsh:dim_tags", "gmsh:geometrical"} <= set(dropped(made)) and not made.attributes
+
+
+def test_texture_coordinates_of_gltf_are_numbered_from_0(ball):
+    trimesh = pytest.importorskip("trimesh")
+    uv = (ball[0][:, :2] + 1) / 2
+    given = trimesh.Trimesh(*ball, vertex_attributes={"TEXCOORD_0": uv, "TEXCOORD_1": uv}, process=False)
+    assert {"uv", "uv1"} == set(isoshell.remesh(given, **SMALL).attributes)
+
+
+def test_regions_with_labels_alone_are_given(ball):
+    pytest.importorskip("trimesh")
+    mesh = isoshell.Mesh(*ball, regions={"labels": np.tile([4, 0], (len(ball[1]), 1))})
+    assert (mesh.to_trimesh().face_attributes["region_inside"] == 4).all()
+
+
 def test_meshes_of_pymeshlab_and_their_sets_are_sources(ball):
     pymeshlab = pytest.importorskip("pymeshlab")
     colors = np.column_stack([(ball[0] + 1) / 2, np.ones(len(ball[0]))])
@@ -185,6 +218,20 @@ def test_an_image_of_whole_numbers_is_labels_with_its_affine():
     assert isoshell.remesh(image_of(nibabel, labels, affine), vertices=200).digest == expected.digest
     as_floats = image_of(nibabel, labels.astype(np.float32), affine)
     assert isoshell.remesh(as_floats, vertices=200).digest == expected.digest
+
+
+@pytest.mark.parametrize("option", ["background", "smallest_island"])
+def test_options_of_an_image_of_labels_are_whole_numbers(option):
+    nibabel = pytest.importorskip("nibabel")
+    labels = np.zeros((8, 8, 8), np.int16)
+    labels[2:6, 2:6, 2:6] = 3
+    image = image_of(nibabel, labels, np.eye(4))
+    for value in (0.7, "many", True, "0.7"):
+        with pytest.raises(isoshell.Error, match=f"{option} is") as caught:
+            isoshell.remesh(image, vertices=100, **{option: value})
+        assert caught.value.code == isoshell.ErrorCode.USAGE
+    for value in (0.0, "0", np.int64(0)):
+        assert isoshell.remesh(image, vertices=100, **{option: value}).report["topology"]["closed"]
 
 
 def test_an_image_of_values_is_a_volume_turned_as_its_affine_says():
