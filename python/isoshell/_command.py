@@ -8,7 +8,9 @@ import sys
 from typing import Callable
 
 from . import _isoshell
+from ._exchange import format_of
 from ._isoshell import ErrorCode
+from ._usd import is_usd
 
 Run = Callable[[list[str]], int]
 
@@ -67,7 +69,12 @@ def vdb_meshinfo() -> int:
 
 
 def _info(words: list[str]) -> int:
-    return _isoshell.mesh_info_command(["isoshell info", *words])
+    status = _isoshell.mesh_info_command(["isoshell info", *words])
+    names = [word.partition("=")[2] if word.startswith("--") else word for word in words]
+    ours = [name for name in names if is_usd(name) or format_of(name) is not None]
+    if ours and status in (int(ErrorCode.USAGE), int(ErrorCode.UNREADABLE_INPUT)):
+        _tell(f"info reads the formats of the command alone; isoshell.mesh_info() in Python reads {ours[0]}, too")
+    return status
 
 
 def _farm(words: list[str]) -> int:

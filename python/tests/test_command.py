@@ -121,6 +121,16 @@ def test_info_is_the_certificate(tmp_path, ball):
     assert run("info", "-V").stdout == f"isoshell info {isoshell.__version__}\n"
 
 
+def test_info_names_the_call_that_measures_files_of_other_packages(tmp_path, ball):
+    source = write_obj(tmp_path / "ball.obj", *ball)
+    for name in ("a.vtp", "a.usda"):
+        (tmp_path / name).write_text("")
+        for words in ((name,), (source, "--ref", name), (source, f"--ref={name}")):
+            done = run("info", *words, cwd=tmp_path)
+            assert done.returncode == 3 and f"isoshell.mesh_info() in Python reads {name}" in done.stderr, done.stderr
+    assert "mesh_info" not in run("info", tmp_path / "absent.obj").stderr
+
+
 def test_scripts_of_the_package_are_there(capfd, monkeypatch):
     scripts = re.findall(r'^(\w+) = "(isoshell\.\w+):(\w+)"$', (SOURCE / "pyproject.toml").read_text(), re.MULTILINE)
     assert [name for name, _, _ in scripts] == ["isoshell", "vdb_meshinfo"]
