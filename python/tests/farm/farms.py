@@ -73,6 +73,21 @@ def assert_is_serial(out, serial):
     assert made == serial
 
 
+def connect(address, **security):
+    """Connects to a scheduler, and leaves it."""
+    import distributed
+
+    distributed.Client(address, timeout=f"{FOREVER}s", set_as_default=False, **security).close()
+
+
+def assert_is_refused(address, why="", **security):
+    """It closes the connection: a scheduler that is not there, or slow, is another error."""
+    from distributed.comm.core import CommClosedError
+
+    with pytest.raises(CommClosedError, match=why):
+        connect(address, **security)
+
+
 class Crasher(threading.Thread):
     """Ends whoever reads this asset, as a reader that crashes would, until it is left."""
 

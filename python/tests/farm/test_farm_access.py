@@ -6,8 +6,8 @@ import sys
 from types import SimpleNamespace
 
 import pytest
-from farms import (ENDLESS, FARM, SMALL, end, engine, engine_with, farm, held, make_assets, processes_of,  # noqa: F401
-                   psutil, start_farm, wait_for)
+from farms import (ENDLESS, FARM, SMALL, assert_is_refused, connect, end, engine, engine_with, farm,  # noqa: F401
+                   held, make_assets, processes_of, psutil, start_farm, wait_for)
 
 import isoshell
 from isoshell._farm._assets import Asset
@@ -40,13 +40,6 @@ def test_a_local_farm_needs_no_network(tmp_path):
     assert done.returncode == 0 and "arning" not in done.stderr, done.stderr
 
 
-def refused(address, **security):
-    import distributed
-
-    with pytest.raises(OSError), distributed.Client(address, timeout="1s", set_as_default=False, **security):
-        pass
-
-
 def test_jobs_of_slurm_and_nobody_else_can_connect(tmp_path):
     pytest.importorskip("dask_jobqueue")
     pytest.importorskip("cryptography")
@@ -63,8 +56,9 @@ def test_jobs_of_slurm_and_nobody_else_can_connect(tmp_path):
         assert keys[0].stat().st_mode & 0o077 == 0
         assert cluster.scheduler_address.startswith("tls://")
         assert cluster.scheduler.http_server.address == "127.0.0.1"
-        refused(cluster.scheduler_address.replace("tls:", "tcp:"))
-        refused(cluster.scheduler_address, security=Security.temporary())
+        connect(cluster.scheduler_address, security=cluster.security)
+        assert_is_refused(cluster.scheduler_address.replace("tls:", "tcp:"))
+        assert_is_refused(cluster.scheduler_address, "certificate", security=Security.temporary())
 
 
 def test_a_scheduler_that_asks_for_no_certificate_is_warned_of(engine, tmp_path):
