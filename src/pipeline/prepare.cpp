@@ -238,8 +238,7 @@ Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested,
   RemeshReport report;
   const RemeshOptions given_options = checked(requested);
   const auto edge_world = [&](double area_world) { return target_of(given_options, area_world).edge_length_world; };
-  const std::optional<TriangleSoup> pulled =
-      repair::pull_back_far_vertices(given_soup, edge_world, report.input.far);
+  const std::optional<TriangleSoup> pulled = repair::pull_back_far_vertices(given_soup, edge_world, report.input.far);
   const TriangleSoup& soup = pulled ? *pulled : given_soup;
   if (!given_options.regions.empty()) {
     PartRegions found =

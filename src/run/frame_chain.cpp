@@ -75,8 +75,8 @@ uint64_t digest_of_input(const Input& input) {
     return digest_of({digest(input.stage->surface), input.stage->seeds ? digest(*input.stage->seeds) : 0,
                       digest_of(input.stage->info.options_json)});
   const TriangleSoup& soup = input.soup;
-  uint64_t sum = digest_of(
-      {digest_of(soup.vertices), digest_of(soup.triangles), digest_of(soup.regions), digest_of(soup.files)});
+  uint64_t sum =
+      digest_of({digest_of(soup.vertices), digest_of(soup.triangles), digest_of(soup.regions), digest_of(soup.files)});
   for (const Attribute& attribute : soup.attributes) sum = digest_of({sum, digest_of(attribute)});
   return sum;
 }

@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include "io/bytes/output_place.h"
+#include "io/leftovers.h"
 #include "isoshell/io/output_files.h"
 #include "support/catch.h"
-#include "support/leftovers.h"
 #include "support/mesh_files.h"
 #include "support/refusals.h"
 

@@ -1,6 +1,6 @@
 // What a sequence takes for its own when it resumes, what it says when it ends early, and which outputs it refuses.
+#include "io/leftovers.h"
 #include "run/sequences.h"
-#include "support/leftovers.h"
 
 using namespace isoshell;
 
@@ -103,8 +103,8 @@ TEST_CASE("sequence: resumed with another offset, or of a mesh with other images
   const auto write_input = [&](const std::string& image) {
     TriangleMesh mesh{twisted(0).vertices, twisted(0).triangles};
     mesh.files.textures = {image};
-    mesh.attributes.push_back({kTextureName, NumberType::i32, 1, std::vector<double>(mesh.triangles.size(), 0),
-                               AttributeDomain::face});
+    mesh.attributes.push_back(
+        {kTextureName, NumberType::i32, 1, std::vector<double>(mesh.triangles.size(), 0), AttributeDomain::face});
     write_mesh(folder / "in.00.ply", mesh, {"", true});
   };
   write_input("one.png");

@@ -67,9 +67,7 @@ int plain_rename(const std::string& from, const std::string& to) {
 }
 
 /// Whether the system or the file system does not have what was asked for.
-bool is_unknown_here(int error) {
-  return error == EINVAL || error == ENOSYS || error == EPERM || error == ENOTSUP;
-}
+bool is_unknown_here(int error) { return error == EINVAL || error == ENOSYS || error == EPERM || error == ENOTSUP; }
 
 }  // namespace
 

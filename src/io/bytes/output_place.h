@@ -36,8 +36,8 @@ std::optional<FileId> input_id(const std::string& path);
 /// In one step; 0, or the error number: EEXIST for a place that is taken and not to be overwritten.
 int rename_to(const std::string& from, const std::string& to, bool overwrite);
 
-/// The same without overwriting, for file systems that cannot rename so. A second name refuses a place that is taken, as
-/// on NFS. Where files have one name only, as on FUSE and 9p, the place is looked at first, in a step of its own.
+/// The same without overwriting, for file systems that cannot rename so. A second name refuses a place that is taken,
+/// as on NFS. Where files have one name only, as on FUSE and 9p, the place is looked at first, in a step of its own.
 int rename_by_link(const std::string& from, const std::string& to);
 
 /// Waits until the contents of an open file, or the names in a folder, are on the disk. Returns 0, or the error number;
