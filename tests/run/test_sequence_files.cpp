@@ -104,11 +104,7 @@ TEST_CASE("sequence: resumed with another offset, or of a mesh with other images
     TriangleMesh mesh{twisted(0).vertices, twisted(0).triangles};
     mesh.files.textures = {image};
     mesh.attributes.push_back(
-<<<<<<< HEAD
-        {kTextureName, NumberType::i32, 1, std::vector<double>(mesh.triangles.size(), 0), AttributeDomain::face});
-=======
         {kUvName, NumberType::f32, 2, std::vector<double>(6 * mesh.triangles.size(), .5), AttributeDomain::corner});
->>>>>>> c6001803 (Mend the tests of outputs and of sequences that resume)
     write_mesh(folder / "in.00.ply", mesh, {"", true});
   };
   write_input("one.png");
