@@ -8,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "geometry/world_vector.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/joined_parts.h"
 #include "repair/holes/open_soup.h"
@@ -39,13 +40,8 @@ bool is_inside_out(const TriangleSoup& soup, double area_world) {
   constexpr double kLeastVolume = 1e-9;  // of that of a body with such an area
   const WorldPoint& o = soup.vertices[soup.triangles[0][0]];
   const auto six_volumes = [&](size_t t) {
-    double c[3][3];
-    for (size_t i = 0; i < 3; ++i) {
-      const WorldPoint& p = soup.vertices[soup.triangles[t][i]];
-      c[i][0] = p.x - o.x, c[i][1] = p.y - o.y, c[i][2] = p.z - o.z;
-    }
-    return c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) + c[0][1] * (c[1][2] * c[2][0] - c[1][0] * c[2][2]) +
-           c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0]);
+    const auto& [a, b, c] = soup.triangles[t];
+    return dot(soup.vertices[a] - o, cross(soup.vertices[b] - o, soup.vertices[c] - o));
   };
   const double sum = tbb::parallel_deterministic_reduce(
       tbb::blocked_range<size_t>(0, soup.triangles.size(), 4096), 0.0,

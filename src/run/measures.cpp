@@ -68,7 +68,7 @@ std::vector<std::string> check_triangles(const TriangleMesh& mesh, RunRecord& re
   record.topology = check_mesh(mesh);
   if (!mesh.regions.empty())
     record.regions = take_region_census(mesh, context);
-  else if (record.report.is_optimized)
+  else if (record.report.is_optimized && !record.files.empty())  // without a file the optimisation's count holds
     record.report.optimize.self_intersections = count_intersecting_pairs(mesh, context);
   std::vector<std::string> warnings;
   const std::string flaw = flaw_of(record);

@@ -21,6 +21,7 @@ constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the e
 constexpr int64_t kUsualVertices = 10000;
 constexpr int32_t kMinResolution = 8;
 constexpr int64_t kMinVertices = 4, kMaxVertices = 2147483647;
+constexpr double kLongestOfFewest = 1.0690449676496976;  // 3.5 vertices round to 4: sqrt(4 / 3.5)
 
 int32_t resolution_for_voxel(double longest, double voxel_size) {
   return int32_t(std::clamp<double>(std::floor(longest / voxel_size + 0.5) + 1, 1, double(kMaxResolution) + 1));
@@ -40,18 +41,28 @@ int32_t requested_voxel_resolution(double longest, double voxel_size) {
   throw Error(ErrorCode::usage, "grid", text.str());
 }
 
+[[noreturn]] void refuse_edge_length(double edge_world, const std::string& asked, const char* bound, int64_t vertices,
+                                     double area_world) {
+  std::ostringstream text;
+  text << "an edge length of " << edge_world << " asks for " << asked << " vertices; use at " << bound << " "
+       << target_of(vertices, area_world).edge_length_world;
+  throw Error(ErrorCode::usage, "grid", text.str());
+}
+
+/// Of an input's own area: that of a sheet is another one, and lengths of a field are no option to correct.
+void check_longest_edge(const RemeshOptions& options, double area_world) {
+  if (!options.edge_length_world) return;
+  if (*options.edge_length_world > target_of(kMinVertices, area_world).edge_length_world * kLongestOfFewest)
+    refuse_edge_length(*options.edge_length_world, "fewer than " + std::to_string(kMinVertices), "most", kMinVertices,
+                       area_world);
+}
+
 }  // namespace
 
 int64_t vertices_of_edge(double edge_world, double area_world) {
   const double vertices = area_world / (kAreaPerEdgeSq * edge_world * edge_world);
-  const bool is_too_short = !(vertices <= double(kMaxVertices));  // a tiny length squares to 0
-  if (is_too_short || vertices < kMinVertices - 0.5) {
-    std::ostringstream text;
-    text << "an edge length of " << edge_world << " asks for " << (is_too_short ? "more than " : "fewer than ")
-         << (is_too_short ? kMaxVertices : kMinVertices) << " vertices; use at " << (is_too_short ? "least " : "most ")
-         << target_of(is_too_short ? kMaxVertices : kMinVertices, area_world).edge_length_world;
-    throw Error(ErrorCode::usage, "grid", text.str());
-  }
+  if (!(vertices <= double(kMaxVertices)))  // a tiny length squares to 0
+    refuse_edge_length(edge_world, "more than " + std::to_string(kMaxVertices), "least", kMaxVertices, area_world);
   return std::max(kMinVertices, int64_t(std::llround(vertices)));
 }
 
@@ -65,6 +76,7 @@ Target target_of(const RemeshOptions& options, double area_world) {
 }
 
 Plan plan_of(const RemeshOptions& checked_options, const InputTopology& input, const WorldBox& box) {
+  check_longest_edge(checked_options, input.area_world);
   return {checked_options, input, box, target_of(checked_options, input.area_world)};
 }
 

@@ -12,7 +12,7 @@ struct Target {
 };
 
 /// What the options ask of a surface of this area: a count, or an edge length, and the other follows. Throws: usage
-/// when an edge length asks for fewer than 4 or more than 2^31 - 1 vertices.
+/// when an edge length asks for more than 2^31 - 1 vertices.
 Target target_of(const RemeshOptions& options, double area_world);
 /// Of so many vertices.
 Target target_of(int64_t vertices, double area_world);
@@ -40,7 +40,7 @@ struct Plan {
   bool chooses_grid() const { return !options.resolution && !options.voxel_size_world; }
 };
 
-/// Throws: usage, as target_of.
+/// Throws: usage, as target_of, and where an edge length asks for fewer than 4 vertices on an area like the input's.
 Plan plan_of(const RemeshOptions& checked_options, const InputTopology& input, const WorldBox& box);
 
 /// How the options relax whatever is relaxed.
