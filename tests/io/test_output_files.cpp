@@ -63,8 +63,9 @@ TEST_CASE("output files: neither way to take a name takes one that is there", "[
   put_file(folder / "old", "old");
   CHECK(rename_to(folder / "new", folder / "old", false) == EEXIST);
   CHECK(get_file(folder / "old") == "old");
-  CHECK(message_of(ErrorCode::unwritable_output, [&] { put_in_place(folder / "new", folder / "old", false); }) != "");
-  CHECK(message_of(ErrorCode::unwritable_output, [&] { write_text(folder / "old", "text", false); }) != "");
+  CHECK_FALSE(
+      message_of(ErrorCode::unwritable_output, [&] { put_in_place(folder / "new", folder / "old", false); }).empty());
+  CHECK_FALSE(message_of(ErrorCode::unwritable_output, [&] { write_text(folder / "old", "text", false); }).empty());
   CHECK(get_file(folder / "old") == "old");
   put_in_place(folder / "new", folder / "old", true);
   CHECK(get_file(folder / "old") == "new");
