@@ -10,10 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "golden/golden_inputs.h"
 #include "isoshell/advanced/digest.h"
+#include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/isoshell.h"
 #include "isoshell/run/sequence.h"
+#include "regions/label_volumes.h"
 #include "support/shapes.h"
 #include "support/source_folder.h"
 
@@ -29,7 +32,7 @@ struct Case {
 /// A whole run as a user has it, where nothing but the count and what is said here differs from the defaults.
 struct RunCase {
   std::string name;
-  std::function<TriangleSoup(int frame)> shape;
+  std::function<Input(int frame)> input;
   RemeshOptions options;
   int frames = 1;  ///< each begins with the one before; the last one counts
 };
@@ -83,67 +86,61 @@ inline std::vector<Case> cases() {
           {"two sheets, closed", wall, options(400, 80, Method::sheet, 6)}};
 }
 
-/// A torus that is twisted about its axis, more from frame to frame.
-inline TriangleSoup twisted_torus(int frame) {
-  TriangleSoup soup = shapes::torus(2, 0.7, 64, 32);
-  for (WorldPoint& p : soup.vertices) {
-    const double angle = 0.06 * frame * p.x;
-    p = {p.x, p.y * std::cos(angle) - p.z * std::sin(angle), p.y * std::sin(angle) + p.z * std::cos(angle)};
-  }
-  return soup;
-}
-
-/// A torus with a colour at its vertices, and texture coordinates that jump where its angles begin again.
-inline TriangleSoup painted_torus() {
-  constexpr double kTau = 6.283185307179586;
-  TriangleSoup soup = shapes::torus(2, 0.7, 64, 32);
-  Attribute color{"color", NumberType::u8, 3, {}}, uv{"uv", NumberType::f32, 2, {}, AttributeDomain::corner};
-  for (const WorldPoint& p : soup.vertices)
-    color.values.insert(color.values.end(), {(p.x + 3) / 6, (p.y + 3) / 6, (p.z + 1) / 2});
-  for (const auto& t : soup.triangles) {
-    std::array<std::array<double, 2>, 3> corner;
-    for (size_t i = 0; i < 3; ++i) {
-      const WorldPoint p = soup.vertices[t[i]];
-      corner[i] = {std::atan2(p.y, p.x) / kTau, std::atan2(p.z, std::hypot(p.x, p.y) - 2) / kTau};
-    }
-    for (size_t axis = 0; axis < 2; ++axis) {
-      const double most = std::max({corner[0][axis], corner[1][axis], corner[2][axis]});
-      for (auto& c : corner) c[axis] += c[axis] < most - 0.5 ? 1 : 0;
-    }
-    for (const auto& c : corner) uv.values.insert(uv.values.end(), c.begin(), c.end());
-  }
-  soup.attributes = {color, uv};
-  return soup;
-}
-
-/// The part of a torus where x is above 0: two borders.
-inline TriangleSoup half_torus() {
-  TriangleSoup soup = shapes::torus(2, 0.6, 64, 32);
-  std::vector<std::array<uint32_t, 3>> kept;
-  for (const auto& t : soup.triangles)
-    if (soup.vertices[t[0]].x > 0 && soup.vertices[t[1]].x > 0 && soup.vertices[t[2]].x > 0) kept.push_back(t);
-  soup.triangles = kept;
-  return soup;
-}
-
 inline RemeshOptions defaults(int64_t vertices) {
   RemeshOptions o;
   o.vertices = vertices;
   return o;
 }
 
+inline RemeshOptions keeping_borders(RemeshOptions o) {
+  o.boundary = Boundary::keep;
+  return o;
+}
+inline RemeshOptions parted(RemeshOptions o, const char* regions) {
+  o.regions = regions;
+  return o;
+}
+
+/// What is the same in every frame.
+template <class Shape>
+std::function<Input(int)> still(Shape shape) {
+  return [shape](int) { return input_of(shape(), "shape"); };
+}
+inline std::function<Input(int)> points(const PointCloud& cloud) {
+  return [cloud](int) { return input_of(cloud, "points", 0); };
+}
+inline std::function<Input(int)> labels(const LabelVolume& volume) {
+  return [volume](int) { return input_of(volume, "labels", Context()); };
+}
+
 inline std::vector<RunCase> run_cases() {
-  const auto block = [](int) { return shapes::box({0, 0, 0}, {3, 2, 1}); };
-  const auto scan = [](int) { return read_mesh(source_folder() + "/tests/data/nefertiti.ply"); };
-  const auto open = [](int) { return half_torus(); };
-  RemeshOptions borders = defaults(500);
-  borders.boundary = Boundary::keep;
+  const auto block = [] { return shapes::box({0, 0, 0}, {3, 2, 1}); };
+  const auto scan = [] { return read_mesh(source_folder() + "/tests/data/nefertiti.ply"); };
+  const auto inward = [] { return shapes::inside_out(shapes::box({0, 0, 0}, {3, 2, 1})); };
+  RemeshOptions borders = keeping_borders(defaults(500));
   borders.closing_vox = 0;
-  return {{"a part keeps its creases", block, defaults(400)},
-          {"a scan has none", scan, defaults(1200)},
-          {"borders are kept", open, borders},
-          {"attributes are carried over and seams kept", [](int) { return painted_torus(); }, defaults(500)},
-          {"a frame begins with the one before", twisted_torus, defaults(500), 2}};
+  return {{"a part keeps its creases", still(block), defaults(400)},
+          {"a scan has none", still(scan), defaults(1200)},
+          {"borders are kept", still(half_torus), borders},
+          {"attributes are carried over and seams kept", still(painted_torus), defaults(500)},
+          {"a frame begins with the one before", [](int frame) { return input_of(twisted_torus(frame), "shape"); },
+           defaults(500), 2},
+          {"a border ends creases", still(open_box), keeping_borders(defaults(500))},
+          {"a dirty mesh is repaired", still(dirty_torus), defaults(800)},
+          {"solids that cross are united, with creases", still(crossing_boxes), defaults(800)},
+          {"walls between blocks go", still([] { return blocks(3); }), defaults(500)},
+          {"a part that looks inward is turned", still(inward), defaults(400)},
+          {"of two that overlap one looks inward", still(mixed_boxes), defaults(600)},
+          {"a thin wall is untangled", still([] { return bent_plate(1.5, 0.01); }), defaults(100)},
+          {"curves of a thin wall get more seeds", still([] { return bent_plate(0.5, 0.004); }), defaults(100)},
+          {"a thin wall loses its creases", still([] { return bent_plate(0.5, 0.004); }), defaults(60)},
+          {"points without normals", points(points_of_torus(3000)), defaults(800)},
+          {"points of a sharp body", points(points_of_box({30, 20, 10})), defaults(600)},
+          {"grains of a volume of labels", labels(voronoi_grains(64, 20)), defaults(3000)},
+          {"labels whose walls are mended", labels(random_labels(38)), defaults(500)},
+          {"walls that make cells", still(box_with_walls), parted(defaults(800), "cells")},
+          {"parts that touch", still([] { return pin_in_a_plate(); }), parted(defaults(800), "components")},
+          {"faces with regions", still(labelled_cubes), defaults(500)}};
 }
 
 /// One block of text a case: counts with their meaning, then a digest per product.
@@ -168,6 +165,24 @@ inline std::string run(const Case& c, Context& context) {
   return text;
 }
 
+/// FNV-1a of the numbers' bits.
+inline std::string digest_of(const std::vector<double>& values) {
+  uint64_t hash = 14695981039346656037u;
+  for (const double value : values) {
+    uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    hash = (hash ^ bits) * 1099511628211u;
+  }
+  return digest_text(hash);
+}
+
+inline std::string text_of(const FaceRegions& regions, const RegionCensus& census) {
+  std::vector<double> labels;
+  for (const auto& [behind, front] : regions.labels) labels.insert(labels.end(), {double(behind), double(front)});
+  return "  regions " + std::to_string(census.regions.size()) + "\n  walls " + std::to_string(census.walls.size()) +
+         "\n  labels " + digest_of(labels) + "\n";
+}
+
 /// The same of a whole run: what it kept, and a digest of the mesh, of each attribute and of each product.
 inline std::string run(const RunCase& c, Context& context) {
   FrameChain chain;
@@ -176,7 +191,7 @@ inline std::string run(const RunCase& c, Context& context) {
     RunRequest request;
     request.options = requested_options(c.options);
     request.measures = Measures::all;
-    result = chain.run(input_of(c.shape(frame), "shape"), request, context);
+    result = chain.run(c.input(frame), request, context);
   }
   const RemeshReport& r = result.record.report;
   std::string text = "run " + c.name + "\n";
@@ -190,15 +205,8 @@ inline std::string run(const RunCase& c, Context& context) {
   count("corners", int64_t(result.mesh.features.corners.size()));
   count("border_loops", r.features.border_loops);
   count("began_warm", r.coherence.began_warm);
-  for (const Attribute& a : result.mesh.attributes) {
-    uint64_t hash = 14695981039346656037u;  // FNV-1a of the values' bits
-    for (const double value : a.values) {
-      uint64_t bits;
-      std::memcpy(&bits, &value, sizeof bits);
-      hash = (hash ^ bits) * 1099511628211u;
-    }
-    text += "  attribute " + a.name + " " + digest_text(hash) + "\n";
-  }
+  if (!result.mesh.regions.empty()) text += text_of(result.mesh.regions, *result.record.regions);
+  for (const Attribute& a : result.mesh.attributes) text += "  attribute " + a.name + " " + digest_of(a.values) + "\n";
   for (const auto& [product, digest] : r.digests) text += "  digest " + product + " " + digest + "\n";
   return text;
 }
