@@ -64,7 +64,6 @@ struct InputReport {
   FarVertexReport far;
   RepairReport repair;
   UnionReport united;
-  JoinReport joined;
 };
 
 /// The voxels.

@@ -6,23 +6,19 @@
 
 #include <cmath>
 #include <functional>
+#include <sstream>
 #include <utility>
 
 #include "geometry/world_vector.h"
+#include "isoshell/boolean_union.h"
+#include "isoshell/readable.h"
 #include "pipeline/grid/timed.h"
-#include "pipeline/joined_parts.h"
 #include "repair/holes/open_soup.h"
 
 namespace isoshell {
 namespace {
 
-/// Of faces that were cut: closed, whatever their edges say, and of a genus that nobody knows.
-InputTopology topology_of_union(InputTopology input, const UnionReport& unite) {
-  input.closed = input.oriented = true;
-  input.components = unite.joined_components;
-  input.genus = -1;
-  return input;
-}
+constexpr double kSheetGapVox = 1. / 64;  // four steps of the lattice: rounding leaves sheets apart
 
 /// Borders that are kept are those wider than the gaps that were asked to be closed; where nothing was, those of no
 /// holes.
@@ -64,19 +60,15 @@ class Repair {
 
   RepairedInput made() {
     const InputTopology& given = measured_.topology;
-    if (!join(measured_, false) && (!given.closed || !given.oriented)) {
+    if (!unite(measured_, false) && (!given.closed || !given.oriented)) {
       made_.changed = timed(report_, "mend", context_, [&] { return repaired(given_, plan_, report_.input.repair); });
       const SoupTopology left = measured();
       made_.topology = left.topology;
-      join(left, plan_.options.boundary == Boundary::keep);
+      unite(left, plan_.options.boundary == Boundary::keep);
     }
     const InputTopology& input = made_.topology;
-    if (input.closed && input.oriented && input.components > 1) unite();
     if (input.closed && input.oriented && input.components == 1 && is_inside_out(soup(), input.area_world))
       report_.input.united.turned_components = 1;  // by what follows, which knows one side from the other
-    report_.input.united.cut_faces += cut_faces_;
-    if (cut_faces_ > 0 && report_.input.united.joined_components == 0)
-      report_.input.united.joined_components = input.components;
     return std::move(made_);
   }
 
@@ -87,28 +79,38 @@ class Repair {
     return timed(report_, "topology", context_, [&] { return measure_topology(soup(), context_); });
   }
 
-  bool join(const SoupTopology& measured, bool may_be_open) {
-    std::optional<JoinedParts> joined = join_parts(soup(), measured, may_be_open, report_, context_);
-    if (!joined) return false;
-    made_ = {std::move(joined->soup), joined->topology, std::move(joined->interfaces)};
-    cut_faces_ = joined->cut_faces;
-    return true;
+  /// Result: whether the union has changed the surface.
+  bool unite(const SoupTopology& measured, bool keeps_open) {
+    const InputTopology before = measured.topology;
+    const bool is_one = before.components < 2 && before.genus >= 0 && measured.dirt.nonmanifold_edges == 0;
+    if (is_one || (before.boundary_loops > 0 && !keeps_open)) return false;
+    const Plan plan = plan_of(plan_.options, before, bounding_box(soup()));
+    const UnionOptions options{plan.options.outer_only, keeps_open, plan.first_voxel_size_world() * kSheetGapVox};
+    UnionReport& report = report_.input.united;
+    UnitedSoup united =
+        timed(report_, "unite", context_, [&] { return boolean_union(soup(), options, report, context_); });
+    if (report.changed_anything()) {
+      const InputTopology after = measure_topology(united.soup, context_).topology;
+      if (before.boundary_loops > 0 ? after.boundary_loops == before.boundary_loops : after.closed && after.oriented) {
+        made_ = {std::move(united.soup), after, std::move(united.interfaces)};
+        if (!made_.interfaces.empty()) warn_of_internal_faces();
+        return true;
+      }
+      report = {};
+      report.given_up = "their union is not closed";
+    }
+    if (!report.given_up.empty()) made_.topology.genus = -1;
+    return false;
   }
 
-  void unite() {
-    const Plan plan = plan_of(plan_.options, made_.topology, bounding_box(soup()));
-    const UnionOptions options{plan.options.outer_only, plan.first_voxel_size_world() / 2};
-    UnionReport& united = report_.input.united;
-    TriangleSoup outside =
-        timed(report_, "unite", context_, [&] { return boolean_union(soup(), options, united, context_); });
-    if (!united.changed_anything()) return;
-    made_.changed = std::move(outside);
-    made_.topology = measured().topology;
-    if (united.cut_faces == 0) return;
-    made_.topology = topology_of_union(made_.topology, united);
-    std::string& given_up = report_.input.joined.given_up;
-    if (cut_faces_ == 0 && given_up.empty())
-      given_up = made_.interfaces.empty() ? "fewer than two of them look outward" : "others share walls";
+  void warn_of_internal_faces() {
+    const auto& edges = made_.interfaces;
+    std::ostringstream text;
+    text << counted(report_.input.united.internal_faces, "triangle")
+         << " between parts left out, solid is on both sides; " << counted(int64_t(edges.size()), "edge")
+         << " around them, the first at " << readable_place(edges.front()[0], bounding_box(soup())) << ", "
+         << (edges.size() == 1 ? "is a curve" : "are curves") << " where creases are kept";
+    report_.warnings.push_back(text.str());
   }
 
   const TriangleSoup& given_;
@@ -117,7 +119,6 @@ class Repair {
   RemeshReport& report_;
   Context& context_;
   RepairedInput made_;
-  int64_t cut_faces_ = 0;  ///< by the joining of parts
 };
 
 }  // namespace

@@ -20,8 +20,8 @@ struct RepairedInput {
   const TriangleSoup& soup(const TriangleSoup& given) const { return changed ? *changed : given; }
 };
 
-/// Joins parts that share walls or pass through each other; or repairs what is not closed and oriented. Then unites
-/// the components, if there are several. Says in report.input what was done.
+/// Unites components that share walls, touch or pass through each other; what is not closed and oriented then is
+/// repaired, and united. Says in report.input what was done.
 RepairedInput repair_and_unite(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan,
                                RemeshReport& report, Context& context);
 

@@ -52,15 +52,17 @@ Json repair_json(const FarVertexReport& far, const RepairReport& m) {
           {"open_loops", m.open_loops}};
 }
 
-Json union_json(const UnionReport& u, const JoinReport& j) {
+Json union_json(const UnionReport& u) {
   return {{"turned_components", u.turned_components},
           {"swallowed_components", u.swallowed_components},
           {"inner_surfaces", u.inner_surfaces},
           {"dropped_inner_components", u.dropped_inner},
           {"cut_faces", u.cut_faces},
-          {"left_components", j.left_components},
-          {"not_joined", known(j.given_up)},
-          {"not_joined_at", point(j.at)}};
+          {"internal_faces", u.internal_faces},
+          {"separated_edges", u.separated_edges},
+          {"left_components", u.left_components},
+          {"not_joined", known(u.given_up)},
+          {"not_joined_at", point(u.at)}};
 }
 
 /// Schema 1 says under "grid" what came of the options that choose it.
@@ -78,7 +80,7 @@ Json input_json(const RunRecord& r) {
           {"faces", known(r.input.faces)},
           {"dropped", dirt_json(r.report.input.dirt)},
           {"mended", repair_json(r.report.input.far, r.report.input.repair)},
-          {"united", union_json(r.report.input.united, r.report.input.joined)},
+          {"united", union_json(r.report.input.united)},
           {"bbox", {{"min", point(r.input.box_min)}, {"max", point(r.input.box_max)}}},
           {"components", t.components},
           {"genus", known(t.genus)},

@@ -85,15 +85,15 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   const UnionReport& u = report.input.united;
   note(u.turned_components, "closed components that were inside out, turned outward");
   note(u.swallowed_components, "closed components dropped, they lie inside of others");
-  note(u.cut_faces, "faces cut where closed components pass through each other; the result is their union");
+  note(u.cut_faces, "faces cut where closed components meet; the result is their union");
+  note(u.separated_edges, "edges of more than two faces where surfaces touch, which were moved apart a little there");
   note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
   note(u.dropped_inner, "inner components dropped, only outer ones are wanted");
-  const JoinReport& j = report.input.joined;
-  note(j.left_components, "open or inward looking components left as they are, others were united beside them");
-  if (!j.given_up.empty()) {
+  note(u.left_components, "open components left as they are, others were united beside them");
+  if (!u.given_up.empty()) {
     std::string text = input + ": closed components that pass through or touch each other are not joined as one mesh";
-    if (j.at) text += ", near " + readable_place(*j.at, report.grid.frame);
-    warnings.push_back(text + ": " + j.given_up + "; creases where they meet are rounded off");
+    if (u.at) text += ", near " + readable_place(*u.at, report.grid.frame);
+    warnings.push_back(text + ": " + u.given_up + "; creases where they meet are rounded off");
   }
   if (report.features.border_loops == 0)
     note(m.open_loops, "open boundaries that are no holes; the result closes them or follows both sides");

@@ -57,57 +57,60 @@ int64_t count_warnings(const RunResult& result, const std::string& part) {
                        [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
-void check_given_up(const RunResult& result, const std::string& why) {
-  CHECK(united(result)["not_joined"] == why);
+/// One solid with its creases, of this volume and this many surfaces.
+RunResult check_united(const TriangleSoup& parts, double volume_world, int64_t components, int64_t genus) {
+  const RunResult result = result_of(parts);
+  CHECK(united(result)["not_joined"].is_null());
   CHECK(united(result)["left_components"] == 0);
-  CHECK(count_warnings(result, "are not joined as one mesh") == 1);
-  CHECK(count_warnings(result, why) == 1);
+  CHECK(count_warnings(result, "joined as one mesh") == 0);
+  CHECK(result.record.report.features.kept);
   CHECK(result.record.topology->is_closed_manifold());
+  CHECK(result.record.topology->components == components);
+  CHECK(result.record.topology->genus == genus);
+  TriangleSoup made;
+  made.vertices = result.mesh.vertices;
+  made.triangles = result.mesh.triangles;
+  CHECK(volume(made) == Approx(volume_world).epsilon(1e-3));
+  return result;
 }
 
 }  // namespace
 
 TEST_CASE("joined solids: bars that cross are joined beside a hollow box, which keeps its hollow", "[run]") {
-  const RunResult result = result_of(together(crossing_bars(), hollow_box({8, 0, 0}, 3, .8)));
-  CHECK(result.record.report.features.kept);
-  CHECK(result.record.topology->is_closed_manifold());
-  CHECK(result.record.topology->components == 3);
-  CHECK(united(result)["left_components"] == 1);
+  const RunResult result = check_united(together(crossing_bars(), hollow_box({8, 0, 0}, 3, .8)), 32 + 27 - 2.744, 3, 0);
   CHECK(united(result)["inner_surfaces"] == 1);
-  CHECK(united(result)["not_joined"].is_null());
-  CHECK(count_warnings(result, "1 open or inward looking components left as they are") == 1);
-  CHECK(count_warnings(result, "not joined") == 0);
 }
 
 TEST_CASE("joined solids: bars one of which is hollow are joined where the other does not reach the hollow", "[run]") {
   const TriangleSoup hollow = shapes::inside_out(box({4.6, 2.4, .4}, {5.6, 3.6, 1.6}));
-  const RunResult result = result_of(together(crossing_bars(), hollow));
+  check_united(together(crossing_bars(), hollow), 32 - 1.44, 2, 0);
+}
+
+TEST_CASE("joined solids: a bar that passes through a hollow leaves a ring of it", "[run]") {
+  check_united(together(crossing_bars(), shapes::inside_out(box({1, 2.2, .2}, {5, 3.8, 1.8}))), 24 - 10.24 + 12 - .8, 2,
+               1);
+}
+
+TEST_CASE("joined solids: a hollow that another part fills is solid", "[run]") {
+  const TriangleSoup hollow = shapes::inside_out(box({2.5, 2.5, .8}, {3.5, 3.5, 1.2}));
+  const RunResult result = check_united(together(crossing_bars(), hollow), 32, 1, 0);
+  CHECK(united(result)["swallowed_components"] == 1);
+}
+
+TEST_CASE("joined solids: parts that look inward are turned, and joined as those that look outward", "[run]") {
+  const RunResult outward = check_united(crossing_bars(), 32, 1, 0);
+  const RunResult inward = check_united(shapes::inside_out(crossing_bars()), 32, 1, 0);
+  CHECK(united(inward)["turned_components"] == 2);
+  CHECK(inward.mesh.vertices.size() == outward.mesh.vertices.size());
+  CHECK(inward.mesh.triangles == outward.mesh.triangles);
+}
+
+TEST_CASE("joined solids: a part that crosses itself is joined with another one", "[run]") {
+  const RunResult result = result_of(together(overlapping_bars(), box({3, -1, 1.2}, {4, 5, 1.6})));
+  CHECK(united(result)["not_joined"].is_null());
   CHECK(result.record.report.features.kept);
-  CHECK(result.record.topology->components == 2);
-  CHECK(united(result)["left_components"] == 1);
-}
-
-TEST_CASE("joined solids: a bar that passes into a hollow is not joined, and the warning says where", "[run]") {
-  const RunResult result = result_of(together(crossing_bars(), shapes::inside_out(box({1, 2.2, .2}, {5, 3.8, 1.8}))));
-  check_given_up(result, "a component that is open or looks inward meets them");
-  const Json at = united(result)["not_joined_at"];
-  REQUIRE(at.is_array());
-  CHECK(at[0] >= 1);
-  CHECK(at[0] <= 5);
-}
-
-TEST_CASE("joined solids: a hollow that another part fills keeps them from being joined", "[run]") {
-  check_given_up(result_of(together(crossing_bars(), shapes::inside_out(box({2.5, 2.5, .8}, {3.5, 3.5, 1.2})))),
-                 "a component that is open or looks inward lies in several of them");
-}
-
-TEST_CASE("joined solids: parts that look inward are not joined", "[run]") {
-  check_given_up(result_of(shapes::inside_out(crossing_bars())), "fewer than two of them look outward");
-}
-
-TEST_CASE("joined solids: a part that crosses itself is not joined", "[run]") {
-  check_given_up(result_of(together(overlapping_bars(), box({3, -1, 1.2}, {4, 5, 1.6}))),
-                 "what bounds both is not closed, as where a component crosses itself");
+  CHECK(result.record.topology->is_closed_manifold());
+  CHECK(result.record.topology->components == 1);
 }
 
 TEST_CASE("joined solids: bars that cross are joined beside a sheet whose border is kept", "[run]") {

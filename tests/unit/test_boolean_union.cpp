@@ -1,6 +1,8 @@
-// unite, and the rays that it counts windings with.
+// The union of the components of a soup, and the rays that windings are counted with.
+#include <algorithm>
 #include <cmath>
 
+#include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/error.h"
 #include "repair/solids/winding.h"
@@ -8,6 +10,7 @@
 #include "support/shapes.h"
 
 using namespace isoshell;
+using shapes::box;
 using shapes::inside_out;
 using shapes::together;
 
@@ -15,14 +18,44 @@ namespace {
 
 struct United {
   TriangleSoup soup;
+  std::vector<std::array<WorldPoint, 2>> interfaces;
   UnionReport report;
 };
 
-United united(const TriangleSoup& soup, bool outer_only = false, double finest_edge = .01) {
+United united(const TriangleSoup& soup, const UnionOptions& options = {}) {
   United u;
   const Context context;
-  u.soup = boolean_union(soup, {outer_only, finest_edge}, u.report, context);
+  UnitedSoup made = boolean_union(soup, options, u.report, context);
+  u.soup = std::move(made.soup);
+  u.interfaces = std::move(made.interfaces);
   return u;
+}
+UnionOptions outer_only() {
+  UnionOptions options;
+  options.outer_only = true;
+  return options;
+}
+
+/// Closed, with two faces at every edge, of this volume and genus.
+United check_union(const TriangleSoup& parts, double volume, int64_t genus, int64_t components = 1,
+                   const UnionOptions& options = {}) {
+  Context context;
+  const United u = united(parts, options);
+  INFO(u.report.given_up);
+  CHECK(u.report.given_up.empty());
+  const InputTopology found = measure_topology(u.soup, context).topology;
+  CHECK(found.closed);
+  CHECK(found.oriented);
+  CHECK(found.components == components);
+  CHECK(found.genus == genus);
+  CHECK(isoshell::volume(u.soup) == Approx(volume).epsilon(1e-6));
+  return u;
+}
+
+TriangleSoup boxes_in_a_row(int count) {
+  TriangleSoup all = box({0, 0, 0}, {1, 1, 1});
+  for (int i = 1; i < count; ++i) all = together(all, box({double(i), 0, 0}, {i + 1., 1, 1}));
+  return all;
 }
 
 TriangleSoup ball(double radius, double x = 0) { return shapes::sphere({x, 0, 0}, radius, 24); }
@@ -74,7 +107,7 @@ TEST_CASE("boolean union: a ball in a ball is swallowed, one turned inward bound
   const United kept = united(hollow);
   CHECK(kept.report.inner_surfaces == 1);
   CHECK_FALSE(kept.report.changed_anything());
-  const United outer = united(hollow, true);
+  const United outer = united(hollow, outer_only());
   CHECK(outer.report.dropped_inner == 1);
   CHECK(volume(outer.soup) == Approx(volume(ball(1))));
 }
@@ -85,7 +118,7 @@ TEST_CASE("boolean union: three balls in each other, turned in and out, all stay
   const United nested = united(together(hollow, ball(.4)));
   CHECK_FALSE(nested.report.changed_anything());
   CHECK(nested.report.inner_surfaces == 1);
-  CHECK(united(together(hollow, ball(.4)), true).report.dropped_inner == 2);
+  CHECK(united(together(hollow, ball(.4)), outer_only()).report.dropped_inner == 2);
   CHECK(united(together(hollow, inside_out(ball(.4)))).report.swallowed_components == 1);
 }
 
@@ -101,21 +134,148 @@ TEST_CASE("boolean union: what is inside out is turned, with the hollows of all 
   CHECK(volume(one.soup) == Approx(volume(together(ball(1), ball(.9, 2.5)))));
 }
 
-TEST_CASE("boolean union: where balls pass through each other, faces end at the cut", "[boolean_union]") {
-  const United u = united(together(ball(1), ball(1, 1)));
+TEST_CASE("boolean union: where balls pass through each other, faces are cut along the line where they do",
+          "[boolean_union]") {
+  const United u =
+      check_union(together(ball(1), ball(1, 1)), isoshell::volume(united(together(ball(1), ball(1, 1))).soup), 0);
   CHECK(u.report.cut_faces > 0);
-  CHECK(u.report.joined_components == 1);
-  for (const auto& t : u.soup.triangles) {
-    const WorldPoint &a = u.soup.vertices[t[0]], &b = u.soup.vertices[t[1]], &c = u.soup.vertices[t[2]];
-    const WorldPoint m = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
-    const double depth = 1 - std::min(std::hypot(m.x, std::hypot(m.y, m.z)), std::hypot(m.x - 1, std::hypot(m.y, m.z)));
-    CHECK(depth < .04);  // chords of balls of 24 meridians, and a piece
+  const auto depth_of = [](const WorldPoint& p) {
+    return 1 - std::min(std::hypot(p.x, std::hypot(p.y, p.z)), std::hypot(p.x - 1, std::hypot(p.y, p.z)));
+  };
+  for (const WorldPoint& p : u.soup.vertices) CHECK(depth_of(p) < .03);  // chords of balls of 24 meridians
+}
+
+TEST_CASE("boolean union: bars that cross have the volume of both less that of what they share", "[boolean_union]") {
+  check_union(together(box({0, 2, 0}, {6, 4, 2}), box({2, 0, .5}, {4, 6, 1.5})), 24 + 12 - 4, 0);
+}
+
+TEST_CASE("boolean union: parts look outward whichever way their faces were, before they are united",
+          "[boolean_union]") {
+  const TriangleSoup one = box({0, 2, 0}, {6, 4, 2}), other = box({2, 0, .5}, {4, 6, 1.5});
+  const United outward = check_union(together(one, other), 32, 0);
+  for (const TriangleSoup& parts : {together(inside_out(one), other), together(one, inside_out(other)),
+                                    together(inside_out(one), inside_out(other))}) {
+    const United u = check_union(parts, 32, 0);
+    CHECK(u.report.turned_components > 0);
+    CHECK(u.soup.triangles.size() == outward.soup.triangles.size());
   }
+}
+
+TEST_CASE("boolean union: a box on a part of another one's top becomes one solid with it", "[boolean_union]") {
+  const United u = check_union(together(box({0, 0, 0}, {4, 4, 1}), box({1, 1, 1}, {3, 3, 3})), 16 + 8, 0);
+  CHECK(u.report.internal_faces > 0);
+  CHECK(u.interfaces.size() == 4);
+}
+
+TEST_CASE("boolean union: walls in one plane leave nothing of the inner one", "[boolean_union]") {
+  check_union(together(box({0, 0, 0}, {4, 4, 1}), box({0, 0, 0}, {2, 4, 3})), 16 + 16, 0);
+}
+
+TEST_CASE("boolean union: four bars around a window bound a solid of genus 1", "[boolean_union]") {
+  const TriangleSoup across = together(box({0, 0, 0}, {6, 1, 1}), box({0, 5, 0}, {6, 6, 1}));
+  const TriangleSoup along = together(box({.5, -1, .5}, {1.5, 7, 2}), box({4.5, -1, .5}, {5.5, 7, 2}));
+  check_union(together(across, along), 2 * 6 + 2 * 12 - 4 * .5, 1);
+}
+
+TEST_CASE("boolean union: rooms that walls enclose stay, and are solid where only outer surfaces are wanted",
+          "[boolean_union]") {
+  TriangleSoup house = together(box({0, 0, 0}, {6, 6, 1}), box({0, 0, 3}, {6, 6, 4}));
+  house = together(house, together(box({0, 0, .5}, {1, 6, 3.5}), box({5, 0, .5}, {6, 6, 3.5})));
+  house = together(house, together(box({0, 0, .5}, {6, 1, 3.5}), box({0, 5, .5}, {6, 6, 3.5})));
+  check_union(house, 6 * 6 * 4 - 4 * 4 * 2, 0, 2);
+  check_union(house, 6 * 6 * 4, 0, 1, outer_only());
+}
+
+TEST_CASE("boolean union: boxes that share faces become one solid, with a ring of edges around each wall",
+          "[boolean_union]") {
+  for (const int count : {2, 3, 5}) {
+    const United u = check_union(boxes_in_a_row(count), count, 0);
+    CHECK(u.report.internal_faces == 4 * (count - 1));
+    CHECK(u.report.swallowed_components == 0);
+    CHECK(u.interfaces.size() == size_t(4 * (count - 1)));
+    for (const auto& edge : u.interfaces) CHECK(edge[0].x == edge[1].x);
+  }
+}
+
+TEST_CASE("boolean union: walls of one face between cells go, whichever way the faces look", "[boolean_union]") {
+  Context context;
+  TriangleSoup soup = boxes_in_a_row(2);
+  const auto is_on_wall = [&](const std::array<uint32_t, 3>& t) {
+    return std::all_of(t.begin(), t.end(), [&](uint32_t v) { return soup.vertices[v].x == 1; });
+  };
+  TriangleSoup single = soup;
+  single.triangles.clear();
+  int walls = 0;
+  for (const auto& t : soup.triangles)
+    if (!is_on_wall(t) || ++walls <= 2) single.triangles.push_back(t);
+  for (size_t turned = 0; turned < single.triangles.size(); ++turned) {
+    INFO("turned face " << turned);
+    TriangleSoup other = single;
+    std::swap(other.triangles[turned][1], other.triangles[turned][2]);
+    const United u = united(other);
+    if (!u.report.changed_anything()) continue;  // an edge whose two faces disagree: repair comes first
+    const InputTopology found = measure_topology(u.soup, context).topology;
+    CHECK(found.closed);
+    CHECK(found.oriented);
+    CHECK(isoshell::volume(u.soup) == Approx(2));
+  }
+  check_union(single, 2, 0);
+}
+
+TEST_CASE("boolean union: a hollow between parts stays one", "[boolean_union]") {
+  TriangleSoup all;  // a shell of 26 boxes around the middle one of 27, which is air
+  for (int i = 0; i < 27; ++i) {
+    if (i == 13) continue;
+    const WorldPoint lo{double(i % 3), double(i / 3 % 3), double(i / 9)};
+    all = together(all, box(lo, {lo.x + 1, lo.y + 1, lo.z + 1}));
+  }
+  check_union(all, 26, 0, 2);
+}
+
+TEST_CASE("boolean union: where boxes share an edge alone, the result has two sheets a gap apart", "[boolean_union]") {
+  UnionOptions options;
+  options.sheet_gap_world = 1e-4;
+  TriangleSoup stairs =
+      together(box({0, 0, 0}, {2, 2, 1}), together(box({0, 0, 1}, {1, 1, 2}), box({1, 1, 1}, {2, 2, 2})));
+  const United u = united(stairs, options);
+  Context context;
+  const InputTopology found = measure_topology(u.soup, context).topology;
+  CHECK(found.closed);
+  CHECK(found.oriented);
+  CHECK(found.components == 1);
+  CHECK(isoshell::volume(u.soup) == Approx(6).epsilon(1e-3));
+  stairs = together(box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1}));
+  CHECK(united(stairs, options).soup.triangles.size() >= 24);
+}
+
+TEST_CASE("boolean union: parts are cut only where they meet, and pieces are no more than their outlines need",
+          "[boolean_union]") {
+  TriangleSoup comb = box({0, 0, 0}, {100, 1, 1});
+  for (int i = 0; i < 24; ++i) comb = together(comb, box({4. * i + 1, .2, .5}, {4. * i + 3, .8, 3}));
+  const United u = check_union(comb, 100 + 24 * 2 * .6 * 2, 0);
+  CHECK(u.report.internal_faces == 0);
+  CHECK(u.soup.triangles.size() < 24 * 30);
+}
+
+TEST_CASE("boolean union: an open part stays as it is beside others, if it is to be kept and meets none",
+          "[boolean_union]") {
+  TriangleSoup sheet;
+  sheet.vertices = {{10, 0, 0}, {11, 0, 0}, {10, 1, 0}};
+  sheet.triangles = {{0, 1, 2}};
+  const TriangleSoup parts = together(together(box({0, 2, 0}, {6, 4, 2}), box({2, 0, .5}, {4, 6, 1.5})), sheet);
+  CHECK_FALSE(united(parts).report.changed_anything());
+  UnionOptions options;
+  options.keeps_open = true;
+  const United u = united(parts, options);
+  CHECK(u.report.left_components == 1);
+  CHECK(u.report.cut_faces > 0);
+  Context context;
+  CHECK(measure_topology(u.soup, context).topology.boundary_loops == 1);
 }
 
 TEST_CASE("boolean union: a cancelled context ends it", "[boolean_union]") {
   Context cancelled;
   cancelled.cancel = true;
   UnionReport report;
-  CHECK_THROWS_AS(boolean_union(together(ball(1), ball(1, .5)), {false, .01}, report, cancelled), Error);
+  CHECK_THROWS_AS(boolean_union(together(ball(1), ball(1, .5)), {}, report, cancelled), Error);
 }

@@ -34,7 +34,9 @@ MENDED = {
 UNITED = {
     "turned_components": "parts turned inside out", "swallowed_components": "parts inside others swallowed",
     "inner_surfaces": "surfaces that bound hollows", "dropped_inner_components": "inner parts dropped",
-    "cut_faces": "faces cut where parts pass through each other", "left_components": "parts left as they are",
+    "cut_faces": "faces cut where parts meet", "internal_faces": "faces between parts left out",
+    "separated_edges": "edges where surfaces touch, moved apart",
+    "left_components": "parts left as they are",
 }
 BRIDGED = {"loops": "holes and gaps closed", "widest": "width of the widest",
            "area": "area without a surface of the input", "vertices": "vertices of the result there"}

@@ -8,9 +8,11 @@
 #include "geometry/box.h"
 #include "geometry/weld.h"
 #include "geometry/world_vector.h"
+#include "measure/box_tree.h"
 #include "measure/crossings.h"
 #include "repair/arrangement/find_contacts.h"
 #include "repair/arrangement/insert_contacts.h"
+#include "repair/arrangement/step_frame.h"
 
 namespace isoshell::repair {
 namespace {
@@ -26,28 +28,6 @@ constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
 // thousand triangles. Soups in one plane would take thousands of times that.
 constexpr int64_t kLeastWork = 1 << 22, kWorkOfTriangle = 1 << 10;
 
-/// From the world to steps and back. Around the faces is room for what moves them.
-class StepFrame {
- public:
-  explicit StepFrame(const WorldBox& box) : least_(box.min) {
-    const double longest = longest_side(box);
-    a_step_ = longest > 0 ? longest / (kSteps - 2 * kMarginSteps) : 1;
-  }
-  StepPoint from(const WorldPoint& p) const {
-    const WorldPoint s = (1 / a_step_) * (p - least_);
-    const auto rounded = [](double x) { return int32_t(std::floor(x + kMarginSteps + .5)); };
-    return {rounded(s.x), rounded(s.y), rounded(s.z)};
-  }
-  WorldPoint to_world(StepPoint s) const {
-    return least_ + a_step_ * WorldPoint{s.x - kMarginSteps, s.y - kMarginSteps, s.z - kMarginSteps};
-  }
-
- private:
-  static constexpr double kSteps = double(int64_t(1) << 28), kMarginSteps = 1 << 12;
-  WorldPoint least_;
-  double a_step_;
-};
-
 LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, const StepFrame& frame) {
   LatticeFaces faces;
   faces.point.reserve(welded.position.size());
@@ -61,6 +41,40 @@ LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, con
   }
   faces.is_unsettled.assign(faces.face.size(), 1);
   return faces;
+}
+
+bool is_of_first(const LatticeFaces& faces, size_t f, size_t first_of_second) {
+  return faces.source[f] < first_of_second;
+}
+
+/// Of two groups the faces whose boxes meet some of the other one are unsettled, and no others. Result: whether any
+/// are.
+bool unsettle_near(LatticeFaces& faces, size_t first_of_second) {
+  const auto box = [&](size_t f) {
+    const Corners& c = faces.face[f];
+    return widened(box_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]), int32_t(faces.weld_steps()));
+  };
+  std::fill(faces.is_unsettled.begin(), faces.is_unsettled.end(), uint8_t(0));
+  std::array<std::optional<BoxQ8>, 2> around;
+  for (size_t f = 0; f < faces.face.size(); ++f) {
+    std::optional<BoxQ8>& of = around[is_of_first(faces, f, first_of_second) ? 0 : 1];
+    of = of ? joined(*of, box(f)) : box(f);
+  }
+  if (!around[0] || !around[1] || !boxes_meet(*around[0], *around[1])) return false;
+  std::vector<uint32_t> of_first;
+  for (uint32_t f = 0; f < faces.face.size(); ++f)
+    if (is_of_first(faces, f, first_of_second) && boxes_meet(box(f), *around[1])) of_first.push_back(f);
+  const BoxTree tree(of_first.size(), [&](uint32_t i) { return box(of_first[i]); });
+  bool is_any = false;
+  for (size_t f = 0; f < faces.face.size(); ++f) {
+    if (is_of_first(faces, f, first_of_second) || !boxes_meet(box(f), *around[0])) continue;
+    tree.for_all_meeting(box(f), [&](uint32_t i) {
+      faces.is_unsettled[f] = faces.is_unsettled[of_first[i]] = 1;
+      return true;
+    });
+    is_any |= faces.is_unsettled[f] != 0;
+  }
+  return is_any;
 }
 
 /// Faces that meet outside of what they share are unsettled then. One place of them.
@@ -135,10 +149,16 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, Step
   return {};
 }
 
-std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context) {
+std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
+                                     const ArrangedGroups& groups) {
   const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
-  const StepFrame frame(box_of(welded.position));
-  const LatticeFaces whole = snapped(soup, welded, frame);
+  const StepFrame frame(groups.box ? *groups.box : box_of(welded.position));
+  LatticeFaces whole = snapped(soup, welded, frame);
+  if (groups.first_of_second > 0 && !unsettle_near(whole, groups.first_of_second)) {
+    ArrangedFaces apart = result_of(std::move(whole), soup, welded, frame);
+    apart.is_near = false;
+    return apart;
+  }
   int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
   for (const double reach : kReaches) {
     if (work_left < 0) return {};
@@ -154,8 +174,9 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
 
 }  // namespace
 
-std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context) {
-  return run_with_threads(context, [&] { return arrange(soup, failed_at, context); });
+std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
+                                           const ArrangedGroups& groups) {
+  return run_with_threads(context, [&] { return arrange(soup, failed_at, context, groups); });
 }
 
 }  // namespace isoshell::repair

@@ -11,11 +11,18 @@
 
 namespace isoshell::repair {
 
+/// What is arranged of a soup.
+struct ArrangedGroups {
+  size_t first_of_second = 0;   ///< triangles before it are cut along those behind it alone; 0: all along all
+  std::optional<WorldBox> box;  ///< of the lattice, around all triangles; none: theirs
+};
+
 struct ArrangedFaces {
   std::vector<WorldPoint> point;
   std::vector<std::array<uint32_t, 3>> face;
   std::vector<uint32_t> source;  ///< per face the triangle of the soup that it is a part of, and turns like; ascending
   int64_t cut_faces = 0;         ///< triangles of the soup that are not one face with their own corners
+  bool is_near = true;           ///< false: nothing was looked at, since the two groups are apart
 };
 
 /// Two of these faces have corners and whole edges in common and nothing else, or all three corners, as where parts lie
@@ -27,8 +34,10 @@ struct ArrangedFaces {
 /// edge of both, also where a face ends within another. Faces that lie on each other have the same parts. Where
 /// cuts that are rounded do not come to an end, less is made one, down to an eighth of that. None where they do not
 /// then either, or where that takes far more work than any parts do: then `failed_at` is a place where they cross.
-/// Throws: interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles, pairs whose boxes
-/// meet, and rounds over those that were cut; in all no more than is proportional to the triangles.
-std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context);
+/// Of two groups, which are arranged each, the triangles near the other group are looked at, and no others. Throws:
+/// interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles that are looked at, pairs
+/// whose boxes meet, and rounds over those that were cut; in all no more than is proportional to the triangles.
+std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
+                                           const ArrangedGroups& groups = {});
 
 }  // namespace isoshell::repair

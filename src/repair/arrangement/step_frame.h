@@ -1,0 +1,34 @@
+// The lattice of an arrangement in the world.
+#pragma once
+
+#include <cmath>
+
+#include "geometry/box.h"
+#include "geometry/world_vector.h"
+#include "repair/arrangement/lattice_faces.h"
+
+namespace isoshell::repair {
+
+/// From the world to steps and back. Around the faces is room for what moves them.
+class StepFrame {
+ public:
+  explicit StepFrame(const WorldBox& box) : least_(box.min) {
+    const double longest = longest_side(box);
+    a_step_ = longest > 0 ? longest / (kSteps - 2 * kMarginSteps) : 1;
+  }
+  StepPoint from(const WorldPoint& p) const {
+    const WorldPoint s = (1 / a_step_) * (p - least_);
+    const auto rounded = [](double x) { return int32_t(std::floor(x + kMarginSteps + .5)); };
+    return {rounded(s.x), rounded(s.y), rounded(s.z)};
+  }
+  WorldPoint to_world(StepPoint s) const {
+    return least_ + a_step_ * WorldPoint{s.x - kMarginSteps, s.y - kMarginSteps, s.z - kMarginSteps};
+  }
+
+ private:
+  static constexpr double kSteps = double(int64_t(1) << 28), kMarginSteps = 1 << 12;
+  WorldPoint least_;
+  double a_step_;
+};
+
+}  // namespace isoshell::repair
