@@ -15,8 +15,6 @@ using namespace isoshell;
 
 namespace {
 
-TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
-
 // Positions with every bit in use, some of them tiny, huge or negative zero.
 TriangleMesh rough_torus() {
   TriangleMesh mesh = mesh_of(shapes::torus(3, 1, 100, 60));

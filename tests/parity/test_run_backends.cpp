@@ -8,6 +8,7 @@
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/site_shapes.h"
 #include "support/solid_soup.h"
 #include "support/test_context.h"
@@ -43,7 +44,6 @@ TEST_CASE("parity: whole runs, three times, with every digest", "[parity][cuda]"
 
 TEST_CASE("parity: distances and turns of normals, with creases, far away and of many samples", "[parity][cuda]") {
   REQUIRE(test_backend() == Backend::cuda);
-  const auto mesh_of = [](const TriangleSoup& soup) { return TriangleMesh{soup.vertices, soup.triangles}; };
   const TriangleMesh torus = mesh_of(shapes::torus(2, .7, 96, 48)), rough = mesh_of(shapes::torus(2, .68, 31, 17)),
                      box = mesh_of(shapes::box({0, 0, 0}, {1, 2, 3})), far = mesh_of(shapes::sphere({40, 0, 7}, 1, 48)),
                      one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}};

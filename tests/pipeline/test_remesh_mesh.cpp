@@ -7,6 +7,7 @@
 #include "geometry/world_vector.h"
 #include "isoshell/isoshell.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
@@ -14,13 +15,6 @@
 using namespace isoshell;
 
 namespace {
-
-TriangleMesh mesh_of(const TriangleSoup& soup) {
-  TriangleMesh mesh;
-  mesh.vertices = soup.vertices;
-  mesh.triangles = soup.triangles;
-  return mesh;
-}
 
 RemeshOptions options_for(int64_t vertices) {
   RemeshOptions options;

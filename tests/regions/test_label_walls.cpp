@@ -9,6 +9,7 @@
 #include "isoshell/mesh_census.h"
 #include "regions/label_volumes.h"
 #include "regions/region_oracle.h"
+#include "support/mesh_files.h"
 #include "support/refusals.h"
 #include "support/test_context.h"
 
@@ -21,13 +22,6 @@ std::map<int32_t, int64_t> voxels_of(const LabelVolume& volume) {
   for (const int32_t label : volume.labels)
     if (label != volume.background) ++count[label];
   return count;
-}
-
-TriangleMesh mesh_of(const TriangleSoup& soup) {
-  TriangleMesh mesh;
-  mesh.vertices = soup.vertices;
-  mesh.triangles = soup.triangles;
-  return mesh;
 }
 
 }  // namespace

@@ -32,10 +32,7 @@ inline TriangleSoup turned(TriangleSoup soup, double angle) {
 }
 
 inline void write_frames(const TemporaryFolder& folder, int frames, TriangleSoup (*frame)(int)) {
-  for (int f = 0; f < frames; ++f) {
-    const TriangleSoup soup = frame(f);
-    write_mesh(path_of_frame(folder / "in.##.ply", f), {soup.vertices, soup.triangles});
-  }
+  for (int f = 0; f < frames; ++f) write_mesh(path_of_frame(folder / "in.##.ply", f), mesh_of(frame(f)));
 }
 
 inline SequenceRequest request_in(const TemporaryFolder& folder, int frames, const std::string& output) {
@@ -47,6 +44,12 @@ inline SequenceRequest request_in(const TemporaryFolder& folder, int frames, con
   request.frame.output = named_output(folder / output, "", StopAfter::mesh);
   request.frames = {0, frames - 1, 1};
   return request;
+}
+
+/// Writes the frames, and asks for out.##.ply of them.
+inline SequenceRequest frames_in(const TemporaryFolder& folder, int frames, TriangleSoup (*frame)(int)) {
+  write_frames(folder, frames, frame);
+  return request_in(folder, frames, "out.##.ply");
 }
 
 inline std::vector<std::string> files_of(const SequenceRequest& request) {

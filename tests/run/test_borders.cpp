@@ -10,6 +10,7 @@
 #include "isoshell/quality.h"
 #include "isoshell/run/run.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/temporary_file.h"
 #include "support/test_context.h"
@@ -70,13 +71,6 @@ double wavy(double x, double y) { return .1 * std::sin(6 * x) * std::cos(5 * y);
 TriangleSoup moved(TriangleSoup soup, WorldPoint by) {
   for (WorldPoint& p : soup.vertices) p = {p.x + by.x, p.y + by.y, p.z + by.z};
   return soup;
-}
-
-TriangleMesh mesh_of(const TriangleSoup& soup) {
-  TriangleMesh mesh;
-  mesh.vertices = soup.vertices;
-  mesh.triangles = soup.triangles;
-  return mesh;
 }
 
 /// A manifold with the borders of the input, on its rims, and with every vertex that was asked for.

@@ -9,6 +9,7 @@
 #include "isoshell/run/sequence.h"
 #include "isoshell/run/steps.h"
 #include "progress/progress_meter.h"
+#include "run/small_run.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -17,17 +18,6 @@
 using namespace isoshell;
 
 namespace {
-
-TriangleSoup ball() { return shapes::sphere({1, 2, 3}, 5, 48); }
-
-RunRequest small_run() {
-  RemeshOptions options;
-  options.vertices = 300;
-  options.resolution = 48;
-  RunRequest request;
-  request.options = requested_options(options);
-  return request;
-}
 
 /// All that was told, by a clock that the test moves.
 struct Told {
@@ -146,23 +136,23 @@ TEST_CASE("progress: nothing is told before a step has begun", "[run]") {
 
 TEST_CASE("progress: a whole run begins at 0 and ends at 1, its stages in their order", "[run]") {
   CpuContext context;
-  std::vector<Progress> told;
   RunRequest request = small_run();
   request.measures = Measures::all;
-  request.progress = [&](const Progress& p) { told.push_back(p); };
+  Heard heard(request);
   run(input_of(ball(), "ball"), request, context);
-  check_progress(told);
-  CHECK(stages_of(told) == std::vector<std::string>{"prepare", "risks", "relax", "triangulate", "measure", "distance"});
+  check_progress(heard.progress);
+  CHECK(stages_of(heard.progress) ==
+        std::vector<std::string>{"prepare", "risks", "relax", "triangulate", "measure", "distance"});
   CHECK_FALSE(context.progress);
 
-  told.clear();
+  heard.progress.clear();
   RunSteps steps(request);
   steps.read(context, [] { return input_of(ball(), "ball"); });
   steps.prepare(context);
   steps.relax(context);
   steps.finish(context);
-  check_progress(told);
-  CHECK(stages_of(told).front() == "read");
+  check_progress(heard.progress);
+  CHECK(stages_of(heard.progress).front() == "read");
 }
 
 TEST_CASE("progress: a certificate has it, too", "[run]") {

@@ -10,8 +10,7 @@ using namespace isoshell;
 TEST_CASE("sequence: vertices keep their numbers and most edges, and every frame is a mesh of its own", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 5, twisted);
-  SequenceRequest request = request_in(folder, 5, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 5, twisted);
   std::vector<TriangleMesh> meshes;
   request.after_frame = [&](int64_t, const RunResult& r) {
     meshes.push_back(r.mesh);
@@ -41,8 +40,7 @@ TEST_CASE("sequence: vertices keep their numbers and most edges, and every frame
 TEST_CASE("sequence: resumed, or with other threads, it writes the same files", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 4, twisted);
-  const SequenceRequest whole = request_in(folder, 4, "out.##.ply");
+  const SequenceRequest whole = frames_in(folder, 4, twisted);
   run_sequence(whole, context);
   SequenceRequest part = request_in(folder, 2, "again.##.ply");
   context.threads = 1;
@@ -62,8 +60,7 @@ TEST_CASE("sequence: resumed, or with other threads, it writes the same files", 
 TEST_CASE("sequence: a chain of frames in memory makes the meshes that files make", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 3, twisted);
-  SequenceRequest request = request_in(folder, 3, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 3, twisted);
   std::vector<uint64_t> digests;
   request.after_frame = [&](int64_t, const RunResult& r) { digests.push_back(digest(r.mesh)); };
   run_sequence(request, context);
@@ -94,12 +91,11 @@ TEST_CASE("sequence: a surface that stands still keeps every edge, and one whose
 TEST_CASE("sequence: parts that become one mesh on with the right topology", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 3, [](int f) {
+  SequenceRequest request = frames_in(folder, 3, [](int f) {
     const double gap = 0.5 - 0.7 * f;
     return shapes::together(shapes::sphere({-2.0 - gap / 2, 0.1, 0}, 2, 40),
                             shapes::sphere({2.0 + gap / 2, 0, 0.1}, 2, 40));
   });
-  SequenceRequest request = request_in(folder, 3, "out.##.ply");
   request.frame.options.values.features = {Features::Creases::off, 0};
   std::vector<int64_t> components;
   request.after_frame = [&](int64_t, const RunResult& r) {
@@ -114,8 +110,9 @@ TEST_CASE("sequence: parts that become one mesh on with the right topology", "[s
 TEST_CASE("sequence: a crisp part that turns keeps its creases, and the vertices on them", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 4, [](int f) { return turned(shapes::box({0, 0, 0}, {3, 2, 1}), 0.1 * f); });
-  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 4, [](int f) {
+    return turned(shapes::box({0, 0, 0}, {3, 2, 1}), 0.1 * f);
+  });
   request.frame.statistics = folder / "s.##.json";
   std::vector<RunResult> made;
   request.after_frame = [&](int64_t, const RunResult& r) { made.push_back(r); };
@@ -142,12 +139,11 @@ TEST_CASE("sequence: a crisp part whose faces change keeps its creases and gets 
           "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 4, [](int f) {
+  SequenceRequest request = frames_in(folder, 4, [](int f) {
     TriangleSoup part = shapes::box({0, 0, 0}, {3, 2, 1});
     if (f == 3) part = shapes::together(part, shapes::box({0, 0, 1.5}, {1, 1, 2.5}));
     return turned(shapes::shuffled(part, uint64_t(f)), 0.01 * f);
   });
-  SequenceRequest request = request_in(folder, 4, "out.##.ply");
   std::vector<double> kept_length_world;
   request.after_frame = [&](int64_t, const RunResult& r) {
     kept_length_world.push_back(r.record.report.features.kept_length_world);
@@ -167,12 +163,11 @@ TEST_CASE("sequence: a crisp part whose faces change keeps its creases and gets 
 TEST_CASE("sequence: parts that come to touch along an edge are meshed where they cannot be cut", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 2, [](int f) {
+  SequenceRequest request = frames_in(folder, 2, [](int f) {
     const double gap = f == 0 ? 0.05 : 0;
     return shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}),
                             shapes::box({1 + gap, 1 + gap, 0}, {2 + gap, 2 + gap, 1}));
   });
-  SequenceRequest request = request_in(folder, 2, "out.##.ply");
   std::vector<RunResult> made;
   request.after_frame = [&](int64_t, const RunResult& r) { made.push_back(r); };
   run_sequence(request, context);
@@ -185,8 +180,9 @@ TEST_CASE("sequence: parts that come to touch along an edge are meshed where the
 TEST_CASE("sequence: frames with creases are the same with other threads, and resumed", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 3, [](int f) { return turned(shapes::box({0, 0, 0}, {3, 2, 1}), 0.1 * f); });
-  const SequenceRequest whole = request_in(folder, 3, "out.##.ply");
+  const SequenceRequest whole = frames_in(folder, 3, [](int f) {
+    return turned(shapes::box({0, 0, 0}, {3, 2, 1}), 0.1 * f);
+  });
   run_sequence(whole, context);
   context.threads = 1;
   SequenceRequest part = request_in(folder, 2, "again.##.ply");
@@ -200,8 +196,9 @@ TEST_CASE("sequence: frames with creases are the same with other threads, and re
 TEST_CASE("sequence: a frame of another shape begins cold", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 2, [](int f) { return f == 0 ? twisted(0) : shapes::box({0, 0, 0}, {3, 2, 1}); });
-  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 2, [](int f) {
+    return f == 0 ? twisted(0) : shapes::box({0, 0, 0}, {3, 2, 1});
+  });
   std::string why_cold;
   request.after_frame = [&](int64_t, const RunResult& r) { why_cold = r.record.report.coherence.why_cold; };
   CHECK(run_sequence(request, context).warm == 0);
@@ -211,8 +208,7 @@ TEST_CASE("sequence: a frame of another shape begins cold", "[sequence]") {
 TEST_CASE("sequence: without coherence every frame is a run of its own", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 2, twisted);
-  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 2, twisted);
   request.is_coherent = false;
   CHECK(run_sequence(request, context).followed == 0);
   const TriangleMesh alone = remesh(read_mesh(folder / "in.01.ply"), request.frame.options.values, context).mesh;
@@ -222,18 +218,16 @@ TEST_CASE("sequence: without coherence every frame is a run of its own", "[seque
 
 TEST_CASE("sequence: missing frames are named before anything starts", "[sequence]") {
   const TemporaryFolder folder;
-  write_frames(folder, 4, twisted);
+  const SequenceRequest request = frames_in(folder, 4, twisted);
   std::filesystem::remove(folder / "in.02.ply");
-  SequenceRequest request = request_in(folder, 4, "out.##.ply");
   CHECK(contains(refusal(request, ErrorCode::unreadable_input), "frame 2, "));
   CHECK_FALSE(std::filesystem::exists(folder / "out.00.ply"));
 }
 
 TEST_CASE("sequence: a bad frame stops it by name, or is left out", "[sequence]") {
   const TemporaryFolder folder;
-  write_frames(folder, 4, twisted);
+  SequenceRequest request = frames_in(folder, 4, twisted);
   put_file(folder / "in.01.ply", "ply\nnonsense\n");
-  SequenceRequest request = request_in(folder, 4, "out.##.ply");
   CHECK(contains(refusal(request, ErrorCode::unreadable_input), "frame 1: "));
   CHECK(std::filesystem::exists(folder / "out.00.ply"));
   CHECK_FALSE(std::filesystem::exists(folder / "out.02.ply"));
@@ -249,8 +243,7 @@ TEST_CASE("sequence: a bad frame stops it by name, or is left out", "[sequence]"
 
 TEST_CASE("sequence: gates hold for every frame, and those of coherence for frames that follow", "[sequence]") {
   const TemporaryFolder folder;
-  write_frames(folder, 2, [](int f) { return twisted(8 * f); });
-  SequenceRequest request = request_in(folder, 2, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 2, [](int f) { return twisted(8 * f); });
   request.frame.gates = parse_gates("closed,kept-edges=100,born=0");
   CHECK(contains(refusal(request, ErrorCode::gate_failed), "frame 1: gate failed: kept-edges=100"));
   CHECK(std::filesystem::exists(folder / "out.01.ply"));

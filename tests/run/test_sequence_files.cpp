@@ -1,6 +1,7 @@
 // What a sequence takes for its own when it resumes, what it says when it ends early, and which outputs it refuses.
 #include "io/leftovers.h"
 #include "run/sequences.h"
+#include "run/small_run.h"
 
 using namespace isoshell;
 
@@ -8,24 +9,20 @@ TEST_CASE("sequence: resumed, it makes again what is not whole or not of this ru
           "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 4, twisted);
-  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 4, twisted);
   request.frame.statistics = folder / "s.##.json";
-  std::vector<std::string> said;
-  request.frame.tell = [&](MessageKind kind, const std::string& text) {
-    if (kind == MessageKind::warning) said.push_back(text);
-  };
+  Heard heard(request.frame);
   run_sequence(request, context);
   const std::vector<std::string> whole = files_of(request);
   request.resume = true;
   const auto resumed = [&](const std::string& frame, const std::string& why, int64_t made) {
     INFO(frame << ": " << why);
-    said.clear();
+    heard.warnings.clear();
     const SequenceResult result = run_sequence(request, context);
     CHECK(result.made == made);
     CHECK(result.found == 4 - made);
-    CHECK(said.size() == size_t(made));
-    if (made > 0) CHECK(contains(said.at(0), "out." + frame + ".ply " + why));
+    CHECK(heard.warnings.size() == size_t(made));
+    if (made > 0) CHECK(contains(heard.warnings.at(0), "out." + frame + ".ply " + why));
     return files_of(request) == whole;
   };
   CHECK(resumed("", "", 0));
@@ -35,7 +32,7 @@ TEST_CASE("sequence: resumed, it makes again what is not whole or not of this ru
   CHECK(resumed("02", "cannot be read", 1));
   put_file(folder / "out.03.ply", whole[3].substr(0, whole[3].size() - 12) + std::string(12, '\0'));
   CHECK(resumed("03", "has faces that are none", 1));
-  write_mesh(folder / "out.00.ply", {twisted(0).vertices, twisted(0).triangles}, {"", true});
+  write_mesh(folder / "out.00.ply", mesh_of(twisted(0)), {"", true});
   CHECK(resumed("00", "does not say that a sequence made it", 1));
   std::filesystem::remove(folder / "s.02.json");
   CHECK(resumed("02", "is there without " + (folder / "s.02.json"), 1));
@@ -45,16 +42,15 @@ TEST_CASE("sequence: resumed, it makes again what is not whole or not of this ru
   CHECK_FALSE(resumed("00", "was made with other options", 4));
   request.frame.options.values.vertices = 600;
   CHECK(resumed("00", "was made with other options", 4));
-  write_mesh(folder / "in.02.ply", {twisted(3).vertices, twisted(3).triangles}, {"", true});
+  write_mesh(folder / "in.02.ply", mesh_of(twisted(3)), {"", true});
   CHECK_FALSE(resumed("02", "was made of another input", 2));
-  CHECK(contains(said.at(1), "out.03.ply follows another frame"));
+  CHECK(contains(heard.warnings.at(1), "out.03.ply follows another frame"));
 }
 
 TEST_CASE("sequence: an interruption names the frames that were written", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 4, twisted);
-  SequenceRequest request = request_in(folder, 4, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 4, twisted);
   request.after_frame = [&](int64_t frame, const RunResult&) { context.cancel = frame == 2; };
   const std::string said = refusal_in(request, ErrorCode::interrupted, context);
   CHECK(contains(said, "written before: " + (folder / "out.00.ply") + " to " + (folder / "out.02.ply") + ", 3 frames"));
@@ -62,9 +58,8 @@ TEST_CASE("sequence: an interruption names the frames that were written", "[sequ
 
 TEST_CASE("sequence: outputs that are one file, or another frame's input, are refused before any frame", "[sequence]") {
   const TemporaryFolder folder;
-  write_frames(folder, 2, twisted);
+  SequenceRequest request = frames_in(folder, 2, twisted);
   std::filesystem::create_symlink("in.01.ply", folder / "out.00.ply");
-  SequenceRequest request = request_in(folder, 2, "out.##.ply");
   request.frame.overwrite = true;
   CHECK(contains(refusal(request, ErrorCode::usage), "are one file"));
   std::filesystem::remove(folder / "out.00.ply");
@@ -78,7 +73,7 @@ TEST_CASE("sequence: edge lengths of an attribute hold in every frame, and anoth
   TestContext context;
   const TemporaryFolder folder;
   for (int f = 0; f < 2; ++f) {
-    TriangleMesh mesh{twisted(f).vertices, twisted(f).triangles};
+    TriangleMesh mesh = mesh_of(twisted(f));
     for (const auto& [name, length] : {std::pair{"coarse", .5}, std::pair{"fine", .4}})
       mesh.attributes.push_back(
           {name, NumberType::f64, 1, std::vector<double>(mesh.vertices.size(), length), AttributeDomain::vertex});
@@ -101,7 +96,7 @@ TEST_CASE("sequence: resumed with another offset, or of a mesh with other images
   TestContext context;
   const TemporaryFolder folder;
   const auto write_input = [&](const std::string& image) {
-    TriangleMesh mesh{twisted(0).vertices, twisted(0).triangles};
+    TriangleMesh mesh = mesh_of(twisted(0));
     mesh.files.textures = {image};
     mesh.attributes.push_back(
         {kUvName, NumberType::f32, 2, std::vector<double>(6 * mesh.triangles.size(), .5), AttributeDomain::corner});
@@ -125,8 +120,7 @@ TEST_CASE("sequence: what killed processes have left goes before the first frame
           "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 3, twisted);
-  SequenceRequest request = request_in(folder, 3, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 3, twisted);
   const std::string ended = std::to_string(ended_process());
   const std::string before = temporary_of(ended), during = temporary_of(ended);
   put_file(folder / before, "part");
@@ -141,8 +135,7 @@ TEST_CASE("sequence: what killed processes have left goes before the first frame
 TEST_CASE("sequence: a frame that there is no memory to read is not taken for a damaged one", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 1, twisted);
-  SequenceRequest request = request_in(folder, 1, "out.##.ply");
+  SequenceRequest request = frames_in(folder, 1, twisted);
   run_sequence(request, context);
   const RunRequest one = request_of_frame(request, 0);
   const Input input = read_input_of(one, context, {});
@@ -156,7 +149,7 @@ TEST_CASE("sequence: of a frame that does not fit, only the header is read", "[s
   const TemporaryFolder folder;
   MeshWriteOptions options;
   options.made_of = "one two three";
-  write_mesh(folder / "a.ply", {twisted(0).vertices, twisted(0).triangles}, options);
+  write_mesh(folder / "a.ply", mesh_of(twisted(0)), options);
   const std::string whole = get_file(folder / "a.ply");
   CHECK(made_of_in_ply(folder / "a.ply", 4096) == "one two three");
   put_file(folder / "a.ply", whole.substr(0, whole.find("end_header") + 11));
@@ -171,8 +164,7 @@ TEST_CASE("sequence: of a frame that does not fit, only the header is read", "[s
 TEST_CASE("sequence: only a mesh that may become a PLY file has the key of its frame", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
-  write_frames(folder, 1, twisted);
-  RunRequest request = request_of_frame(request_in(folder, 1, "out.##.ply"), 0);
+  RunRequest request = request_of_frame(frames_in(folder, 1, twisted), 0);
   const auto has_key = [&](const std::string& output) {
     request.output = named_output(output.empty() ? "" : folder / output, "", StopAfter::mesh);
     return !FrameChain().run(read_input_of(request, context, {}), request, context).made_of.empty();

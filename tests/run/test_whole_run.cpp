@@ -5,6 +5,7 @@
 #include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/run/run.h"
+#include "run/small_run.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
 #include "support/refusals.h"
@@ -15,17 +16,6 @@ using namespace isoshell;
 using Json = nlohmann::json;
 
 namespace {
-
-TriangleSoup ball() { return shapes::sphere({1, 2, 3}, 5, 48); }
-
-RunRequest small_run() {
-  RemeshOptions options;
-  options.vertices = 300;
-  options.resolution = 48;
-  RunRequest request;
-  request.options = requested_options(options);
-  return request;
-}
 
 std::set<std::string> keys(const Json& object) {
   std::set<std::string> names;
@@ -91,20 +81,18 @@ TEST_CASE("whole run: statistics have the keys of schema 1, whether written or a
 
 TEST_CASE("whole run: what is said goes to the caller as it happens, and stays in the record", "[run]") {
   CpuContext context;
-  std::vector<std::string> steps, warnings, notes;
+  std::vector<std::string> steps;
   context.progress = [&](const char* stage, double fraction) {
     if (fraction == 1) steps.push_back(stage);
   };
   RunRequest request = small_run();
   request.gates = parse_gates("genus=1,max-deviation=1e-9");
-  request.tell = [&](MessageKind kind, const std::string& text) {
-    (kind == MessageKind::warning ? warnings : notes).push_back(text);
-  };
+  const Heard heard(request);
   TriangleSoup open = ball();
   open.triangles.erase(open.triangles.begin() + 500, open.triangles.begin() + 540);
   const RunResult result = run(input_of(open, "ball"), request, context);
-  CHECK(warnings == result.record.warnings);
-  CHECK(contains(warnings.at(0), "ball: "));
+  CHECK(heard.warnings == result.record.warnings);
+  CHECK(contains(heard.warnings.at(0), "ball: "));
   CHECK(result.missed_gates.size() == 2);
   CHECK(std::count(steps.begin(), steps.end(), "prepare") == 1);
   CHECK(std::count(steps.begin(), steps.end(), "triangulate") == 1);
@@ -249,8 +237,7 @@ TEST_CASE("whole run: one that is cancelled says what was written", "[run]") {
 
 TEST_CASE("whole run: an estimate reads, and writes nothing", "[run]") {
   const TemporaryFolder folder;
-  const TriangleSoup soup = ball();
-  write_mesh(folder / "ball.ply", {soup.vertices, soup.triangles});
+  write_mesh(folder / "ball.ply", mesh_of(ball()));
   CpuContext context;
   RunRequest request = small_run();
   request.input = named_input(folder / "ball.ply");

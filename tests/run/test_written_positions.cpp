@@ -119,10 +119,8 @@ TEST_CASE("written positions: frames with an offset are the same when resumed", 
   const TemporaryFolder folder;
   CpuContext context;
   SequenceRequest sequence;
-  for (int f = 0; f < 3; ++f) {
-    const TriangleSoup torus = torus_at({kUtm.x + 0.02 * f, kUtm.y, kUtm.z});
-    write_mesh(path_of_frame(folder / "in.##.ply", f), {torus.vertices, torus.triangles});
-  }
+  for (int f = 0; f < 3; ++f)
+    write_mesh(path_of_frame(folder / "in.##.ply", f), mesh_of(torus_at({kUtm.x + 0.02 * f, kUtm.y, kUtm.z})));
   sequence.frame = run_to(folder / "out.##.ply", "500000,5400000,300");
   sequence.frame.input.path = folder / "in.##.ply";
   sequence.frame.options.values.vertices = 500;
@@ -140,9 +138,7 @@ TEST_CASE("written positions: frames with an offset are the same when resumed", 
 TEST_CASE("written positions: a file is refused whose numbers do not hold the triangles", "[run][mesh_file]") {
   const TemporaryFolder folder;
   const auto refused = [&](const TriangleSoup& soup, const char* name) {
-    return message_of(ErrorCode::unwritable_output, [&] {
-      write_mesh(folder / name, {soup.vertices, soup.triangles});
-    });
+    return message_of(ErrorCode::unwritable_output, [&] { write_mesh(folder / name, mesh_of(soup)); });
   };
   CHECK(contains(refused(torus_at(kFar), "far.stl"), "lose their area; subtract an offset"));
   CHECK(contains(refused(shapes::box({0, 0, 0}, {1e-60, 1e-60, 1e-60}), "tiny.glb"), "lose their area"));
@@ -150,19 +146,19 @@ TEST_CASE("written positions: a file is refused whose numbers do not hold the tr
   for (const double side : {1e-200, 1e-60, 1e60, 1e200}) {
     INFO(side);
     const TriangleSoup box = shapes::box({0, 0, 0}, {side, side, side});
-    write_mesh(folder / "box.ply", {box.vertices, box.triangles}, {"", true});
+    write_mesh(folder / "box.ply", mesh_of(box), {"", true});
     CHECK(read_mesh(folder / "box.ply").vertices[7].x == box.vertices[7].x);
   }
   CHECK(contains(message_of(ErrorCode::unwritable_output,
                             [&] {
                               const TriangleSoup box = shapes::box({0, 0, 0}, {1e60, 1, 1});
-                              positions_in_file({box.vertices, box.triangles}, "stl");
+                              positions_in_file(mesh_of(box), "stl");
                             }),
                  "would be infinite"));
 }
 
 TEST_CASE("written positions: the offset is round, and nothing is taken from what is near", "[mesh_file]") {
-  const auto offset_of = [](const TriangleSoup& soup) { return offset_to_origin({soup.vertices, soup.triangles}); };
+  const auto offset_of = [](const TriangleSoup& soup) { return offset_to_origin(mesh_of(soup)); };
   CHECK(same_bits(offset_of(torus_at({441906.3, 6329781.2, 12})), {441910, 6329780, 10}));
   CHECK(same_bits(offset_of(torus_at({3, -3, 0.5})), {0, 0, 0}));
   CHECK(same_bits(offset_to_origin({}), {0, 0, 0}));

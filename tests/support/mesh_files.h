@@ -53,6 +53,9 @@ inline TriangleSoup read_text_as(const std::string& ending, const std::string& b
   return read_mesh(path);
 }
 
+/// The surface without its attributes.
+inline TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
+
 inline bool same_bits(const WorldPoint& a, const WorldPoint& b) {
   const auto same = [](double p, double q) { return p == q && std::signbit(p) == std::signbit(q); };
   return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);

@@ -9,14 +9,13 @@
 #include "isoshell/distance.h"
 #include "isoshell/error.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
 
 using namespace isoshell;
 
 namespace {
-
-TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
 
 /// Two triangles at the height z.
 TriangleMesh square(double size, double z) {

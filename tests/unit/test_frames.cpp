@@ -8,6 +8,7 @@
 #include "isoshell/previous_frame.h"
 #include "isoshell/run/sequence.h"
 #include "support/catch.h"
+#include "support/mesh_files.h"
 #include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
@@ -43,8 +44,6 @@ TriangleSoup facing_sheets(WorldPoint lo, WorldPoint hi, uint32_t cells) {
   };
   return shapes::together(sheet(lo.z), shapes::inside_out(sheet(hi.z)));
 }
-
-TriangleMesh mesh_of(const TriangleSoup& soup) { return {soup.vertices, soup.triangles}; }
 
 std::string refusal(const std::string& pattern) {
   return message_of(ErrorCode::usage, [&] { path_of_frame(pattern, 1); });

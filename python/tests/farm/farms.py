@@ -166,13 +166,18 @@ def wait_for_rows(out, count):
     wait_for(lambda: (out / "manifest").exists() and len(rows_of(out)) >= count)
 
 
+def link_assets(assets, folder):
+    """The assets in a folder that takes others beside them."""
+    folder.mkdir()
+    for path in assets.glob("*.obj"):
+        (folder / path.name).symlink_to(path)
+    return folder
+
+
 @pytest.fixture
 def held(assets, tmp_path):
     """The assets, and one beside them that holds whoever reads it."""
-    mixed = tmp_path / "mixed"
-    mixed.mkdir()
-    for path in assets.glob("*.obj"):
-        (mixed / path.name).symlink_to(path)
+    mixed = link_assets(assets, tmp_path / "mixed")
     os.mkfifo(mixed / "held.obj")
     return mixed
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from conftest import FOREVER, make_ball, write_obj
 from farms import (ENDLESS, SMALL, Crasher, assert_is_refused, assert_is_serial, connect, digests_of, farm, files_of,
-                   make_assets, rows_of)
+                   link_assets, make_assets, rows_of)
 
 import isoshell
 from isoshell._farm._process import Child, Lost
@@ -53,10 +53,7 @@ def test_only_what_has_changed_is_meshed_again(tmp_path):
 
 
 def test_a_bad_asset_is_a_row_with_its_reason_and_harms_no_other(assets, serial, tmp_path):
-    mixed = tmp_path / "mixed"
-    mixed.mkdir()
-    for path in assets.glob("*.obj"):
-        (mixed / path.name).symlink_to(path)
+    mixed = link_assets(assets, tmp_path / "mixed")
     (mixed / "malformed.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 9\n")
     with Crasher(mixed / "crash.obj") as crasher:
         done = farm("run", mixed, tmp_path / "out", *SMALL, *ENDLESS)
@@ -79,10 +76,7 @@ def test_a_bad_asset_is_a_row_with_its_reason_and_harms_no_other(assets, serial,
 
 
 def test_assets_that_share_a_process_are_tried_again_and_the_one_that_ends_it_alone(assets, serial, tmp_path):
-    mixed = tmp_path / "mixed"
-    mixed.mkdir()
-    for path in assets.glob("*.obj"):
-        (mixed / path.name).symlink_to(path)
+    mixed = link_assets(assets, tmp_path / "mixed")
     with Crasher(mixed / "crash.obj"):
         done = farm("run", mixed, tmp_path / "out", *SMALL, "--contexts", 2, *ENDLESS, "--device", "cpu")
     assert done.returncode == 9, done.stderr

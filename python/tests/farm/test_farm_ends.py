@@ -23,18 +23,27 @@ def assert_nothing_is_half_written(out):
             assert name.endswith(".ply") and (out / name).read_bytes()[:3] == b"ply"
 
 
-def resumed(held, out, *words):
+def finish(held, out, serial):
+    """What the next farm says, for which nothing holds on any more. The assets that all farms have are then as they are
+    elsewhere."""
     (held / "held.obj").unlink()
     write_obj(held / "held.obj", *make_ball())
-    done = farm("run", held, out, *SMALL, *words)
+    done = farm("run", held, out, *SMALL)
     assert done.returncode == 0, done.stderr
-    return done.stderr
-
-
-def without_held(out):
     (out / "held.ply").unlink()
     for path in (out / "manifest").glob("*.jsonl"):
         path.write_text("".join(line for line in path.read_text().splitlines(True) if "held.ply" not in line))
+    assert_is_serial(out, serial)
+    return done.stderr
+
+
+def assert_goes_on_where_it_was(held, out, serial):
+    assert_nothing_is_half_written(out)
+    assert "4 of 5 assets are done already" in finish(held, out, serial)
+
+
+def wait_for_end_of(processes):
+    wait_for(lambda: not any(process.is_running() for process in processes))
 
 
 def test_an_interrupted_farm_says_how_to_go_on_and_leaves_no_process(held, serial, tmp_path):
@@ -46,11 +55,8 @@ def test_an_interrupted_farm_says_how_to_go_on_and_leaves_no_process(held, seria
     os.killpg(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=FOREVER)
     assert process.returncode == 130 and f"isoshell farm run {held} {out}" in said and "Traceback" not in said
-    wait_for(lambda: not any(child.is_running() for child in children))
-    assert_nothing_is_half_written(out)
-    assert "4 of 5 assets are done already" in resumed(held, out)
-    without_held(out)
-    assert_is_serial(out, serial)
+    wait_for_end_of(children)
+    assert_goes_on_where_it_was(held, out, serial)
     assert not (out / ".farm").exists()
 
 
@@ -61,12 +67,9 @@ def test_a_farm_whose_processes_are_all_killed_goes_on_where_it_was(held, serial
     others = processes_of(process, "isoshell._farm._child")
     assert others
     end(process)
-    wait_for(lambda: not any(other.is_running() for other in others))
-    assert_nothing_is_half_written(out)
+    wait_for_end_of(others)
     assert "4 remaining" not in farm("status", out).stdout
-    assert "4 of 5 assets are done already" in resumed(held, out)
-    without_held(out)
-    assert_is_serial(out, serial)
+    assert_goes_on_where_it_was(held, out, serial)
 
 
 def test_a_killed_worker_is_started_again_and_its_assets_are_meshed(engine, held, serial, tmp_path):
@@ -80,9 +83,7 @@ def test_a_killed_worker_is_started_again_and_its_assets_are_meshed(engine, held
     wait_for(lambda: {child.ppid() for child in processes_of(nanny, "isoshell._farm._child")} - killed - {1})
     said = end(process, signal.SIGINT)
     assert process.returncode == 130, said
-    resumed(held, out)
-    without_held(out)
-    assert_is_serial(out, serial)
+    finish(held, out, serial)
     wait_for(lambda: not (out / ".farm").exists())  # the worker goes on, and tidies up in its own time
 
 
@@ -94,10 +95,7 @@ def test_a_farm_on_a_scheduler_that_dies_ends_and_says_how_to_go_on(engine, held
     _, said = process.communicate(timeout=FOREVER)
     assert process.returncode == 10 and "does not answer" in said, said
     assert f"isoshell farm run {held} {out}" in said
-    assert_nothing_is_half_written(out)
-    assert "4 of 5 assets are done already" in resumed(held, out)
-    without_held(out)
-    assert_is_serial(out, serial)
+    assert_goes_on_where_it_was(held, out, serial)
 
 
 def test_a_full_disk_stops_the_farm_and_room_lets_it_go_on(assets, serial, tmp_path):
