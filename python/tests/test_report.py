@@ -294,3 +294,12 @@ def test_distances_are_those_to_the_nearest_point(box):
     points = np.array([(0.5, 0.5, 0.5), (2, 0.5, 0.5), (2, 2, 0.5), (0.25, 0, 0.5), (0.5, 0.1, 0.5)])
     found = isoshell._isoshell.distances(points, vertices, faces)
     assert np.allclose(found, [0.5, 1, np.sqrt(2), 0, 0.1])
+
+
+def test_the_numbers_below_a_curve_are_evenly_apart_and_begin_at_the_first():
+    from isoshell._report._charts import curve
+
+    for count in range(2, 40):
+        axis = re.findall(r'<text x="[0-9.]+" y="159" text-anchor="\w+">(\d+)</text>', curve("", "", range(count)))
+        numbers = [int(number) for number in axis]
+        assert numbers[0] == 1 and 2 <= len(numbers) <= 6 and len(set(np.diff(numbers))) == 1

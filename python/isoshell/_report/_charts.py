@@ -47,8 +47,7 @@ def curve(title: str, unit: str, values: Sequence[float]) -> str:
     labels = (f'<text class="value" x="{LEFT + 6}" y="{max(y[0] - 6, TOP):.1f}">{number(values[0])}</text>'
               f'<text class="value" x="{RIGHT}" y="{min(y[-1] - 6, BOTTOM - 6):.1f}" text-anchor="end">'
               f"{number(values[-1])}</text>")
-    whole = sorted({round(i * (len(values) - 1) / 5) for i in range(6)})
-    ticks = [(float(i + 1), LEFT + (RIGHT - LEFT) * i / (len(values) - 1)) for i in whole]
+    ticks = [(float(i + 1), x[i]) for i in range(0, len(values), -(-(len(values) - 1) // 5))]
     return _chart(title, f'<polyline class="line" points="{points}"/>{labels}{_axis(ticks, unit)}')
 
 
@@ -58,13 +57,12 @@ def _height(share: float, top: float) -> float:
 
 def _axis(ticks: List[Tuple[float, float]], unit: str) -> str:
     marks = "".join(f'<path class="axis" d="M{x:.1f} {BOTTOM}v4"/><text x="{x:.1f}" y="{BOTTOM + 17}" '
-                    f'text-anchor="{_anchor(i, len(ticks))}">{number(value)}{html.escape(unit)}</text>'
-                    for i, (value, x) in enumerate(ticks))
+                    f'text-anchor="{_anchor(x)}">{number(value)}{html.escape(unit)}</text>' for value, x in ticks)
     return f'<path class="axis" d="M{LEFT} {BOTTOM}H{RIGHT}"/>{marks}'
 
 
-def _anchor(index: int, count: int) -> str:
-    return "start" if index == 0 else "end" if index == count - 1 else "middle"
+def _anchor(x: float) -> str:
+    return "start" if x <= LEFT else "end" if x >= RIGHT else "middle"
 
 
 def _chart(title: str, drawn: str) -> str:
