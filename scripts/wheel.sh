@@ -16,6 +16,7 @@ if [ "$ISOSHELL_CUDA" = on ]; then
   settings+=("--config-settings=build-dir=build/wheel-cuda-{wheel_tag}")
 fi
 . scripts/ccache.sh
+export CC=${CC:-cc} CXX=${CXX:-c++}  # CMake's own, not those that built Python, for which the cache has nothing
 
 tools=build/wheel-tools
 if [ ! -x $tools/bin/auditwheel ]; then
