@@ -83,7 +83,7 @@ TEST_CASE("warnings: another number of vertices than was asked for is said, and 
   options.regions = "components";
   const RunResult regions = run_of(boxes_with_spike(), options, "count");
   CHECK(contains(warnings_of(regions), " vertices instead of 200: the walls of its regions are as they came in"));
-  REQUIRE(regions.missed_gates.size() >= 1);
+  REQUIRE_FALSE(regions.missed_gates.empty());
   CHECK(contains(regions.missed_gates.back(), "count: the result has "));
   options.regions = "";
   CHECK(run_of(shapes::torus(3, 1, 48, 24), options, "count").missed_gates.empty());
