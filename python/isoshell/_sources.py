@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, triple_of
+from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of, triple_of
 from ._exchange import format_of, taken
 from ._errors import Error
 from ._inputs import Mesh, Points, Volume
@@ -125,7 +125,7 @@ def frame_source_of(given: Any, sizing: Any = None) -> Source:
     """The same for a frame of a sequence, with the velocities that are in memory."""
     source = source_of(given, sizing)
     if isinstance(given, Volume) and given.velocities is not None:
-        vectors = _vectors_of(given.velocities, array_of("volume", given.values).shape)
+        vectors = _vectors_of(given.velocities, shape_of(given.values))
         source.set_velocities(vectors, triple_of("spacing", given.spacing), triple_of("origin", given.origin))
     elif isinstance(given, Mesh) and given.velocities is not None:
         vertices = array_of("vertices", given.vertices)
@@ -177,7 +177,7 @@ def is_true_or_false(volume: Any) -> bool:
     if not isinstance(volume, Volume):
         return False
     kind = getattr(volume.values, "dtype", None)  # "bool", "torch.bool"; arrays of devices are copied once, not here
-    return str(kind).endswith("bool") if kind is not None else array_of("volume", volume.values).dtype.kind == "b"
+    return str(kind).endswith("bool") if kind is not None else masked_array_of("volume", volume.values)[0].dtype.kind == "b"
 
 
 def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
