@@ -9,7 +9,7 @@ import tempfile
 from typing import TYPE_CHECKING, Any, Iterable, Iterator
 
 from .. import _isoshell
-from .._errors import Error, warn
+from .._errors import Error, warn, words_of
 from .._inputs import Mesh, Points
 from .._isoshell import ErrorCode
 from . import Format, format_of, formats
@@ -34,8 +34,7 @@ def read(path: str, options: dict[str, Any]) -> Any:
     except Error as error:
         raise error if str(error).startswith(path) else Error(f"{path}: {error}", error.code, error.stage) from error
     except Exception as error:  # whatever the package raises of a damaged file
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise Error(f"{path}: {format.extra}: {words}", ErrorCode.UNREADABLE_INPUT, "read") from error
+        raise Error(f"{path}: {format.extra}: {words_of(error)}", ErrorCode.UNREADABLE_INPUT, "read") from error
     if isinstance(made, Points) and len(made.positions) == 0:
         raise Error(f"{path}: {format.extra} finds neither faces nor points in it", ErrorCode.NOTHING_TO_MESH, "read")
     if isinstance(made, Mesh):
@@ -87,8 +86,7 @@ def _writing(path: str) -> Iterator[None]:
     except Error:
         raise
     except Exception as error:  # whatever the package raises of a disk that is full
-        words = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
-        raise _unwritable(path, words) from error
+        raise _unwritable(path, words_of(error)) from error
 
 
 def _unwritable(path: str, what: str) -> Error:

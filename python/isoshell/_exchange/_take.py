@@ -134,9 +134,13 @@ class Taker:
     def _add_region(self, column: int, labels: Array) -> None:
         import numpy as np
 
+        with np.errstate(invalid="ignore"):
+            whole = labels.astype(np.int32)
+        if not np.array_equal(whole, labels):
+            return self.drop(REGIONS[column], "labels of regions are whole numbers of 32 bits")
         if self.mesh.regions is None:
             self.mesh.regions = {"labels": np.zeros((len(self.mesh.faces), 2), np.int32), "background": 0, "names": {}}
-        self.mesh.regions["labels"][:, column] = labels[self._face_of]
+        self.mesh.regions["labels"][:, column] = whole[self._face_of]
 
 
 def _item(value: Any) -> Any:
