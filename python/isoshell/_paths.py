@@ -1,13 +1,15 @@
-"""Names of files."""
+"""Names of files, and errors of writing them."""
 
 from __future__ import annotations
 
+import contextlib
 import os
-from typing import Union
+from typing import Callable, Iterator, Type, Union
 
-from ._errors import Error
+from ._errors import Error, words_of
+from ._isoshell import ErrorCode
 
-Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+Path = Union[str, "os.PathLike[str]"]
 
 
 def path_text(path: Path) -> str:
@@ -33,3 +35,23 @@ def encodable(text: str) -> str:
     except UnicodeEncodeError as error:
         raise Error(f"{text!r} cannot be encoded: it has {text[error.start]!r}, which is half a character") from None
     return text
+
+
+@contextlib.contextmanager
+def writing(path: str, failure: Type[Exception] = Exception,
+            reason_of: Callable[[Exception], str] = words_of) -> Iterator[None]:
+    """What fails meanwhile is an Error of code UNWRITABLE_OUTPUT: OSError, and `failure`, what a package raises of it,
+    which says by `reason_of` why."""
+    try:
+        yield
+    except Error:
+        raise
+    except OSError as error:
+        raise unwritable(path, words_of(error)) from error
+    except failure as error:
+        raise unwritable(path, reason_of(error)) from error
+
+
+def unwritable(path: str, what: str) -> Error:
+    """The error of a file that cannot be written."""
+    return Error(f"{path}: {what}", ErrorCode.UNWRITABLE_OUTPUT, "write")

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Iterable
 
 from .. import _isoshell
 from .._errors import Error, warn, words_of
 from .._inputs import Mesh, Points
 from .._isoshell import ErrorCode
+from .._paths import writing
 from . import Format, format_of, formats
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def write(path: str, made: Result | Mesh, overwrite: bool) -> None:
     """Under another name first, so that nothing half-written is left. What the format does not hold is warned of."""
     check_target(path, overwrite)
     format = _format_for(path, "writes")
-    with _writing(path), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=os.path.dirname(path) or ".") as work:
+    with writing(path), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=os.path.dirname(path) or ".") as work:
         part = os.path.join(work, os.path.basename(path))
         lost = _module_of(format).write(made, part)
         for file in sorted(os.listdir(work)):  # XDMF has its numbers in a file beside it
@@ -76,18 +76,3 @@ def _format_for(path: str, what: str) -> Format:
 
 def _module_of(format: Format) -> Any:
     return importlib.import_module(f"._{format.extra}", __package__)
-
-
-@contextlib.contextmanager
-def _writing(path: str) -> Iterator[None]:
-    """What fails meanwhile is an Error of code UNWRITABLE_OUTPUT."""
-    try:
-        yield
-    except Error:
-        raise
-    except Exception as error:  # whatever the package raises of a disk that is full
-        raise _unwritable(path, words_of(error)) from error
-
-
-def _unwritable(path: str, what: str) -> Error:
-    return Error(f"{path}: {what}", ErrorCode.UNWRITABLE_OUTPUT, "write")
