@@ -18,7 +18,7 @@ def main() -> int:
 def remesh(words: list[str]) -> int:
     """The command vdb_isomesh, and where INPUT or OUTPUT is a file that Python reads and writes, what stands for it."""
     if any(".usd" in word.lower() or format_of(word) is not None for word in words):
-        from ._usd._command import names_ours, run
+        from ._remesh_command import names_ours, run
 
         if names_ours(words):
             return run(words)

@@ -10,7 +10,7 @@ from importlib import import_module
 import isoshell
 import pytest
 from conftest import SOURCE, write_obj
-from isoshell._usd._command import split_words
+from isoshell._remesh_command import split_words
 
 COMMANDS = ("remesh", "info", "farm")
 
