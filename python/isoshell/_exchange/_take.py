@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 from .. import _isoshell
 from .._arrays import array_of, nan_where_masked
 from .._errors import Error
+from .._labels import joined_regions
 from .._polygons import split_polygons
 from .._inputs import Mesh
 
@@ -183,7 +184,8 @@ def _as_color(rows: Array) -> Array:
 
 
 def joined(name: str, meshes: Sequence[Mesh]) -> Mesh:
-    """Several meshes as one. Where one has not what others have, it is 0 there, NaN among real numbers."""
+    """Several meshes as one, with the regions of all where each has them. Where one has not what others have, it is NaN
+    there, and white for colours."""
     import numpy as np
 
     if len(meshes) == 1:
@@ -202,7 +204,8 @@ def joined(name: str, meshes: Sequence[Mesh]) -> Mesh:
             numbers = [_renumbered(mesh, key, made) for mesh in meshes]
             getattr(made, domain)[key] = np.concatenate(
                 [_padded(part, count, shape, key, number) for part, count, number in zip(parts, counts, numbers)])
-    made.dropped = [pair for mesh in meshes for pair in mesh.dropped]
+    made.regions = joined_regions(name, [mesh.regions for mesh in meshes])
+    made.dropped = [*dict.fromkeys(pair for mesh in meshes for pair in mesh.dropped)]
     materials = [mesh.material for mesh in meshes if mesh.material is not None]
     if len(materials) == len(meshes) and all(material is materials[0] for material in materials):
         made.material = materials[0]
