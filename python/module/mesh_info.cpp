@@ -67,7 +67,9 @@ std::optional<Input> read_by(const nb::object& open, const InputRequest& asked, 
     request.tell = tell;
     const ReadMemory read = nb::cast<const Source&>(source).read;
     const nb::gil_scoped_release released;
-    return read(request, context);
+    Input input = read(request, context);
+    input.facts.path = asked.path;  // what is in memory has another name
+    return input;
   } catch (const nb::python_error& raised) {
     throw error_of(raised);
   }

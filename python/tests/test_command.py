@@ -8,6 +8,7 @@ import sys
 from importlib import import_module
 
 import isoshell
+import numpy as np
 import pytest
 from conftest import SOURCE, write_obj
 from isoshell._remesh_command import split_words
@@ -134,6 +135,9 @@ def test_info_measures_files_of_other_packages_as_its_own(tmp_path, ball):
     twice = run("info", other, "--stats", other, "--force")
     assert twice.returncode == 2 and "are one file" in twice.stderr
     assert ".vtu" in run("info", "--help").stdout
+    nibabel = pytest.importorskip("nibabel")
+    nibabel.save(nibabel.Nifti1Image(np.pad(np.ones((3, 3, 3), np.int16), 1), np.eye(4)), tmp_path / "a.nii.gz")
+    assert "a.nii.gz is no mesh but labels" in run("info", tmp_path / "a.nii.gz").stderr
 
 
 def test_info_measures_a_prim_of_a_stage_and_tells_its_warnings(tmp_path, ball):
