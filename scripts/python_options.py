@@ -15,12 +15,10 @@ HEAD = '''"""Keywords of isoshell.remesh. Made by scripts/python_options.py from
 
 from __future__ import annotations
 
-import os
 from typing import Any, Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
 from ._context import Progress
-
-Path = Union[str, "os.PathLike[str]"]
+from ._paths import Path
 
 
 class Options(TypedDict, total=False):

@@ -55,6 +55,14 @@ def nan_where_masked(argument: str, value: Any) -> np.ndarray[Any, Any]:
     return np.where(mask, np.nan, array).astype(array.dtype)
 
 
+def shape_of(value: Any) -> tuple[int, ...]:
+    """The shape that its array has, without a copy of what a device holds."""
+    import numpy as np
+
+    shape = getattr(value, "shape", None)
+    return tuple(np.shape(value) if shape is None else shape)
+
+
 def first_place(mask: np.ndarray[Any, Any]) -> str:
     """The indices of the first that is true, as they are written in Python."""
     return str([int(i[0]) for i in mask.nonzero()])

@@ -5,12 +5,15 @@ from __future__ import annotations
 import difflib
 import os
 import sys
-from typing import Callable
+import warnings
+from typing import Callable, Optional
 
 from . import _isoshell
-from ._exchange import format_of
+from ._errors import RunWarning
+from ._exchange import formats
 from ._isoshell import ErrorCode
-from ._usd import is_usd
+from ._sources import opened, source_of
+from ._usd import ENDINGS
 
 Run = Callable[[list[str]], int]
 
@@ -65,16 +68,35 @@ def run_one_of(words: list[str], remesh: Run) -> int:
 
 def vdb_meshinfo() -> int:
     """The command of that name. Returns its exit status."""
-    return _isoshell.mesh_info_command(["vdb_meshinfo", *map(os.fspath, sys.argv[1:])])
+    return _measure("vdb_meshinfo", [*map(os.fspath, sys.argv[1:])])
+
+
+def files_of_packages(of_stages: str, endings: list[str]) -> str:
+    """What the help says of files beside those of the command."""
+    names = " ".join(f".{ending}" for ending in endings)
+    return f"or a stage of USD ({' '.join(ENDINGS)}{of_stages}), or a file by other Python packages\n        ({names})"
+
+
+def that_are_read() -> str:
+    """The same of those that are read."""
+    return files_of_packages("; FILE:/PRIM names a prim", [each.ending for each in formats() if each.reads])
 
 
 def _info(words: list[str]) -> int:
-    status = _isoshell.mesh_info_command(["isoshell info", *words])
-    names = [word.partition("=")[2] if word.startswith("--") else word for word in words]
-    ours = [name for name in names if is_usd(name) or format_of(name) is not None]
-    if ours and status in (int(ErrorCode.USAGE), int(ErrorCode.UNREADABLE_INPUT)):
-        _tell(f"info reads the formats of the command alone; isoshell.mesh_info() in Python reads {ours[0]}, too")
-    return status
+    return _measure("isoshell info", words)
+
+
+def _measure(program: str, words: list[str]) -> int:
+    return _isoshell.mesh_info_command([program, *words], _opened_by_python, that_are_read())
+
+
+def _opened_by_python(path: str) -> Optional[tuple[_isoshell.Source, list[str]]]:
+    """A file that the library does not read as a source, with the warnings of it; None for one that nobody reads."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", RunWarning)
+        given = opened(path)
+        return None if given is path else (source_of(given), [str(warning.message) for warning in told])
 
 
 def _farm(words: list[str]) -> int:

@@ -43,6 +43,11 @@ class RunWarning(UserWarning):
     """What a person should look at: the command writes the same behind "warning:"."""
 
 
+def words_of(error: BaseException) -> str:
+    """What another package, or the system, says of an error, in one line."""
+    return getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
+
+
 def warn(text: str) -> None:
     """A warning at the line that called this package."""
     level, frame = 1, sys._getframe()

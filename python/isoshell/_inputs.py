@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Sequence, Tuple
 
+from ._arrays import shape_of
 from ._exchange import to_package
 from ._usd import Origin
 
@@ -24,11 +25,7 @@ def rows_in(values: Any) -> str:
 
 def lattice_text(values: Any) -> str:
     """The size of an array and its type."""
-    import numpy as np
-
-    shape = getattr(values, "shape", None)
-    shape = np.shape(values) if shape is None else shape
-    return " x ".join(map(str, shape)) + f" {getattr(values, 'dtype', 'numbers')}"
+    return " x ".join(map(str, shape_of(values))) + f" {getattr(values, 'dtype', 'numbers')}"
 
 
 def counts_text(vertices: Any, faces: Any, names: Sequence[str], regions: int) -> str:

@@ -113,14 +113,14 @@ def text_of(name: str, given: Any) -> str:
     if isinstance(value, Mapping):  # an option of the command that may be given more than once
         return "\n".join(f"{_key(name, key)}={_plain(part)!r}" for key, part in value.items())
     if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):
-        return "none" if name == "attributes" and not value else ",".join(value)
+        return "none" if name == "attributes" and not value else ",".join(map(path_text, value))
     if name in PLACES and hasattr(value, "__len__") and len(value) == 3:
-        return ",".join(repr(float(number)) for number in value)
+        return ",".join(text_of(name, number) for number in value)
     raise Error(f"{name} is {value!r}; it must be a number, text or a list of texts", stage="options")
 
 
 def _key(name: str, key: Any) -> str:
     plain = _plain(key)
     if isinstance(plain, (str, int)) and not isinstance(plain, bool) and "\n" not in str(plain):
-        return str(plain)
+        return path_text(str(plain))
     raise Error(f"a key of {name} is {key!r}; it must be a label or a name", stage="options")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import operator
 import os
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
 
 from . import _isoshell
 from ._arrays import array_of, masked_array_of, triple_of
-from ._errors import Error
+from ._errors import Error, warn
 from ._inputs import lattice_text
 from ._paths import path_text
 
@@ -110,6 +110,34 @@ def _of_affine(labels: Labels) -> tuple[Triple, list[Triple]]:
 def _as_triple(numbers: np.ndarray[Any, Any]) -> Triple:
     x, y, z = numbers.tolist()
     return x, y, z
+
+
+def joined_regions(source: str, parts: Sequence[Optional[Mapping[str, Any]]]) -> Optional[dict[str, Any]]:
+    """Those of several meshes, as Mesh.regions has them. Regions of one name are one region; any other is one of its
+    own, under its label or, where that is taken, the next free one. None, with a warning, where some have none."""
+    import numpy as np
+
+    known = [part for part in parts if part is not None]
+    if known and len(known) < len(parts):
+        warn(f"{source}: the regions of {len(known)} of {len(parts)} meshes are left out, since the others have none; "
+             "mesh these and those by themselves")
+    if len(known) == 0 or len(known) < len(parts):
+        return None
+    background = known[0]["background"]
+    names: dict[int, str] = {}
+    used, labels = {background}, []
+    for part in known:
+        number_of = {part["background"]: background}
+        named = {name: number for number, name in names.items()}  # in the meshes before
+        values, at = np.unique(part["labels"], return_inverse=True)
+        for label in values.tolist():
+            if label not in number_of:
+                free = max(used) + 1 if label in used else label
+                number_of[label] = named.get(part["names"].get(label), free)
+                used.add(number_of[label])
+        names.update({number_of[label]: name for label, name in part["names"].items() if label in number_of})
+        labels.append(np.array([number_of[label] for label in values.tolist()], np.int32)[at].reshape(-1, 2))
+    return {"labels": np.concatenate(labels), "background": background, "names": names}
 
 
 def label_of(argument: str, value: Any) -> int:

@@ -12,7 +12,7 @@ from . import _isoshell
 from ._errors import Error
 from ._keywords import keywords_of
 from ._remesh import keywords_for, listener, result_of, takes_stats
-from ._inputs import Volume
+from ._inputs import Points, Volume
 from ._result import Result, checked
 from ._sources import SourceLike, opened, sizing_of, source_of
 
@@ -104,7 +104,8 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
         An iterator of the results, with a length where the sources have one.
 
     Raises:
-        Error: for an argument that cannot be, by this call; otherwise as remesh() does, where a result is asked for.
+        Error: for an argument that cannot be, by this call; otherwise as remesh() does, where a result is asked for:
+            whatever is wrong with a source is one, and none is a ValueError.
     """
     given: dict[str, Any] = dict(options)
     measure_all = takes_stats(given)
@@ -121,6 +122,8 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
     sizing = sizing_of(given)
     if sizing is not None and not isinstance(sizing, Volume):
         raise Error("sizing as an array is for one mesh; name an attribute that the vertices of each have", stage="options")
+    if sizing is not None:
+        source_of(Points([[0.0, 0.0, 0.0]]), sizing)  # refuses what cannot be a field, before there is a source
     crew = _isoshell.RunWorkers(keywords_of(given), workers or 0)
 
     runs = (_Run(crew, source, sizing, given, measure_all) for source in sources)

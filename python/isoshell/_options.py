@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any, Callable, Literal, Mapping, Optional, Sequence, TypedDict, Union
 
 from ._context import Progress
-
-Path = Union[str, "os.PathLike[str]"]
+from ._paths import Path
 
 
 class Options(TypedDict, total=False):

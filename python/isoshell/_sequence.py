@@ -11,7 +11,7 @@ from ._context import Context
 from ._errors import Error, warn
 from ._isoshell import ErrorCode
 from ._keywords import keywords_of
-from ._paths import path_text
+from ._paths import Path, path_text
 from ._remesh import (check_target, is_written_here, keywords_for, listener, result_of, settle, stage_files,
                       takes_stats)
 from ._result import Result, checked
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ._options import Options
     from ._usd._samples import SampledStage
 
-Path = Union[str, "os.PathLike[str]"]
 Number = Union[int, float]
 Frame = Tuple[Number, Callable[[], Any]]  # its number, and what makes its source
 

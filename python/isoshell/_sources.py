@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, triple_of
+from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of, triple_of
 from ._exchange import format_of, taken
 from ._errors import Error
 from ._inputs import Mesh, Points, Volume
 from ._isoshell import RunResult, Source
-from ._labels import Labels, label_of, lattice_of, values_of
-from ._paths import path_text
+from ._labels import INT32, Labels, label_of, lattice_of, values_of
+from ._paths import encodable, path_text
 from ._result import Result
 from ._usd import is_usd
 
@@ -125,7 +125,7 @@ def frame_source_of(given: Any, sizing: Any = None) -> Source:
     """The same for a frame of a sequence, with the velocities that are in memory."""
     source = source_of(given, sizing)
     if isinstance(given, Volume) and given.velocities is not None:
-        vectors = _vectors_of(given.velocities, array_of("volume", given.values).shape)
+        vectors = _vectors_of(given.velocities, shape_of(given.values))
         source.set_velocities(vectors, triple_of("spacing", given.spacing), triple_of("origin", given.origin))
     elif isinstance(given, Mesh) and given.velocities is not None:
         vertices = array_of("vertices", given.vertices)
@@ -177,7 +177,7 @@ def is_true_or_false(volume: Any) -> bool:
     if not isinstance(volume, Volume):
         return False
     kind = getattr(volume.values, "dtype", None)  # "bool", "torch.bool"; arrays of devices are copied once, not here
-    return str(kind).endswith("bool") if kind is not None else array_of("volume", volume.values).dtype.kind == "b"
+    return str(kind).endswith("bool") if kind is not None else masked_array_of("volume", volume.values)[0].dtype.kind == "b"
 
 
 def _source_of_faces(name: str, vertices: Any, faces: Any) -> Source:
@@ -231,11 +231,18 @@ def _source_of_regions(mesh: Mesh, regions: Mapping[str, Any]) -> Source:
     """With faces that have the lesser label behind them and the background in front, as the library wants them."""
     import numpy as np
 
+    if "labels" not in regions:
+        raise Error("regions must have 'labels', two for each face, as Result.regions has them")
     labels = array_of("regions['labels']", regions["labels"])
     faces = array_of("faces", mesh.faces)
+    if faces.ndim != 2 or faces.shape[1] != 3:
+        raise Error(f"faces must be rows of three, of the shape (M, 3), where there are regions, and has the shape {faces.shape}")
     if labels.shape != (len(faces), 2) or labels.dtype.kind not in "iu":
         raise Error(f"regions['labels'] must be whole numbers of the shape ({len(faces)}, 2), two for each face, and is "
                     f"{labels.dtype} of the shape {labels.shape}")
+    wrong = np.argwhere((labels < INT32[0]) | (labels > INT32[1]))
+    if len(wrong):
+        label_of(f"regions['labels']{wrong[0].tolist()}", labels[tuple(wrong[0])])
     background = label_of("regions['background']", regions.get("background", 0))
     behind, front = labels[:, 0], labels[:, 1]
     turned = (front != background) & ((behind == background) | (behind > front))
@@ -248,7 +255,7 @@ def _source_of_regions(mesh: Mesh, regions: Mapping[str, Any]) -> Source:
         attributes.append((name, domain, values, names))
     source = _source_of_triangles(mesh.name, mesh.vertices, np.take_along_axis(faces, order, axis=1), attributes)
     source.set_regions(np.where(turned[:, None], labels[:, ::-1], labels).astype(np.int32, order="C"), background,
-                       {label_of("a key of names", k): str(v) for k, v in sorted(regions.get("names", {}).items())})
+                       {label_of("a key of names", k): encodable(str(v)) for k, v in (regions.get("names") or {}).items()})
     return source
 
 
@@ -262,8 +269,14 @@ def named_of(made: Result | Mesh) -> list[Named]:
 
 def _attributes_of(mesh: Mesh) -> list[Named]:
     domains = {"vertex": mesh.of_vertices, "face": mesh.of_faces, "corner": mesh.of_corners}
-    return [(name, domain, values, list(mesh.labels.get(name, [])))
+    return [(_name_of(name), domain, values, [encodable(str(label)) for label in mesh.labels.get(name, [])])
             for domain, values_of in domains.items() for name, values in values_of.items()]
+
+
+def _name_of(attribute: Any) -> str:
+    if not isinstance(attribute, str):
+        raise Error(f"the name of an attribute is {attribute!r}; it must be text")
+    return encodable(attribute)
 
 
 def _source_of_triangles(name: str, vertices: Any, faces: Any, attributes: Sequence[Named],

@@ -10,6 +10,8 @@
 
 #include "isoshell/run/mesh_info.h"
 #include "module/watched.h"
+#include "values/errors.h"
+#include "values/keywords.h"
 #include "values/text.h"
 #include "vdb_meshinfo/command.h"
 
@@ -53,11 +55,34 @@ nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywo
   return nb::make_tuple(mesh_info_json(info), info.missed_gates);
 }
 
-int command(const std::vector<std::string>& arguments) {
+/// A file by its name, as Python's `open` makes a source of it.
+std::optional<Input> read_by(const nb::object& open, const InputRequest& asked, Context& context, const Tell& tell) {
+  const nb::gil_scoped_acquire acquired;
+  try {
+    const nb::object opened = open(asked.path);
+    if (opened.is_none()) return std::nullopt;
+    const auto& [source, warnings] = nb::cast<std::pair<nb::object, std::vector<std::string>>>(opened);
+    for (const std::string& text : warnings) tell(MessageKind::warning, text);
+    RunRequest request = arguments_of({{"features", "off"}}, "").run;  // creases are for who remeshes
+    request.tell = tell;
+    const ReadMemory read = nb::cast<const Source&>(source).read;
+    const nb::gil_scoped_release released;
+    Input input = read(request, context);
+    input.facts.path = asked.path;  // what is in memory has another name
+    return input;
+  } catch (const nb::python_error& raised) {
+    throw error_of(raised);
+  }
+}
+
+int command(const std::vector<std::string>& arguments, const nb::object& open, const std::string& also_reads) {
   std::vector<const char*> words;
   for (const std::string& word : arguments) words.push_back(word.c_str());
+  const tool::ReadOther read_other = [&open](const InputRequest& asked, Context& context, const Tell& tell) {
+    return read_by(open, asked, context, tell);
+  };
   const nb::gil_scoped_release released;
-  return tool::mesh_info_command(int(words.size()), words.data(), arguments.at(0));
+  return tool::mesh_info_command(int(words.size()), words.data(), read_other, {arguments.at(0), also_reads});
 }
 
 }  // namespace
@@ -68,9 +93,11 @@ void bind_mesh_info(nb::module_& m) {
         nb::sig("def mesh_info(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | "
                 "None]], reference: Source | None, reference_keywords: collections.abc.Sequence[tuple[str, str | "
                 "None]], progress: typing.Any, tell: typing.Any) -> tuple[str, list[str]]"));
-  m.def("mesh_info_command", command, nb::arg("arguments"),
-        nb::sig("def mesh_info_command(arguments: collections.abc.Sequence[str]) -> int"),
-        "The command vdb_meshinfo, as command.");
+  m.def("mesh_info_command", command, nb::arg("arguments"), nb::arg("open"), nb::arg("also_reads"),
+        nb::sig("def mesh_info_command(arguments: collections.abc.Sequence[str], open: typing.Any, also_reads: str) -> "
+                "int"),
+        "The command vdb_meshinfo, as command. open(path) makes a source of a file whose format the library does not "
+        "have, with warnings, or returns None. also_reads is a line of the help.");
 }
 
 }  // namespace isoshell::python

@@ -8,9 +8,10 @@ import sys
 from importlib import import_module
 
 import isoshell
+import numpy as np
 import pytest
 from conftest import SOURCE, write_obj
-from isoshell._usd._command import split_words
+from isoshell._remesh_command import split_words
 
 COMMANDS = ("remesh", "info", "farm")
 
@@ -121,14 +122,44 @@ def test_info_is_the_certificate(tmp_path, ball):
     assert run("info", "-V").stdout == f"isoshell info {isoshell.__version__}\n"
 
 
-def test_info_names_the_call_that_measures_files_of_other_packages(tmp_path, ball):
-    source = write_obj(tmp_path / "ball.obj", *ball)
-    for name in ("a.vtp", "a.usda"):
-        (tmp_path / name).write_text("")
-        for words in ((name,), (source, "--ref", name), (source, f"--ref={name}")):
-            done = run("info", *words, cwd=tmp_path)
-            assert done.returncode == 3 and f"isoshell.mesh_info() in Python reads {name}" in done.stderr, done.stderr
-    assert "mesh_info" not in run("info", tmp_path / "absent.obj").stderr
+def test_info_measures_files_of_other_packages_as_its_own(tmp_path, ball):
+    pytest.importorskip("meshio")
+    source, other = write_obj(tmp_path / "ball.obj", *ball), tmp_path / "ball.vtu"
+    isoshell.Mesh(*ball).to_meshio().write(other)
+    told = [run("info", source), run("info", other)]
+    assert told[0].returncode == 0 and (told[0].stdout, told[0].stderr) == (told[1].stdout, told[1].stderr)
+    assert json.loads(run("info", other, "--json").stdout) == isoshell.mesh_info(other)
+    near = json.loads(run("info", source, "--ref", other, "--json", "--require", "max-deviation=1e-6").stdout)
+    assert near["distance"]["hausdorff"] < 1e-6
+    assert run("info", other, "--require", "genus=3").returncode == 6
+    twice = run("info", other, "--stats", other, "--force")
+    assert twice.returncode == 2 and "are one file" in twice.stderr
+    assert ".vtu" in run("info", "--help").stdout
+    nibabel = pytest.importorskip("nibabel")
+    nibabel.save(nibabel.Nifti1Image(np.pad(np.ones((3, 3, 3), np.int16), 1), np.eye(4)), tmp_path / "a.nii.gz")
+    assert "a.nii.gz is no mesh but labels" in run("info", tmp_path / "a.nii.gz").stderr
+
+
+def test_info_measures_a_prim_of_a_stage_and_tells_its_warnings(tmp_path, ball):
+    pytest.importorskip("pxr")
+    stage = tmp_path / "ball.usda"
+    isoshell.usd.write(stage, isoshell.remesh(ball, vertices=60, resolution=24))
+    stage.write_text(stage.read_text() + 'def "gone" (references = @gone.usda@) {}\n')
+    for word in (stage, f"{stage}:/World"):
+        done = run("info", word)
+        assert done.returncode == 0 and "closed 2-manifold" in done.stdout, done.stderr
+        assert done.stderr.startswith("isoshell info: warning: ") and "RunWarning" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["a.vtu", "a.usda"])
+def test_info_says_why_it_cannot_read_a_file_of_another_package(tmp_path, name):
+    pytest.importorskip("meshio" if name == "a.vtu" else "pxr")
+    absent = run("info", name, cwd=tmp_path)
+    assert absent.returncode == 3 and f"isoshell info: error: {name}: no such file" in absent.stderr
+    (tmp_path / name).write_text("<")
+    done = run("info", name, cwd=tmp_path)
+    assert done.returncode == 3 and f"isoshell info: error: {name}: " in done.stderr, done.stderr
+    assert "Traceback" not in done.stderr and done.stdout == ""
 
 
 def test_scripts_of_the_package_are_there(capfd, monkeypatch):

@@ -102,6 +102,50 @@ def test_errors_are_returned_in_the_place_of_results_where_that_is_asked_for(tmp
         assert (str(error), error.code, error.stage) == (str(caught.value), caught.value.code, caught.value.stage)
 
 
+def sources_that_cannot_be():
+    vertices, faces = make_ball()
+    labels = np.tile([1, 0], (len(faces), 1))
+
+    def mesh(**parts):
+        return isoshell.Mesh(vertices, faces, **parts)
+
+    yield from ("a\0.ply", "a\0.vtp", "a\0.usda", "a\ud800.ply", None, (vertices[:, :2], faces), (vertices, faces * 0.5))
+    yield from (mesh(of_faces={3: labels[:, 0]}), mesh(of_faces={"\ud800": labels[:, 0]}))
+    yield mesh(of_faces={"part": labels[:, 0]}, labels={"part": ["\ud800", "b"]})
+    yield from (mesh(regions=regions) for regions in (
+        {"background": 0}, {"labels": labels[:7]}, {"labels": labels + 2 ** 40}, {"labels": labels, "background": "none"},
+        {"labels": labels, "names": {"a": "b", 1: "c"}}, {"labels": labels, "names": {1: "\ud800"}}))
+    yield isoshell.Mesh(vertices, faces.ravel(), regions={"labels": labels})
+    yield isoshell.Mesh(vertices, np.column_stack([faces, faces[:, 0]]), regions={"labels": labels})
+    yield from (isoshell.Volume(np.zeros((3, 3, 3)), spacing) for spacing in ((1, 2), "a", 10 ** 400))
+    yield isoshell.Labels(np.ones((3, 3, 3), np.int64), affine=np.zeros((3, 3)))
+
+
+def test_whatever_is_wrong_with_a_source_is_an_error_in_its_place():
+    sources = [*sources_that_cannot_be()]
+    made = list(isoshell.remesh_many([*sources, ball_at(0)], on_error="return", **SMALL))
+    assert [type(each) for each in made] == [isoshell.Error] * len(sources) + [isoshell.Result]
+    kept_on = isoshell.remesh_sequence([*sources, ball_at(0)], keep_going=True, quiet=True, **SMALL)
+    assert [result.frame for result in kept_on] == [len(sources) + 1] and len(kept_on.errors) == len(sources)
+
+
+def test_an_object_of_another_package_that_contradicts_itself_is_an_error_in_its_place():
+    meshio = pytest.importorskip("meshio")
+    vertices, faces = make_ball()
+    broken = meshio.Mesh(vertices, [("triangle", faces)])
+    broken.cells = None
+    made, = isoshell.remesh_many([broken], on_error="return", **SMALL)
+    assert made.code == ErrorCode.UNREADABLE_INPUT and "Mesh of meshio, which cannot be taken" in str(made)
+
+
+def test_regions_may_have_labels_of_any_whole_numbers():
+    vertices, faces = make_ball()
+    for kind in (np.uint8, np.int16, np.uint64):
+        regions = {"labels": np.tile([1, 0], (len(faces), 1)).astype(kind), "names": None}
+        made, = isoshell.remesh_many([isoshell.Mesh(vertices, faces, regions=regions)], **SMALL)
+        assert {*made.regions["labels"].ravel().tolist()} == {0, 1}
+
+
 def test_the_error_of_a_missed_requirement_has_the_result():
     made, = isoshell.remesh_many([ball_at(0)], on_error="return", require="genus=1", **SMALL)
     assert made.code == ErrorCode.GATE_FAILED and len(made.result.vertices) == 60
@@ -119,6 +163,9 @@ def test_what_the_iterable_raises_is_raised():
 @pytest.mark.parametrize("sources, options, words", [
     ("a.ply", {}, "sources"), (7, {}, "sources"), ([], {"workers": 0}, "workers"), ([], {"workers": 2.5}, "workers"),
     ([], {"workers": True}, "workers"), ([], {"on_error": "ignore"}, "on_error"), ([], {"vertices": 3}, "vertices"),
+    ([], {"sizing": isoshell.Volume(np.ones(3))}, "sizing must have 3 dimensions"), ([], {"sizing": "a\0.vdb"}, "NUL"),
+    ([], {"sizing": isoshell.Volume("fine")}, "sizing must be an array"), ([], {"attributes": ["\ud800"]}, "half a character"),
+    ([], {"recenter": (1, 2, "x")}, "recenter is 'x'"), ([], {"region_edge_length": {"\ud800": 1}}, "half a character"),
     ([], {"verticse": 7}, "did you mean vertices"), ([], {"device": "tpu"}, "device"),
     ([], {"report": "a.html"}, "report"),
     ([], {"save_shell": "a.vdb"}, "save_shell"), ([], {"stats": "a.json"}, "stats"),

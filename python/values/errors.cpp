@@ -30,6 +30,14 @@ void translate(const std::exception_ptr& thrown, void*) {
 
 }  // namespace
 
+Error error_of(const nb::python_error& raised) {
+  const nb::object ours = nb::module_::import_("isoshell._errors").attr("Error");
+  if (!raised.matches(ours)) return {ErrorCode::internal, "Python", raised.what()};
+  const nb::handle error = raised.value();
+  return {nb::cast<ErrorCode>(error.attr("code")), nb::cast<std::string>(error.attr("stage")),
+          nb::cast<std::string>(nb::str(error))};
+}
+
 std::string in_keywords(const std::string& message) {
   // An option stands by itself: "--iso", not what a file may be called, "a--iso.ply" or "--iso.ply".
   static const std::regex option("(^|[\\s('\"])--([a-z][a-z-]*[a-z])(?![-\\w]|\\.\\w)");

@@ -14,6 +14,10 @@ namespace isoshell::python {
 /// A message that speaks of options as the command has them, with the names of keywords: "--close-gaps" is close_gaps.
 std::string in_keywords(const std::string& message);
 
+/// What Python has raised, as an Error: an isoshell.Error with its code and stage, another exception as internal. Needs
+/// the interpreter's lock.
+Error error_of(const nanobind::python_error& raised);
+
 /// ErrorCode, and the translation of Error to isoshell.Error.
 void bind_errors(nanobind::module_& m);
 

@@ -32,8 +32,8 @@ std::string python_remedy(const std::string& path, bool writes) {
   const PythonFormat* const format = find_python_format(path);
   if (!format || !(writes ? format->writes : format->reads)) return "";
   return "; the Python module " + std::string(writes ? "writes" : "reads") + " ." + format->name +
-         " files: pip install 'isoshell[" + format->extra +
-         "]', then python -m isoshell INPUT OUTPUT, with the same options";
+         " files: pip install 'isoshell[" + format->extra + "]', then python -m isoshell remesh" +
+         (writes ? "" : ", or info where it is measured") + ", with the same arguments";
 }
 
 }  // namespace isoshell

@@ -15,13 +15,14 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "command line", message); }
 
-std::string description(const std::string& program) {
-  return program +
+std::string description(const MeshInfoProgram& program) {
+  return program.name +
          " MESH [--ref INPUT] [options]\n\n"
          "Counts and measures a triangle mesh as it is stored: topology, shapes of triangles, self-intersections,\n"
          "and with --ref how far it is from a surface.\n\n"
          "MESH    a mesh (" +
-         listed_endings(reads_mesh) + "); - reads standard input and needs --input-format";
+         listed_endings(reads_mesh) + "); - reads standard input and needs --input-format" +
+         (program.also_reads.empty() ? "" : ";\n        " + program.also_reads);
 }
 
 constexpr const char* kExitStatus =
@@ -85,7 +86,7 @@ void refuse_empty_values(const CLI::App& app) {
 
 }  // namespace
 
-MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const std::string& program) {
+MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const MeshInfoProgram& program) {
   MeshInfoArguments a;
   Raw raw;
   CLI::App app(description(program));
@@ -98,7 +99,7 @@ MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const std
     refuse(std::string(e.what()) + "; see --help");
   }
   if (raw.help) return {std::nullopt, options_text(app) + kExitStatus};
-  if (raw.version) return {std::nullopt, version_text(program)};
+  if (raw.version) return {std::nullopt, version_text(program.name)};
   refuse_leftovers(app);
   refuse_empty_values(app);
   if (raw.mesh.empty()) refuse("MESH is missing; see --help");

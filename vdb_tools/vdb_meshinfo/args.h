@@ -24,7 +24,13 @@ struct MeshInfoCommandLine {
   std::string text;
 };
 
+/// What runs the command.
+struct MeshInfoProgram {
+  std::string name = "vdb_meshinfo";  ///< as messages and help call it
+  std::string also_reads = {};        ///< of the help: files that it reads beside those of the library
+};
+
 /// Throws: usage.
-MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const std::string& program = "vdb_meshinfo");
+MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const MeshInfoProgram& program = {});
 
 }  // namespace isoshell::tool

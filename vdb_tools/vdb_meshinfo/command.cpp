@@ -1,10 +1,14 @@
 #include "vdb_meshinfo/command.h"
 
 #include <exception>
+#include <functional>
 #include <new>
+#include <optional>
+#include <utility>
 
 #include "isoshell/advanced/own_thread.h"
 #include "isoshell/error.h"
+#include "isoshell/io/file_format.h"
 #include "isoshell/io/output_files.h"
 #include "vdb_isomesh/console.h"
 #include "vdb_isomesh/interrupt.h"
@@ -33,8 +37,14 @@ void write_statistics(const MeshInfoArguments& a, const MeshInfo& info) {
   write_mesh_info(a.statistics, info, a.overwrite);
 }
 
-int run_command(int argc, const char* const* argv) {
-  const MeshInfoCommandLine command = parse_mesh_info(argc, argv, program);
+Input read(const InputRequest& request, const ReadOther& read_other, const Tell& tell) {
+  std::optional<Input> other;
+  if (read_other && !find_format(request.format)) other = read_other(request, context, tell);
+  return other ? std::move(*other) : read_input(request, context, tell);
+}
+
+int run_command(int argc, const char* const* argv, const ReadOther& read_other, const MeshInfoProgram& front) {
+  const MeshInfoCommandLine command = parse_mesh_info(argc, argv, front);
   if (!command.arguments) {
     print(command.text);
     return 0;
@@ -48,8 +58,11 @@ int run_command(int argc, const char* const* argv) {
   const Tell tell = [&](MessageKind kind, const std::string& text) {
     kind == MessageKind::warning ? console.warn(text) : console.detail(text);
   };
-  const MeshInfo info =
-      mesh_info(a.request, context, tell, [&](const Progress& progress) { console.progress(progress); });
+  const auto reader_of = [&](const InputRequest& request) { return [&] { return read(request, read_other, tell); }; };
+  std::function<Input()> read_reference;
+  if (a.request.reference) read_reference = reader_of(*a.request.reference);
+  const MeshInfo info = mesh_info(reader_of(a.request.mesh), read_reference, a.request.gates, context,
+                                  [&](const Progress& progress) { console.progress(progress); });
   if (!a.statistics.empty()) write_statistics(a, info);
   if (a.statistics != "-" && !a.quiet) print(mesh_info_table(info));
   for (const std::string& text : info.missed_gates) console.error("gate failed: " + text);
@@ -63,12 +76,12 @@ int report(ErrorCode code, const char* message) {
 
 }  // namespace
 
-int mesh_info_command(int argc, const char* const* argv, const std::string& front) {
+int mesh_info_command(int argc, const char* const* argv, const ReadOther& read_other, const MeshInfoProgram& front) {
   fill_closed_streams();
-  program = front;
+  program = front.name;
   answer_signals(context, program.c_str());
   try {
-    return on_own_thread([&] { return run_command(argc, argv); });
+    return on_own_thread([&] { return run_command(argc, argv, read_other, front); });
   } catch (const Error& e) {
     return report(e.code(), e.what());
   } catch (const std::bad_alloc&) {

@@ -7,7 +7,8 @@ import os
 from typing import Any, NamedTuple, Optional
 
 from .. import _isoshell
-from .._errors import Error
+from .._errors import Error, words_of
+from .._isoshell import ErrorCode
 
 PACKAGES = {  # of a module: what to install
     "h5py": "meshio",
@@ -70,6 +71,16 @@ def package(name: str, for_what: str) -> Any:
                     f"pip install {name}") from error
 
 
+def _taken_by(taker: Any, given: Any, options: dict[str, Any]) -> Any:
+    try:
+        return taker.taken(given, options)
+    except Error:
+        raise
+    except Exception as error:  # whatever the package raises of an object that contradicts itself
+        raise Error(f"source is a {type(given).__name__} of {type(given).__module__.partition('.')[0]}, which cannot be "
+                    f"taken: {words_of(error)}", ErrorCode.UNREADABLE_INPUT, "read") from error
+
+
 def to_package(module: str, made: Any) -> Any:
     """A result, or a mesh, as that module has meshes."""
     return importlib.import_module(f".{module}", __name__).given(made)
@@ -80,5 +91,5 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
     for kind in type(given).__mro__:
         taker = TAKERS.get(kind.__module__.partition(".")[0])
         if taker is not None:
-            return importlib.import_module(f".{taker}", __name__).taken(given, options)
+            return _taken_by(importlib.import_module(f".{taker}", __name__), given, options)
     return given

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Iterable
 
 from .. import _isoshell
-from .._errors import Error, warn
+from .._errors import Error, warn, words_of
 from .._inputs import Mesh, Points
 from .._isoshell import ErrorCode
+from .._paths import writing
 from . import Format, format_of, formats
 
 if TYPE_CHECKING:
@@ -34,8 +34,7 @@ def read(path: str, options: dict[str, Any]) -> Any:
     except Error as error:
         raise error if str(error).startswith(path) else Error(f"{path}: {error}", error.code, error.stage) from error
     except Exception as error:  # whatever the package raises of a damaged file
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise Error(f"{path}: {format.extra}: {words}", ErrorCode.UNREADABLE_INPUT, "read") from error
+        raise Error(f"{path}: {format.extra}: {words_of(error)}", ErrorCode.UNREADABLE_INPUT, "read") from error
     if isinstance(made, Points) and len(made.positions) == 0:
         raise Error(f"{path}: {format.extra} finds neither faces nor points in it", ErrorCode.NOTHING_TO_MESH, "read")
     if isinstance(made, Mesh):
@@ -58,7 +57,7 @@ def write(path: str, made: Result | Mesh, overwrite: bool) -> None:
     """Under another name first, so that nothing half-written is left. What the format does not hold is warned of."""
     check_target(path, overwrite)
     format = _format_for(path, "writes")
-    with _writing(path), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=os.path.dirname(path) or ".") as work:
+    with writing(path), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=os.path.dirname(path) or ".") as work:
         part = os.path.join(work, os.path.basename(path))
         lost = _module_of(format).write(made, part)
         for file in sorted(os.listdir(work)):  # XDMF has its numbers in a file beside it
@@ -77,19 +76,3 @@ def _format_for(path: str, what: str) -> Format:
 
 def _module_of(format: Format) -> Any:
     return importlib.import_module(f"._{format.extra}", __package__)
-
-
-@contextlib.contextmanager
-def _writing(path: str) -> Iterator[None]:
-    """What fails meanwhile is an Error of code UNWRITABLE_OUTPUT."""
-    try:
-        yield
-    except Error:
-        raise
-    except Exception as error:  # whatever the package raises of a disk that is full
-        words = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
-        raise _unwritable(path, words) from error
-
-
-def _unwritable(path: str, what: str) -> Error:
-    return Error(f"{path}: {what}", ErrorCode.UNWRITABLE_OUTPUT, "write")

@@ -54,6 +54,11 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
             taker.add(GMSH[name], "face", [names.get(int(v), str(v)) for part in values for v in part])
         elif len({value.shape[1:] for value in values}) == 1:
             taker.add(name, "face", np.concatenate(values))
+        else:
+            taker.drop(name, "its blocks have different numbers of values for each face")
+    for name in [*given.point_sets, *given.cell_sets]:
+        if not name.startswith("gmsh:"):
+            taker.drop(name, "sets of points and cells are not kept")
     left_out = sorted({block.type for i, block in enumerate(given.cells) if i not in blocks})
     if left_out:
         taker.drop(", ".join(left_out), "cells that are no faces are left out")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Iterator, Optional
 
 from .._errors import Error
 from .._inputs import Mesh, Points, Volume
 from . import package
 from ._give import given_of
-from ._take import Taker
+from ._take import Taker, joined
 
 if TYPE_CHECKING:
     import pyvista  # type: ignore[import-not-found, import-untyped, unused-ignore]
@@ -26,19 +26,37 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
     library = package("pyvista", f"a {type(given).__name__}")
     data = library.wrap(given)
     if isinstance(data, library.MultiBlock):
+        surfaces = [surface for surface in _surfaces_in(library, data) if surface.GetNumberOfPolys()]
+        if surfaces:
+            return joined(type(given).__name__, [_taken_surface(type(given).__name__, each) for each in surfaces])
         data = data.combine()
     if isinstance(data, library.ImageData):
         return _taken_image(data)
-    if isinstance(data, library.DataSet) and not isinstance(data, (library.PolyData, library.PointSet)):
-        data = data.extract_surface(algorithm="dataset_surface") if data.n_cells else library.PolyData(data.points)
+    data = _surface_of(library, data)
     if isinstance(data, library.PointSet):
         return _taken_points(data)
     if not isinstance(data, library.PolyData):
         raise Error(f"source is a {type(given).__name__} of pyvista, which has no surface; give a PolyData, a grid, an "
                     "ImageData or a PointSet")
-    if data.n_strips:
-        data = data.triangulate()
     return _taken_surface(type(given).__name__, data) if data.GetNumberOfPolys() else _taken_points(data)
+
+
+def _surface_of(library: Any, data: Any) -> Any:
+    """Of cells their surface, and of strips their triangles; what is no data set as it is."""
+    if isinstance(data, library.DataSet) and not isinstance(data, (library.PolyData, library.PointSet)):
+        data = data.extract_surface(algorithm="dataset_surface") if data.n_cells else library.PolyData(data.points)
+    return data.triangulate() if isinstance(data, library.PolyData) and data.n_strips else data
+
+
+def _surfaces_in(library: Any, blocks: Any) -> Iterator[Any]:
+    """Those of all blocks, and of the blocks in them."""
+    for block in (blocks[i] for i in range(blocks.n_blocks)):
+        if isinstance(block, library.MultiBlock):
+            yield from _surfaces_in(library, block)
+        elif isinstance(block, library.DataSet):
+            surface = _surface_of(library, block)
+            if isinstance(surface, library.PolyData):
+                yield surface
 
 
 def _taken_surface(name: str, data: Any) -> Mesh:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 from .. import _isoshell
 from .._arrays import array_of, nan_where_masked
 from .._errors import Error
+from .._labels import joined_regions
 from .._polygons import split_polygons
 from .._inputs import Mesh
 
@@ -134,9 +135,13 @@ class Taker:
     def _add_region(self, column: int, labels: Array) -> None:
         import numpy as np
 
+        with np.errstate(invalid="ignore"):
+            whole = labels.astype(np.int32)
+        if not np.array_equal(whole, labels):
+            return self.drop(REGIONS[column], "labels of regions are whole numbers of 32 bits")
         if self.mesh.regions is None:
             self.mesh.regions = {"labels": np.zeros((len(self.mesh.faces), 2), np.int32), "background": 0, "names": {}}
-        self.mesh.regions["labels"][:, column] = labels[self._face_of]
+        self.mesh.regions["labels"][:, column] = whole[self._face_of]
 
 
 def _item(value: Any) -> Any:
@@ -179,7 +184,8 @@ def _as_color(rows: Array) -> Array:
 
 
 def joined(name: str, meshes: Sequence[Mesh]) -> Mesh:
-    """Several meshes as one. Where one has not what others have, it is 0 there, NaN among real numbers."""
+    """Several meshes as one, with the regions of all where each has them. Where one has not what others have, it is NaN
+    there, and white for colours."""
     import numpy as np
 
     if len(meshes) == 1:
@@ -198,7 +204,8 @@ def joined(name: str, meshes: Sequence[Mesh]) -> Mesh:
             numbers = [_renumbered(mesh, key, made) for mesh in meshes]
             getattr(made, domain)[key] = np.concatenate(
                 [_padded(part, count, shape, key, number) for part, count, number in zip(parts, counts, numbers)])
-    made.dropped = [pair for mesh in meshes for pair in mesh.dropped]
+    made.regions = joined_regions(name, [mesh.regions for mesh in meshes])
+    made.dropped = [*dict.fromkeys(pair for mesh in meshes for pair in mesh.dropped)]
     materials = [mesh.material for mesh in meshes if mesh.material is not None]
     if len(materials) == len(meshes) and all(material is materials[0] for material in materials):
         made.material = materials[0]

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from typing import Any, Dict, Iterable, Iterator, List
 
 from .._errors import Error
-from .._isoshell import ErrorCode, check_frames, input_formats, path_of_frame
+from .._isoshell import ErrorCode, check_frames, input_formats, path_of_frame, python_formats
 from .._keywords import is_flag, kinds
 from . import _places as places
 
-MESHES = (*(f".{name}" for name in input_formats()), ".usd", ".usda", ".usdc", ".usdz")
+READ_BY_PYTHON = [ending for ending, _, reads, _ in python_formats() if reads]
+MESHES = tuple(f".{ending}" for ending in (*input_formats(), *READ_BY_PYTHON))
 TABLES = (".csv", ".jsonl", ".parquet")
 OF_SEQUENCES = ("frames", "velocity", "no_coherence", "keep_going")
 OF_THE_FARM = ("stats", "report", "force", "progress", "resume", "dry_run", "output_format", "save_shell",
@@ -220,5 +221,5 @@ def _relative(path: str, root: str) -> str:
 
 
 def _stem(name: str) -> str:
-    stem, suffix = os.path.splitext(name)
-    return stem if suffix.lower() in MESHES else name
+    ending = max((ending for ending in MESHES if name.lower().endswith(ending)), key=len, default="")
+    return name[:len(name) - len(ending)]

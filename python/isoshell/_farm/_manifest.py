@@ -9,11 +9,13 @@ from __future__ import annotations
 import json
 import os
 import socket
+import tempfile
 import time
 import uuid
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
-from .._isoshell import VERSION
+from .._isoshell import VERSION, put_in_place
+from .._paths import writing
 from . import _places as places
 from ._rows import Damaged, line_of, row_of
 from ._rows import Row as Row  # others have it from here
@@ -114,20 +116,29 @@ def read(out: str) -> Manifest:
     return Manifest(rows, runs, damaged)
 
 
+def library() -> Tuple[Any, Any]:
+    """pyarrow, and its module of Parquet.
+
+    Raises:
+        Error: of code USAGE without it, saying what to install.
+    """
+    return places.package("pyarrow"), places.package("pyarrow.parquet")
+
+
 def compact(manifest: Manifest, path: str) -> None:
-    """Write the rows as one table of Parquet. Needs pyarrow."""
-    pyarrow, parquet = places.package("pyarrow"), places.package("pyarrow.parquet")
+    """Write the rows as one table of Parquet. Needs pyarrow.
+
+    Raises:
+        Error: of code UNWRITABLE_OUTPUT.
+    """
+    pyarrow, parquet = library()
     flat = [{**_as_text(row), "options": json.dumps(row["options"], sort_keys=True), "gates": json.dumps(row["gates"])}
             for _, row in sorted(manifest.rows.items())]
     names = list(dict.fromkeys(name for row in flat for name in row))
-    table = pyarrow.table({name: [row.get(name) for row in flat] for name in names})
-    part = f"{path}.{uuid.uuid4().hex[:8]}.part"
-    try:
-        parquet.write_table(table, part)
-        os.replace(part, path)
-    finally:
-        if os.path.exists(part):
-            os.unlink(part)
+    with writing(path), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=os.path.dirname(path) or ".") as work:
+        part = os.path.join(work, "table.parquet")
+        parquet.write_table(pyarrow.table({name: [row.get(name) for row in flat] for name in names}), part)
+        put_in_place(part, path, True)
 
 
 def _as_text(row: Row) -> Row:

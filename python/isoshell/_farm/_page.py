@@ -7,16 +7,14 @@ import math
 import os
 import time
 import urllib.parse
-from pathlib import Path
 from typing import List, Optional
 
 import numpy as np
 
 import isoshell
 
-from .. import _report
+from .. import _isoshell, _report
 from .._errors import Error
-from .._isoshell import ErrorCode
 from .._report import _template
 from .._report._charts import histogram
 from . import _manifest as manifest
@@ -37,22 +35,21 @@ FIXED = {"min_angle": (0.0, 60.0), "quality": (0.0, 1.0)}
 
 
 def report(out: str, output: Optional[str], parquet: Optional[str]) -> int:
-    """Writes it. Returns the exit status."""
-    found = read_farm(out)
-    if parquet:
-        manifest.compact(found, parquet)
+    """Writes it, and the table. What is amiss with their places is told before the manifest is read. Returns the exit
+    status."""
     if output is None and places.is_remote(out):
         raise Error(f"{out} is not on this machine; say with --output where the page goes", stage="report")
-    target = Path(output or os.path.join(out, "report.html"))
-    part = target.with_name(f".{target.name}.part")
-    try:
-        text = page(found, out, str(target.absolute().parent))
-        part.write_text(text, encoding="utf-8", errors="backslashreplace")
-        part.replace(target)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise Error(f"{target}: {error.strerror}", ErrorCode.UNWRITABLE_OUTPUT, "report") from error
-    tell(f"{target}")
+    target = output or os.path.join(out, "report.html")
+    page_there = [("--output", target)] if output or os.path.isdir(out) else []
+    _isoshell.check_output_files([*page_there, ("--parquet", parquet or "")], [], True)
+    if parquet:
+        manifest.library()
+    found = read_farm(out)
+    text = page(found, out, os.path.dirname(os.path.abspath(target)))
+    _isoshell.write_text(target, text.encode("utf-8", "backslashreplace").decode(), True)
+    if parquet:
+        manifest.compact(found, parquet)
+    tell(target)
     return 0
 
 

@@ -26,11 +26,11 @@ def package(name: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        if error.name != name.split(".")[0]:
-            raise
+        top = name.split(".")[0]
         extra = {"pyarrow": "pip install pyarrow", "bokeh": "pip install bokeh",
                  **dict.fromkeys(("dask_jobqueue", "cryptography"), "pip install dask-jobqueue cryptography")}
-        raise Error(f"this needs {error.name}: {extra.get(str(error.name), REMEDY)}", stage="farm") from error
+        raise Error(f"this needs {top}, which cannot be imported ({error}): {extra.get(top, REMEDY)}",
+                    stage="farm") from error
 
 
 def is_remote(place: str) -> bool:

@@ -8,10 +8,10 @@ import re
 from typing import Any, Optional
 
 from .._errors import Error
-from .._isoshell import ErrorCode
+from .._isoshell import ErrorCode, python_formats
 from .._paths import path_text
 
-ENDINGS = (".usd", ".usda", ".usdc", ".usdz")
+ENDINGS = tuple(f".{ending}" for ending, extra, _, _ in python_formats() if extra == "usd")
 NAMED = re.compile(r"(?P<file>.*\.usd[acz]?)(?::(?P<prim>[^:\\]*))?", re.IGNORECASE | re.DOTALL)
 MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdSkel", "UsdUtils", "UsdVol", "Vt")
 

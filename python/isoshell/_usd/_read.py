@@ -8,6 +8,7 @@ from typing import Any, Optional, Sequence, Union
 from .._errors import Error, note, warn
 from .._isoshell import ErrorCode
 from .._inputs import Mesh
+from .._labels import joined_regions
 from .._paths import path_text
 from . import Origin, library, split_name
 from ._faces import Triangles, rows_of, triangles_of
@@ -82,14 +83,12 @@ class Scene:
             if labels:
                 made.labels[name] = labels
         made.origin = origin
-        made.regions = self._regions_of(placed, meshes, code)
+        made.regions = joined_regions(file, [self._regions_of(mesh, triangles, code)
+                                             for (mesh, _), triangles in zip(placed, meshes) if len(triangles.faces)])
         return made, meshes
 
-    def _regions_of(self, placed: list[Any], meshes: list[Triangles], code: Any) -> Optional[dict[str, Any]]:
-        """Those that a mesh alone was written with."""
-        if len(placed) != 1:
-            return None
-        mesh, triangles = placed[0][0], meshes[0]
+    def _regions_of(self, mesh: Any, triangles: Triangles, code: Any) -> Optional[dict[str, Any]]:
+        """Those that a mesh was written with."""
         labels = read_regions(self._pxr, mesh, code, triangles.face_count)
         if labels is None:
             return None

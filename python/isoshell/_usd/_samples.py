@@ -7,12 +7,13 @@ import shutil
 import tempfile
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+from .._paths import writing
 from .._result import Result
-from . import Origin, library
+from . import Origin, library, reason_of
 from ._attributes import PrimvarWriter
 from ._materials import write_materials
 from ._regions import SampledRegions
-from ._write import MATERIALS, begin_stage, define_mesh, offset_of, save_stage, write_shape, writing
+from ._write import MATERIALS, begin_stage, define_mesh, offset_of, save_stage, write_shape
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,7 +45,7 @@ class SampledStage:
 
     def add(self, result: Result) -> None:
         """The sample at the time code that is the frame of the result."""
-        with writing(self._pxr, self._target):
+        with writing(self._target, self._pxr.Tf.ErrorException, reason_of):
             if self._stage is None:
                 self._begin(result, result.origin or Origin())
             self._add(result)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterable, Optional, Sequence, Union
 
 from .. import _isoshell
 from .._errors import Error, warn
 from .._isoshell import VERSION, ErrorCode
 from .._keywords import text_of
-from .._paths import path_text
+from .._paths import path_text, unwritable, writing
 from .._result import Result
 from .._vdb_header import Box, Grid, grids_of
 from . import Origin, library, reason_of, split_name
@@ -249,7 +248,7 @@ def save_stage(pxr: Any, stage: Any, target: str, overwrite: bool) -> None:
     where the target is one, too."""
     folder = os.path.dirname(os.path.abspath(target))
     package = target.lower().endswith(".usdz")
-    with writing(pxr, target), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=folder) as work:
+    with writing(target, pxr.Tf.ErrorException, reason_of), tempfile.TemporaryDirectory(prefix=".isoshell-", dir=folder) as work:
         name, ending = os.path.splitext(os.path.basename(target))
         made = os.path.join(work, name + (".usdc" if package else ending.lower()))
         if package:
@@ -260,24 +259,13 @@ def save_stage(pxr: Any, stage: Any, target: str, overwrite: bool) -> None:
             layer.Save()
             made = layer.realPath
         elif not layer.Export(made):
-            raise _unwritable(target, "USD could not write it")
+            raise unwritable(target, "USD could not write it")
         if package:
             packed = os.path.join(work, "packed.usdz")
             if not pxr.UsdUtils.CreateNewUsdzPackage(pxr.Sdf.AssetPath(made), packed):
-                raise _unwritable(target, "USD could not pack it")
+                raise unwritable(target, "USD could not pack it")
             made = packed
         _isoshell.put_in_place(made, target, overwrite)
-
-
-@contextlib.contextmanager
-def writing(pxr: Any, target: str) -> Iterator[None]:
-    """What fails meanwhile is an Error of code UNWRITABLE_OUTPUT."""
-    try:
-        yield
-    except OSError as error:
-        raise _unwritable(target, os.strerror(error.errno or 0)) from error
-    except pxr.Tf.ErrorException as error:
-        raise _unwritable(target, reason_of(error)) from error
 
 
 def _up_a_folder(pxr: Any, attribute: Any) -> None:
@@ -285,7 +273,3 @@ def _up_a_folder(pxr: Any, attribute: Any) -> None:
     value = attribute.Get()
     if isinstance(value, pxr.Sdf.AssetPath) and value.path.startswith(("./", "../")):
         attribute.Set(pxr.Sdf.AssetPath("../" + value.path.removeprefix("./")))
-
-
-def _unwritable(path: str, what: str) -> Error:
-    return Error(f"{path}: {what}", ErrorCode.UNWRITABLE_OUTPUT, "write")

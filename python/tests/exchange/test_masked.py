@@ -72,6 +72,23 @@ def test_a_masked_voxel_of_true_and_false_is_outside():
     hidden[:15] = True
     half = isoshell.Volume(np.ma.array(inside, mask=hidden), spacing, origin)
     assert digest(half) == digest(isoshell.Volume(inside & ~hidden, spacing, origin))
+    slices = isoshell.Volume([*half.values], spacing, origin)  # an array that masks some of its parts
+    assert digest(slices) == digest(half)
+
+
+def test_a_masked_volume_of_true_and_false_may_have_velocities():
+    values, spacing, origin = ball_values()
+    inside, hidden = values < 0, np.indices(values.shape)[0] < 15
+    velocities = np.full((*values.shape, 3), 0.01)
+
+    def moved(mask, vectors):
+        frames = [isoshell.Volume(mask, spacing, origin, vectors)] * 2
+        return [result.digest for result in isoshell.remesh_sequence(frames, **SMALL)]
+
+    known = moved(inside & ~hidden, np.where(hidden[..., None], np.nan, velocities))
+    partly = np.ma.array(velocities, mask=np.broadcast_to(hidden[..., None], velocities.shape))
+    for mask in (np.ma.array(inside, mask=hidden), [*np.ma.array(inside, mask=hidden)]):
+        assert moved(mask, partly) == known
 
 
 def test_a_masked_value_of_a_volume_is_refused_by_its_place():

@@ -16,6 +16,8 @@ from farms import (ENDLESS, SMALL, Crasher, assert_is_refused, assert_is_serial,
                    link_assets, make_assets, rows_of)
 
 import isoshell
+from isoshell import _isoshell
+from isoshell._farm._assets import assets_of
 from isoshell._farm._process import Child, Lost
 
 
@@ -203,6 +205,33 @@ def test_a_place_without_assets_is_refused(tmp_path):
     table.write_text("path,verticse\na.obj,7\n")
     refused = farm("run", table, tmp_path / "out")
     assert refused.returncode == 2 and "the column verticse is no option" in refused.stderr
+
+
+def test_a_folder_has_the_files_of_every_format_that_is_read(tmp_path):
+    """The formats are those of the library's table, with the ones that other packages read."""
+    folder = tmp_path / "assets"
+    folder.mkdir()
+    for ending in (*_isoshell.input_formats(), *(row[0] for row in _isoshell.python_formats() if row[2])):
+        (folder / f"{ending.replace('.', '_')}.{ending.upper()}").touch()
+    for name in ("notes.txt", ".hidden.vtp", "grid.h5", "archive.gz"):
+        (folder / name).touch()
+    found = assets_of(str(folder), {}, ".ply", str(tmp_path / "out"))
+    assert {"nii_gz.ply", "vtp.ply", "msh.ply", "usdz.ply", "obj.ply"} < {asset.output for asset in found}
+    assert len(found) == len(list(folder.iterdir())) - 4
+    assert all(os.path.basename(asset.path).partition(".")[0] + ".ply" == asset.output for asset in found)
+    pattern = assets_of(str(folder / "v*"), {}, ".ply", str(tmp_path / "out"))
+    assert {asset.output for asset in pattern} >= {"vtp.ply", "vtu.ply", "vti.ply", "vdb.ply"}
+
+
+def test_files_of_other_packages_are_assets(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    vertices, faces = make_ball()
+    assets, out = tmp_path / "assets", tmp_path / "out"
+    assets.mkdir()
+    meshio.Mesh(vertices, [("triangle", faces)]).write(assets / "ball.vtu")
+    done = farm("run", assets, out, *SMALL)
+    assert done.returncode == 0, done.stderr
+    assert files_of(out) == {"ball.ply", "ball.json"}
 
 
 def test_slurm_jobs_are_described_by_the_configuration_of_dask():

@@ -49,9 +49,16 @@ def calls_with(path, ball):
 def test_a_nul_in_a_path_is_refused_wherever_a_path_is_taken(path, ball, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for call in calls_with(path, ball):
-        with pytest.raises(ValueError, match="NUL"):
+        with pytest.raises(isoshell.Error, match="NUL") as caught:
             call()
+        assert caught.value.code == ErrorCode.USAGE
     assert os.listdir(tmp_path) == []
+
+
+def test_half_a_character_in_a_path_is_refused(ball):
+    for call in calls_with("a\ud800b.ply", ball):
+        with pytest.raises(isoshell.Error, match="half a character"):
+            call()
 
 
 def test_the_library_refuses_a_nul_too():

@@ -1,4 +1,4 @@
-"""The command where INPUT or OUTPUT is a file that only Python reads or writes: a stage of USD, or one of _exchange."""
+"""The command where INPUT or OUTPUT is a file that only Python reads or writes: a stage of USD, or of another package."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import time
 import warnings
 from typing import Any, Optional
 
-from .._errors import Error, RunWarning
-from .._exchange import format_of
-from .._isoshell import VERSION, ErrorCode
-from .._keywords import kinds
-from .._remesh import estimate, remesh
-from .._result import Result
-from .._sequence import Frames, remesh_sequence
-from . import is_usd
+from ._errors import Error, RunWarning
+from ._exchange import format_of
+from ._isoshell import VERSION, ErrorCode
+from ._keywords import kinds
+from ._remesh import estimate, remesh
+from ._result import Result
+from ._sequence import Frames, remesh_sequence
+from ._usd import is_usd
 
 PROGRAM = "isoshell remesh"
 OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
