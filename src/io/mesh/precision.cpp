@@ -1,31 +1,16 @@
 #include "io/mesh/precision.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
-#include "io/bytes/row_buffer.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
-
-/// Of a value for each index, joined in any order.
-template <class Value, class At, class Join>
-Value joined_over(size_t count, Value start, At at, Join join) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<int64_t>(0, int64_t(count), kRowsPerBlock), start,
-      [&](const tbb::blocked_range<int64_t>& r, Value value) {
-        for (int64_t i = r.begin(); i < r.end(); ++i) value = join(value, at(size_t(i)));
-        return value;
-      },
-      join);
-}
 
 constexpr auto kLarger = [](double a, double b) { return std::max(a, b); };
 constexpr auto kSmaller = [](double a, double b) { return std::min(a, b); };

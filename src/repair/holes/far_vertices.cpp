@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "geometry/box.h"
 #include "geometry/world_vector.h"
 
@@ -26,9 +27,15 @@ double longest_edge_sq(const TriangleSoup& soup, const Face& f) {
 }
 
 bool has_long_edge(const TriangleSoup& soup) {
-  const double least = kLongEdgeOfBox * longest_side(box_of(soup.vertices, soup.triangles));
-  return std::any_of(soup.triangles.begin(), soup.triangles.end(),
-                     [&](const Face& f) { return longest_edge_sq(soup, f) > least * least; });
+  const auto box_at = [&](size_t f) {
+    const auto& [a, b, c] = soup.triangles[f];
+    return box_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]);
+  };
+  const auto longest_sq_at = [&](size_t f) { return longest_edge_sq(soup, soup.triangles[f]); };
+  const size_t faces = soup.triangles.size();
+  const double side = longest_side(joined_over(faces, box_of_none(), box_at, joined<WorldPoint>));
+  const double longest_sq = joined_over(faces, 0., longest_sq_at, [](double a, double b) { return std::max(a, b); });
+  return longest_sq > kLongEdgeOfBox * side * kLongEdgeOfBox * side;
 }
 
 WorldBox box_of_body(const TriangleSoup& soup) {
