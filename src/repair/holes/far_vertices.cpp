@@ -145,14 +145,14 @@ double area_of(const TriangleSoup& soup) {
 }  // namespace
 
 std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
-                                                   const std::function<double(double)>& edge_world,
-                                                   FarVertexReport& report) {
-  if (soup.triangles.empty() || !has_long_edge(soup)) return {};
+                                                   const std::function<double(double)>& edge_world) {
+  if (soup.far.vertices > 0 || soup.triangles.empty() || !has_long_edge(soup)) return {};
   FarVertices far(soup);
   const std::map<uint32_t, Needle> needles = far.needles();
   if (needles.empty()) return {};
   const double widest_world = edge_world(area_of(soup));
   std::vector<std::pair<uint32_t, WorldPoint>> moved;
+  FarVertexReport report;
   for (const auto& [leader, needle] : needles) {
     const std::optional<WorldPoint> middle = middle_of_narrow(soup.vertices, needle, widest_world);
     if (!middle) continue;
@@ -166,6 +166,7 @@ std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
   if (moved.empty()) return {};
   report.vertices = int64_t(moved.size());
   TriangleSoup made = soup;
+  made.far = report;
   for (const auto& [v, at] : moved) made.vertices[v] = at;
   return made;
 }
