@@ -97,6 +97,42 @@ TEST_CASE("written positions: less an offset, which the file, a warning and the 
   }
 }
 
+TEST_CASE("written positions: an offset that takes digits from 64-bit numbers is said to move vertices", "[run]") {
+  const TemporaryFolder folder;
+  CpuContext context;
+  for (const char* ending : {"ply", "obj", "off"}) {
+    const std::string path = folder / (std::string("out.") + ending);
+    INFO(path);
+    const RunResult near = run(input_of(torus_at(kUtm), "torus"), run_to(path, "auto"), context);
+    const HeldPositions& exact = near.record.files.front().held;
+    CHECK((exact.is_single || exact.moved_world == 0));
+    RunRequest request = run_to(path, "1e13,0,0");
+    request.overwrite = true;
+    const RunResult result = run(input_of(torus_at(kNear), "torus"), request, context);
+    const HeldPositions& held = result.record.files.front().held;
+    const TriangleSoup read = read_mesh(path);
+    double moved = 0;
+    if (read.vertices.size() == result.mesh.vertices.size())
+      for (size_t v = 0; v < read.vertices.size(); ++v)  // exact in sums of 64 + 64 bits, whose halves do not overlap
+        moved = std::max(moved, std::abs((read.vertices[v].x + 1e13) - result.mesh.vertices[v].x));
+    CHECK(held.moved_world == moved);
+    CHECK(moved > 1e-4);
+    CHECK(moved <= std::ldexp(1, -10));
+  }
+}
+
+TEST_CASE("written positions: the way out of coarse 64-bit numbers is another offset", "[run]") {
+  HeldPositions held;
+  held.offset_world = {1e15, 0, 0};
+  held.moved_world = held.shortest_edge_world = .1;
+  const auto said = [&](const WorldPoint& to_origin) {
+    return all_of(warnings_of_files({{"out.ply", "ply", held}}, to_origin));
+  };
+  CHECK(contains(said({0, 0, 0}), "ply files have 64-bit floats, which move vertices by up to 0.1"));
+  CHECK(contains(said({0, 0, 0}), ": leave out --recenter\n"));
+  CHECK(contains(said({5e5, 0, 0}), ": --recenter auto subtracts 500000 0 0 from them\n"));
+}
+
 TEST_CASE("written positions: distances are measured where the input is", "[run]") {
   const TemporaryFolder folder;
   CpuContext context;

@@ -71,11 +71,16 @@ int64_t count_lost_triangles(const TriangleMesh& mesh, const Placement& placemen
 }
 
 double largest_move_world(const TriangleMesh& mesh, const Placement& placement) {
-  const auto moved = [&](size_t i) {
-    const WorldPoint& p = mesh.vertices[i];
-    return length(placement.written(p) - placement.about_origin(p));
+  const auto moved = [](double number, double offset, double in_file) {
+    const double less = number - offset, back = less - number;
+    const double rest = (number - (less - back)) - (offset + back);  // number - offset is less + rest, exactly
+    return (in_file - less) - rest;
   };
-  return joined_over(mesh.vertices.size(), 0.0, moved, kLarger);
+  const auto moved_at = [&](size_t i) {
+    const WorldPoint &p = mesh.vertices[i], &o = placement.offset, q = placement.in_file(p);
+    return length({moved(p.x, o.x, q.x), moved(p.y, o.y, q.y), moved(p.z, o.z, q.z)});
+  };
+  return joined_over(mesh.vertices.size(), 0.0, moved_at, kLarger);
 }
 
 bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {
